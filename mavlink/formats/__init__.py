@@ -1,0 +1,1 @@
+"""Mission files: .plan, .waypoints, KML."""

@@ -1,0 +1,1 @@
+"""Sans-I/O machines of the mission protocol: no socket, no clock."""

@@ -1,0 +1,1 @@
+"""Plans missions for side-looking sensors: regions, threats and an aircraft in, a checked plan out."""

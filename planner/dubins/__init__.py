@@ -1,0 +1,1 @@
+"""Shortest paths of bounded curvature, and lines made flyable with them."""

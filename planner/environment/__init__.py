@@ -1,0 +1,1 @@
+"""Threats, zones and the risk along a line."""

@@ -1,0 +1,245 @@
+"""The plan: what comes out, in WGS 84 degrees and SI units, ready for GeoJSON and for MAVLink.
+
+This is the one module of the planner that ``mavlink`` may import, so it imports nothing heavy and its
+values are plain numbers and tuples. Distances along a path (``start_m`` …) count from the path's start.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+LonLat = tuple[float, float]
+LonLatAlt = tuple[float, float, float]
+Ring = tuple[LonLat, ...]
+
+AltitudeReference = Literal["amsl", "home", "terrain"]
+SegmentKind = Literal["straight", "left", "right"]
+
+
+@dataclass(frozen=True, slots=True)
+class PlanVehicle:
+    """What the mission needs to know of the aircraft."""
+
+    name: str
+    type: Literal["fixed_wing", "multirotor", "vtol"]
+    autopilot: Literal["ardupilot", "px4"]
+    airspeed_m_s: float
+    min_turn_radius_m: float
+    max_climb_deg: float = 8.0
+
+
+@dataclass(frozen=True, slots=True)
+class PathSegment:
+    """A straight or a circular arc of a path.
+
+    Parameters
+    ----------
+    kind
+        ``left`` and ``right`` are arcs.
+    start, end
+        Longitude, latitude in degrees.
+    start_m, length_m
+        Along the path.
+    radius_m, centre, turn_deg
+        Of an arc: radius, centre, and degrees turned (> 0, may exceed 180); None for a straight.
+    """
+
+    kind: SegmentKind
+    start: LonLat
+    end: LonLat
+    start_m: float
+    length_m: float
+    radius_m: float | None = None
+    centre: LonLat | None = None
+    turn_deg: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class FlownPath:
+    """The whole line one vehicle flies.
+
+    ``line`` has vertices at most 10 m apart on arcs; straights need only their ends. Altitudes are over the
+    plan's ``altitude_reference``.
+    """
+
+    vehicle: str
+    line: tuple[LonLatAlt, ...]
+    segments: tuple[PathSegment, ...]
+    length_m: float
+    duration_s: float
+    energy_wh: float | None
+    min_turn_radius_m: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class Collect:
+    """Sensor on from the first to the last point of a straight line, in flight direction."""
+
+    vehicle: str
+    seq: int
+    roi: str
+    regions: tuple[str, ...]
+    sensor: str
+    look: Literal["left", "right"]
+    line: tuple[LonLatAlt, LonLatAlt]
+    heading_deg: float
+    start_m: float
+    end_m: float
+    start_s: float
+    end_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class Transit:
+    """The line between two collects, or from the start, or to the end."""
+
+    vehicle: str
+    seq: int
+    from_name: str
+    to_name: str
+    line: tuple[LonLatAlt, ...]
+    length_m: float
+    risk_missile: float
+    risk_radar: float
+    method: str
+
+
+@dataclass(frozen=True, slots=True)
+class Footprint:
+    """Ground seen at full quality during one collect."""
+
+    vehicle: str
+    seq: int
+    roi: str
+    sensor: str
+    ring: Ring
+    resolution_m: float | None = None
+    niirs: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Uncovered:
+    """What of a region no footprint sees: polygons as (outer ring, holes …)."""
+
+    roi: str
+    polygons: tuple[tuple[Ring, ...], ...]
+    area_m2: float
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class Violation:
+    """A constraint that the plan does not keep.
+
+    Parameters
+    ----------
+    constraint
+        ``turn-radius``, ``kink``, ``area``, ``hard-zone``, ``coverage``, ``collect-straight``, ``continuity``,
+        ``range``, ``flight-time`` …
+    feature
+        The region, zone or vehicle concerned.
+    where
+        The worst place; None where there is none.
+    amount, unit
+        By how much.
+    hard
+        Whether a plan with it may be uploaded only with an explicit override.
+    """
+
+    constraint: str
+    feature: str
+    message: str
+    amount: float
+    unit: str
+    where: LonLat | None = None
+    hard: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class Metrics:
+    """What the plan costs and gives."""
+
+    length_m: float
+    collection_length_m: float
+    duty_cycle: float
+    path_length_ratio: float | None
+    risk_missile: float
+    risk_radar: float
+    turns: int
+    duration_s: float
+    energy_wh: float | None
+    coverage: dict[str, float]
+    importance_collected: float | None = None
+    planning_time_s: dict[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class ZonePolygon:
+    """A horizontal polygon of the fence: the outer ring, without its closing point, and an altitude band."""
+
+    name: str
+    ring: Ring
+    floor_m: float | None = None
+    ceiling_m: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class ZoneCircle:
+    """A disc of the fence."""
+
+    name: str
+    centre: LonLat
+    radius_m: float
+    floor_m: float | None = None
+    ceiling_m: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Fence:
+    """Where the vehicles may and may not fly."""
+
+    inclusion: tuple[ZonePolygon, ...] = ()
+    exclusion: tuple[ZonePolygon, ...] = ()
+    exclusion_circles: tuple[ZoneCircle, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """Checked and measured; see contract role by role.
+
+    ``home`` is where the vehicles take off (the scenario's start), ``end`` where they finish; both on the
+    ground.
+    """
+
+    name: str
+    vehicles: tuple[PlanVehicle, ...]
+    altitude_m: float
+    altitude_reference: AltitudeReference
+    home: LonLat
+    end: LonLat
+    paths: tuple[FlownPath, ...]
+    collects: tuple[Collect, ...]
+    transits: tuple[Transit, ...]
+    footprints: tuple[Footprint, ...]
+    uncovered: tuple[Uncovered, ...]
+    fence: Fence
+    metrics: Metrics
+    violations: tuple[Violation, ...]
+    methods: dict[str, str]
+    scenario_hash: str
+    planner_version: str
+    seed: int
+
+    def path_of(self, vehicle: str) -> FlownPath:
+        """The path of one vehicle."""
+        return next(path for path in self.paths if path.vehicle == vehicle)
+
+    def collects_of(self, vehicle: str) -> tuple[Collect, ...]:
+        """The collects of one vehicle in flight order."""
+        return tuple(sorted((c for c in self.collects if c.vehicle == vehicle), key=lambda c: c.seq))
+
+    @property
+    def hard_violations(self) -> tuple[Violation, ...]:
+        """Violations that forbid an upload without an explicit override."""
+        return tuple(violation for violation in self.violations if violation.hard)

@@ -1,0 +1,80 @@
+"""What the stages hand on: a pose, a pass that sees a region, the passes in order."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from shapely.geometry import Polygon
+
+from planner.sensors.sar import Look
+
+Point = tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Pose:
+    """A place and a direction: metres east and north, radians counter-clockwise from east."""
+
+    east_m: float
+    north_m: float
+    angle_rad: float
+
+    @property
+    def position(self) -> Point:
+        """East and north in metres."""
+        return (self.east_m, self.north_m)
+
+
+@dataclass(frozen=True, slots=True)
+class CollectPass:
+    """One straight pass with the sensor on from ``start`` to ``end`` (run-in and run-out of half an aperture included).
+
+    Parameters
+    ----------
+    regions
+        Names of the regions it sees: one, or several where neighbours were merged.
+    sensor, look
+        The sensor and the side it looks to.
+    start, end
+        East and north in metres, in flight direction.
+    eta
+        η of eq 18 (Li et al. 2018), 0 at the innermost and 1 at the outermost line.
+    footprint
+        Ground seen at full resolution.
+    """
+
+    regions: tuple[str, ...]
+    sensor: str
+    look: Look
+    start: Point
+    end: Point
+    eta: float
+    footprint: Polygon
+
+    @property
+    def angle_rad(self) -> float:
+        """Flight direction."""
+        return math.atan2(self.end[1] - self.start[1], self.end[0] - self.start[0])
+
+    @property
+    def length_m(self) -> float:
+        """Length of the line."""
+        return math.hypot(self.end[0] - self.start[0], self.end[1] - self.start[1])
+
+    @property
+    def entry(self) -> Pose:
+        """Pose at sensor on."""
+        return Pose(*self.start, self.angle_rad)
+
+    @property
+    def exit(self) -> Pose:
+        """Pose at sensor off."""
+        return Pose(*self.end, self.angle_rad)
+
+
+@dataclass(frozen=True, slots=True)
+class Route:
+    """The passes of one aircraft in flight order."""
+
+    passes: tuple[CollectPass, ...]

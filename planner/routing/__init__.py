@@ -1,0 +1,1 @@
+"""The order of the regions and the choice among their passes."""

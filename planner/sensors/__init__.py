@@ -1,0 +1,1 @@
+"""Sensors: what they see on the ground from where."""

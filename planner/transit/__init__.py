@@ -1,0 +1,1 @@
+"""One pose to the next round zones and threats."""

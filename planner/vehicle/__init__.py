@@ -1,0 +1,1 @@
+"""Aircraft: speeds, turn radius, energy."""

@@ -1,0 +1,65 @@
+"""What an aircraft can do: speed, turn radius, range."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+STANDARD_GRAVITY_M_S2 = 9.80665
+
+VehicleType = Literal["fixed_wing", "multirotor", "vtol"]
+Autopilot = Literal["ardupilot", "px4"]
+
+#: Planned arcs are this much wider than the aircraft's limit, so that no rounding makes a turn too tight.
+TURN_RADIUS_MARGIN = 1.001
+
+
+@dataclass(frozen=True, slots=True)
+class Aircraft:
+    """One vehicle of the scenario.
+
+    Parameters
+    ----------
+    name
+        As the client wrote it.
+    airspeed_m_s
+        Cruise airspeed, > 0.
+    min_turn_radius_m
+        Tightest turn it flies at that airspeed, in the air mass, > 0.
+    energy_wh, max_range_m, max_flight_time_s
+        What one flight may use; None where not limited.
+    settle_m
+        Straight flight wanted before each collect.
+    max_climb_deg
+        Steepest climb or descent.
+    base
+        Name of the base it starts from; None for the scenario's start.
+    """
+
+    name: str
+    type: VehicleType
+    autopilot: Autopilot
+    airspeed_m_s: float
+    min_turn_radius_m: float
+    max_climb_deg: float = 8.0
+    energy_wh: float | None = None
+    max_range_m: float | None = None
+    max_flight_time_s: float | None = None
+    settle_m: float = 0.0
+    base: str | None = None
+
+    @property
+    def planned_turn_radius_m(self) -> float:
+        """Radius of planned arcs."""
+        return self.min_turn_radius_m * TURN_RADIUS_MARGIN
+
+
+def turn_radius_from_bank_m(airspeed_m_s: float, bank_deg: float) -> float:
+    """Radius of a coordinated level turn, v² / (g tan φ)."""
+    return airspeed_m_s**2 / (STANDARD_GRAVITY_M_S2 * math.tan(math.radians(bank_deg)))
+
+
+def turn_radius_from_load_factor_m(airspeed_m_s: float, load_factor: float) -> float:
+    """Radius of a coordinated level turn, v² / (g √(n² − 1))."""
+    return airspeed_m_s**2 / (STANDARD_GRAVITY_M_S2 * math.sqrt(load_factor**2 - 1.0))
