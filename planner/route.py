@@ -78,3 +78,17 @@ class Route:
     """The passes of one aircraft in flight order."""
 
     passes: tuple[CollectPass, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Anchor:
+    """One end of a transit: a place, and the direction of flight there (any where ``angle_rad`` is None)."""
+
+    east_m: float
+    north_m: float
+    angle_rad: float | None = None
+
+    @property
+    def position(self) -> Point:
+        """East and north in metres."""
+        return (self.east_m, self.north_m)
