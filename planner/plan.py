@@ -135,8 +135,8 @@ class Violation:
     Parameters
     ----------
     constraint
-        ``turn-radius``, ``kink``, ``area``, ``hard-zone``, ``coverage``, ``collect-straight``, ``continuity``,
-        ``range``, ``flight-time`` …
+        ``turn-radius``, ``area``, ``hard-zone``, ``coverage``, ``collect-straight``, ``continuity``,
+        ``range``, ``flight-time``, ``energy``, ``soft-threat``.
     feature
         The region, zone or vehicle concerned.
     where
@@ -230,6 +230,7 @@ class Plan:
     scenario_hash: str
     planner_version: str
     seed: int
+    warnings: tuple[str, ...] = ()
 
     def path_of(self, vehicle: str) -> FlownPath:
         """The path of one vehicle."""

@@ -28,7 +28,7 @@ class Pose:
 
 @dataclass(frozen=True, slots=True)
 class CollectPass:
-    """One straight pass with the sensor on from ``start`` to ``end`` (run-in and run-out of half an aperture included).
+    """One straight pass with the sensor on, run-in and run-out of half an aperture included.
 
     Parameters
     ----------

@@ -6,11 +6,12 @@ east; altitudes are metres over the datum named by ``altitude_reference``.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Literal
 
 from shapely.geometry import MultiPolygon, Polygon
 
+from planner.errors import Finding
 from planner.frames import LocalFrame
 from planner.sensors.sar import SarSensor
 from planner.vehicle.aircraft import Aircraft
@@ -137,7 +138,22 @@ class Scenario:
     seed: int = 0
     time_budget_s: float | None = None
     scenario_hash: str = ""
-    warnings: tuple[str, ...] = field(default=())
+    home_amsl_m: float | None = None
+    warnings: tuple[Finding, ...] = ()
+
+    @property
+    def height_m(self) -> float:
+        """Flight height over the ground, which is flat at the height of home."""
+        if self.altitude_reference == "amsl":
+            return self.altitude_m - (self.home_amsl_m or 0.0)
+        return self.altitude_m
+
+    @property
+    def altitude_amsl_m(self) -> float:
+        """Flight altitude over mean sea level; home counts as sea level where its height is unknown."""
+        if self.altitude_reference == "amsl":
+            return self.altitude_m
+        return self.altitude_m + (self.home_amsl_m or 0.0)
 
     def sensor_for(self, region: Region) -> SarSensor:
         """The sensor asked for by a region, else the first."""

@@ -29,6 +29,8 @@ class Aircraft:
         Tightest turn it flies at that airspeed, in the air mass, > 0.
     energy_wh, max_range_m, max_flight_time_s
         What one flight may use; None where not limited.
+    cruise_power_w
+        Electrical power in cruise: the simplest power model; None where unknown.
     settle_m
         Straight flight wanted before each collect.
     max_climb_deg
@@ -44,6 +46,7 @@ class Aircraft:
     min_turn_radius_m: float
     max_climb_deg: float = 8.0
     energy_wh: float | None = None
+    cruise_power_w: float | None = None
     max_range_m: float | None = None
     max_flight_time_s: float | None = None
     settle_m: float = 0.0

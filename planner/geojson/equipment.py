@@ -1,0 +1,209 @@
+"""Vehicles, sensors and the other foreign members of a scenario."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from planner.angles import angle_from_heading
+from planner.geojson.fields import Fields, Findings
+from planner.scenario import Method, Objective, Wind
+from planner.sensors.sar import Look, SarSensor
+from planner.vehicle.aircraft import Aircraft, turn_radius_from_bank_m, turn_radius_from_load_factor_m
+
+SPEED_OF_LIGHT_M_S = 299_792_458.0
+
+#: A multirotor without a stated turn limit rounds its corners with this bank.
+MULTIROTOR_BANK_DEG = 25.0
+
+METHODS = {
+    "coverage": ("auto", "li2018"),
+    "routing": ("auto", "li2018"),
+    "transit": ("auto", "ssas", "tangent"),
+    "smoothing": ("auto", "fillet", "shortcut"),
+    "search": ("auto",),
+}
+
+
+def read_aircraft(raw: Any, index: int, findings: Findings) -> Aircraft | None:
+    """One entry of ``vehicles``."""
+    if not isinstance(raw, dict):
+        findings.error("scenario", "bad-value", f"vehicles[{index}] is not an object", "Give an object.")
+        return None
+    name = raw.get("name")
+    fields = Fields(f"vehicle {name if name else index}", raw, findings)
+    name = fields.text("name")
+    kind: Any = fields.choice("type", ("fixed_wing", "multirotor", "vtol"), "fixed_wing")
+    autopilot: Any = fields.choice("autopilot", ("ardupilot", "px4"), "ardupilot")
+    airspeed_m_s = fields.number("airspeed_m_s", above=0.0, maximum=400.0)
+    radius_m = _turn_radius_m(fields, airspeed_m_s, kind)
+    max_climb_deg = fields.number("max_climb_deg", 8.0, above=0.0, below=90.0)
+    energy_wh = fields.number("energy_wh", None, above=0.0)
+    power_w = fields.number("cruise_power_w", None, above=0.0)
+    range_m = fields.number("max_range_m", None, above=0.0)
+    time_s = fields.number("max_flight_time_s", None, above=0.0)
+    settle_m = fields.number("settle_m", 0.0, minimum=0.0)
+    base = fields.text("base", None)
+    if energy_wh is not None and power_w is None:
+        fields.wrong(
+            "energy_wh",
+            "has no power model",
+            "Add cruise_power_w, or leave energy_wh out.",
+            rule="no-power-model",
+        )
+    fields.refuse_unknown()
+    if name is None or airspeed_m_s is None or radius_m is None or max_climb_deg is None or settle_m is None:
+        return None
+    if kind is None or autopilot is None:
+        return None
+    return Aircraft(
+        name, kind, autopilot, airspeed_m_s, radius_m, max_climb_deg, energy_wh, power_w, range_m, time_s,
+        settle_m, base,
+    )  # fmt: skip
+
+
+def _turn_radius_m(fields: Fields, airspeed_m_s: float | None, kind: str | None) -> float | None:
+    """The widest of the turn radii that the given limits demand."""
+    radius_m = fields.number("min_turn_radius_m", None, above=0.0)
+    bank_deg = fields.number("max_bank_deg", None, above=0.0, below=85.0)
+    load_factor = fields.number("max_load_factor", None, above=1.0)
+    if airspeed_m_s is None:
+        return None
+    radii = [] if radius_m is None else [radius_m]
+    if bank_deg is not None:
+        radii.append(turn_radius_from_bank_m(airspeed_m_s, bank_deg))
+    if load_factor is not None:
+        radii.append(turn_radius_from_load_factor_m(airspeed_m_s, load_factor))
+    if not radii and kind == "multirotor":
+        radii.append(turn_radius_from_bank_m(airspeed_m_s, MULTIROTOR_BANK_DEG))
+    if not radii:
+        if not {"min_turn_radius_m", "max_bank_deg", "max_load_factor"} & set(_given(fields)):
+            fields.wrong(
+                "min_turn_radius_m",
+                "is missing",
+                "Add min_turn_radius_m, max_bank_deg or max_load_factor.",
+                rule="missing-property",
+            )
+        return None
+    return max(radii)
+
+
+def _given(fields: Fields) -> list[str]:
+    return [n for n in ("min_turn_radius_m", "max_bank_deg", "max_load_factor") if n in fields]
+
+
+def read_sensor(raw: Any, index: int, findings: Findings) -> SarSensor | None:
+    """One entry of ``sensors``."""
+    if not isinstance(raw, dict):
+        findings.error("scenario", "bad-value", f"sensors[{index}] is not an object", "Give an object.")
+        return None
+    name = raw.get("name")
+    fields = Fields(f"sensor {name if name else index}", raw, findings)
+    name = fields.text("name")
+    kind = fields.choice("type", ("sar", "camera"))
+    if kind == "camera":
+        findings.error(
+            fields.owner, "not-supported", "is a camera, which this version does not plan", "Use a SAR."
+        )
+        return None
+    incidence_deg = fields.number("incidence_deg", above=0.0, below=90.0)
+    elevation_deg = fields.number("elevation_beamwidth_deg", above=0.0, below=180.0)
+    azimuth_rad = _azimuth_beamwidth_rad(fields)
+    resolution_m = fields.number("resolution_m", None, above=0.0)
+    look = fields.choice("look", ("left", "right", "both"), "right")
+    squint_deg = fields.number("squint_deg", 0.0, above=-90.0, below=90.0)
+    if squint_deg:
+        fields.wrong("squint_deg", "is not zero", "This version plans without squint.", rule="not-supported")
+    fields.refuse_unknown(
+        also_known=("azimuth_beamwidth_deg", "aperture_length_m", "wavelength_m", "frequency_hz")
+    )
+    if name is None or incidence_deg is None or elevation_deg is None or azimuth_rad is None or look is None:
+        return None
+    if incidence_deg - elevation_deg / 2.0 < 0.0 or incidence_deg + elevation_deg / 2.0 >= 90.0:
+        fields.wrong(
+            "elevation_beamwidth_deg",
+            f"is {elevation_deg:g} round an incidence of {incidence_deg:g}: the beam passes the nadir or the "
+            "horizon, so the swath is not a positive width on one side",
+            "Keep incidence_deg ± elevation_beamwidth_deg / 2 within 0 and 90.",
+            rule="swath-not-positive",
+        )
+        return None
+    looks: tuple[Look, ...] = (
+        ("left", "right") if look == "both" else ("left",) if look == "left" else ("right",)
+    )
+    return SarSensor(
+        name, math.radians(incidence_deg), math.radians(elevation_deg), azimuth_rad, looks, resolution_m
+    )
+
+
+def _azimuth_beamwidth_rad(fields: Fields) -> float | None:
+    """θ_A, given, or from the real aperture's length by θ_A = λ / D."""
+    beamwidth_deg = fields.number("azimuth_beamwidth_deg", None, above=0.0, below=180.0)
+    length_m = fields.number("aperture_length_m", None, above=0.0)
+    wavelength_m = fields.number("wavelength_m", None, above=0.0)
+    if beamwidth_deg is not None:
+        return math.radians(beamwidth_deg)
+    if length_m is not None and wavelength_m is not None and wavelength_m < length_m * math.pi:
+        return wavelength_m / length_m
+    if "azimuth_beamwidth_deg" not in fields:
+        fields.wrong(
+            "azimuth_beamwidth_deg",
+            "is missing",
+            "Add azimuth_beamwidth_deg, or aperture_length_m with wavelength_m.",
+            rule="missing-property",
+        )
+    return None
+
+
+def read_wind(raw: Any, findings: Findings) -> Wind:
+    """Member ``wind``."""
+    if raw is None:
+        return Wind()
+    fields = Fields("wind", raw if isinstance(raw, dict) else {}, findings)
+    speed_m_s = fields.number("speed_m_s", minimum=0.0, maximum=100.0) or 0.0
+    from_deg = fields.number(
+        "from_deg", 0.0 if not speed_m_s else fields.raw("from_deg"), minimum=0.0, maximum=360.0
+    )
+    fields.refuse_unknown()
+    if speed_m_s > 0.0:
+        findings.warning(
+            "wind",
+            "wind-not-planned",
+            f"of {speed_m_s:g} m/s is not yet taken into account: times and turns are those of still air",
+            "Give min_turn_radius_m a margin for the wind.",
+        )
+    return Wind(speed_m_s, angle_from_heading((from_deg or 0.0) + 180.0))
+
+
+def read_objective(raw: Any, findings: Findings) -> Objective:
+    """Member ``objective``."""
+    if raw is None:
+        return Objective()
+    fields = Fields("objective", raw if isinstance(raw, dict) else {}, findings)
+    defaults = Objective()
+    weights = {
+        name: fields.number(name, getattr(defaults, name), minimum=0.0)
+        for name in ("length", "missile", "radar", "energy", "turns")
+    }
+    fields.refuse_unknown()
+    return Objective(**{name: getattr(defaults, name) if w is None else w for name, w in weights.items()})
+
+
+def read_method(raw: Any, findings: Findings) -> Method:
+    """Member ``method``."""
+    if raw is None:
+        return Method()
+    fields = Fields("method", raw if isinstance(raw, dict) else {}, findings)
+    chosen = {stage: fields.choice(stage, names, "auto") or "auto" for stage, names in METHODS.items()}
+    fields.refuse_unknown()
+    return Method(**chosen)
+
+
+def listed(document: Mapping[str, Any], name: str, findings: Findings) -> list[Any]:
+    """A member that must be a non-empty list."""
+    value = document.get(name)
+    if not isinstance(value, list) or not value:
+        findings.error("scenario", "missing-member", f"{name} is missing or empty", f"Add {name}: a list.")
+        return []
+    return value

@@ -1,0 +1,203 @@
+"""One reader a role: a GeoJSON feature to a value of the scenario."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from shapely.geometry import MultiPolygon, Point, Polygon
+
+from planner.frames import LocalFrame
+from planner.geojson import geometry as shapes
+from planner.geojson.fields import Fields, Findings
+from planner.scenario import NoFlyZone, Obstacle, Region, Terminal, Threat
+
+#: A point target without a radius still has to be inside a footprint, as a disc this large.
+POINT_TARGET_RADIUS_M = 1.0
+
+GEOMETRIES = {
+    "roi": ("Polygon", "MultiPolygon", "LineString", "Point"),
+    "threat": ("Point",),
+    "no_fly": ("Polygon", "Point"),
+    "obstacle": ("Polygon",),
+    "area": ("Polygon",),
+    "start": ("Point",),
+    "end": ("Point",),
+    "base": ("Point",),
+    "importance": ("Polygon",),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class RawFeature:
+    """A feature whose role and geometry type are known to go together."""
+
+    name: str
+    role: str
+    geometry: Mapping[str, Any]
+    fields: Fields
+
+
+def read_role(name: str, feature: Mapping[str, Any], findings: Findings) -> RawFeature | None:
+    """Check the envelope of one feature: properties, role, geometry type."""
+    properties = feature.get("properties")
+    if not isinstance(properties, dict):
+        findings.error(name, "no-properties", "has no properties", "Add properties with a role.")
+        return None
+    fields = Fields(name, properties, findings)
+    fields.raw("name")
+    role = fields.raw("role")
+    if role not in GEOMETRIES:
+        findings.error(
+            name,
+            "unknown-role",
+            f"has the role {role!r}" if role is not None else "has no role",
+            f"Use one of: {', '.join(GEOMETRIES)}.",
+        )
+        return None
+    geometry = feature.get("geometry")
+    kind = geometry.get("type") if isinstance(geometry, dict) else None
+    if not isinstance(geometry, dict) or kind not in GEOMETRIES[role]:
+        findings.error(
+            name,
+            "wrong-geometry",
+            f"has the geometry {kind!r}",
+            f"A feature of role {role} is a {' or '.join(GEOMETRIES[role])}.",
+        )
+        return None
+    return RawFeature(name, role, geometry, fields)
+
+
+def read_region(raw: RawFeature, frame: LocalFrame, findings: Findings) -> Region | None:
+    """Role ``roi``."""
+    fields = raw.fields
+    kind = raw.geometry["type"]
+    area: Polygon | MultiPolygon | None = None
+    if kind in ("Polygon", "MultiPolygon"):
+        area = shapes.area(raw.name, dict(raw.geometry), frame, findings)
+    elif kind == "LineString":
+        width_m = fields.number("width_m", above=0.0)
+        line = shapes.line(raw.name, dict(raw.geometry), frame, findings)
+        if line is not None and width_m is not None:
+            area = line.buffer(width_m / 2.0, cap_style="flat")
+    else:
+        radius_m = fields.number("radius_m", 0.0, minimum=0.0)
+        place = shapes.point(raw.name, dict(raw.geometry), frame, findings)
+        if place is not None and radius_m is not None:
+            area = Point(place).buffer(max(radius_m, POINT_TARGET_RADIUS_M), quad_segs=16)
+    if fields.integer("revisits", 1, minimum=1) > 1:
+        _not_yet(raw, "revisits", "more than one visit to a region", "Leave revisits at 1.", findings)
+    if fields.raw("time_window_s") is not None:
+        _not_yet(raw, "time_window_s", "time windows", "Leave time_window_s out.", findings)
+    if fields.raw("min_niirs") is not None:
+        _not_yet(raw, "min_niirs", "a NIIRS limit for SAR", "Use min_resolution_m.", findings)
+    priority = fields.number("priority", 1.0, minimum=0.0)
+    required = fields.flag("required", True)
+    sensor = fields.text("sensor", None)
+    min_resolution_m = fields.number("min_resolution_m", None, above=0.0)
+    headings = _headings(fields)
+    fields.refuse_unknown()
+    if area is None or priority is None:
+        return None
+    approach = None
+    if headings is not None:
+        centre = area.centroid
+        approach = tuple(frame.angle_rad(centre.x, centre.y, heading) for heading in headings)
+    return Region(raw.name, area, priority, required, sensor, min_resolution_m, approach)
+
+
+def _headings(fields: Fields) -> tuple[float, ...] | None:
+    value = fields.raw("approach_deg")
+    if value is None:
+        return None
+    if (
+        not isinstance(value, list)
+        or not value
+        or not all(
+            isinstance(v, (int, float)) and not isinstance(v, bool) and math.isfinite(v) and 0.0 <= v <= 360.0
+            for v in value
+        )
+    ):
+        fields.wrong("approach_deg", f"is {value!r}", "Give a list of headings in degrees, 0 to 360.")
+        return None
+    return tuple(float(v) for v in value)
+
+
+def read_threat(raw: RawFeature, frame: LocalFrame, findings: Findings) -> Threat | None:
+    """Role ``threat``."""
+    fields = raw.fields
+    model = fields.choice("model", ("missile", "radar"))
+    radius_m = fields.number("radius_m", above=0.0)
+    intensity_m: float | None = 0.0
+    if model == "radar":
+        intensity_m = fields.number("intensity_m", above=0.0)
+    elif model == "missile":
+        fields.raw("intensity_m")
+    height_m = fields.number("height_m", math.inf, above=0.0)
+    hard = fields.flag("hard", False)
+    centre = shapes.point(raw.name, dict(raw.geometry), frame, findings)
+    fields.refuse_unknown(also_known=("intensity_m",))
+    if model is None or radius_m is None or intensity_m is None or height_m is None or centre is None:
+        return None
+    kind: Any = model
+    return Threat(raw.name, kind, centre, radius_m, intensity_m, height_m, hard)
+
+
+def read_no_fly(raw: RawFeature, frame: LocalFrame, findings: Findings) -> NoFlyZone | None:
+    """Role ``no_fly``."""
+    fields = raw.fields
+    floor_m = fields.number("floor_m", -math.inf)
+    ceiling_m = fields.number("ceiling_m", math.inf)
+    zone: NoFlyZone | None = None
+    if raw.geometry["type"] == "Point":
+        radius_m = fields.number("radius_m", above=0.0)
+        centre = shapes.point(raw.name, dict(raw.geometry), frame, findings)
+        if centre is not None and radius_m is not None:
+            zone = NoFlyZone(raw.name, None, centre, radius_m, floor_m or 0.0, ceiling_m or 0.0)
+    else:
+        area = shapes.polygon(raw.name, raw.geometry.get("coordinates"), frame, findings)
+        if area is not None:
+            zone = NoFlyZone(raw.name, area, None, None, floor_m or 0.0, ceiling_m or 0.0)
+    fields.refuse_unknown()
+    if floor_m is None or ceiling_m is None:
+        return None
+    if floor_m >= ceiling_m:
+        fields.wrong("floor_m", "is not below ceiling_m", "Swap them or leave one out.", rule="band-empty")
+    return zone
+
+
+def read_obstacle(raw: RawFeature, frame: LocalFrame, findings: Findings) -> Obstacle | None:
+    """Role ``obstacle``."""
+    height_m = raw.fields.number("height_m", above=0.0)
+    base_m = raw.fields.number("base_m", 0.0)
+    area = shapes.polygon(raw.name, raw.geometry.get("coordinates"), frame, findings)
+    raw.fields.refuse_unknown()
+    if height_m is None or base_m is None or area is None:
+        return None
+    return Obstacle(raw.name, area, height_m, base_m)
+
+
+def read_area(raw: RawFeature, frame: LocalFrame, findings: Findings) -> Polygon | None:
+    """Role ``area``."""
+    area = shapes.polygon(raw.name, raw.geometry.get("coordinates"), frame, findings)
+    raw.fields.refuse_unknown()
+    return area
+
+
+def read_terminal(raw: RawFeature, frame: LocalFrame, findings: Findings) -> Terminal | None:
+    """Roles ``start``, ``end`` and ``base``."""
+    heading_deg = raw.fields.number("heading_deg", None, minimum=0.0, maximum=360.0)
+    place = shapes.point(raw.name, dict(raw.geometry), frame, findings)
+    raw.fields.refuse_unknown()
+    if place is None:
+        return None
+    angle = None if heading_deg is None else frame.angle_rad(*place, heading_deg)
+    return Terminal(raw.name, place, angle)
+
+
+def _not_yet(raw: RawFeature, name: str, what: str, fix: str, findings: Findings) -> None:
+    findings.error(
+        raw.name, "not-supported", f"{name} asks for {what}, which this version does not plan", fix
+    )

@@ -1,0 +1,172 @@
+"""Plan to GeoJSON, role by role."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import asdict
+from typing import Any
+
+from planner.plan import Collect, FlownPath, LonLat, PathSegment, Plan, Ring, ZoneCircle, ZonePolygon
+
+#: A tenth of a nanodegree is a hundredth of a millimetre: fine enough that no turn gets tighter by rounding.
+DECIMALS_DEG = 10
+DECIMALS_M = 4
+
+
+def write_plan(plan: Plan) -> dict[str, Any]:
+    """The plan as a GeoJSON FeatureCollection; ``read_plan`` reads it back."""
+    features = [
+        *(_collect(c) for c in plan.collects),
+        *(
+            _feature(
+                "LineString",
+                _line3(t.line),
+                role="transit",
+                vehicle=t.vehicle,
+                seq=t.seq,
+                **{"from": t.from_name, "to": t.to_name},
+                length_m=_m(t.length_m),
+                risk_missile=t.risk_missile,
+                risk_radar=t.risk_radar,
+                method=t.method,
+            )
+            for t in plan.transits
+        ),
+        *(_path(p) for p in plan.paths),
+        *(
+            _feature(
+                "Polygon",
+                [_ring(f.ring)],
+                role="footprint",
+                vehicle=f.vehicle,
+                seq=f.seq,
+                roi=f.roi,
+                sensor=f.sensor,
+                resolution_m=f.resolution_m,
+                niirs=f.niirs,
+            )
+            for f in plan.footprints
+        ),
+        *(
+            _feature(
+                "MultiPolygon" if len(u.polygons) > 1 else "Polygon",
+                [[_ring(r) for r in p] for p in u.polygons]
+                if len(u.polygons) > 1
+                else [_ring(r) for r in u.polygons[0]],
+                role="uncovered",
+                roi=u.roi,
+                area_m2=round(u.area_m2, 2),
+                reason=u.reason,
+            )
+            for u in plan.uncovered
+        ),
+    ]
+    return {
+        "type": "FeatureCollection",
+        "name": plan.name,
+        "features": features,
+        "vehicles": [asdict(v) for v in plan.vehicles],
+        "altitude_m": plan.altitude_m,
+        "altitude_reference": plan.altitude_reference,
+        "home": list(_lonlat(plan.home)),
+        "end": list(_lonlat(plan.end)),
+        "fence": {
+            "inclusion": [_zone(z) for z in plan.fence.inclusion],
+            "exclusion": [_zone(z) for z in plan.fence.exclusion],
+            "exclusion_circles": [_circle(z) for z in plan.fence.exclusion_circles],
+        },
+        "metrics": asdict(plan.metrics),
+        "violations": [
+            {**asdict(v), "where": None if v.where is None else list(_lonlat(v.where))}
+            for v in plan.violations
+        ],
+        "warnings": list(plan.warnings),
+        "methods": plan.methods,
+        "scenario_hash": plan.scenario_hash,
+        "planner_version": plan.planner_version,
+        "seed": plan.seed,
+    }
+
+
+def _collect(c: Collect) -> dict[str, Any]:
+    return _feature(
+        "LineString",
+        _line3(c.line),
+        role="collect",
+        vehicle=c.vehicle,
+        seq=c.seq,
+        roi=c.roi,
+        rois=list(c.regions),
+        sensor=c.sensor,
+        look=c.look,
+        heading_deg=round(c.heading_deg, 6),
+        start_m=_m(c.start_m),
+        end_m=_m(c.end_m),
+        start_s=round(c.start_s, 3),
+        end_s=round(c.end_s, 3),
+    )
+
+
+def _path(p: FlownPath) -> dict[str, Any]:
+    return _feature(
+        "LineString",
+        _line3(p.line),
+        role="path",
+        vehicle=p.vehicle,
+        length_m=_m(p.length_m),
+        duration_s=round(p.duration_s, 3),
+        energy_wh=p.energy_wh,
+        min_turn_radius_m=p.min_turn_radius_m,
+        segments=[_segment(s) for s in p.segments],
+    )
+
+
+def _segment(s: PathSegment) -> dict[str, Any]:
+    out: dict[str, Any] = {
+        "kind": s.kind,
+        "start": list(_lonlat(s.start)),
+        "end": list(_lonlat(s.end)),
+        "start_m": _m(s.start_m),
+        "length_m": _m(s.length_m),
+    }
+    if s.centre is not None:
+        out |= {"radius_m": s.radius_m, "centre": list(_lonlat(s.centre)), "turn_deg": s.turn_deg}
+    return out
+
+
+def _feature(kind: str, coordinates: Any, **properties: Any) -> dict[str, Any]:
+    return {
+        "type": "Feature",
+        "properties": properties,
+        "geometry": {"type": kind, "coordinates": coordinates},
+    }
+
+
+def _zone(zone: ZonePolygon) -> dict[str, Any]:
+    return {
+        "name": zone.name,
+        "ring": [list(_lonlat(p)) for p in zone.ring],
+        "floor_m": zone.floor_m,
+        "ceiling_m": zone.ceiling_m,
+    }
+
+
+def _circle(zone: ZoneCircle) -> dict[str, Any]:
+    return asdict(zone) | {"centre": list(_lonlat(zone.centre))}
+
+
+def _lonlat(place: LonLat) -> LonLat:
+    return (round(place[0], DECIMALS_DEG), round(place[1], DECIMALS_DEG))
+
+
+def _line3(line: Iterable[tuple[float, float, float]]) -> list[list[float]]:
+    return [[*_lonlat((lon, lat)), round(alt, DECIMALS_M)] for lon, lat, alt in line]
+
+
+def _ring(ring: Ring) -> list[list[float]]:
+    """A closed ring of whatever winding the writer of the plan gave it."""
+    return [list(_lonlat(place)) for place in ring]
+
+
+def _m(metres: float) -> float:
+    return round(metres, DECIMALS_M)

@@ -1,0 +1,114 @@
+"""Rules between features: what each is right by itself, and wrong together."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from shapely.geometry import Point
+from shapely.geometry.base import BaseGeometry
+
+from planner.geojson.fields import Findings
+from planner.scenario import Scenario, Terminal
+
+#: A region may stick out of the area by this much: the rounding of coordinates, not a wish.
+AREA_TOLERANCE_M = 0.05
+
+
+def check_together(scenario: Scenario, findings: Findings) -> None:
+    """Add a finding for each rule between features that the scenario breaks."""
+    _names(scenario, findings)
+    _area(scenario, findings)
+    _terminals(scenario, findings)
+
+
+def _names(scenario: Scenario, findings: Findings) -> None:
+    for kind, names in (
+        ("vehicle", [a.name for a in scenario.aircraft]),
+        ("sensor", [s.name for s in scenario.sensors]),
+    ):
+        for name in sorted({n for n in names if names.count(n) > 1}):
+            findings.error(
+                f"{kind} {name}", "duplicate-id", f"is the name of two {kind}s", "Name each its own."
+            )
+    sensors = {s.name for s in scenario.sensors}
+    for region in scenario.regions:
+        if region.sensor is not None and region.sensor not in sensors:
+            findings.error(
+                region.name,
+                "unknown-sensor",
+                f"asks for the sensor {region.sensor!r}",
+                f"Use one of: {', '.join(sorted(sensors))}.",
+            )
+    if scenario.height_m <= 0.0:
+        findings.error(
+            "scenario",
+            "altitude-below-ground",
+            f"altitude_m {scenario.altitude_m:g} is not above home, {scenario.home_amsl_m or 0.0:g} m amsl",
+            "Raise altitude_m.",
+        )
+
+
+def _area(scenario: Scenario, findings: Findings) -> None:
+    area = scenario.area
+    if area is None:
+        return
+    wide = area.buffer(AREA_TOLERANCE_M)
+    for region in scenario.regions:
+        if not wide.covers(region.area):
+            outside_m2 = region.area.difference(area).area
+            findings.error(
+                region.name,
+                "roi-outside-area",
+                f"has {outside_m2:.0f} m² of {region.area.area:.0f} m² outside the operating area",
+                "Enlarge the area or cut the region to it.",
+            )
+    for terminal in _ends(scenario):
+        if not wide.covers(Point(terminal.position)):
+            findings.error(
+                terminal.name,
+                "outside-area",
+                "lies outside the operating area",
+                "Move it inside, or enlarge the area.",
+            )
+    for aircraft in scenario.aircraft:
+        if area.buffer(-aircraft.min_turn_radius_m).is_empty:
+            findings.error(
+                f"vehicle {aircraft.name}",
+                "turn-radius-exceeds-area",
+                f"cannot turn within the operating area with a radius of {aircraft.min_turn_radius_m:.0f} m",
+                "Enlarge the area, or fly slower or with more bank.",
+            )
+
+
+def hard_zones(scenario: Scenario) -> Iterator[tuple[str, BaseGeometry]]:
+    """Names and shapes of what may never be entered at the flight altitude."""
+    for threat in scenario.threats:
+        if threat.hard and scenario.height_m <= threat.height_m:
+            yield threat.name, Point(threat.centre).buffer(threat.radius_m, quad_segs=64)
+    for zone in scenario.no_fly:
+        if zone.floor_m <= scenario.altitude_amsl_m <= zone.ceiling_m:
+            if zone.area is not None:
+                yield zone.name, zone.area
+            elif zone.centre is not None and zone.radius_m is not None:
+                yield zone.name, Point(zone.centre).buffer(zone.radius_m, quad_segs=64)
+    for obstacle in scenario.obstacles:
+        if obstacle.base_m + obstacle.height_m + scenario.clearance_m >= scenario.height_m:
+            yield obstacle.name, obstacle.area.buffer(scenario.clearance_m)
+
+
+def _terminals(scenario: Scenario, findings: Findings) -> None:
+    for name, shape in hard_zones(scenario):
+        for terminal in _ends(scenario):
+            if shape.contains(Point(terminal.position)):
+                findings.error(
+                    terminal.name,
+                    f"{'start' if terminal is scenario.start else 'end'}-in-hard-zone",
+                    f"lies inside {name}, which may never be entered",
+                    f"Move it out of {name}.",
+                )
+
+
+def _ends(scenario: Scenario) -> tuple[Terminal, ...]:
+    if scenario.end.position == scenario.start.position:
+        return (scenario.start,)
+    return (scenario.start, scenario.end)

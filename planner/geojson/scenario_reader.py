@@ -1,0 +1,271 @@
+"""GeoJSON FeatureCollection to Scenario: everything wrong is found, nothing is guessed."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+from shapely.geometry import Polygon
+
+from planner.errors import ScenarioError
+from planner.frames import MAX_EXTENT_M, WGS84, LocalFrame
+from planner.geojson import equipment, features
+from planner.geojson.fields import Fields, Findings
+from planner.geojson.geometry import positions_of
+from planner.geojson.rules import check_together
+from planner.scenario import Scenario, Terminal
+
+MEMBERS = (
+    "type", "features", "name", "description", "bbox", "crs", "vehicles", "sensors", "altitude_m",
+    "altitude_reference", "terrain", "wind", "clearance_m", "objective", "task", "method", "seed",
+    "time_budget_s",
+)  # fmt: skip
+
+CRS84 = (
+    "urn:ogc:def:crs:OGC:1.3:CRS84",
+    "urn:ogc:def:crs:OGC::CRS84",
+    "EPSG:4326",
+    "urn:ogc:def:crs:EPSG::4326",
+)
+
+
+def scenario_hash(document: Mapping[str, Any]) -> str:
+    """SHA-256 of the document in canonical JSON (sorted keys, no spaces)."""
+    canonical = json.dumps(document, sort_keys=True, separators=(",", ":"), ensure_ascii=False)
+    return hashlib.sha256(canonical.encode()).hexdigest()
+
+
+def read_scenario(document: Any) -> Scenario:
+    """Read and validate a scenario.
+
+    Parameters
+    ----------
+    document
+        The parsed JSON of a GeoJSON FeatureCollection with the roles and members of the contract.
+
+    Raises
+    ------
+    ScenarioError
+        With every finding, when anything is wrong.
+    """
+    findings = Findings()
+    scenario = _read(document, findings)
+    if findings.errors or scenario is None:
+        raise ScenarioError(findings.all())
+    return scenario
+
+
+def _read(document: Any, findings: Findings) -> Scenario | None:
+    if not isinstance(document, dict) or document.get("type") != "FeatureCollection":
+        findings.error(
+            "scenario", "not-a-feature-collection", "is not a GeoJSON FeatureCollection",
+            'Send {"type": "FeatureCollection", "features": [...], ...}.',
+        )  # fmt: skip
+        return None
+    raw_features = document.get("features")
+    if not isinstance(raw_features, list):
+        findings.error("scenario", "no-features", "has no list of features", "Add features.")
+        return None
+    _check_crs(document.get("crs"), findings)
+    frame = _frame(raw_features, findings)
+    raws = _raw_features(raw_features, findings)
+    if frame is None:
+        return None
+
+    def each(role: str, reader: Any) -> list[Any]:
+        values = [reader(raw, frame, findings) for raw in raws if raw.role == role]
+        return [value for value in values if value is not None]
+
+    regions = each("roi", features.read_region)
+    threats = each("threat", features.read_threat)
+    no_fly = each("no_fly", features.read_no_fly)
+    obstacles = each("obstacle", features.read_obstacle)
+    areas: list[Polygon] = each("area", features.read_area)
+    starts: list[Terminal] = each("start", features.read_terminal)
+    ends: list[Terminal] = each("end", features.read_terminal)
+    bases: list[Terminal] = each("base", features.read_terminal)
+    for role, most in (("area", 1), ("start", 1), ("end", 1)):
+        named = [raw.name for raw in raws if raw.role == role]
+        for extra in named[most:]:
+            findings.error(extra, f"several-{role}s", f"is a second {role}", f"Keep one {role}.")
+    for raw in raws:
+        if raw.role == "importance":
+            findings.warning(raw.name, "not-used", "is not used by the collect task", "Remove it.")
+            raw.fields.number("score", minimum=0.0)
+            raw.fields.refuse_unknown()
+
+    top = Fields("scenario", document, findings)
+    top.refuse_unknown(also_known=MEMBERS)
+    aircraft = [
+        equipment.read_aircraft(raw, i, findings)
+        for i, raw in enumerate(equipment.listed(document, "vehicles", findings))
+    ]
+    sensors = [
+        equipment.read_sensor(raw, i, findings)
+        for i, raw in enumerate(equipment.listed(document, "sensors", findings))
+    ]
+    if len(aircraft) > 1:
+        findings.error(
+            "scenario", "not-supported", f"has {len(aircraft)} vehicles; this version plans for one",
+            "Send one scenario a vehicle.",
+        )  # fmt: skip
+    altitude_m = top.number("altitude_m", above=0.0, maximum=30_000.0)
+    reference: Any = top.choice("altitude_reference", ("amsl", "home", "terrain"), "terrain")
+    if top.choice("task", ("collect", "search"), "collect") == "search":
+        findings.error(
+            "scenario", "not-supported", "task search is not planned by this version", "Use collect."
+        )
+    if top.raw("terrain") is not None:
+        findings.error(
+            "scenario", "not-supported", "terrain rasters are not used by this version",
+            "Leave terrain out: the ground is then flat at the height of home.",
+        )  # fmt: skip
+    clearance_m = top.number("clearance_m", 0.0, minimum=0.0)
+    budget_s = top.number("time_budget_s", None, above=0.0)
+    name = top.text("name", "scenario")
+    seed = top.integer("seed", 0, minimum=0)
+    wind = equipment.read_wind(document.get("wind"), findings)
+    objective = equipment.read_objective(document.get("objective"), findings)
+    method = equipment.read_method(document.get("method"), findings)
+    if not regions and not any(raw.role == "roi" for raw in raws):
+        findings.error("scenario", "no-region", "has no region of interest", "Add a feature of role roi.")
+    start = _start(starts, bases, aircraft, raws, findings)
+    if findings.errors or start is None or altitude_m is None or clearance_m is None:
+        return None
+    scenario = Scenario(
+        name=name or "scenario",
+        frame=frame,
+        regions=tuple(regions),
+        aircraft=tuple(a for a in aircraft if a is not None),
+        sensors=tuple(s for s in sensors if s is not None),
+        start=start,
+        end=ends[0] if ends else Terminal(start.name, start.position),
+        altitude_m=altitude_m,
+        altitude_reference=reference,
+        area=areas[0] if areas else None,
+        threats=tuple(threats),
+        no_fly=tuple(no_fly),
+        obstacles=tuple(obstacles),
+        wind=wind,
+        clearance_m=clearance_m,
+        objective=objective,
+        method=method,
+        seed=seed,
+        time_budget_s=budget_s,
+        scenario_hash=scenario_hash(document),
+        home_amsl_m=_home_amsl_m(raws, reference, findings),
+    )
+    check_together(scenario, findings)
+    return replace(scenario, warnings=findings.warnings)
+
+
+def _check_crs(crs: Any, findings: Findings) -> None:
+    if crs is None:
+        return
+    name = crs.get("properties", {}).get("name") if isinstance(crs, dict) else crs
+    if name not in CRS84:
+        findings.error(
+            "scenario", "unknown-crs", f"has the crs {name!r}", "RFC 7946 knows WGS 84 only: remove crs."
+        )
+
+
+def _frame(raw_features: list[Any], findings: Findings) -> LocalFrame | None:
+    """A frame in the middle of everything; None (after a finding) where positions are no positions."""
+    places = []
+    for feature in raw_features:
+        for value in positions_of(feature.get("geometry") if isinstance(feature, dict) else None):
+            if (
+                len(value) >= 2
+                and all(isinstance(v, (int, float)) and math.isfinite(v) for v in value[:2])
+                and abs(value[0]) <= 180.0
+                and abs(value[1]) <= 90.0
+            ):
+                places.append((float(value[0]), float(value[1])))
+    if not places:
+        findings.error("scenario", "no-positions", "has no valid position", "Add features with geometry.")
+        return None
+    lons, lats = [p[0] for p in places], [p[1] for p in places]
+    middle = (round((min(lons) + max(lons)) / 2.0, 6), round((min(lats) + max(lats)) / 2.0, 6))
+    reach_m = WGS84.inv(min(lons), min(lats), max(lons), max(lats))[2]
+    if reach_m > 2.0 * MAX_EXTENT_M or max(lons) - min(lons) > 180.0:
+        findings.error(
+            "scenario", "extent-too-large", f"spans {reach_m / 1000.0:.0f} km",
+            f"Keep everything within {2.0 * MAX_EXTENT_M / 1000.0:.0f} km; check the axis order "
+            "(longitude first).",
+        )  # fmt: skip
+        return LocalFrame(0.0, 0.0) if abs(middle[1]) > 85.0 else LocalFrame(*middle)
+    return LocalFrame(*middle)
+
+
+def _raw_features(raw_features: list[Any], findings: Findings) -> list[features.RawFeature]:
+    raws = []
+    seen: set[str] = set()
+    for index, feature in enumerate(raw_features):
+        if not isinstance(feature, dict) or feature.get("type") != "Feature":
+            findings.error(
+                f"features[{index}]", "not-a-feature", "is not a GeoJSON Feature", "Give a Feature."
+            )
+            continue
+        properties = feature.get("properties")
+        name = feature.get("id")
+        if name is None and isinstance(properties, dict):
+            name = properties.get("name")
+        if (
+            name is None
+            and isinstance(properties, dict)
+            and properties.get("role") in ("area", "start", "end")
+        ):
+            name = properties["role"]
+        if name is None or isinstance(name, (dict, list, bool)):
+            name = f"features[{index}]"
+        name = str(name)
+        if name in seen:
+            findings.error(name, "duplicate-id", "names two features", "Give each feature its own id.")
+        seen.add(name)
+        raw = features.read_role(name, feature, findings)
+        if raw is not None:
+            raws.append(raw)
+    return raws
+
+
+def _start(
+    starts: list[Terminal],
+    bases: list[Terminal],
+    aircraft: list[Any],
+    raws: list[features.RawFeature],
+    findings: Findings,
+) -> Terminal | None:
+    base = next((a.base for a in aircraft if a is not None and a.base is not None), None)
+    if base is not None:
+        found = next((b for b in bases if b.name == base), None)
+        if found is None:
+            findings.error("scenario", "unknown-base", f"a vehicle names the base {base!r}", "Add that base.")
+        return found
+    if starts:
+        return starts[0]
+    if len(bases) == 1:
+        return bases[0]
+    if not any(raw.role == "start" for raw in raws):
+        findings.error("scenario", "no-start", "has no start", "Add a Point of role start.")
+    return None
+
+
+def _home_amsl_m(raws: list[features.RawFeature], reference: str | None, findings: Findings) -> float | None:
+    """Height of home: the third coordinate of the start, where given."""
+    for raw in raws:
+        coordinates = raw.geometry.get("coordinates")
+        if raw.role == "start" and isinstance(coordinates, list) and len(coordinates) > 2:
+            height = coordinates[2]
+            if isinstance(height, (int, float)) and math.isfinite(height):
+                return float(height)
+    if reference == "amsl":
+        findings.warning(
+            "scenario", "home-height-unknown",
+            "altitude_reference amsl without the height of home: the ground is taken to be at sea level",
+            "Give the start a third coordinate, its height above mean sea level in metres.",
+        )  # fmt: skip
+    return None
