@@ -1,0 +1,251 @@
+"""MAVLink frames: messages to bytes and bytes to messages. The only file that knows pymavlink.
+
+pymavlink's generated dialect gives the layout of every message; the framing is done here, because its
+parser throws away everything inside a frame whose checksum fails, good frames included.
+
+Source: https://mavlink.io/en/guide/serialization.html (frame formats, zero truncation, CRC-16/MCRF4XX).
+"""
+
+from __future__ import annotations
+
+import re
+import struct
+from dataclasses import dataclass
+from typing import Any, Final
+
+from pymavlink.dialects.v20 import ardupilotmega as dialect
+
+from mavlink.errors import CodecError
+from mavlink.messages import Message, Value
+
+_MAGIC_V1: Final = 0xFE
+_MAGIC_V2: Final = 0xFD
+_MAGIC: Final = re.compile(rb"[\xfd\xfe]")
+_HEADER_V1: Final = struct.Struct("<BBBBBB")
+_HEADER_V2: Final = struct.Struct("<BBBBBBBHB")
+_SIGNED: Final = 0x01
+_SIGNATURE_BYTES: Final = 13
+_CRC_BYTES: Final = 2
+
+
+@dataclass(frozen=True, slots=True)
+class _Field:
+    """Where a field lies in the unpacked tuple; ``text_bytes`` > 0 marks a char array."""
+
+    name: str
+    first: int
+    length: int
+    text_bytes: int
+
+
+@dataclass(frozen=True, slots=True)
+class _Layout:
+    """One message of the dialect, fields in wire order."""
+
+    message_id: int
+    name: str
+    crc_extra: bytes
+    payload: struct.Struct
+    fields: tuple[_Field, ...]
+    names: frozenset[str]
+
+
+def _layout(message_id: int, definition: Any) -> _Layout:
+    """Read a generated message class; its ``lengths`` and ``array_lengths`` are in wire order."""
+    wire_type = dict(zip(definition.fieldnames, definition.fieldtypes, strict=True))
+    fields = []
+    first = 0
+    for name, length, array_length in zip(
+        definition.ordered_fieldnames, definition.lengths, definition.array_lengths, strict=True
+    ):
+        text_bytes = max(array_length, 1) if wire_type[name] == "char" else 0
+        fields.append(_Field(name, first, length, text_bytes))
+        first += length
+    return _Layout(
+        message_id,
+        definition.msgname,
+        bytes([definition.crc_extra]),
+        definition.unpacker,
+        tuple(fields),
+        frozenset(wire_type),
+    )
+
+
+_BY_ID: Final[dict[int, _Layout]] = {
+    number: _layout(number, definition) for number, definition in dialect.mavlink_map.items()
+}
+_BY_NAME: Final[dict[str, _Layout]] = {layout.name: layout for layout in _BY_ID.values()}
+
+
+class Codec:
+    """One sender's encoder and one byte stream's decoder.
+
+    Parameters
+    ----------
+    system_id, component_id
+        The sender written into every frame; 255/190 is a ground station's mission planner.
+
+    Attributes
+    ----------
+    bad_frames
+        Frame starts given up: checksum wrong, or flags nobody here understands.
+    unknown_frames
+        Whole frames skipped because the dialect does not define their message.
+    """
+
+    def __init__(self, system_id: int = 255, component_id: int = 190) -> None:
+        for name, number in (("system_id", system_id), ("component_id", component_id)):
+            if not 1 <= number <= 255:
+                raise CodecError(f"{name} is {number}; senders are numbered 1 to 255")
+        self.system_id = system_id
+        self.component_id = component_id
+        self.bad_frames = 0
+        self.unknown_frames = 0
+        self._sequence = 0
+        self._buffer = bytearray()
+
+    def pack(self, message: Message) -> bytes:
+        """Encode as one MAVLink 2 frame from this codec's sender.
+
+        Fields left out are zero, as the wire's own truncation has it. Text longer than its field is cut
+        at a character's end.
+
+        Raises
+        ------
+        CodecError
+            The message or a field is not in the dialect, or a value does not fit its field.
+        """
+        layout = _BY_NAME.get(message.name)
+        if layout is None:
+            raise CodecError(f"no message is called {message.name!r} in the dialect")
+        unknown = message.fields.keys() - layout.names
+        if unknown:
+            raise CodecError(f"{message.name} has no field {', '.join(sorted(unknown))}")
+        flat: list[Any] = []
+        for field in layout.fields:
+            _append(flat, message, field)
+        try:
+            payload = layout.payload.pack(*flat)
+        except (struct.error, OverflowError) as error:
+            raise CodecError(f"{message.name}{dict(message.fields)}: {error}") from error
+        payload = payload.rstrip(b"\0") or b"\0"
+        header = _HEADER_V2.pack(
+            _MAGIC_V2,
+            len(payload),
+            0,
+            0,
+            self._sequence,
+            self.system_id,
+            self.component_id,
+            layout.message_id & 0xFFFF,
+            layout.message_id >> 16,
+        )
+        self._sequence = (self._sequence + 1) & 0xFF
+        body = header + payload
+        return body + _crc(body[1:] + layout.crc_extra)
+
+    def feed(self, data: bytes) -> list[Message]:
+        """Decode what is complete; keep the rest for the next call. Never raises, whatever the bytes.
+
+        After a failed checksum the search goes on one byte further, so a good frame behind or inside a
+        damaged one is still found.
+        """
+        buffer = self._buffer
+        buffer += data
+        messages: list[Message] = []
+        position = 0
+        while (start := _MAGIC.search(buffer, position)) is not None:
+            position = start.start()
+            end = _frame_end(buffer, position)
+            if end is None:
+                break
+            taken = self._decode(buffer, position, end, messages) if end > position else False
+            if taken:
+                position = end
+            else:
+                self.bad_frames += 1
+                position += 1
+        else:
+            position = len(buffer)
+        del buffer[:position]
+        return messages
+
+    def _decode(self, buffer: bytearray, start: int, end: int, messages: list[Message]) -> bool:
+        """Decode the frame at ``start``; False when it is none."""
+        signature = 0
+        if buffer[start] == _MAGIC_V2:
+            _, length, flags, _, _, system_id, component_id, low, high = _HEADER_V2.unpack_from(buffer, start)
+            message_id = low | high << 16
+            body = start + _HEADER_V2.size
+            signature = _SIGNATURE_BYTES if flags & _SIGNED else 0
+        else:
+            _, length, _, system_id, component_id, message_id = _HEADER_V1.unpack_from(buffer, start)
+            body = start + _HEADER_V1.size
+        layout = _BY_ID.get(message_id)
+        if layout is None:
+            # Its checksum cannot be verified; believe it if something frame-like, or nothing, follows.
+            believed = end == len(buffer) or buffer[end] in (_MAGIC_V1, _MAGIC_V2)
+            self.unknown_frames += believed
+            return believed
+        crc_at = end - signature - _CRC_BYTES
+        if buffer[crc_at : crc_at + _CRC_BYTES] != _crc(bytes(buffer[start + 1 : crc_at]) + layout.crc_extra):
+            return False
+        size = layout.payload.size
+        payload = bytes(buffer[body : body + min(length, size)]).ljust(size, b"\0")
+        flat = layout.payload.unpack(payload)
+        fields = {field.name: _value(flat, field) for field in layout.fields}
+        messages.append(Message(layout.name, fields, system_id, component_id))
+        return True
+
+
+def _crc(data: bytes) -> bytes:
+    return int(dialect.x25crc(data).crc).to_bytes(_CRC_BYTES, "little")
+
+
+def _frame_end(buffer: bytearray, start: int) -> int | None:
+    """One past the frame's last byte; None while it is incomplete; ``start`` when it can be no frame."""
+    available = len(buffer) - start
+    if buffer[start] == _MAGIC_V1:
+        if available < _HEADER_V1.size:
+            return None
+        size = _HEADER_V1.size + buffer[start + 1] + _CRC_BYTES
+    else:
+        if available < 3:
+            return None
+        flags = buffer[start + 2]
+        if flags & ~_SIGNED:
+            return start
+        size = _HEADER_V2.size + buffer[start + 1] + _CRC_BYTES + (_SIGNATURE_BYTES if flags else 0)
+    return start + size if available >= size else None
+
+
+def _append(flat: list[Any], message: Message, field: _Field) -> None:
+    value = message.fields.get(field.name)
+    if field.text_bytes:
+        if value is None:
+            value = ""
+        if not isinstance(value, str):
+            raise CodecError(f"{message.name}.{field.name} takes text, not {type(value).__name__}")
+        flat.append(value.encode()[: field.text_bytes].decode(errors="ignore").encode())
+    elif field.length == 1:
+        flat.append(0 if value is None else value)
+    elif value is None:
+        flat.extend([0] * field.length)
+    elif not isinstance(value, (tuple, bytes)) or len(value) > field.length:
+        raise CodecError(
+            f"{message.name}.{field.name} takes a tuple of {field.length} numbers, got {value!r}"
+        )
+    else:
+        flat.extend(value)
+        flat.extend([0] * (field.length - len(value)))
+
+
+def _value(flat: tuple[Any, ...], field: _Field) -> Value:
+    if field.text_bytes:
+        raw: bytes = flat[field.first]
+        return raw.split(b"\0", 1)[0].decode(errors="replace")
+    if field.length == 1:
+        number: int | float = flat[field.first]
+        return number
+    numbers: tuple[int, ...] | tuple[float, ...] = flat[field.first : field.first + field.length]
+    return numbers

@@ -1,0 +1,63 @@
+"""Everything the MAVLink side refuses, in one tree.
+
+::
+
+    MavlinkError
+    ├── CodecError           a message cannot be put on the wire: unknown name or field, value out of range
+    ├── LinkError            an address is malformed, or a port or device cannot be opened or has failed
+    ├── VehicleNotFoundError no autopilot's heartbeat arrived in time
+    ├── NotConnectedError    asked of a vehicle that is not connected, or whose client is closed
+    ├── BusyError            another transfer with this vehicle is under way
+    ├── TransferFailedError  a download ended without all items; carries the outcome
+    └── CommandFailedError   a command was refused or not answered; carries the outcome
+
+The outcome of an upload is a value (``transfer.outcome``), not an exception: refused and unknown are answers.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from mavlink.transfer.command import CommandOutcome
+    from mavlink.transfer.outcome import Outcome
+
+
+class MavlinkError(Exception):
+    """Base of all errors raised by the MAVLink side."""
+
+
+class CodecError(MavlinkError, ValueError):
+    """A message cannot be put on the wire."""
+
+
+class LinkError(MavlinkError, ValueError):
+    """An address is malformed, or a port or device cannot be opened or has failed."""
+
+
+class VehicleNotFoundError(MavlinkError):
+    """No autopilot's heartbeat arrived in time."""
+
+
+class NotConnectedError(MavlinkError):
+    """The vehicle is not connected, or the client is closed."""
+
+
+class BusyError(MavlinkError):
+    """Another transfer with this vehicle is under way; one at a time is all the protocol allows."""
+
+
+class TransferFailedError(MavlinkError):
+    """A transfer that has no partial answer (a download) ended without one."""
+
+    def __init__(self, what: str, outcome: Outcome) -> None:
+        self.outcome = outcome
+        super().__init__(f"{what}: {outcome}")
+
+
+class CommandFailedError(MavlinkError):
+    """A command was refused, or not answered."""
+
+    def __init__(self, outcome: CommandOutcome) -> None:
+        self.outcome = outcome
+        super().__init__(str(outcome))

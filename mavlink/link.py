@@ -1,0 +1,71 @@
+"""Byte links to a vehicle. ``mavlink.links`` holds the only sockets of the package.
+
+Addresses: ``udpin:host:port`` listens, ``udpout:host:port`` sends first, ``tcp:host:port`` connects,
+``tcpin:host:port`` accepts one peer at a time, ``serial:device:baud`` opens a serial port.
+"""
+
+from __future__ import annotations
+
+from typing import Final, Protocol
+
+from mavlink.errors import LinkError
+from mavlink.links.memory import LinkFaults, MemoryLink, memory_pair
+from mavlink.links.serial_port import open_serial
+from mavlink.links.tcp import open_tcp_client, open_tcp_server
+from mavlink.links.udp import open_udp
+
+__all__ = ["FORMS", "Link", "LinkFaults", "MemoryLink", "memory_pair", "open_link"]
+
+FORMS: Final = "udpin:host:port, udpout:host:port, tcp:host:port, tcpin:host:port or serial:device:baud"
+
+
+class Link(Protocol):
+    """Bytes to and from one peer. Datagram boundaries carry no meaning."""
+
+    @property
+    def url(self) -> str:
+        """The address as given, with the port really used."""
+
+    async def send(self, data: bytes) -> None:
+        """Send; bytes are dropped, as on any radio, while no peer is there to hear them."""
+
+    async def receive(self) -> bytes:
+        """Wait for some bytes. Raises LinkError once the link is closed or has failed."""
+
+    async def close(self) -> None:
+        """Close, and end a waiting receive with LinkError; closing twice is harmless."""
+
+
+async def open_link(url: str) -> Link:
+    """Open the link an address names.
+
+    Raises
+    ------
+    LinkError
+        The address has none of the known forms, or the port or device cannot be opened.
+    """
+    form, _, rest = url.partition(":")
+    address, _, last = rest.rpartition(":")
+    if form not in {"udpin", "udpout", "tcp", "tcpin", "serial"} or not address or not last:
+        raise LinkError(f"{url!r} is no link address; the forms are {FORMS}")
+    if not last.isascii() or not last.isdigit():
+        what = "baud rate" if form == "serial" else "port"
+        raise LinkError(f"{url!r}: the {what} {last!r} is not a number; the forms are {FORMS}")
+    number = int(last)
+    if form == "serial":
+        if number == 0:
+            raise LinkError(f"{url!r}: a serial port needs a baud rate above 0")
+        return await open_serial(address, number)
+    lowest = 0 if form.endswith("in") else 1
+    if not lowest <= number <= 65535:
+        raise LinkError(f"{url!r}: port {number} is not in {lowest} to 65535")
+    host = address.removeprefix("[").removesuffix("]")
+    try:
+        if form in {"udpin", "udpout"}:
+            return await open_udp(host, number, listen=form == "udpin")
+        if form == "tcp":
+            return await open_tcp_client(host, number)
+        return await open_tcp_server(host, number)
+    except OSError as error:
+        reason = error.strerror or str(error)
+        raise LinkError(f"{url!r} cannot be opened: {reason}") from error

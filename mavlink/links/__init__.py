@@ -1,0 +1,1 @@
+"""The kinds of link, one a file; ``mavlink.link`` chooses among them by address."""

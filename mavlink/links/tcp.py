@@ -1,0 +1,168 @@
+"""TCP: connecting (again and again, should the peer go away) and accepting one peer at a time."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import Final, cast
+
+from mavlink.errors import LinkError
+from mavlink.links.inbox import Inbox
+
+_READ_BYTES: Final = 1 << 16
+_RECONNECT_EVERY_S: Final = 1.0
+
+
+class TcpClientLink:
+    """A connection that is made again when the peer drops it. Opened by ``open_tcp_client``."""
+
+    def __init__(
+        self, host: str, port: int, reader: asyncio.StreamReader, writer: asyncio.StreamWriter
+    ) -> None:
+        self._host = host
+        self._port = port
+        self._reader = reader
+        self._writer: asyncio.StreamWriter | None = writer
+        self._closed = asyncio.Event()
+
+    @property
+    def url(self) -> str:
+        """The address."""
+        return f"tcp:{self._host}:{self._port}"
+
+    async def send(self, data: bytes) -> None:
+        """Write; dropped while the peer is away."""
+        if self._closed.is_set():
+            raise LinkError("link closed")
+        if self._writer is not None and not self._writer.is_closing():
+            self._writer.write(data)
+
+    async def receive(self) -> bytes:
+        """Wait for bytes, connecting anew when the peer has gone."""
+        while not self._closed.is_set():
+            if self._writer is None:
+                await self._reconnect()
+                continue
+            try:
+                data = await self._reader.read(_READ_BYTES)
+            except OSError:
+                data = b""
+            if data:
+                return data
+            self._writer.close()
+            self._writer = None
+        raise LinkError("link closed")
+
+    async def _reconnect(self) -> None:
+        try:
+            await asyncio.wait_for(self._closed.wait(), _RECONNECT_EVERY_S)
+        except TimeoutError:
+            try:
+                self._reader, self._writer = await asyncio.open_connection(self._host, self._port)
+            except OSError:
+                return  # not back yet; the caller's loop tries again
+            if self._closed.is_set():
+                self._writer.close()
+
+    async def close(self) -> None:
+        """Close the connection and stop making it anew."""
+        self._closed.set()
+        if self._writer is not None:
+            self._writer.close()
+
+
+async def open_tcp_client(host: str, port: int) -> TcpClientLink:
+    """Connect. Raises OSError."""
+    reader, writer = await asyncio.open_connection(host, port)
+    return TcpClientLink(host, port, reader, writer)
+
+
+class TcpServerLink:
+    """A listening socket whose newest peer is the one talked to. Opened by ``open_tcp_server``."""
+
+    def __init__(self, host: str) -> None:
+        self._host = host
+        self._server: asyncio.Server | None = None
+        self._peer: _Peer | None = None
+        self._inbox = Inbox()
+        self._closed = False
+
+    @property
+    def url(self) -> str:
+        """The address, with the port really used."""
+        return f"tcpin:{self._host}:{self.local_port}"
+
+    @property
+    def local_port(self) -> int:
+        """The port bound on this machine."""
+        if self._server is None or not self._server.sockets:
+            raise LinkError(f"tcpin:{self._host} is not open")
+        return int(self._server.sockets[0].getsockname()[1])
+
+    async def listen(self, port: int) -> None:
+        """Bind and accept. Raises OSError."""
+        loop = asyncio.get_running_loop()
+        self._server = await loop.create_server(lambda: _Peer(self), self._host, port)
+
+    def joined(self, peer: _Peer) -> None:
+        """A peer has connected: it takes the place of the one before."""
+        if self._peer is not None:
+            self._peer.transport.close()
+        self._peer = peer
+        if self._closed:
+            peer.transport.close()
+
+    def left(self, peer: _Peer) -> None:
+        """A peer has gone."""
+        if self._peer is peer:
+            self._peer = None
+
+    def take(self, data: bytes) -> None:
+        """Bytes of a peer."""
+        self._inbox.put(data)
+
+    async def send(self, data: bytes) -> None:
+        """Write to the peer; dropped while there is none."""
+        if self._closed:
+            raise LinkError("link closed")
+        if self._peer is not None and not self._peer.transport.is_closing():
+            self._peer.transport.write(data)
+
+    async def receive(self) -> bytes:
+        """Wait for bytes."""
+        return await self._inbox.get()
+
+    async def close(self) -> None:
+        """Stop accepting and drop the peer."""
+        self._closed = True
+        if self._peer is not None:
+            self._peer.transport.close()
+        if self._server is not None:
+            self._server.close()
+            await self._server.wait_closed()
+        self._inbox.fail("link closed")
+
+
+class _Peer(asyncio.Protocol):
+    """One accepted connection."""
+
+    transport: asyncio.Transport
+
+    def __init__(self, link: TcpServerLink) -> None:
+        self._link = link
+
+    def connection_made(self, transport: asyncio.BaseTransport) -> None:
+        self.transport = cast(asyncio.Transport, transport)
+        self._link.joined(self)
+
+    def data_received(self, data: bytes) -> None:
+        self._link.take(data)
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        self._link.left(self)
+
+
+async def open_tcp_server(host: str, port: int) -> TcpServerLink:
+    """Listen. Raises OSError."""
+    link = TcpServerLink(host)
+    await link.listen(port)
+    return link
