@@ -1,0 +1,209 @@
+"""Collection neighbourhoods (Definition 1, eq 20 of Li, Chen, Wang, Li 2018): every way to see a region."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import Literal
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+from shapely.geometry import Polygon
+
+from planner.coverage.classify import STEP_RAD, Spans, angles_around, fits, hull_points, spans_at
+from planner.coverage.merge import MergedRegion, split_region
+from planner.coverage.segments import Floats, Neighbourhood, too_wide
+from planner.errors import InfeasibleError
+from planner.route import CollectPass
+from planner.scenario import Region
+from planner.sensors.sar import SarSensor
+
+#: η of the options when nobody asks for others: innermost, middle, outermost.
+ETAS = (0.0, 0.5, 1.0)
+
+_SAME_ANGLE_RAD = math.radians(0.01)
+
+
+def neighbourhoods(
+    region: MergedRegion,
+    sensor: SarSensor,
+    height_m: float,
+    step_rad: float = STEP_RAD,
+    turns: Literal[0, 1] | None = None,
+) -> tuple[Neighbourhood, ...]:
+    """N of eq 20, one a side the sensor can look to.
+
+    Where approach directions are limited, Θ holds just these, and a region none of them sees in one pass is
+    given two; the second needs the opposite direction allowed too.
+
+    Parameters
+    ----------
+    turns
+        k_t; by default the fewest turns possible (Definition 1).
+
+    Raises
+    ------
+    InfeasibleError
+        ``"swath"`` where no pair of passes sees the region at any angle, ``"approach"`` where only the limits
+        on the direction forbid it.
+    """
+    swath_m = sensor.swath_m(height_m)
+    points_m = hull_points(region.area)
+    wanted = (turns,) if turns is not None else (0, 1)
+    for count in wanted:
+        angles_rad = _angles(region, step_rad, count)
+        spans = spans_at(points_m, angles_rad)
+        good = fits(spans.across_m, swath_m, count)
+        if good.any():
+            chosen = Spans(spans.x_min_m[good], spans.x_max_m[good], spans.y_min_m[good], spans.y_max_m[good])
+            return tuple(
+                Neighbourhood(region, sensor, height_m, look, count, angles_rad[good], chosen)
+                for look in sensor.looks
+            )
+    around_m = spans_at(points_m, angles_around(step_rad)).across_m
+    if region.approach_rad is not None and fits(around_m, swath_m, max(wanted)).any():
+        raise InfeasibleError(
+            "approach",
+            region.label,
+            "no allowed approach direction sees the whole region with at most two passes",
+            "allow more directions in approach_deg, among them the opposites",
+            region.centroid,
+        )
+    raise too_wide(region, sensor, height_m, float(around_m.min()))
+
+
+def options(
+    region: MergedRegion,
+    sensor: SarSensor,
+    height_m: float,
+    etas: Sequence[float] = ETAS,
+    step_rad: float = STEP_RAD,
+    area: Polygon | None = None,
+) -> Iterator[tuple[CollectPass, ...]]:
+    """Every way to see a region: single passes, or pairs for a distributed one, angle by angle.
+
+    Parameters
+    ----------
+    etas
+        η of each pass; of pairs those with η₁ + η₂ ≤ 1.
+    area
+        The operating area: passes that leave it are left out (constraint c4, eq 9).
+    """
+    grid = np.asarray(etas, dtype=np.float64)
+    for side in neighbourhoods(region, sensor, height_m, step_rad):
+        first = inside(side.lines(grid), area)
+        if side.turns == 0:
+            for index, k in np.argwhere(first):
+                yield (side.collect(int(index), float(grid[k])),)
+            continue
+        second = inside(side.lines(grid, opposite=True), area)
+        partners = first[:, :, None] & second[:, None, :] & complementary(grid)
+        for index, k, m in np.argwhere(partners):
+            yield (
+                side.collect(int(index), float(grid[k])),
+                side.collect(int(index), float(grid[m]), opposite=True),
+            )
+
+
+def can_be_seen(
+    region: Region, sensor: SarSensor, height_m: float, area: Polygon | None, step_rad: float = STEP_RAD
+) -> None:
+    """Whether some choice of passes sees each part of a region from inside the operating area.
+
+    Raises
+    ------
+    InfeasibleError
+        Constraint ``"swath"``, ``"resolution"``, ``"approach"`` or ``"area"``, with the nearest relaxation.
+    """
+    check_sensor(region, sensor, height_m)
+    if area is not None:
+        shapely.prepare(area)
+    for part in split_region(region):
+        least = neighbourhoods(part, sensor, height_m, step_rad)
+        # One pass may leave the area where two, further in, do not.
+        if any(_some_inside(side, area) for side in least):
+            continue
+        if least[0].turns == 0:
+            try:
+                if any(
+                    _some_inside(side, area) for side in neighbourhoods(part, sensor, height_m, step_rad, 1)
+                ):
+                    continue
+            except InfeasibleError:
+                pass
+        raise InfeasibleError(
+            "area",
+            region.name,
+            f"every pass that sees it leaves the operating area: the line runs "
+            f"{sensor.near_m(height_m):.0f} m or more beside the region",
+            "enlarge the area round the region, fly lower, or let the sensor look to both sides",
+            part.centroid,
+        )
+
+
+def check_sensor(region: Region, sensor: SarSensor, height_m: float) -> None:
+    """Refuse a sensor that cannot give what the region asks for, at this height.
+
+    Raises
+    ------
+    InfeasibleError
+        ``"swath"`` for a beam that is not wholly on one side, ``"resolution"`` for one too coarse.
+    """
+    steepest_rad = sensor.incidence_rad - sensor.elevation_beamwidth_rad / 2.0
+    flattest_rad = sensor.incidence_rad + sensor.elevation_beamwidth_rad / 2.0
+    if height_m <= 0.0 or steepest_rad < 0.0 or flattest_rad >= math.pi / 2.0 or flattest_rad <= steepest_rad:
+        raise InfeasibleError(
+            "swath",
+            region.name,
+            f"sensor {sensor.name} has no swath on one side of the track from {height_m:g} m",
+            "keep the whole elevation beam between straight down and the horizon, and fly above the ground",
+        )
+    if region.min_resolution_m is None:
+        return
+    if sensor.resolution_m is None or sensor.resolution_m > region.min_resolution_m:
+        have = "no stated resolution" if sensor.resolution_m is None else f"{sensor.resolution_m:g} m"
+        raise InfeasibleError(
+            "resolution",
+            region.name,
+            f"{region.min_resolution_m:g} m is asked for, sensor {sensor.name} has {have}",
+            f"use a sensor with resolution_m up to {region.min_resolution_m:g}, or relax min_resolution_m",
+        )
+
+
+def inside(lines: Floats, area: Polygon | None) -> NDArray[np.bool_]:
+    """Which of the lines, shape (..., 2, 2), stay in the operating area (constraint c4); shape (...)."""
+    if area is None:
+        return np.ones(lines.shape[:-2], dtype=np.bool_)
+    shapely.prepare(area)
+    return np.asarray(shapely.covers(area, shapely.linestrings(lines)), dtype=np.bool_)
+
+
+def complementary(etas: Floats) -> NDArray[np.bool_]:
+    """Which pairs of offsets leave no gap: η₂ ≤ 1 − η₁, shape (K, K)."""
+    return etas[:, None] + etas[None, :] <= 1.0 + 1e-12
+
+
+def _some_inside(side: Neighbourhood, area: Polygon | None) -> bool:
+    for count in (3, 21):
+        grid = np.linspace(0.0, 1.0, count)
+        first = inside(side.lines(grid), area)
+        if side.turns == 0:
+            if first.any():
+                return True
+            continue
+        second = inside(side.lines(grid, opposite=True), area)
+        if (first[:, :, None] & second[:, None, :] & complementary(grid)).any():
+            return True
+    return False
+
+
+def _angles(region: MergedRegion, step_rad: float, turns: int) -> Floats:
+    if region.approach_rad is None:
+        return angles_around(step_rad)
+    allowed = np.unique(np.mod(np.asarray(region.approach_rad, dtype=np.float64), 2.0 * math.pi))
+    if turns == 0:
+        return allowed
+    apart = np.abs(np.mod(allowed[:, None] + math.pi - allowed[None, :] + math.pi, 2.0 * math.pi) - math.pi)
+    paired: Floats = allowed[(apart <= _SAME_ANGLE_RAD).any(axis=1)]
+    return paired
