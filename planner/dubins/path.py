@@ -76,6 +76,13 @@ class Segment:
         """Pose at its end."""
         return self.at(self.length_m)
 
+    def reverse(self) -> Segment:
+        """The same line flown the other way."""
+        other: dict[SegmentKind, SegmentKind] = {"straight": "straight", "left": "right", "right": "left"}
+        end = self.end
+        start = Pose(end.east_m, end.north_m, wrap_pi(end.angle_rad + math.pi))
+        return Segment(other[self.kind], start, self.length_m, self.radius_m)
+
 
 @dataclass(frozen=True, slots=True)
 class Path:
@@ -97,6 +104,10 @@ class Path:
     def end(self) -> Pose:
         """Last pose."""
         return self.segments[-1].end
+
+    def reverse(self) -> Path:
+        """The same line flown the other way."""
+        return Path(tuple(segment.reverse() for segment in reversed(self.segments)))
 
     def sample(self, max_chord_m: float, max_straight_m: float = math.inf) -> NDArray[np.float64]:
         """Points along the line.
