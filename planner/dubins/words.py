@@ -36,6 +36,15 @@ def arc_rad(turn_rad: float, straight_radii: float = 0.0) -> float:
     return 0.0 if (TWO_PI - turn_rad) * (1.0 + straight_radii) < FULL_TURN_SNAP else turn_rad
 
 
+def _phase(vector: complex) -> float:
+    # cmath.phase and abs() raise on the tiniest vectors; math's functions do not.
+    return math.atan2(vector.imag, vector.real)
+
+
+def _modulus(vector: complex) -> float:
+    return math.hypot(vector.real, vector.imag)
+
+
 def word_parameters(start: Pose, goal: Pose, radius_m: float) -> list[Parameters]:
     """The feasible words with their parameters t, p, q (Shkel & Lumelsky 2001): radians, a straight in radii.
 
@@ -51,11 +60,11 @@ def word_parameters(start: Pose, goal: Pose, radius_m: float) -> list[Parameters
     for word, s in (("LSL", 1.0), ("RSR", -1.0)):
         # LSL, RSR: the straight is the vector between the centres.
         centres = offset + s * to_left_goal - s * to_left_start
-        p = abs(centres)
+        p = _modulus(centres)
         if p < FULL_TURN_SNAP:
             found.append((word, arc_rad(s * (beta - alpha)), 0.0, 0.0))
             continue
-        phi = cmath.phase(centres)
+        phi = _phase(centres)
         found.append((word, arc_rad(s * (phi - alpha), p), p, arc_rad(s * (beta - phi), p)))
 
     for word, s in (("LSR", 1.0), ("RSL", -1.0)):
@@ -65,16 +74,16 @@ def word_parameters(start: Pose, goal: Pose, radius_m: float) -> list[Parameters
         if square < -FULL_TURN_SNAP:
             continue
         p = math.sqrt(max(square, 0.0))
-        phi = cmath.phase(centres * complex(p, 2.0 * s))
+        phi = _phase(centres * complex(p, 2.0 * s))
         found.append((word, arc_rad(s * (phi - alpha), p), p, arc_rad(s * (phi - beta), p)))
 
     for word, s in (("LRL", 1.0), ("RLR", -1.0)):
         # LRL, RLR: three circles in a triangle of sides 2, 2, d; the middle arc is the one above π.
         centres = offset + s * to_left_goal - s * to_left_start
-        distance = abs(centres)
+        distance = _modulus(centres)
         if distance > 4.0:
             continue
-        psi, gamma = cmath.phase(centres), math.acos(distance / 4.0)
+        psi, gamma = _phase(centres), math.acos(distance / 4.0)
         lean = gamma + math.pi / 2.0
         found.append((word, arc_rad(s * (psi - alpha) + lean), 2.0 * lean, arc_rad(s * (beta - psi) + lean)))
     return found
@@ -113,24 +122,24 @@ def candidates_to_point(start: Pose, east_m: float, north_m: float, radius_m: fl
     offset = complex(east_m - start.east_m, north_m - start.north_m) / radius_m
     to_left = complex(-math.sin(alpha), math.cos(alpha))
     found: list[tuple[str, float, float]] = []
-    if abs(offset) < FULL_TURN_SNAP:
+    if _modulus(offset) < FULL_TURN_SNAP:
         return [_path(start, "S", (0.0,), radius_m)]
     for side, other, s in (("L", "R", 1.0), ("R", "L", -1.0)):
         to_place = offset - s * to_left
         square = to_place.real**2 + to_place.imag**2 - 1.0
-        if square >= -FULL_TURN_SNAP:
+        if square >= -3.0 * FULL_TURN_SNAP:
             # The tangent from the circle to the place: to_place = e^{iφ} (p - i s).
             p = math.sqrt(max(square, 0.0))
-            phi = cmath.phase(to_place * complex(p, s))
+            phi = _phase(to_place * complex(p, s))
             found.append((side + "S", arc_rad(s * (phi - alpha), p), p))
-        distance = abs(to_place)
+        distance = _modulus(to_place)
         if 1.0 <= distance <= 3.0:
             # The second circle is 2 from the first and 1 from the place: a triangle of sides 2, 1, distance.
             gamma = math.acos(min(1.0, (distance * distance + 3.0) / (4.0 * distance)))
             for lean in (gamma, -gamma):
-                to_second = 2.0 * cmath.rect(1.0, cmath.phase(to_place) + lean)
-                phi = cmath.phase(to_second) + s * math.pi / 2.0
-                last = cmath.phase(to_place - to_second) - s * math.pi / 2.0
+                to_second = 2.0 * cmath.rect(1.0, _phase(to_place) + lean)
+                phi = _phase(to_second) + s * math.pi / 2.0
+                last = _phase(to_place - to_second) - s * math.pi / 2.0
                 found.append((side + other, arc_rad(s * (phi - alpha)), arc_rad(s * (phi - last))))
     found.sort(key=lambda word: word[1] + word[2])
     return [_path(start, word, (first, second), radius_m) for word, first, second in found]
@@ -156,8 +165,8 @@ def candidates_between(start: Anchor, goal: Anchor, radius_m: float) -> list[Pat
         pose = Pose(goal.east_m, goal.north_m, goal.angle_rad + math.pi)
         return [path.reverse() for path in candidates_to_point(pose, start.east_m, start.north_m, radius_m)]
     offset = complex(goal.east_m - start.east_m, goal.north_m - start.north_m)
-    pose = Pose(start.east_m, start.north_m, cmath.phase(offset))
-    return [_path(pose, "S", (abs(offset) / radius_m,), radius_m)]
+    pose = Pose(start.east_m, start.north_m, _phase(offset))
+    return [_path(pose, "S", (_modulus(offset) / radius_m,), radius_m)]
 
 
 def shortest_between(start: Anchor, goal: Anchor, radius_m: float) -> Path:
