@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 from shapely.geometry import Point
-from shapely.geometry.base import BaseGeometry
 
+from planner.environment.shapes import hard_shapes
 from planner.geojson.fields import Findings
 from planner.scenario import Scenario, Terminal
 
@@ -80,31 +78,15 @@ def _area(scenario: Scenario, findings: Findings) -> None:
             )
 
 
-def hard_zones(scenario: Scenario) -> Iterator[tuple[str, BaseGeometry]]:
-    """Names and shapes of what may never be entered at the flight altitude."""
-    for threat in scenario.threats:
-        if threat.hard and scenario.height_m <= threat.height_m:
-            yield threat.name, Point(threat.centre).buffer(threat.radius_m, quad_segs=64)
-    for zone in scenario.no_fly:
-        if zone.floor_m <= scenario.altitude_amsl_m <= zone.ceiling_m:
-            if zone.area is not None:
-                yield zone.name, zone.area
-            elif zone.centre is not None and zone.radius_m is not None:
-                yield zone.name, Point(zone.centre).buffer(zone.radius_m, quad_segs=64)
-    for obstacle in scenario.obstacles:
-        if obstacle.base_m + obstacle.height_m + scenario.clearance_m >= scenario.height_m:
-            yield obstacle.name, obstacle.area.buffer(scenario.clearance_m)
-
-
 def _terminals(scenario: Scenario, findings: Findings) -> None:
-    for name, shape in hard_zones(scenario):
+    for shape in hard_shapes(scenario):
         for terminal in _ends(scenario):
-            if shape.contains(Point(terminal.position)):
+            if shape.depth_m(Point(terminal.position)) > 0.0:
                 findings.error(
                     terminal.name,
                     f"{'start' if terminal is scenario.start else 'end'}-in-hard-zone",
-                    f"lies inside {name}, which may never be entered",
-                    f"Move it out of {name}.",
+                    f"lies inside {shape.name}, which may never be entered",
+                    f"Move it out of {shape.name}.",
                 )
 
 

@@ -1,0 +1,83 @@
+"""What may never be entered at the flight altitude, as plain shapes: for the edge and for the judge."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from shapely.geometry import Point, Polygon
+from shapely.geometry.base import BaseGeometry
+
+from planner.scenario import Scenario, Threat
+
+
+@dataclass(frozen=True, slots=True)
+class DiscShape:
+    """A disc, exact: east and north of its centre and its radius in metres."""
+
+    name: str
+    centre: tuple[float, float]
+    radius_m: float
+
+    def depth_m(self, shape: BaseGeometry) -> float:
+        """How far a shape reaches inside; 0 or less where it does not."""
+        return self.radius_m - float(shape.distance(Point(self.centre)))
+
+    def polygon(self) -> Polygon:
+        """A polygon round the disc, at most 0.01 % wider."""
+        segments = 64
+        return Point(self.centre).buffer(self.radius_m * 1.0001, quad_segs=segments)
+
+
+@dataclass(frozen=True, slots=True)
+class PolygonShape:
+    """A polygon."""
+
+    name: str
+    area: Polygon
+
+    def depth_m(self, shape: BaseGeometry) -> float:
+        """How far a shape reaches inside, measured from the boundary; 0 where it does not."""
+        inside = shape.intersection(self.area)
+        return 0.0 if inside.is_empty else _depth(inside, self.area)
+
+    def polygon(self) -> Polygon:
+        """The polygon itself."""
+        return self.area
+
+
+def _depth(inside: BaseGeometry, area: Polygon) -> float:
+    """Largest distance to the boundary among the vertices and middles of a line inside."""
+    lines = getattr(inside, "geoms", [inside])
+    middles = [
+        line.interpolate(fraction, normalized=True) for line in lines for fraction in (0.25, 0.5, 0.75)
+    ]
+    return max(float(area.boundary.distance(place)) for place in middles)
+
+
+def hard_shapes(scenario: Scenario) -> Iterator[DiscShape | PolygonShape]:
+    """Hard threats, no-fly zones and obstacles that reach the flight altitude, clearance included."""
+    for threat in scenario.threats:
+        if threat.hard and acts(threat, scenario.height_m):
+            yield DiscShape(threat.name, threat.centre, threat.radius_m)
+    for zone in scenario.no_fly:
+        if zone.floor_m <= scenario.altitude_amsl_m <= zone.ceiling_m:
+            if zone.area is not None:
+                yield PolygonShape(zone.name, zone.area)
+            elif zone.centre is not None and zone.radius_m is not None:
+                yield DiscShape(zone.name, zone.centre, zone.radius_m)
+    for obstacle in scenario.obstacles:
+        if obstacle.base_m + obstacle.height_m + scenario.clearance_m >= scenario.height_m:
+            yield PolygonShape(obstacle.name, obstacle.area.buffer(scenario.clearance_m))
+
+
+def soft_shapes(scenario: Scenario) -> Iterator[DiscShape]:
+    """Threats that cost and do not forbid."""
+    for threat in scenario.threats:
+        if not threat.hard and acts(threat, scenario.height_m):
+            yield DiscShape(threat.name, threat.centre, threat.radius_m)
+
+
+def acts(threat: Threat, height_m: float) -> bool:
+    """Whether a threat reaches up to a height: its disc is a cylinder capped at ``height_m``."""
+    return height_m <= threat.height_m

@@ -1,0 +1,231 @@
+"""From the local frame to the published plan: WGS 84, degrees, one feature a role."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from shapely.geometry import MultiPolygon, Polygon
+
+from planner.dubins.path import Path, Segment, join
+from planner.environment.shapes import DiscShape, hard_shapes
+from planner.environment.threats import curve_risk
+from planner.metrics import DIVIDING_M, energy_wh
+from planner.plan import (
+    Collect,
+    Fence,
+    FlownPath,
+    Footprint,
+    LonLat,
+    LonLatAlt,
+    Metrics,
+    PathSegment,
+    Plan,
+    PlanVehicle,
+    Transit,
+    Uncovered,
+    ZoneCircle,
+    ZonePolygon,
+)
+from planner.route import CollectPass
+from planner.scenario import Scenario
+from planner.vehicle.aircraft import Aircraft
+
+#: Vertices of the published line: on arcs (the contract asks for at most 10 m) and on straights, where the
+#: chord in longitude and latitude must not leave the straight by more than a centimetre or so.
+MAX_ARC_EDGE_M = 5.0
+MAX_STRAIGHT_EDGE_M = 1000.0
+
+
+@dataclass(frozen=True, slots=True)
+class Leg:
+    """A flyable connection and where it leads: names, and the method that found it."""
+
+    from_name: str
+    to_name: str
+    path: Path
+    method: str
+
+
+def whole_path(legs: tuple[Leg, ...], passes: tuple[CollectPass, ...]) -> Path:
+    """Legs and passes in turn, beginning and ending with a leg."""
+    pieces = [legs[0].path]
+    for collect, leg in zip(passes, legs[1:], strict=True):
+        pieces.append(Path((Segment("straight", collect.entry, collect.length_m),)))
+        pieces.append(leg.path)
+    return join(*pieces)
+
+
+def vehicle_value(aircraft: Aircraft) -> PlanVehicle:
+    """What the mission needs to know of an aircraft."""
+    return PlanVehicle(
+        aircraft.name,
+        aircraft.type,
+        aircraft.autopilot,
+        aircraft.airspeed_m_s,
+        aircraft.min_turn_radius_m,
+        aircraft.max_climb_deg,
+    )
+
+
+def flown_path(scenario: Scenario, aircraft: Aircraft, path: Path) -> FlownPath:
+    """The whole line of one aircraft."""
+    radii = [segment.radius_m for segment in path.segments if segment.kind != "straight"]
+    duration_s = path.length_m / aircraft.airspeed_m_s
+    return FlownPath(
+        vehicle=aircraft.name,
+        line=_line(scenario, path),
+        segments=_segments(scenario, path),
+        length_m=path.length_m,
+        duration_s=duration_s,
+        energy_wh=energy_wh(aircraft, duration_s),
+        min_turn_radius_m=min(radii) if radii else None,
+    )
+
+
+def collects_and_transits(
+    scenario: Scenario, aircraft: Aircraft, legs: tuple[Leg, ...], passes: tuple[CollectPass, ...]
+) -> tuple[tuple[Collect, ...], tuple[Transit, ...], tuple[Footprint, ...]]:
+    """The features along the line, numbered from 1 in flight order."""
+    collects, transits, footprints = [], [], []
+    along_m = 0.0
+    for seq, leg in enumerate(legs, start=1):
+        missile, radar = curve_risk(
+            leg.path.sample(5.0)[:, :2], scenario.threats, DIVIDING_M, scenario.height_m
+        )
+        transits.append(
+            Transit(
+                aircraft.name, seq, leg.from_name, leg.to_name, _line(scenario, leg.path), leg.path.length_m,
+                missile, radar, leg.method,
+            )
+        )  # fmt: skip
+        along_m += leg.path.length_m
+        if seq > len(passes):
+            break
+        collect = passes[seq - 1]
+        name = "+".join(collect.regions)
+        (lon0, lat0), (lon1, lat1) = _lonlats(scenario, [collect.start, collect.end])
+        middle = ((collect.start[0] + collect.end[0]) / 2.0, (collect.start[1] + collect.end[1]) / 2.0)
+        end_m = along_m + collect.length_m
+        collects.append(
+            Collect(
+                aircraft.name, seq, name, collect.regions, collect.sensor, collect.look,
+                ((lon0, lat0, scenario.altitude_m), (lon1, lat1, scenario.altitude_m)),
+                scenario.frame.true_heading_deg(*middle, collect.angle_rad),
+                along_m, end_m, along_m / aircraft.airspeed_m_s, end_m / aircraft.airspeed_m_s,
+            )
+        )  # fmt: skip
+        sensor = next(s for s in scenario.sensors if s.name == collect.sensor)
+        ring = _lonlats(scenario, np.asarray(collect.footprint.exterior.coords)[:, :2])
+        footprints.append(Footprint(aircraft.name, seq, name, collect.sensor, ring, sensor.resolution_m))
+        along_m = end_m
+    return tuple(collects), tuple(transits), tuple(footprints)
+
+
+def uncovered(
+    scenario: Scenario, unseen: dict[str, Polygon | MultiPolygon], reasons: dict[str, str]
+) -> tuple[Uncovered, ...]:
+    """What the judge found unseen, with the reason where a stage gave one."""
+    return tuple(
+        Uncovered(
+            name,
+            tuple(
+                tuple(
+                    _lonlats(scenario, np.asarray(ring.coords)[:, :2])
+                    for ring in (part.exterior, *part.interiors)
+                )
+                for part in (shape.geoms if isinstance(shape, MultiPolygon) else [shape])
+            ),
+            float(shape.area),
+            reasons.get(name, "no footprint sees it"),
+        )
+        for name, shape in unseen.items()
+    )
+
+
+def fence(scenario: Scenario) -> Fence:
+    """The operating area and everything hard."""
+    inclusion = () if scenario.area is None else (_zone(scenario, "area", scenario.area),)
+    polygons, circles = [], []
+    for shape in hard_shapes(scenario):
+        if isinstance(shape, DiscShape):
+            circles.append(ZoneCircle(shape.name, _lonlats(scenario, [shape.centre])[0], shape.radius_m))
+        else:
+            polygons.append(_zone(scenario, shape.name, shape.area))
+    return Fence(inclusion, tuple(polygons), tuple(circles))
+
+
+def _zone(scenario: Scenario, name: str, area: Polygon) -> ZonePolygon:
+    # Reading a ring cut its edges fine; for the autopilot the corners are enough.
+    outline = area.exterior.simplify(0.05)
+    corners = np.asarray(outline.coords)[:-1, :2]
+    return ZonePolygon(name, _lonlats(scenario, corners))
+
+
+def _segments(scenario: Scenario, path: Path) -> tuple[PathSegment, ...]:
+    ends = _lonlats(scenario, [segment.start.position for segment in path.segments] + [path.end.position])
+    values = []
+    along_m = 0.0
+    for segment, start, end in zip(path.segments, ends, ends[1:], strict=False):
+        centre = segment.centre
+        values.append(
+            PathSegment(
+                segment.kind,
+                start,
+                end,
+                along_m,
+                segment.length_m,
+                None if centre is None else segment.radius_m,
+                None if centre is None else _lonlats(scenario, [centre])[0],
+                None if centre is None else abs(math.degrees(segment.turn_rad)),
+            )
+        )
+        along_m += segment.length_m
+    return tuple(values)
+
+
+def _line(scenario: Scenario, path: Path) -> tuple[LonLatAlt, ...]:
+    points = path.sample(MAX_ARC_EDGE_M, MAX_STRAIGHT_EDGE_M)[:, :2]
+    return tuple((lon, lat, scenario.altitude_m) for lon, lat in _lonlats(scenario, points))
+
+
+def _lonlats(scenario: Scenario, points: object) -> tuple[LonLat, ...]:
+    return tuple((float(lon), float(lat)) for lon, lat in scenario.frame.to_wgs84(np.asarray(points)))
+
+
+def assemble(
+    scenario: Scenario,
+    aircraft: Aircraft,
+    legs: tuple[Leg, ...],
+    passes: tuple[CollectPass, ...],
+    *,
+    metrics: Metrics,
+    methods: dict[str, str],
+    planner_version: str,
+    warnings: tuple[str, ...],
+) -> Plan:
+    """The plan of one aircraft, not yet judged: without violations and what is uncovered."""
+    collects, transits, footprints = collects_and_transits(scenario, aircraft, legs, passes)
+    home, end = _lonlats(scenario, [scenario.start.position, scenario.end.position])
+    return Plan(
+        name=scenario.name,
+        vehicles=(vehicle_value(aircraft),),
+        altitude_m=scenario.altitude_m,
+        altitude_reference=scenario.altitude_reference,
+        home=home,
+        end=end,
+        paths=(flown_path(scenario, aircraft, whole_path(legs, passes)),),
+        collects=collects,
+        transits=transits,
+        footprints=footprints,
+        uncovered=(),
+        fence=fence(scenario),
+        metrics=metrics,
+        violations=(),
+        methods=methods,
+        scenario_hash=scenario.scenario_hash,
+        planner_version=planner_version,
+        seed=scenario.seed,
+        warnings=warnings,
+    )

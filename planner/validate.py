@@ -1,0 +1,56 @@
+"""Everything wrong with a scenario, found before any planning."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from planner.coverage.neighbourhood import can_be_seen
+from planner.errors import Finding, InfeasibleError, ScenarioError
+from planner.geojson import read_scenario
+from planner.scenario import Scenario
+
+
+def findings(document: Any) -> tuple[Finding, ...]:
+    """Every finding about a scenario document, errors and warnings; plans nothing.
+
+    Besides the rules of reading, each region must be seen by some pass that stays in the operating area.
+    """
+    try:
+        scenario = read_scenario(document)
+    except ScenarioError as error:
+        return error.findings
+    return scenario.warnings + unseeable(scenario)
+
+
+def read_valid(document: Any) -> Scenario:
+    """Read a scenario and refuse it when a required region cannot be seen.
+
+    Raises
+    ------
+    ScenarioError
+        With every finding.
+    """
+    scenario = read_scenario(document)
+    found = unseeable(scenario)
+    if any(finding.severity == "error" for finding in found):
+        raise ScenarioError(scenario.warnings + found)
+    return scenario
+
+
+def unseeable(scenario: Scenario) -> tuple[Finding, ...]:
+    """A finding for each region that no pass can see: a warning where the region is not required."""
+    found = []
+    for region in scenario.regions:
+        try:
+            can_be_seen(region, scenario.sensor_for(region), scenario.height_m, scenario.area)
+        except InfeasibleError as error:
+            found.append(
+                Finding(
+                    error.feature,
+                    f"not-seen-{error.constraint}",
+                    error.message,
+                    error.relaxation,
+                    "error" if region.required else "warning",
+                )
+            )
+    return tuple(found)
