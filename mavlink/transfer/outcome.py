@@ -29,7 +29,9 @@ MEANING: Final[dict[int, str]] = {
     MissionResult.OPERATION_CANCELLED: "the vehicle cancelled the operation",
 }
 
-UnknownReason = Literal["timeout", "lost-acknowledgement", "early-acceptance", "cancelled", "link-lost"]
+UnknownReason = Literal[
+    "timeout", "lost-acknowledgement", "early-acceptance", "cancelled", "link-lost", "not-read-back"
+]
 
 _UNKNOWN_WORDS: Final[dict[UnknownReason, str]] = {
     "timeout": "the vehicle stopped answering",
@@ -37,6 +39,7 @@ _UNKNOWN_WORDS: Final[dict[UnknownReason, str]] = {
     "early-acceptance": "the vehicle acknowledged before it had asked for every item",
     "cancelled": "cancelled before the vehicle answered",
     "link-lost": "the vehicle vanished",
+    "not-read-back": "acknowledged, but it could not be read back",
 }
 
 

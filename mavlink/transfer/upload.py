@@ -1,0 +1,224 @@
+"""Sending a list of items: we announce a count, the vehicle asks item by item and acknowledges at the end.
+
+The vehicle drives: it asks again for what it missed. Nothing but the count is therefore sent unasked; an
+unasked item draws INVALID_SEQUENCE from ArduPilot, and after the vehicle's own time-out an ERROR from
+ArduPilot but ACCEPTED from PX4, so its answer would mean nothing.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from enum import Enum, auto
+from typing import Final
+
+from mavlink.items import MissionItem, MissionResult, MissionType
+from mavlink.messages import Message
+from mavlink.transfer.items_wire import item_message
+from mavlink.transfer.machine import DEFAULT_SETTINGS, Machine, Progress, TransferSettings
+from mavlink.transfer.outcome import Accepted, Outcome, Refused, Unknown, UnknownReason
+
+
+class State(Enum):
+    """Where an upload stands."""
+
+    IDLE = auto()
+    ANNOUNCED = auto()  # count sent, nothing asked for yet
+    SENDING = auto()  # the vehicle is asking
+    ASKED_ALL = auto()  # every item was asked for; the last word is missing
+    ACCEPTED = auto()
+    REFUSED = auto()
+    UNKNOWN = auto()
+
+
+class Event(Enum):
+    """What can happen to an upload."""
+
+    START = auto()
+    ASKS = auto()  # asks for an item while others were never asked for
+    ASKS_LAST = auto()  # asks for an item, and with it every item was asked for
+    ACCEPTS = auto()  # ACCEPTED, and every item was asked for
+    ACCEPTS_EARLY = auto()  # ACCEPTED, though some item was never asked for
+    COMPLAINS = auto()  # INVALID_SEQUENCE: ArduPilot's word on a duplicate, while it goes on
+    REFUSES = auto()  # any other result
+    TIMEOUT = auto()  # time to announce again
+    GIVES_UP = auto()  # no retry left, silence too long, or the same item over and over
+    CANCEL = auto()
+
+
+TRANSITIONS: Final[dict[tuple[State, Event], State]] = {
+    (State.IDLE, Event.START): State.ANNOUNCED,
+    (State.ANNOUNCED, Event.ASKS): State.SENDING,
+    (State.ANNOUNCED, Event.ASKS_LAST): State.ASKED_ALL,
+    (State.ANNOUNCED, Event.ACCEPTS): State.ACCEPTED,  # an empty list: nothing to ask for
+    (State.ANNOUNCED, Event.ACCEPTS_EARLY): State.ANNOUNCED,
+    (State.ANNOUNCED, Event.COMPLAINS): State.ANNOUNCED,
+    (State.ANNOUNCED, Event.REFUSES): State.REFUSED,
+    (State.ANNOUNCED, Event.TIMEOUT): State.ANNOUNCED,
+    (State.ANNOUNCED, Event.GIVES_UP): State.UNKNOWN,
+    (State.ANNOUNCED, Event.CANCEL): State.UNKNOWN,
+    (State.SENDING, Event.ASKS): State.SENDING,
+    (State.SENDING, Event.ASKS_LAST): State.ASKED_ALL,
+    (State.SENDING, Event.ACCEPTS_EARLY): State.SENDING,
+    (State.SENDING, Event.COMPLAINS): State.SENDING,
+    (State.SENDING, Event.REFUSES): State.REFUSED,
+    (State.SENDING, Event.GIVES_UP): State.UNKNOWN,
+    (State.SENDING, Event.CANCEL): State.UNKNOWN,
+    (State.ASKED_ALL, Event.ASKS_LAST): State.ASKED_ALL,
+    (State.ASKED_ALL, Event.ACCEPTS): State.ACCEPTED,
+    (State.ASKED_ALL, Event.COMPLAINS): State.ASKED_ALL,
+    (State.ASKED_ALL, Event.REFUSES): State.REFUSED,
+    (State.ASKED_ALL, Event.GIVES_UP): State.UNKNOWN,
+    (State.ASKED_ALL, Event.CANCEL): State.UNKNOWN,
+    # A repeated count still on its way makes the vehicle ask again after it has accepted.
+    (State.ACCEPTED, Event.ASKS_LAST): State.ACCEPTED,
+}
+
+
+class UploadMachine(Machine[Outcome]):
+    """One upload.
+
+    Parameters
+    ----------
+    items
+        Numbered 0, 1, 2 … and all of ``mission_type``.
+
+    Raises
+    ------
+    ValueError
+        The items are not numbered so, are of another type, or are more than the wire can count.
+    """
+
+    def __init__(
+        self,
+        items: Sequence[MissionItem],
+        mission_type: MissionType,
+        target_system: int,
+        target_component: int,
+        settings: TransferSettings = DEFAULT_SETTINGS,
+    ) -> None:
+        super().__init__(mission_type, target_system, target_component, settings)
+        for index, item in enumerate(items):
+            if item.seq != index or item.mission_type != mission_type:
+                raise ValueError(f"item {index} is numbered {item.seq} and of type {item.mission_type.name}")
+            if mission_type is MissionType.FENCE and math.isnan(item.param1):
+                raise ValueError(f"fence item {index} has no number in param1, which crashes autopilots")
+        if len(items) > 0xFFFF:
+            raise ValueError(f"{len(items)} items; the protocol counts to 65535")
+        self.items = tuple(items)
+        self.state = State.IDLE
+        self._never_asked = set(range(len(items)))
+        self._reached = 0
+        self._last_asked: int | None = None
+        self._repeats = 0
+        self._retries_left = settings.retries
+        self._accepted_early = False
+        self._complained = False
+
+    @property
+    def progress(self) -> Progress:
+        """Asking for item n, the vehicle shows that it has the n before it."""
+        done = len(self.items) if self.state is State.ACCEPTED else self._reached
+        return Progress(done, len(self.items))
+
+    def start(self, now_s: float) -> list[Message]:
+        """Announce the count."""
+        self._move(Event.START)
+        self.deadline_s = now_s + self.settings.timeout_s
+        return [self._count()]
+
+    def receive(self, message: Message, now_s: float) -> list[Message]:
+        """Answer requests; take acknowledgements."""
+        if not self._concerns(message):
+            return []
+        if message.name in ("MISSION_REQUEST", "MISSION_REQUEST_INT"):
+            return self._answer(message.integer("seq"), now_s)
+        if message.name == "MISSION_ACK":
+            self._acknowledge(message.integer("type"), now_s)
+        return []
+
+    def tick(self, now_s: float) -> list[Message]:
+        """Announce again while nothing was asked for; else give up on a silent vehicle."""
+        if now_s < self.deadline_s:
+            return []
+        if self.state is State.ANNOUNCED and self._retries_left > 0:
+            self._retries_left -= 1
+            self._move(Event.TIMEOUT)
+            self.deadline_s = now_s + self.settings.timeout_s
+            return [self._count()]
+        self._give_up()
+        return []
+
+    def cancel(self, now_s: float) -> list[Message]:
+        """End as unknown and tell the vehicle, which may keep part of the list."""
+        if (self.state, Event.CANCEL) not in TRANSITIONS:
+            return []
+        self._move(Event.CANCEL)
+        self._end_unknown("cancelled")
+        return [self._typed("MISSION_ACK", type=int(MissionResult.OPERATION_CANCELLED))]
+
+    def _answer(self, seq: int, now_s: float) -> list[Message]:
+        if seq >= len(self.items):
+            return []
+        left = len(self._never_asked) - (seq in self._never_asked)
+        if not self._move(Event.ASKS if left else Event.ASKS_LAST):
+            return []
+        self._never_asked.discard(seq)
+        if self.state is not State.ACCEPTED:
+            self._reached = max(self._reached, seq)
+            self._complained = False
+            self._repeats = self._repeats + 1 if seq == self._last_asked else 0
+            self._last_asked = seq
+            if self._repeats >= self.settings.most_repeats:
+                self._give_up()
+                return []
+            self._wait_for_vehicle(now_s)
+        return [item_message(self.items[seq], self.target_system, self.target_component)]
+
+    def _acknowledge(self, result: int, now_s: float) -> None:
+        if result == MissionResult.ACCEPTED:
+            early = bool(self._never_asked)
+            if self._move(Event.ACCEPTS_EARLY if early else Event.ACCEPTS):
+                if early:
+                    self._accepted_early = True
+                else:
+                    self._end(Accepted())
+        elif result == MissionResult.INVALID_SEQUENCE:
+            if self._move(Event.COMPLAINS):
+                self._complained = True
+        elif self._move(Event.REFUSES):
+            self._end(Refused(result, self._last_asked))
+
+    def _wait_for_vehicle(self, now_s: float) -> None:
+        settings = self.settings
+        asked_all = self.state is State.ASKED_ALL
+        self.deadline_s = now_s + (settings.acknowledgement_s if asked_all else settings.silence_s)
+
+    def _give_up(self) -> None:
+        asked_all = self.state is State.ASKED_ALL
+        if not self._move(Event.GIVES_UP):
+            return
+        if asked_all:
+            self._end_unknown("lost-acknowledgement")
+        elif self._accepted_early:
+            self._end_unknown("early-acceptance")
+        elif self._complained:
+            # It complained of the sequence, never asked again and lacks items: that was its last word.
+            self.state = State.REFUSED
+            self._end(Refused(MissionResult.INVALID_SEQUENCE, self._last_asked))
+        else:
+            self._end_unknown("timeout")
+
+    def _end_unknown(self, reason: UnknownReason) -> None:
+        self._end(Unknown(reason, self._last_asked))
+
+    def _move(self, event: Event) -> bool:
+        """Follow the table; False, and nothing changed, where it has no entry."""
+        following = TRANSITIONS.get((self.state, event))
+        if following is None:
+            return False
+        self.state = following
+        return True
+
+    def _count(self) -> Message:
+        return self._typed("MISSION_COUNT", count=len(self.items))
