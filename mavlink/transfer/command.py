@@ -73,7 +73,7 @@ class CommandOutcome:
     @property
     def meaning(self) -> str:
         """The result in words."""
-        if self.outcome is None:
+        if self.result is None:
             return "no answer; whether it was carried out is unknown"
         return _MEANING.get(self.result, f"MAV_RESULT {self.result}")
 

@@ -6,7 +6,6 @@ missing, so every repetition is ours, and late duplicates of the last item are a
 
 from __future__ import annotations
 
-import math
 from enum import Enum, auto
 from typing import Final
 
