@@ -1,0 +1,5 @@
+"""``python -m app.cli`` is ``swathplan``."""
+
+from app.cli import main
+
+main()

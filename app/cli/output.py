@@ -1,0 +1,103 @@
+"""What every command does alike: read ``-``, write results, tell messages, end with 0, 1 or 2."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Iterable
+from enum import IntEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, NoReturn
+
+import typer
+
+if TYPE_CHECKING:
+    from planner.errors import Finding
+
+
+class Exit(IntEnum):
+    """Exit codes."""
+
+    OK = 0
+    FAILED = 1
+    BAD_INPUT = 2
+
+
+Json = Annotated[bool, typer.Option("--json", help="Write results and errors as JSON.")]
+Output = Annotated[
+    str, typer.Option("--output", "-o", help="File to write; - is standard output.", metavar="FILE")
+]
+
+
+class CommandError(Exception):
+    """Ends a command: what to tell, and the exit code."""
+
+    def __init__(
+        self, message: str, code: Exit = Exit.FAILED, findings: Iterable[Finding] = (), **more: Any
+    ) -> None:
+        self.code = code
+        self.findings = tuple(findings)
+        self.more = more
+        super().__init__(message)
+
+
+def say(message: str) -> None:
+    """Tell the user something on standard error."""
+    typer.echo(message, err=True)
+
+
+def emit(text: str, output: str = "-") -> None:
+    """Write a result; a file appears whole or not at all."""
+    if not text.endswith("\n"):
+        text += "\n"
+    if output == "-":
+        sys.stdout.write(text)
+        sys.stdout.flush()
+        return
+    target = Path(output)
+    partial = target.with_name(f".{target.name}.partial")
+    try:
+        partial.write_text(text, encoding="utf-8")
+        partial.replace(target)
+    except OSError as error:
+        raise CommandError(f"{output} cannot be written: {error.strerror}") from error
+
+
+def emit_json(value: Any, output: str = "-") -> None:
+    """Write a result as indented JSON."""
+    emit(json.dumps(value, indent=2, ensure_ascii=False, allow_nan=False, default=str), output)
+
+
+def read_bytes(source: str) -> bytes:
+    """A file's content, or standard input's for ``-``."""
+    if source == "-":
+        return sys.stdin.buffer.read()
+    try:
+        return Path(source).read_bytes()
+    except OSError as error:
+        raise CommandError(f"{source} cannot be read: {error.strerror}", Exit.BAD_INPUT) from error
+
+
+def read_document(source: str) -> dict[str, Any]:
+    """A JSON object from a file or standard input, read strictly."""
+    from app.services.documents import read_object
+    from app.services.errors import RefusedError
+
+    try:
+        return read_object(read_bytes(source))
+    except RefusedError as error:
+        raise CommandError(str(error), Exit.BAD_INPUT, error.findings) from error
+
+
+def fail(error: CommandError, as_json: bool) -> NoReturn:
+    """Tell an error on standard error and end."""
+    if as_json:
+        from app.services.work import finding_json
+
+        body = {"error": str(error), "errors": [finding_json(f) for f in error.findings], **error.more}
+        say(json.dumps(body, ensure_ascii=False, default=str))
+    else:
+        say(f"error: {error}")
+        for finding in error.findings:
+            say(f"  {finding}")
+    raise SystemExit(int(error.code))

@@ -1,0 +1,145 @@
+"""``swathplan plan`` and ``swathplan validate``."""
+
+from __future__ import annotations
+
+import sys
+import time
+from typing import Annotated, Any
+
+import typer
+
+from app.cli.output import CommandError, Exit, Json, Output, emit, emit_json, read_document, say
+
+Scenario = Annotated[str, typer.Argument(help="Scenario GeoJSON; - is standard input.", metavar="SCENARIO")]
+
+
+class Narrator:
+    """Tells progress on standard error: a line that renews itself on a terminal, else a line a stage."""
+
+    def __init__(self) -> None:
+        self._terminal = sys.stderr.isatty()
+        self._stage = ""
+
+    def __call__(self, stage: str, fraction: float) -> None:
+        """Take one report."""
+        if self._terminal:
+            typer.echo(f"\r\033[K{fraction:4.0%} {stage}", err=True, nl=False)
+        elif stage != self._stage:
+            say(f"{fraction:4.0%} {stage}")
+        self._stage = stage
+
+    def end(self) -> None:
+        """Leave the line."""
+        if self._terminal and self._stage:
+            typer.echo("\r\033[K", err=True, nl=False)
+
+
+class Deadline:
+    """Stops planning after some seconds."""
+
+    def __init__(self, limit_s: float | None) -> None:
+        self._end_s = None if limit_s is None else time.monotonic() + limit_s
+
+    def __call__(self) -> bool:
+        """Whether the time is over."""
+        return self._end_s is not None and time.monotonic() > self._end_s
+
+
+def with_choices(document: dict[str, Any], seed: int | None, methods: list[str]) -> dict[str, Any]:
+    """A scenario with the seed and the methods asked for on the command line."""
+    chosen = dict(document)
+    if seed is not None:
+        chosen["seed"] = seed
+    if methods:
+        given = chosen.get("method")
+        by_stage = dict(given) if isinstance(given, dict) else {}
+        for choice in methods:
+            stage, equals, name = choice.partition("=")
+            if not equals:
+                raise CommandError(f"--method {choice}: write it as stage=name", Exit.BAD_INPUT)
+            by_stage[stage] = name
+        chosen["method"] = by_stage
+    return chosen
+
+
+def make(document: dict[str, Any], time_limit_s: float | None = None) -> dict[str, Any]:
+    """Plan a scenario in this process; returns the plan document."""
+    from planner import errors
+    from planner.geojson import write_plan
+    from planner.pipeline import make_plan
+    from planner.validate import read_valid
+
+    narrator = Narrator()
+    try:
+        return write_plan(make_plan(read_valid(document), progress=narrator, stop=Deadline(time_limit_s)))
+    except errors.ScenarioError as error:
+        raise CommandError("the scenario is refused", Exit.BAD_INPUT, error.findings) from error
+    except errors.InfeasibleError as error:
+        finding = errors.Finding(error.feature, error.constraint, error.message, error.relaxation)
+        raise CommandError("no plan can satisfy the scenario", Exit.FAILED, (finding,)) from error
+    except errors.CancelledError as error:
+        raise CommandError(f"planning took longer than {time_limit_s:g} s and was stopped") from error
+    except errors.PlannerError as error:
+        raise CommandError(str(error)) from error
+    finally:
+        narrator.end()
+
+
+def tell_plan(document: dict[str, Any]) -> None:
+    """Say in a few lines what a plan is like."""
+    metrics = document["metrics"]
+    coverage = metrics["coverage"].values()
+    say(
+        f"planned: {metrics['length_m'] / 1000:.2f} km, {metrics['duration_s'] / 60:.1f} min, "
+        f"collecting {metrics['duty_cycle']:.0%} of the way, "
+        f"{sum(fraction >= 0.9999 for fraction in coverage)} of {len(coverage)} regions covered"
+    )
+    for violation in document["violations"]:
+        say(f"violation: {violation.get('feature', '')}: {violation.get('message', violation)}")
+
+
+def plan(
+    scenario: Scenario,
+    output: Output = "-",
+    seed: Annotated[int | None, typer.Option(help="Seed, instead of the scenario's.")] = None,
+    method: Annotated[
+        list[str] | None, typer.Option(help="Algorithm of a stage, e.g. transit=ssas.", metavar="STAGE=NAME")
+    ] = None,
+    time_limit_s: Annotated[float | None, typer.Option(min=0.0, help="Give up after this long.")] = None,
+    as_json: Json = False,
+) -> None:
+    """Plan a scenario; the result is plan GeoJSON.
+
+    With --json and -o FILE the plan's metrics and violations go to standard output.
+    """
+    document = make(with_choices(read_document(scenario), seed, method or []), time_limit_s)
+    emit_json(document, output)
+    tell_plan(document)
+    if as_json and output != "-":
+        from app.services.summary import summary_of
+
+        emit_json(summary_of(document))
+
+
+def validate(scenario: Scenario, as_json: Json = False) -> None:
+    """Check a scenario without planning it; exits with 2 when it is refused."""
+    from app.services.validation import judge
+    from app.services.work import finding_json
+
+    verdict = judge(read_document(scenario))
+    if as_json:
+        found = [finding_json(finding) for finding in verdict.errors + verdict.warnings]
+        emit_json({"valid": not verdict.errors, "findings": found})
+    else:
+        for finding in verdict.errors + verdict.warnings:
+            emit(f"{finding.severity}: {finding}")
+        if not verdict.errors:
+            emit("the scenario is valid")
+    if verdict.errors:
+        raise typer.Exit(int(Exit.BAD_INPUT))
+
+
+def register(cli: typer.Typer) -> None:
+    """Add the commands."""
+    cli.command()(plan)
+    cli.command()(validate)

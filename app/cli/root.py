@@ -1,0 +1,57 @@
+"""All commands under one name."""
+
+from __future__ import annotations
+
+import sys
+from typing import Annotated
+
+import typer
+
+from app.cli import planning, serve
+from app.cli.output import CommandError, Exit, fail
+
+cli = typer.Typer(
+    name="swathplan",
+    help="Plan how an aircraft sees regions with a side-looking sensor, and put the mission into it.\n\n"
+    "Commands read - as standard input, write results to standard output or -o, tell messages on standard "
+    "error, and exit with 0 (done), 1 (failed) or 2 (bad usage or input).",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+
+def _version(asked: bool) -> None:
+    if asked:
+        from app.version import VERSION
+
+        typer.echo(VERSION)
+        raise typer.Exit
+
+
+@cli.callback()
+def _root(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Tell the version and end.")
+    ] = False,
+) -> None:
+    pass
+
+
+for module in (serve, planning):
+    module.register(cli)
+
+
+def run() -> None:
+    """Run the command line; every foreseen error ends with its findings, not with a traceback."""
+    try:
+        cli()
+    except CommandError as error:
+        fail(error, "--json" in sys.argv)
+    except KeyboardInterrupt:
+        raise SystemExit(130) from None
+    except BrokenPipeError:
+        # the reader of our output has gone, as with `| head`
+        sys.stderr.close()
+        raise SystemExit(int(Exit.FAILED)) from None

@@ -1,0 +1,57 @@
+"""``swathplan serve``."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+import typer
+
+from app.cli.output import CommandError, Exit, Json, emit, read_document
+
+
+def serve(
+    host: Annotated[str | None, typer.Option(help="Address to listen on [127.0.0.1].")] = None,
+    port: Annotated[int | None, typer.Option(help="Port to listen on [8000]; 0 takes a free one.")] = None,
+    database: Annotated[str | None, typer.Option(help="Database file [var/swathplan.db].")] = None,
+    workers: Annotated[int | None, typer.Option(help="Planning processes [cores - 1].")] = None,
+    sim: Annotated[bool, typer.Option("--sim", help="Connect a simulated aircraft at the start.")] = False,
+    sim_count: Annotated[int, typer.Option(min=1, max=16, help="How many with --sim.")] = 1,
+    sim_url: Annotated[
+        str, typer.Option(help="What the simulated aircraft are, e.g. sim:?autopilot=px4&speedup=10.")
+    ] = "sim:",
+    scenario: Annotated[
+        str | None, typer.Option(help="Plan this scenario at the start.", metavar="FILE")
+    ] = None,
+    as_json: Json = False,
+) -> None:
+    """Serve the map and the HTTP interface.
+
+    Further settings come from environment variables with the prefix SWATHPLAN_; see the documentation.
+    """
+    from pydantic import ValidationError
+
+    from app.settings import Settings
+
+    given: dict[str, Any] = {"host": host, "port": port, "database": database, "workers": workers}
+    document = None if scenario is None else read_document(scenario)
+    try:
+        settings = Settings(**{name: value for name, value in given.items() if value is not None})
+    except ValidationError as error:
+        reasons = "; ".join(
+            f"{'.'.join(map(str, entry['loc'])) or 'settings'}: {entry['msg']}" for entry in error.errors()
+        )
+        raise CommandError(reasons, Exit.BAD_INPUT) from error
+
+    from app.server import Welcome, run_server
+
+    welcome = Welcome(simulated=sim_count if sim else 0, sim_url=sim_url, scenario=document)
+
+    def announce(address: str) -> None:
+        emit(f'{{"address": "{address}"}}' if as_json else f"Swathplan is at {address}")
+
+    run_server(settings, welcome, announce)
+
+
+def register(cli: typer.Typer) -> None:
+    """Add the command."""
+    cli.command()(serve)

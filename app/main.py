@@ -1,0 +1,118 @@
+"""The web application: services, routes, middleware and the map, put together."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator, Callable
+from contextlib import asynccontextmanager
+from typing import Any
+
+from fastapi import FastAPI
+from fastapi.openapi.utils import get_openapi
+from fastapi.responses import HTMLResponse
+from fastapi.staticfiles import StaticFiles
+
+from app import middleware, problems
+from app.routers import artefacts, health, plans, scenarios
+from app.services.house import House, Limits
+from app.settings import Settings
+from app.version import VERSION
+
+DESCRIPTION = """Plans how an aircraft sees regions of interest with a side-looking sensor, among threats, and
+puts the mission into an ArduPilot or PX4 vehicle.
+
+Geometry is RFC 7946 GeoJSON. Every error is an RFC 9457 problem document."""
+
+TAGS = [
+    {"name": "plans", "description": "Scenarios become plans."},
+    {"name": "artefacts", "description": "What a plan gives: GeoJSON, missions, a report."},
+    {"name": "scenarios", "description": "Scenarios judged without planning them."},
+    {"name": "vehicles", "description": "Connected vehicles: state, missions, commands."},
+    {"name": "flights", "description": "What was flown, and what was seen."},
+    {"name": "health", "description": "Probes and figures."},
+]
+
+NO_MAP = """<!doctype html><html lang="en"><meta charset="utf-8"><title>Swathplan</title>
+<body style="font: 16px/1.5 system-ui; max-width: 40em; margin: 4em auto; padding: 0 1em">
+<h1>Swathplan</h1><p>The service runs, but the map has not been built. Build it with <code>make map</code>
+(or start with <code>make run</code>, which builds it) and reload.</p>
+<p>The interface for programs is described at <a href="/docs">/docs</a>.</p>"""
+
+
+def limits_of(settings: Settings) -> Limits:
+    """What the services need to know of the settings."""
+    return Limits(
+        database=settings.database,
+        workers=settings.workers,
+        plan_time_limit_s=settings.plan_time_limit_s,
+        max_queued_plans=settings.max_queued_plans,
+        track_interval_s=settings.track_interval_s,
+    )
+
+
+def create_app(settings: Settings | None = None, build_house: Callable[[Limits], House] = House) -> FastAPI:
+    """The application for some settings; services start with its lifespan."""
+    settings = settings or Settings()
+
+    @asynccontextmanager
+    async def lifespan(app: FastAPI) -> AsyncIterator[None]:
+        house = build_house(limits_of(settings))
+        app.state.house = house
+        try:
+            await house.open()
+            yield
+        finally:
+            await house.close()
+
+    app = FastAPI(
+        title="Swathplan", version=VERSION, description=DESCRIPTION, openapi_tags=TAGS, lifespan=lifespan
+    )
+    app.state.settings = settings
+    problems.install(app)
+    for module in (plans, artefacts, scenarios, health):
+        app.include_router(module.router)
+    _add_map(app, settings)
+    # The last added stands outermost.
+    app.add_middleware(middleware.BodyCap, max_bytes=settings.max_body_bytes)
+    app.add_middleware(middleware.Guard, allowed_hosts=settings.allowed_hosts)
+    app.add_middleware(middleware.RequestLog)
+    app.openapi = lambda: _openapi(app)  # type: ignore[method-assign]
+    return app
+
+
+def _add_map(app: FastAPI, settings: Settings) -> None:
+    folder = settings.web_map
+    if folder is not None:
+        app.mount("/", StaticFiles(directory=folder, html=True), name="map")
+        return
+
+    @app.get("/", include_in_schema=False)
+    async def no_map() -> HTMLResponse:
+        return HTMLResponse(NO_MAP)
+
+
+def _openapi(app: FastAPI) -> dict[str, Any]:
+    if app.openapi_schema is None:
+        schema = get_openapi(
+            title=app.title,
+            version=app.version,
+            description=app.description,
+            routes=app.routes,
+            tags=app.openapi_tags,
+        )
+        components = schema.setdefault("components", {}).setdefault("schemas", {})
+        problem = problems.Problem.model_json_schema(ref_template="#/components/schemas/{model}")
+        components |= problem.pop("$defs")
+        components["Problem"] = problem
+        # The framework's own schema of validation errors is never sent.
+        for name in ("HTTPValidationError", "ValidationError"):
+            components.pop(name, None)
+        for path in schema["paths"].values():
+            for operation in path.values():
+                answers = operation["responses"]
+                if "422" in answers:
+                    answers["422"] = problems.responses(422)[422]
+                answers.setdefault(
+                    "default", problems.responses(500)[500] | {"description": "Any other error"}
+                )
+        app.openapi_schema = schema
+    return app.openapi_schema

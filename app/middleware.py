@@ -1,0 +1,167 @@
+"""What stands round every request: its id and log line, the guard at the door, the cap on bodies.
+
+Plain ASGI, since a streaming answer must pass through untouched.
+"""
+
+from __future__ import annotations
+
+import re
+import time
+import uuid
+from collections.abc import Sequence
+from urllib.parse import urlsplit
+
+import structlog
+from starlette.datastructures import Headers, MutableHeaders
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from app.problems import MEDIA_TYPE, problem_body
+from app.services.metrics import REQUEST_SECONDS, REQUESTS
+from app.settings import is_loopback
+
+log = structlog.get_logger("app.access")
+
+REQUEST_ID = re.compile(r"[A-Za-z0-9._-]{1,64}")
+#: A body over the cap is read to its end, and dropped, up to this many times the cap: a client that is
+#: still sending does not look for an answer.
+DRAIN_FACTOR = 20
+
+
+async def _answer(
+    scope: Scope, send: Send, status: int, kind: str, title: str, detail: str, entries: list[dict[str, str]]
+) -> None:
+    body = problem_body(scope["path"], status, kind, title, detail, list(entries))
+    headers = [
+        (b"content-type", MEDIA_TYPE.encode()),
+        (b"content-length", str(len(body)).encode()),
+    ]
+    await send({"type": "http.response.start", "status": status, "headers": headers})
+    await send({"type": "http.response.body", "body": body})
+
+
+class RequestLog:
+    """Gives each request an id, logs it, counts it, and turns what nobody caught into a bare 500."""
+
+    def __init__(self, app: ASGIApp) -> None:
+        self._app = app
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Serve one request."""
+        if scope["type"] != "http":
+            await self._app(scope, receive, send)
+            return
+        given = Headers(scope=scope).get("x-request-id", "")
+        request_id = given if REQUEST_ID.fullmatch(given) else uuid.uuid4().hex
+        structlog.contextvars.clear_contextvars()
+        structlog.contextvars.bind_contextvars(request_id=request_id)
+        status = 0
+        started_s = time.perf_counter()
+
+        async def send_with_id(message: Message) -> None:
+            nonlocal status
+            if message["type"] == "http.response.start":
+                status = message["status"]
+                headers = MutableHeaders(scope=message)
+                headers["x-request-id"] = request_id
+                headers["x-content-type-options"] = "nosniff"
+            await send(message)
+
+        try:
+            await self._app(scope, receive, send_with_id)
+        except Exception as error:
+            log.error("request failed", path=scope["path"], exc_info=error)
+            if status:
+                raise
+            detail = f"the service failed; its log tells more under request id {request_id}"
+            await _answer(scope, send_with_id, 500, "internal", "Internal error", detail, [])
+        finally:
+            took_s = time.perf_counter() - started_s
+            route = getattr(scope.get("route"), "path", "unmatched")
+            REQUESTS.labels(method=scope["method"], route=route, status=str(status)).inc()
+            REQUEST_SECONDS.labels(route=route).observe(took_s)
+            level = "debug" if route.startswith(("/health", "/metrics")) else "info"
+            getattr(log, level)(
+                "request", method=scope["method"], path=scope["path"], status=status, took_s=round(took_s, 4)
+            )
+
+
+class Guard:
+    """Refuses what another web page makes a browser send here.
+
+    The service knows no users, so any page open in the operator's browser could otherwise command vehicles:
+    by name rebinding (hence the check of Host) or by a plain cross-site form (hence that of Origin).
+    """
+
+    def __init__(self, app: ASGIApp, allowed_hosts: Sequence[str]) -> None:
+        self._app = app
+        self._allowed = frozenset(name.lower() for name in allowed_hosts)
+
+    def _known(self, host: str | None) -> bool:
+        return host is not None and (is_loopback(host) or host.lower() in self._allowed)
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Serve one request."""
+        if scope["type"] == "http":
+            headers = Headers(scope=scope)
+            refused = None
+            if not self._known(_hostname("//" + headers.get("host", ""))):
+                refused = (421, "misdirected-request", "Host", "host-unknown")
+            elif (origin := headers.get("origin")) is not None and not self._known(_hostname(origin)):
+                refused = (403, "forbidden", "Origin", "origin-unknown")
+            if refused is not None:
+                status, kind, header, rule = refused
+                message = f"the {header} header names none of this service's hosts"
+                fix = "address the service by its own name, or list the name in SWATHPLAN_ALLOWED_HOSTS"
+                entry = {"feature": header.lower(), "rule": rule, "message": message, "fix": fix}
+                await _answer(scope, send, status, kind, "Refused at the door", message, [entry])
+                return
+        await self._app(scope, receive, send)
+
+
+def _hostname(url: str) -> str | None:
+    try:
+        return urlsplit(url).hostname
+    except ValueError:
+        return None
+
+
+class BodyCap:
+    """Reads each body up to a cap before the application sees it; more is a 422."""
+
+    def __init__(self, app: ASGIApp, max_bytes: int) -> None:
+        self._app = app
+        self._max_bytes = max_bytes
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Serve one request."""
+        if scope["type"] != "http" or scope["method"] in ("GET", "HEAD", "OPTIONS"):
+            await self._app(scope, receive, send)
+            return
+        chunks: list[bytes] = []
+        size = 0
+        more = True
+        while more and size <= self._max_bytes * DRAIN_FACTOR:
+            message = await receive()
+            if message["type"] == "http.disconnect":
+                return
+            chunk = message.get("body", b"")
+            size += len(chunk)
+            if size <= self._max_bytes:
+                chunks.append(chunk)
+            more = message.get("more_body", False)
+        if size > self._max_bytes:
+            detail = f"the body is larger than {self._max_bytes} bytes"
+            fix = "send less: fewer vertices, fewer decimals, or several scenarios"
+            entry = {"feature": "body", "rule": "body-too-large", "message": detail, "fix": fix}
+            await _answer(scope, send, 422, "refused", "The input is refused", detail, [entry])
+            return
+        body: bytes | None = b"".join(chunks)
+
+        async def replay() -> Message:
+            nonlocal body
+            if body is not None:
+                whole, body = body, None
+                return {"type": "http.request", "body": whole, "more_body": False}
+            return await receive()
+
+        await self._app(scope, replay, send)

@@ -1,0 +1,75 @@
+"""The scenario as OpenAPI tells it: its outline and an example that plans."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+EXAMPLE: dict[str, Any] = json.loads(
+    (Path(__file__).resolve().parents[1] / "examples" / "scenario.geojson").read_text(encoding="utf-8")
+)
+
+SCENARIO_SCHEMA: dict[str, Any] = {
+    "title": "Scenario",
+    "description": "A GeoJSON FeatureCollection (RFC 7946); each feature says its part by `properties.role`. "
+    "Vehicles, sensors and wishes are foreign members of the collection.",
+    "type": "object",
+    "required": ["type", "features", "vehicles", "sensors", "altitude_m"],
+    "properties": {
+        "type": {"const": "FeatureCollection"},
+        "name": {"type": "string"},
+        "features": {
+            "type": "array",
+            "items": {
+                "type": "object",
+                "required": ["type", "geometry", "properties"],
+                "properties": {
+                    "type": {"const": "Feature"},
+                    "id": {"type": ["string", "integer"]},
+                    "geometry": {"type": "object", "required": ["type", "coordinates"]},
+                    "properties": {
+                        "type": "object",
+                        "required": ["role"],
+                        "properties": {
+                            "role": {
+                                "enum": [
+                                    "roi",
+                                    "threat",
+                                    "no_fly",
+                                    "obstacle",
+                                    "area",
+                                    "start",
+                                    "end",
+                                    "base",
+                                    "importance",
+                                ]
+                            },
+                            "name": {"type": "string"},
+                        },
+                    },
+                },
+            },
+        },
+        "vehicles": {"type": "array", "items": {"type": "object"}, "minItems": 1},
+        "sensors": {"type": "array", "items": {"type": "object"}, "minItems": 1},
+        "altitude_m": {"type": "number", "exclusiveMinimum": 0},
+        "altitude_reference": {"enum": ["amsl", "home", "terrain"], "default": "terrain"},
+        "wind": {"type": "object"},
+        "clearance_m": {"type": "number", "minimum": 0},
+        "objective": {"type": "object"},
+        "method": {"type": "object"},
+        "seed": {"type": "integer"},
+        "time_budget_s": {"type": "number", "exclusiveMinimum": 0},
+    },
+}
+
+_MEDIA: dict[str, Any] = {
+    "schema": SCENARIO_SCHEMA,
+    "examples": {"two-regions": {"summary": "Two regions and a threat", "value": EXAMPLE}},
+}
+
+SCENARIO_BODY: dict[str, Any] = {
+    "required": True,
+    "content": {"application/json": _MEDIA, "application/geo+json": _MEDIA},
+}

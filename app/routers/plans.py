@@ -1,0 +1,107 @@
+"""Plans: post a scenario, watch it being planned, cancel it."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Header, Query, Request, Response
+from sse_starlette import EventSourceResponse, ServerSentEvent
+
+from app.deps import PlanningDep, SettingsDep
+from app.problems import responses
+from app.routers.bodies import SCENARIO_BODY
+from app.schemas import PlanList, PlanOut, PlanStateName
+from app.services.documents import read_object
+
+router = APIRouter(prefix="/api/v1/plans", tags=["plans"])
+
+EVENT_STREAM: dict[int | str, dict[str, Any]] = {
+    200: {
+        "description": "Events `progress` while it is queued or running, then one of `done`, `failed`, "
+        "`cancelled`; the data of each is the plan's record.",
+        "content": {"text/event-stream": {"schema": {"type": "string"}}},
+    }
+}
+
+
+@router.post(
+    "",
+    status_code=202,
+    summary="Plan a scenario",
+    responses=responses(409, 422, 503),
+    openapi_extra={"requestBody": SCENARIO_BODY},
+)
+async def post_plan(
+    request: Request,
+    response: Response,
+    planning: PlanningDep,
+    settings: SettingsDep,
+    wait: Annotated[float, Query(ge=0, description="Seconds to hold the answer for the plan's end.")] = 0.0,
+    idempotency_key: Annotated[
+        str | None,
+        Header(
+            max_length=200,
+            description="Posting the same scenario again with the same key answers with the plan made the "
+            "first time; another scenario with that key is a 409. Without a key each post is a new plan.",
+        ),
+    ] = None,
+) -> PlanOut:
+    """Judge the scenario and queue it; planning runs in the worker pool.
+
+    The answer is 202 with the plan's record and its place in `Location`, also when `wait` saw its end.
+    """
+    document = read_object(await request.body())
+    record = await planning.submit(document, idempotency_key)
+    if wait > 0 and not record.ended:
+        record = await planning.wait(record.id, min(wait, settings.max_wait_s))
+    response.headers["Location"] = f"/api/v1/plans/{record.id}"
+    return PlanOut.of(record)
+
+
+@router.get("", summary="List plans", responses=responses(422))
+async def list_plans(
+    planning: PlanningDep,
+    limit: Annotated[int, Query(ge=1, le=1000)] = 50,
+    offset: Annotated[int, Query(ge=0, le=2**31)] = 0,
+    state: PlanStateName | None = None,
+) -> PlanList:
+    """Plans, newest first."""
+    records = await planning.newest(limit, offset, state)
+    return PlanList(plans=[PlanOut.of(record) for record in records], total=await planning.count(state))
+
+
+@router.get("/{plan_id}", summary="Read a plan's record", responses=responses(404))
+async def get_plan(plan_id: str, planning: PlanningDep) -> PlanOut:
+    """State, stage, progress; metrics and violations once it is done; the reason when it failed."""
+    return PlanOut.of(await planning.get(plan_id))
+
+
+@router.get(
+    "/{plan_id}/events",
+    summary="Watch a plan",
+    response_class=EventSourceResponse,
+    responses=EVENT_STREAM | responses(404),
+)
+async def plan_events(plan_id: str, planning: PlanningDep) -> EventSourceResponse:
+    """Server-sent events from now to the plan's end; of a plan that has ended, its end state."""
+    await planning.get(plan_id)
+
+    async def stream() -> AsyncIterator[ServerSentEvent]:
+        async for record in planning.events(plan_id):
+            name = record.state if record.ended else "progress"
+            yield ServerSentEvent(PlanOut.of(record).model_dump_json(), event=name)
+
+    return EventSourceResponse(stream(), ping=15)
+
+
+@router.delete(
+    "/{plan_id}",
+    summary="Cancel or delete a plan",
+    response_model=PlanOut,
+    responses=responses(404) | {204: {"description": "It had ended and is deleted."}},
+)
+async def delete_plan(plan_id: str, planning: PlanningDep) -> Any:
+    """Cancel a queued or running plan (200, its record), delete an ended one (204)."""
+    record = await planning.remove(plan_id)
+    return Response(status_code=204) if record is None else PlanOut.of(record)

@@ -1,0 +1,101 @@
+"""Bodies of requests and answers."""
+
+from __future__ import annotations
+
+from datetime import datetime
+from typing import Any, Literal, Self
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from app.services.records import PlanRecord
+
+PlanStateName = Literal["queued", "running", "done", "failed", "cancelled"]
+
+
+class Strict(BaseModel):
+    """A request body: unknown members, NaN and infinities are refused."""
+
+    model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
+
+
+class FindingOut(BaseModel):
+    """One thing wrong, or worth knowing, about a scenario."""
+
+    feature: str
+    rule: str
+    message: str
+    fix: str
+    severity: Literal["error", "warning"]
+
+
+class ValidationOut(BaseModel):
+    """The verdict on a scenario that may be planned."""
+
+    valid: bool = True
+    findings: list[FindingOut] = Field(description="Warnings; a scenario with errors is answered with 422.")
+
+
+class PlanOut(BaseModel):
+    """A plan's record."""
+
+    id: str
+    name: str
+    state: PlanStateName
+    stage: str | None = Field(description="The stage at work, or at which it ended.")
+    progress: float = Field(ge=0, le=1, description="Fraction of the whole plan.")
+    created_at: datetime
+    started_at: datetime | None
+    ended_at: datetime | None
+    warnings: list[FindingOut]
+    metrics: dict[str, Any] | None = Field(description="Of a done plan; see plan.geojson.")
+    violations: list[dict[str, Any]] | None = Field(description="Of a done plan; empty when none.")
+    methods: dict[str, Any] | None = Field(description="The algorithm used in each stage.")
+    scenario_hash: str | None
+    planner_version: str | None
+    seed: int | None
+    error: dict[str, Any] | None = Field(description="Of a failed plan: type, title, detail, errors.")
+    links: dict[str, str]
+
+    @classmethod
+    def of(cls, record: PlanRecord) -> Self:
+        """The answer for a record."""
+        summary = record.summary or {}
+        base = f"/api/v1/plans/{record.id}"
+        links = {"self": base, "events": f"{base}/events", "scenario": f"{base}/scenario"}
+        if record.state == "done":
+            artefacts = ("plan.geojson", "mission.plan", "mission.waypoints", "mission.kml", "report.html")
+            links |= {name: f"{base}/{name}" for name in artefacts}
+        return cls(
+            id=record.id,
+            name=record.name,
+            state=record.state,
+            stage=record.stage,
+            progress=record.progress,
+            created_at=record.created_at,
+            started_at=record.started_at,
+            ended_at=record.ended_at,
+            warnings=[FindingOut(**warning) for warning in record.warnings],
+            metrics=summary.get("metrics"),
+            violations=summary.get("violations"),
+            methods=summary.get("methods"),
+            scenario_hash=summary.get("scenario_hash"),
+            planner_version=summary.get("planner_version"),
+            seed=summary.get("seed"),
+            error=record.error,
+            links=links,
+        )
+
+
+class PlanList(BaseModel):
+    """Plans, newest first."""
+
+    plans: list[PlanOut]
+    total: int
+
+
+class Health(BaseModel):
+    """A probe's answer."""
+
+    status: Literal["ok", "starting"]
+    version: str
+    checks: dict[str, bool] = Field(default_factory=dict)

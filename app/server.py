@@ -1,0 +1,90 @@
+"""The service as a process: one socket, one event loop, an orderly end."""
+
+from __future__ import annotations
+
+import asyncio
+import hashlib
+import socket
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import structlog
+import uvicorn
+
+from app.logging import configure
+from app.main import create_app
+from app.services.documents import write_json
+from app.services.errors import ServiceError
+from app.services.house import House
+from app.settings import Settings
+
+log = structlog.get_logger(__name__)
+
+#: Open event streams are cut this long after the signal to end.
+GRACE_S = 5
+
+
+@dataclass(frozen=True, slots=True)
+class Welcome:
+    """What a fresh service does by itself: connect simulated aircraft, plan a scenario."""
+
+    simulated: int = 0
+    sim_url: str = "sim:"
+    scenario: Mapping[str, Any] | None = None
+
+
+async def _greet(house: House, welcome: Welcome) -> None:
+    try:
+        if welcome.scenario is not None:
+            await _plan_sample(house, welcome.scenario)
+        for number in range(1, welcome.simulated + 1):
+            await house.fleet.connect(f"sim-{number}", welcome.sim_url)
+    except ServiceError as error:
+        log.error("start-up wish not fulfilled", reason=str(error))
+
+
+async def _plan_sample(house: House, scenario: Mapping[str, Any]) -> None:
+    # The key keeps restarts from planning the same sample again and again.
+    key = "start-" + hashlib.sha256(write_json(scenario).encode()).hexdigest()[:32]
+    record = await house.planning.submit(scenario, key)
+    if record.state in ("failed", "cancelled"):
+        await house.planning.submit(scenario)
+
+
+class _Server(uvicorn.Server):
+    """Tells when it listens, then greets."""
+
+    def __init__(self, config: uvicorn.Config, listening: Callable[[], None]) -> None:
+        super().__init__(config)
+        self._listening = listening
+
+    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        await super().startup(sockets)
+        if self.started:
+            self._listening()
+
+
+def run_server(settings: Settings, welcome: Welcome, announce: Callable[[str], None]) -> None:
+    """Serve until a signal; ``announce`` gets the address once requests are answered."""
+    configure(settings.log_level)
+    app = create_app(settings)
+    config = uvicorn.Config(
+        app,
+        host=settings.host,
+        port=settings.port,
+        log_config=None,
+        access_log=False,
+        server_header=False,
+        timeout_graceful_shutdown=GRACE_S,
+    )
+    listener = config.bind_socket()
+    port = listener.getsockname()[1]
+    name = f"[{settings.host}]" if ":" in settings.host else settings.host
+    greeting: list[asyncio.Task[None]] = []
+
+    def listening() -> None:
+        announce(f"http://{name}:{port}")
+        greeting.append(asyncio.create_task(_greet(app.state.house, welcome)))
+
+    _Server(config, listening).run(sockets=[listener])

@@ -1,0 +1,67 @@
+"""What the services refuse, in one tree; ``app.problems`` maps each class to an HTTP status once.
+
+::
+
+    ServiceError
+    ├── NotFoundError          no such plan, vehicle, flight, region
+    ├── ConflictError          not possible in the present state
+    │   └── BusyError          another operation is at work on the same vehicle
+    ├── RefusedError           the input is wrong; carries findings
+    ├── UnsafeError            the plan breaks a hard constraint, or the autopilot cannot hold it
+    ├── OverloadedError        no room for more work now
+    ├── LinkError              the vehicle cannot be reached
+    └── CommandRefusedError    the vehicle said no
+"""
+
+from __future__ import annotations
+
+from planner.errors import Finding
+
+
+class ServiceError(Exception):
+    """Base of all errors raised by the services; the text is meant for the client."""
+
+
+class NotFoundError(ServiceError):
+    """There is no such thing."""
+
+    def __init__(self, kind: str, name: str) -> None:
+        self.kind = kind
+        self.name = name
+        super().__init__(f"there is no {kind} {name}")
+
+
+class ConflictError(ServiceError):
+    """Not possible in the present state."""
+
+
+class BusyError(ConflictError):
+    """Another operation is at work on the same vehicle."""
+
+
+class RefusedError(ServiceError):
+    """The input is wrong: every finding, each naming feature, rule and fix."""
+
+    def __init__(self, detail: str, findings: tuple[Finding, ...]) -> None:
+        self.findings = findings
+        super().__init__(detail)
+
+
+class UnsafeError(RefusedError):
+    """Sound, but not to be flown without an explicit override."""
+
+
+class OverloadedError(ServiceError):
+    """No room for more work now."""
+
+    def __init__(self, detail: str, retry_after_s: int) -> None:
+        self.retry_after_s = retry_after_s
+        super().__init__(detail)
+
+
+class LinkError(ServiceError):
+    """The vehicle cannot be reached."""
+
+
+class CommandRefusedError(ServiceError):
+    """The vehicle said no."""

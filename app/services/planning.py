@@ -1,0 +1,282 @@
+"""Plans: submitted, queued, run in the worker pool, watched, cancelled."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import hashlib
+from collections.abc import AsyncIterator, Callable, Mapping
+from dataclasses import replace
+from typing import Any
+
+import structlog
+
+from app.services import work
+from app.services.documents import write_json
+from app.services.errors import ConflictError, NotFoundError, OverloadedError, RefusedError
+from app.services.hub import Hub
+from app.services.metrics import PLANNING_SECONDS, PLANS_ENDED, PLANS_RUNNING
+from app.services.pool import WorkerDiedError, WorkerPool
+from app.services.progress_pipe import progress_pipe
+from app.services.records import PlanRecord
+from app.services.store.plans import PlanStore
+from app.services.validation import Verdict, judge
+
+log = structlog.get_logger(__name__)
+
+Task = Callable[[str, str], work.WorkResult]
+
+
+def failure(kind: str, title: str, detail: str) -> dict[str, Any]:
+    """The ``error`` of a failed plan."""
+    return {"type": kind, "title": title, "detail": detail, "errors": []}
+
+
+class PlanningService:
+    """The plans of one service.
+
+    Parameters
+    ----------
+    store
+        Where they are kept.
+    pool
+        Where they are made.
+    workers
+        How many are made at once.
+    time_limit_s
+        The longest one may take.
+    max_queued
+        More waiting than this are refused.
+    task
+        The function run in a worker: scenario text and progress pipe in, WorkResult out.
+    """
+
+    def __init__(
+        self,
+        store: PlanStore,
+        pool: WorkerPool,
+        *,
+        workers: int,
+        time_limit_s: float,
+        max_queued: int,
+        task: Task = work.plan_scenario,
+        judge_scenario: Callable[[Mapping[str, Any]], Verdict] = judge,
+    ) -> None:
+        self._store = store
+        self._pool = pool
+        self._workers = workers
+        self._time_limit_s = time_limit_s
+        self._max_queued = max_queued
+        self._task = task
+        self._judge = judge_scenario
+        self._queue: asyncio.Queue[str] = asyncio.Queue()
+        self._running: dict[str, asyncio.Task[None]] = {}
+        self._live: dict[str, tuple[str | None, float]] = {}
+        self._consumers: list[asyncio.Task[None]] = []
+        self._hub: Hub[PlanRecord] = Hub()
+        self._stopping = False
+
+    async def start(self) -> None:
+        """Take up what an earlier service left, and begin to plan."""
+        reason = failure(
+            "service-restarted",
+            "The service was restarted while it planned",
+            "the service ended while this plan was being made; post the scenario again",
+        )
+        for plan_id in await self._store.recover(reason):
+            self._queue.put_nowait(plan_id)
+        self._consumers = [asyncio.create_task(self._consume()) for _ in range(self._workers)]
+
+    async def stop(self) -> None:
+        """Stop planning; plans being made go back into the queue of the next service."""
+        self._stopping = True
+        for task in (*self._consumers, *self._running.values()):
+            task.cancel()
+        await asyncio.gather(*self._consumers, *self._running.values(), return_exceptions=True)
+
+    async def validate(self, document: Mapping[str, Any]) -> Verdict:
+        """Judge a scenario without planning it."""
+        return await asyncio.to_thread(self._judge, document)
+
+    async def submit(self, document: Mapping[str, Any], key: str | None = None) -> PlanRecord:
+        """Queue a scenario.
+
+        Parameters
+        ----------
+        key
+            Idempotency key: the same key with the same scenario answers with the plan made the first time.
+
+        Raises
+        ------
+        RefusedError
+            The scenario is wrong.
+        ConflictError
+            The key stands for another scenario.
+        OverloadedError
+            Too many plans are waiting.
+        """
+        text = write_json(document)
+        digest = hashlib.sha256(text.encode()).hexdigest()
+        if key is not None and (known := await self._store.by_key(key)) is not None:
+            record, known_digest = known
+            if known_digest != digest:
+                raise ConflictError(f"the idempotency key {key} stands for another scenario")
+            return self._with_progress(record)
+        if await self._store.count("queued") >= self._max_queued:
+            raise OverloadedError("too many plans are waiting; try again later", retry_after_s=10)
+        verdict = await self.validate(document)
+        if verdict.errors:
+            count = len(verdict.errors)
+            detail = verdict.errors[0].message if count == 1 else f"{count} rules are broken"
+            raise RefusedError(f"the scenario is refused: {detail}", verdict.errors)
+        warnings = [work.finding_json(finding) for finding in verdict.warnings]
+        record = await self._store.add(_name_of(document), text, digest, warnings, key)
+        self._queue.put_nowait(record.id)
+        return record
+
+    async def get(self, plan_id: str) -> PlanRecord:
+        """One plan, with its live progress."""
+        return self._with_progress(await self._store.get(plan_id))
+
+    async def newest(self, limit: int, offset: int, state: str | None) -> tuple[PlanRecord, ...]:
+        """Plans, newest first."""
+        return tuple(self._with_progress(record) for record in await self._store.newest(limit, offset, state))
+
+    async def count(self, state: str | None = None) -> int:
+        """How many plans there are."""
+        return await self._store.count(state)
+
+    async def scenario_text(self, plan_id: str) -> str:
+        """The scenario as it was sent."""
+        return (await self._store.documents(plan_id))[0]
+
+    async def plan_text(self, plan_id: str) -> str:
+        """The plan as GeoJSON text; raises ConflictError while there is none."""
+        record = await self.get(plan_id)
+        _, plan = await self._store.documents(plan_id)
+        if plan is None:
+            reason = f": {record.error['detail']}" if record.error else ""
+            raise ConflictError(f"plan {plan_id} is {record.state}, it has no plan{reason}")
+        return plan
+
+    async def events(self, plan_id: str) -> AsyncIterator[PlanRecord]:
+        """The plan as it is now, then at every change, to its end."""
+        async with self._hub.listen(plan_id) as queue:
+            record = await self.get(plan_id)
+            yield record
+            while not record.ended:
+                record = await queue.get()
+                yield record
+
+    async def wait(self, plan_id: str, timeout_s: float) -> PlanRecord:
+        """The plan when it has ended, or as it is when the time is over."""
+        with contextlib.suppress(TimeoutError):
+            async with asyncio.timeout(timeout_s):
+                async for record in self.events(plan_id):
+                    if record.ended:
+                        return record
+        return await self.get(plan_id)
+
+    async def remove(self, plan_id: str) -> PlanRecord | None:
+        """Cancel a queued or running plan and answer with it; delete an ended one and answer None."""
+        if await self._store.delete(plan_id):
+            return None
+        if await self._store.cancel(plan_id):
+            if (task := self._running.get(plan_id)) is not None:
+                task.cancel()
+            PLANS_ENDED.labels(state="cancelled").inc()
+            record = await self._announce(plan_id)
+            log.info("plan cancelled", plan_id=plan_id)
+            return record
+        # It ended between the two looks, or never was.
+        await self._store.get(plan_id)
+        return await self.remove(plan_id)
+
+    def _with_progress(self, record: PlanRecord) -> PlanRecord:
+        live = self._live.get(record.id)
+        if live is None or record.state != "running":
+            return record
+        return replace(record, stage=live[0], progress=live[1])
+
+    async def _announce(self, plan_id: str) -> PlanRecord | None:
+        try:
+            record = await self.get(plan_id)
+        except NotFoundError:
+            return None
+        self._hub.publish(plan_id, record)
+        return record
+
+    async def _consume(self) -> None:
+        while True:
+            plan_id = await self._queue.get()
+            task = asyncio.create_task(self._run(plan_id))
+            self._running[plan_id] = task
+            try:
+                await asyncio.wait((task,))
+                if not task.cancelled() and (error := task.exception()) is not None:
+                    log.error("plan could not be run", plan_id=plan_id, exc_info=error)
+            finally:
+                self._running.pop(plan_id, None)
+
+    async def _run(self, plan_id: str) -> None:
+        if not await self._store.start(plan_id):
+            return
+        self._live[plan_id] = (None, 0.0)
+        record = await self._announce(plan_id)
+        if record is None:
+            return
+        scenario, _ = await self._store.documents(plan_id)
+
+        def report(stage: str, fraction: float) -> None:
+            self._live[plan_id] = (stage, max(fraction, self._live[plan_id][1]))
+            self._hub.publish(plan_id, self._with_progress(record))
+
+        started_s = asyncio.get_running_loop().time()
+        PLANS_RUNNING.inc()
+        try:
+            async with progress_pipe(report) as pipe:
+                result = await self._attempt(scenario, pipe)
+            await self._end(plan_id, result)
+        except asyncio.CancelledError:
+            if self._stopping:
+                await asyncio.shield(self._store.requeue(plan_id))
+            raise
+        finally:
+            PLANS_RUNNING.dec()
+            PLANNING_SECONDS.observe(asyncio.get_running_loop().time() - started_s)
+            self._live.pop(plan_id, None)
+
+    async def _attempt(self, scenario: str, pipe: str) -> work.WorkResult:
+        try:
+            result = await self._pool.run(self._task, (scenario, pipe), self._time_limit_s)
+        except TimeoutError:
+            detail = f"planning took longer than {self._time_limit_s:g} s and was stopped"
+            return work.WorkResult(error=failure("time-limit", "The time limit passed", detail))
+        except WorkerDiedError as error:
+            detail = f"{error}; other plans go on, post the scenario again"
+            return work.WorkResult(error=failure("worker-died", "The planning process died", detail))
+        except Exception as error:
+            # The planner broke its word; the client learns that much and the log the rest.
+            log.error("planner failed", exc_info=error)
+            detail = "the planner failed for a reason it did not foresee; the service's log has the details"
+            return work.WorkResult(error=failure("internal", "Internal error", detail))
+        assert isinstance(result, work.WorkResult)
+        return result
+
+    async def _end(self, plan_id: str, result: work.WorkResult) -> None:
+        if result.plan is not None:
+            moved = await self._store.done(plan_id, result.plan, result.summary or {})
+            state = "done"
+        else:
+            stage, progress = self._live[plan_id]
+            moved = await self._store.fail(plan_id, result.error or {}, stage, progress)
+            state = "failed"
+        if moved:
+            PLANS_ENDED.labels(state=state).inc()
+            log.info("plan ended", plan_id=plan_id, state=state, reason=(result.error or {}).get("detail"))
+            await self._announce(plan_id)
+
+
+def _name_of(document: Mapping[str, Any]) -> str:
+    name = document.get("name")
+    return name[:200] if isinstance(name, str) and name else "scenario"

@@ -1,0 +1,1 @@
+"""The database: tables, sessions, and one store per kind of thing."""

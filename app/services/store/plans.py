@@ -1,0 +1,175 @@
+"""Plans in the database."""
+
+from __future__ import annotations
+
+import uuid
+from collections.abc import Sequence
+from datetime import UTC, datetime
+from typing import Any, cast
+
+from sqlalchemy import delete, func, select, update
+from sqlalchemy.exc import IntegrityError
+
+from app.services.errors import ConflictError, NotFoundError
+from app.services.records import PlanRecord, PlanState
+from app.services.store.database import Database
+from app.services.store.tables import PlanDocumentRow, PlanRow
+
+
+def now() -> datetime:
+    """The present moment."""
+    return datetime.now(UTC)
+
+
+def _record(row: PlanRow) -> PlanRecord:
+    return PlanRecord(
+        id=row.id,
+        name=row.name,
+        state=cast(PlanState, row.state),
+        stage=row.stage,
+        progress=row.progress,
+        created_at=row.created_at,
+        started_at=row.started_at,
+        ended_at=row.ended_at,
+        warnings=tuple(row.warnings),
+        summary=row.summary,
+        error=row.error,
+    )
+
+
+class PlanStore:
+    """Plans: added, moved from state to state, read, deleted."""
+
+    def __init__(self, database: Database) -> None:
+        self._database = database
+
+    async def add(
+        self, name: str, scenario: str, body_sha256: str, warnings: Sequence[dict[str, Any]], key: str | None
+    ) -> PlanRecord:
+        """A new queued plan; raises ConflictError when the idempotency key has been used meanwhile."""
+        row = PlanRow(
+            id=str(uuid.uuid4()),
+            name=name,
+            state="queued",
+            progress=0.0,
+            created_at=now(),
+            idempotency_key=key,
+            body_sha256=body_sha256,
+            warnings=list(warnings),
+        )
+        try:
+            async with self._database.session() as session:
+                session.add(row)
+                await session.flush()
+                session.add(PlanDocumentRow(plan_id=row.id, scenario=scenario))
+        except IntegrityError as error:
+            raise ConflictError(f"the idempotency key {key} is in use") from error
+        return _record(row)
+
+    async def by_key(self, key: str) -> tuple[PlanRecord, str] | None:
+        """The plan an idempotency key stands for, and the digest of its scenario."""
+        async with self._database.session() as session:
+            row = await session.scalar(select(PlanRow).where(PlanRow.idempotency_key == key))
+        return None if row is None else (_record(row), row.body_sha256)
+
+    async def get(self, plan_id: str) -> PlanRecord:
+        """One plan; raises NotFoundError."""
+        async with self._database.session() as session:
+            row = await session.scalar(select(PlanRow).where(PlanRow.id == plan_id))
+        if row is None:
+            raise NotFoundError("plan", plan_id)
+        return _record(row)
+
+    async def newest(self, limit: int, offset: int = 0, state: str | None = None) -> tuple[PlanRecord, ...]:
+        """Plans, newest first."""
+        query = select(PlanRow).order_by(PlanRow.number.desc()).limit(limit).offset(offset)
+        if state is not None:
+            query = query.where(PlanRow.state == state)
+        async with self._database.session() as session:
+            rows = await session.scalars(query)
+            return tuple(_record(row) for row in rows)
+
+    async def count(self, state: str | None = None) -> int:
+        """How many plans there are, of one state or of all."""
+        query = select(func.count()).select_from(PlanRow)
+        if state is not None:
+            query = query.where(PlanRow.state == state)
+        async with self._database.session() as session:
+            return await session.scalar(query) or 0
+
+    async def documents(self, plan_id: str) -> tuple[str, str | None]:
+        """Scenario and plan as JSON texts; raises NotFoundError."""
+        async with self._database.session() as session:
+            row = await session.get(PlanDocumentRow, plan_id)
+        if row is None:
+            raise NotFoundError("plan", plan_id)
+        return row.scenario, row.plan
+
+    async def start(self, plan_id: str) -> bool:
+        """Queued to running; False when it is not queued any more."""
+        return await self._move(plan_id, ("queued",), state="running", started_at=now(), progress=0.0)
+
+    async def requeue(self, plan_id: str) -> bool:
+        """Running back to queued."""
+        return await self._move(
+            plan_id, ("running",), state="queued", started_at=None, stage=None, progress=0.0
+        )
+
+    async def done(self, plan_id: str, plan: str, summary: dict[str, Any]) -> bool:
+        """Running to done, with its result; False when it was cancelled meanwhile."""
+        async with self._database.session() as session:
+            result = await session.execute(
+                update(PlanRow)
+                .where(PlanRow.id == plan_id, PlanRow.state == "running")
+                .values(state="done", stage="done", progress=1.0, ended_at=now(), summary=summary)
+                .returning(PlanRow.id)
+            )
+            if result.first() is None:
+                return False
+            await session.execute(
+                update(PlanDocumentRow).where(PlanDocumentRow.plan_id == plan_id).values(plan=plan)
+            )
+            return True
+
+    async def fail(self, plan_id: str, error: dict[str, Any], stage: str | None, progress: float) -> bool:
+        """Running to failed, with the reason."""
+        return await self._move(
+            plan_id, ("running",), state="failed", error=error, stage=stage, progress=progress, ended_at=now()
+        )
+
+    async def cancel(self, plan_id: str) -> bool:
+        """Queued or running to cancelled."""
+        return await self._move(plan_id, ("queued", "running"), state="cancelled", ended_at=now())
+
+    async def delete(self, plan_id: str) -> bool:
+        """Remove an ended plan; False when it has not ended."""
+        async with self._database.session() as session:
+            result = await session.execute(
+                delete(PlanRow)
+                .where(PlanRow.id == plan_id, PlanRow.state.in_(("done", "failed", "cancelled")))
+                .returning(PlanRow.id)
+            )
+            return result.first() is not None
+
+    async def recover(self, error: dict[str, Any]) -> tuple[str, ...]:
+        """After a crash: fail what was running, for a reason given; return what was queued, oldest first."""
+        async with self._database.session() as session:
+            await session.execute(
+                update(PlanRow)
+                .where(PlanRow.state == "running")
+                .values(state="failed", error=error, ended_at=now())
+            )
+            rows = await session.scalars(
+                select(PlanRow.id).where(PlanRow.state == "queued").order_by(PlanRow.number)
+            )
+            return tuple(rows)
+
+    async def _move(self, plan_id: str, states: tuple[str, ...], **values: Any) -> bool:
+        async with self._database.session() as session:
+            result = await session.execute(
+                update(PlanRow)
+                .where(PlanRow.id == plan_id, PlanRow.state.in_(states))
+                .values(**values)
+                .returning(PlanRow.id)
+            )
+            return result.first() is not None

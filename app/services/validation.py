@@ -1,0 +1,28 @@
+"""Scenarios judged at the edge, before anything is planned."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from planner.errors import Finding
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """What is wrong with a scenario, and what is worth knowing."""
+
+    errors: tuple[Finding, ...]
+    warnings: tuple[Finding, ...]
+
+
+def judge(document: Mapping[str, Any]) -> Verdict:
+    """Every finding of the planner about a scenario document; plans nothing."""
+    from planner.validate import findings
+
+    found = findings(document)
+    return Verdict(
+        errors=tuple(finding for finding in found if finding.severity == "error"),
+        warnings=tuple(finding for finding in found if finding.severity == "warning"),
+    )

@@ -1,0 +1,144 @@
+"""What runs inside a planning process: a scenario's text in, a plan's text or a reason out.
+
+Only texts and plain values cross between processes, so no error class has to survive pickling.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import errno
+import json
+import os
+import time
+from dataclasses import dataclass
+from typing import Any
+
+#: Reports closer together than this are dropped unless the stage changes.
+REPORT_INTERVAL_S = 0.05
+
+
+@dataclass(frozen=True, slots=True)
+class WorkResult:
+    """A plan as GeoJSON text with its summary, or the reason there is none."""
+
+    plan: str | None = None
+    summary: dict[str, Any] | None = None
+    error: dict[str, Any] | None = None
+
+
+class PipeProgress:
+    """Writes progress reports into a named pipe; never waits for the reader and outlives it.
+
+    A pipe of its own for each plan, rather than one queue for all: a process killed while it holds the
+    queue's lock would silence every other.
+    """
+
+    def __init__(self, path: str) -> None:
+        self._fd: int | None = None
+        with contextlib.suppress(OSError):
+            self._fd = os.open(path, os.O_WRONLY | os.O_NONBLOCK)
+        self._last_s = -1.0
+        self._stage = ""
+
+    def __call__(self, stage: str, fraction: float) -> None:
+        """Take one report."""
+        moment_s = time.monotonic()
+        if self._fd is None or (stage == self._stage and moment_s - self._last_s < REPORT_INTERVAL_S):
+            return
+        self._last_s, self._stage = moment_s, stage
+        line = json.dumps({"stage": stage[:64], "progress": min(max(fraction, 0.0), 1.0)}) + "\n"
+        try:
+            os.write(self._fd, line.encode())
+        except OSError as error:
+            if error.errno != errno.EAGAIN:
+                self.close()
+
+    def close(self) -> None:
+        """Hang up."""
+        if self._fd is not None:
+            os.close(self._fd)
+            self._fd = None
+
+
+def initialise() -> None:
+    """Compile the kernels before the first plan."""
+    from planner.pipeline import warm_up
+
+    warm_up()
+
+
+def ping() -> int:
+    """Answer with the process id: the worker is up."""
+    return os.getpid()
+
+
+def finding_json(finding: Any) -> dict[str, str]:
+    """A planner finding as an entry of a problem document's ``errors``."""
+    return {
+        "feature": finding.feature,
+        "rule": finding.rule,
+        "message": finding.message,
+        "fix": finding.fix,
+        "severity": finding.severity,
+    }
+
+
+def plan_scenario(scenario_text: str, progress_path: str) -> WorkResult:
+    """Plan one scenario, reporting into the pipe at ``progress_path``."""
+    from planner.pipeline import make_plan
+
+    from app.services.summary import summary_of
+    from planner import errors
+    from planner.geojson import read_scenario, write_plan
+
+    progress = PipeProgress(progress_path)
+    frame = None
+    try:
+        progress("reading", 0.0)
+        scenario = read_scenario(json.loads(scenario_text))
+        frame = scenario.frame
+        plan = make_plan(scenario, progress=progress)
+        document = write_plan(plan)
+        text = json.dumps(document, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
+        return WorkResult(plan=text, summary=summary_of(document))
+    except errors.ScenarioError as error:
+        return WorkResult(
+            error={
+                "type": "scenario-refused",
+                "title": "The scenario is refused",
+                "detail": str(error),
+                "errors": [finding_json(finding) for finding in error.findings],
+            }
+        )
+    except errors.InfeasibleError as error:
+        place = None
+        if error.where_enu_m is not None and frame is not None:
+            lon_deg, lat_deg = (float(value) for value in frame.to_wgs84(error.where_enu_m))
+            place = [lon_deg, lat_deg]
+        return WorkResult(
+            error={
+                "type": "infeasible",
+                "title": "No plan can satisfy the scenario",
+                "detail": error.message,
+                "errors": [
+                    {
+                        "feature": error.feature,
+                        "rule": error.constraint,
+                        "message": error.message,
+                        "fix": error.relaxation,
+                        "where": place,
+                    }
+                ],
+            }
+        )
+    except errors.OutOfBudgetError as error:
+        return WorkResult(
+            error={
+                "type": "out-of-budget",
+                "title": "The budget ended before a plan was found",
+                "detail": str(error),
+                "errors": [],
+            }
+        )
+    finally:
+        progress.close()

@@ -1,0 +1,75 @@
+"""Settings of the service: environment variables with the prefix ``SWATHPLAN_``, or keyword arguments."""
+
+from __future__ import annotations
+
+import ipaddress
+import os
+from pathlib import Path
+from typing import Literal, Self
+
+from pydantic import Field, model_validator
+from pydantic_settings import BaseSettings, SettingsConfigDict
+
+PACKAGE = Path(__file__).resolve().parent
+
+
+def _spare_cores() -> int:
+    return max(1, (os.cpu_count() or 2) - 1)
+
+
+def is_loopback(host: str) -> bool:
+    """Whether a host name or address means this machine alone."""
+    if host == "localhost" or host.endswith(".localhost"):
+        return True
+    try:
+        return ipaddress.ip_address(host.strip("[]")).is_loopback
+    except ValueError:
+        return False
+
+
+class Settings(BaseSettings):
+    """How one service runs. Built by the caller and handed to ``create_app``; never a global."""
+
+    model_config = SettingsConfigDict(env_prefix="SWATHPLAN_", extra="ignore", frozen=True)
+
+    host: str = Field(default="127.0.0.1", description="Address to listen on.")
+    port: int = Field(default=8000, ge=0, le=65535, description="TCP port to listen on; 0 takes a free one.")
+    allow_remote: bool = Field(
+        default=False,
+        description="Listen beyond this machine although the service knows no users: whoever reaches it "
+        "commands the vehicles.",
+    )
+    allowed_hosts: tuple[str, ...] = Field(
+        default=(), description="Host names, beyond this machine's own, that requests may be addressed to."
+    )
+    database: Path = Field(default=Path("var/swathplan.db"), description="Database file.")
+    workers: int = Field(default_factory=_spare_cores, ge=1, le=256, description="Planning processes.")
+    plan_time_limit_s: float = Field(default=600.0, gt=0, description="Longest time one plan may take.")
+    max_queued_plans: int = Field(default=200, ge=1, description="Plans waiting; more are refused with 503.")
+    max_wait_s: float = Field(default=300.0, ge=0, description="Longest ``?wait=``.")
+    max_body_bytes: int = Field(default=5_000_000, ge=1024, description="Largest request body.")
+    static_dir: Path | None = Field(default=None, description="The built web map; found when unset.")
+    log_level: Literal["debug", "info", "warning", "error"] = "info"
+    track_interval_s: float = Field(
+        default=0.2, gt=0, description="Vehicle time between two recorded points of a track."
+    )
+
+    @model_validator(mode="after")
+    def _refuse_unsafe(self) -> Self:
+        if not is_loopback(self.host) and not self.allow_remote:
+            raise ValueError(
+                f"host {self.host} can be reached from other machines and the service has no users or "
+                "passwords: whoever reaches it can command the vehicles. Put it behind a proxy that asks who "
+                "comes, then set SWATHPLAN_ALLOW_REMOTE=true"
+            )
+        return self
+
+    @property
+    def web_map(self) -> Path | None:
+        """Folder of the built web map, None when it has not been built."""
+        candidates = (
+            (self.static_dir,)
+            if self.static_dir is not None
+            else (PACKAGE / "static_dist", PACKAGE.parent / "static" / "dist")
+        )
+        return next((folder for folder in candidates if (folder / "index.html").is_file()), None)

@@ -1,0 +1,51 @@
+"""Stand-ins for the planner, importable from worker processes."""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Mapping
+from typing import Any
+
+from app.services.validation import Verdict
+from app.services.work import PipeProgress, WorkResult
+from planner.errors import Finding
+
+
+def no_warm_up() -> None:
+    """Compile nothing."""
+
+
+def judge(document: Mapping[str, Any]) -> Verdict:
+    """Refuse documents without features; warn of unnamed ones."""
+    errors = () if document.get("features") else (Finding("scenario", "no-features", "empty", "draw some"),)
+    warnings = (
+        () if document.get("name") else (Finding("scenario", "no-name", "unnamed", "name it", "warning"),)
+    )
+    return Verdict(errors, warnings)
+
+
+def task(scenario_text: str, progress_path: str) -> WorkResult:
+    """Do what the scenario's ``fake`` member says: ``done``, ``failed``, ``slow``, ``die``, ``raise``."""
+    scenario = json.loads(scenario_text)
+    progress = PipeProgress(progress_path)
+    progress("coverage", 0.25)
+    match scenario.get("fake", "done"):
+        case "slow":
+            for step in range(600):
+                progress(f"step {step}", 0.25 + step / 1000)
+                time.sleep(0.05)
+        case "die":
+            import os
+            import signal
+
+            os.kill(os.getpid(), signal.SIGKILL)
+        case "raise":
+            raise RuntimeError("a secret of the inside")
+        case "failed":
+            return WorkResult(
+                error={"type": "infeasible", "title": "No plan", "detail": "no way", "errors": []}
+            )
+    progress("routing", 0.75)
+    plan = {"type": "FeatureCollection", "features": [], "metrics": {"length_m": 1.0}, "violations": []}
+    return WorkResult(plan=json.dumps(plan), summary={"metrics": plan["metrics"], "violations": []})

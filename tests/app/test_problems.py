@@ -1,0 +1,128 @@
+"""Refusals are problem documents, whatever is sent."""
+
+from __future__ import annotations
+
+import json
+
+import httpx
+import pytest
+
+from app.settings import Settings
+
+PLANS = "/api/v1/plans"
+
+
+def check_problem(answer: httpx.Response, status: int, rule: str | None = None) -> None:
+    """A problem document with its members, naming a rule."""
+    assert answer.status_code == status, answer.text
+    assert answer.headers["content-type"] == "application/problem+json"
+    body = answer.json()
+    assert body["status"] == status
+    assert body["type"].startswith("urn:problem-type:swathplan:")
+    assert all(body[name] for name in ("title", "detail", "instance"))
+    if rule is not None:
+        assert rule in {entry["rule"] for entry in body["errors"]}
+        assert all(entry[name] for entry in body["errors"] for name in ("feature", "rule", "message", "fix"))
+
+
+@pytest.mark.parametrize(
+    ("body", "rule"),
+    [
+        (b"", "json-syntax"),
+        (b"{", "json-syntax"),
+        (b"[]", "not-an-object"),
+        (b"null", "not-an-object"),
+        (b"\xff\xfe", "json-encoding"),
+        (b'{"altitude_m": NaN}', "not-a-number"),
+        (b'{"altitude_m": -Infinity}', "not-a-number"),
+        (b'{"altitude_m": 1e999}', "not-a-number"),
+        (b'{"seed": ' + b"9" * 5000 + b"}", "not-a-number"),
+        (b'{"name": "\\ud800"}', "json-encoding"),
+        (b'{"a":' * 100_000, "json-depth"),
+        (b'{"a":' * 100 + b"1" + b"}" * 100, "json-depth"),
+        (b'{"name": "a", "name": "b"}', "name-repeated"),
+        (b'{"type": "FeatureCollection", "features": []}', "no-features"),
+        (b'{"name": "' + b"x" * 10_000_000 + b'"}', "body-too-large"),
+    ],
+    ids=lambda value: None if isinstance(value, bytes) else value,
+)
+@pytest.mark.parametrize("path", [PLANS, "/api/v1/scenarios/validate"])
+async def test_bad_bodies_are_422(client: httpx.AsyncClient, path: str, body: bytes, rule: str) -> None:
+    """Every malformed or refused body is a 422 that names the rule, and the service goes on."""
+    check_problem(await client.post(path, content=body), 422, rule)
+    assert (await client.get("/health/live")).status_code == 200
+
+
+@pytest.mark.parametrize(
+    ("method", "path", "status"),
+    [
+        ("GET", "/api/v1/nothing", 404),
+        ("GET", PLANS + "/no-such", 404),
+        ("GET", PLANS + "/no-such/events", 404),
+        ("GET", PLANS + "/no-such/plan.geojson", 404),
+        ("DELETE", PLANS + "/no-such", 404),
+        ("PATCH", PLANS, 405),
+        ("GET", PLANS + "?limit=0", 422),
+        ("GET", PLANS + "?limit=x", 422),
+        ("GET", PLANS + "?state=odd", 422),
+        ("POST", PLANS + "?wait=nan", 422),
+    ],
+)
+async def test_other_refusals_are_problems(
+    client: httpx.AsyncClient, method: str, path: str, status: int
+) -> None:
+    """Unknown places, wrong methods and wrong parameters are problem documents too."""
+    check_problem(await client.request(method, path), status)
+
+
+async def test_validate_answers_warnings(client: httpx.AsyncClient) -> None:
+    """A sound scenario is valid; what is worth knowing is told and nothing is planned."""
+    answer = await client.post("/api/v1/scenarios/validate", content=json.dumps({"features": [{}]}))
+    assert answer.status_code == 200
+    assert [finding["rule"] for finding in answer.json()["findings"]] == ["no-name"]
+    assert (await client.get(PLANS)).json()["total"] == 0
+
+
+@pytest.mark.parametrize(
+    ("headers", "status"),
+    [
+        ({"host": "evil.example"}, 421),
+        ({"origin": "https://evil.example"}, 403),
+        ({"origin": "null"}, 403),
+        ({"origin": "http://[bad"}, 403),
+        ({"origin": "http://localhost:5173"}, 200),
+        ({"host": "127.0.0.1:8000"}, 200),
+        ({"host": "[::1]:8000"}, 200),
+    ],
+)
+async def test_other_sites_are_kept_out(
+    client: httpx.AsyncClient, headers: dict[str, str], status: int
+) -> None:
+    """Requests that another web page could have made the browser send are refused."""
+    answer = await client.get(PLANS, headers=headers)
+    if status == 200:
+        assert answer.status_code == 200
+    else:
+        check_problem(answer, status)
+
+
+async def test_unforeseen_error_is_a_bare_500(
+    client: httpx.AsyncClient, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What nobody foresaw is a 500 that tells nothing of the inside but the request id."""
+
+    async def broken(*_: object) -> None:
+        raise RuntimeError("a secret of the inside")
+
+    monkeypatch.setattr("app.services.planning.PlanningService.get", broken)
+    answer = await client.get(PLANS + "/x", headers={"X-Request-ID": "abc"})
+    check_problem(answer, 500)
+    assert "secret" not in answer.text
+    assert answer.headers["x-request-id"] == "abc"
+
+
+def test_listening_beyond_this_machine_needs_a_word() -> None:
+    """An address others can reach is refused unless it is allowed in so many words."""
+    with pytest.raises(ValueError, match="no users"):
+        Settings(host="0.0.0.0")
+    assert Settings(host="0.0.0.0", allow_remote=True).host == "0.0.0.0"
