@@ -1,0 +1,229 @@
+/** Drawing and reshaping with terra-draw: one shape at a time, handed to the scenario when it is done. */
+import type { Map as MapLibreMap } from "maplibre-gl";
+import { TerraDraw, TerraDrawCircleMode, TerraDrawPointMode, TerraDrawPolygonMode, TerraDrawSelectMode } from "terra-draw";
+import type { GeoJSONStoreFeatures } from "terra-draw";
+import { TerraDrawMapLibreGLAdapter } from "terra-draw-maplibre-gl-adapter";
+import type { Geometry, Polygon } from "geojson";
+import { ahead, circleOf, circleRing, round7 } from "./geo";
+import { hideWhileEdited, SELECTABLE } from "./layers";
+import { warn } from "./notices";
+import { nameOf, radiusOf, scenarios } from "./scenario";
+import { Signal } from "./signal";
+import type { Position, Role, ScenarioFeature } from "./types";
+
+export interface Tool {
+  id: string;
+  label: string;
+  role: Role;
+  mode: "polygon" | "circle" | "point";
+  properties: Record<string, unknown>;
+  hint: string;
+}
+
+const POLYGON_HINT = "Click the corners; click the first one again, or press Enter, to close. Esc gives up.";
+const CIRCLE_HINT = "Click the centre, then click where the circle ends. Esc gives up.";
+const POINT_HINT = "Click the place. Esc gives up.";
+
+export const TOOLS: Tool[] = [
+  { id: "roi", label: "Region", role: "roi", mode: "polygon", properties: {}, hint: POLYGON_HINT },
+  { id: "missile", label: "Missile", role: "threat", mode: "circle", properties: { model: "missile" }, hint: CIRCLE_HINT },
+  { id: "radar", label: "Radar", role: "threat", mode: "circle", properties: { model: "radar" }, hint: CIRCLE_HINT },
+  { id: "no_fly", label: "No-fly", role: "no_fly", mode: "polygon", properties: {}, hint: POLYGON_HINT },
+  { id: "area", label: "Area", role: "area", mode: "polygon", properties: {}, hint: POLYGON_HINT },
+  { id: "start", label: "Start", role: "start", mode: "point", properties: {}, hint: POINT_HINT },
+  { id: "end", label: "End", role: "end", mode: "point", properties: {}, hint: POINT_HINT },
+];
+
+const EDIT_MODE: Record<Tool["mode"], string> = { polygon: "polygon", circle: "circle", point: "point" };
+const IDLE = "static";
+const SQUARE_SHARE = 0.12;
+
+function rounded(geometry: Geometry): Geometry {
+  if (geometry.type === "Point") return { type: "Point", coordinates: geometry.coordinates.slice(0, 2).map(round7) };
+  if (geometry.type !== "Polygon") return geometry;
+  return { type: "Polygon", coordinates: geometry.coordinates.map((ring) => ring.map((p) => p.slice(0, 2).map(round7))) };
+}
+
+/** How terra-draw can edit a feature; null for shapes with holes or several parts. */
+function editable(feature: ScenarioFeature): GeoJSONStoreFeatures | null {
+  const { geometry } = feature;
+  const radius_m = radiusOf(feature);
+  if (geometry.type === "Point" && radius_m > 0) {
+    const ring = circleRing(geometry.coordinates as Position, radius_m, 64);
+    return {
+      type: "Feature",
+      geometry: { type: "Polygon", coordinates: [ring] },
+      properties: { mode: EDIT_MODE.circle, radiusKilometers: radius_m / 1000 },
+    };
+  }
+  if (geometry.type === "Point") {
+    return { type: "Feature", geometry: rounded(geometry) as never, properties: { mode: EDIT_MODE.point } };
+  }
+  if (geometry.type === "Polygon" && geometry.coordinates.length === 1) {
+    return { type: "Feature", geometry: rounded(geometry) as never, properties: { mode: EDIT_MODE.polygon } };
+  }
+  return null;
+}
+
+export class Drawing {
+  readonly tool = new Signal<Tool | null>(null);
+  readonly #map: MapLibreMap;
+  readonly #draw: TerraDraw;
+  #editing: { name: string; id: string | number } | null = null;
+
+  constructor(map: MapLibreMap) {
+    this.#map = map;
+    let last = 0;
+    const whole = { draggable: true, coordinates: { midpoints: true, draggable: true, deletable: true } };
+    this.#draw = new TerraDraw({
+      adapter: new TerraDrawMapLibreGLAdapter({ map, coordinatePrecision: 9 }),
+      idStrategy: { isValidId: (id) => typeof id === "number", getId: () => (last += 1) },
+      modes: [
+        new TerraDrawPolygonMode(),
+        new TerraDrawCircleMode({ segments: 64 }),
+        new TerraDrawPointMode(),
+        new TerraDrawSelectMode({
+          keyEvents: { deselect: "Escape", delete: null, rotate: null, scale: null },
+          flags: {
+            polygon: { feature: whole },
+            circle: { feature: { draggable: true, coordinates: { resizable: "center-fixed" } } },
+            point: { feature: { draggable: true } },
+          },
+        }),
+      ],
+    });
+    this.#draw.start();
+    this.#draw.setMode(IDLE);
+    this.#draw.on("finish", (id, context) => {
+      // The library still works on the feature when it calls; it is taken over after that.
+      setTimeout(() => (context.action === "draw" ? this.#take(id) : this.#commit()), 0);
+    });
+    this.#draw.on("deselect", () => {
+      if (this.#editing) setTimeout(() => this.#deselected(), 0);
+    });
+    map.on("click", (event) => this.#click(event.point));
+    for (const layer of SELECTABLE) {
+      map.on("mouseenter", layer, () => this.tool.value === null && (map.getCanvas().style.cursor = "pointer"));
+      map.on("mouseleave", layer, () => this.tool.value === null && (map.getCanvas().style.cursor = ""));
+    }
+    scenarios.selection.watch(() => this.#follow());
+    scenarios.document.watch(() => this.#follow());
+    addEventListener("keydown", (event) => this.#key(event));
+  }
+
+  /** Begin to draw; null stops. */
+  use(tool: Tool | null): void {
+    if (tool) scenarios.selection.set(null);
+    this.tool.set(tool);
+    this.#draw.setMode(tool ? tool.mode : IDLE);
+  }
+
+  /** Put a first shape into the middle of the view, for those who draw without a pointer. */
+  placeAtCentre(tool: Tool): void {
+    const view = this.#map.getBounds();
+    const middle = this.#map.getCenter();
+    const centre: Position = [round7(middle.lng), round7(middle.lat)];
+    const half_deg = (view.getNorth() - view.getSouth()) * SQUARE_SHARE;
+    const side_m = half_deg * 111_000;
+    this.use(null);
+    if (tool.mode === "point") {
+      scenarios.add(tool.role, { type: "Point", coordinates: centre }, tool.properties);
+    } else if (tool.mode === "circle") {
+      this.#addCircle(tool, centre, Math.max(1, Math.round(side_m)));
+    } else {
+      const ring = [225, 135, 45, 315, 225].map((heading) => ahead(centre, heading, side_m * Math.SQRT2));
+      scenarios.add(tool.role, { type: "Polygon", coordinates: [ring] }, tool.properties);
+    }
+  }
+
+  #addCircle(tool: Tool, centre: Position, radius_m: number): void {
+    const extra = tool.properties["model"] === "radar" ? { intensity_m: radius_m } : {};
+    scenarios.add(tool.role, { type: "Point", coordinates: centre }, { ...tool.properties, radius_m, ...extra });
+  }
+
+  #take(id: string | number): void {
+    const tool = this.tool.value;
+    const drawn = this.#draw.getSnapshotFeature(id);
+    if (!tool || !drawn) return;
+    this.#draw.removeFeatures([id]);
+    this.use(null);
+    if (tool.mode === "circle") {
+      const { centre, radius_m } = circleOf((drawn.geometry as Polygon).coordinates[0] ?? []);
+      if (radius_m > 0) this.#addCircle(tool, centre, radius_m);
+      else warn("The circle has no radius", "Click the centre, then click again where the circle ends.");
+    } else {
+      scenarios.add(tool.role, rounded(drawn.geometry as Geometry), tool.properties);
+    }
+  }
+
+  #commit(): void {
+    const editing = this.#editing;
+    const drawn = editing && this.#draw.getSnapshotFeature(editing.id);
+    const feature = editing && scenarios.find(editing.name);
+    if (!editing || !drawn || !feature) return;
+    if (radiusOf(feature) > 0) {
+      const { centre, radius_m } = circleOf((drawn.geometry as Polygon).coordinates[0] ?? []);
+      scenarios.reshape(editing.name, { type: "Point", coordinates: centre }, { radius_m });
+    } else {
+      scenarios.reshape(editing.name, rounded(drawn.geometry as Geometry));
+    }
+  }
+
+  #deselected(): void {
+    const editing = this.#editing;
+    if (editing && scenarios.selection.value === editing.name) scenarios.selection.set(null);
+  }
+
+  /** Give the selected feature handles; take them from the one before. */
+  #follow(): void {
+    const name = scenarios.selection.value;
+    const feature = scenarios.find(name);
+    if (this.#editing && (this.#editing.name !== name || !this.#same(feature))) {
+      const { id } = this.#editing;
+      this.#editing = null;
+      this.#draw.setMode(IDLE);
+      if (this.#draw.hasFeature(id)) this.#draw.removeFeatures([id]);
+    }
+    if (feature && !this.#editing && this.tool.value === null) {
+      const shape = editable(feature);
+      const added = shape ? this.#draw.addFeatures([shape])[0] : undefined;
+      if (added?.valid && added.id !== undefined) {
+        this.#editing = { name: nameOf(feature), id: added.id };
+        this.#draw.setMode("select");
+        this.#draw.selectFeature(added.id);
+      }
+    }
+    hideWhileEdited(this.#map, this.#editing?.name ?? null);
+  }
+
+  /** Whether the handles already show the feature as the scenario has it. */
+  #same(feature: ScenarioFeature | undefined): boolean {
+    const drawn = this.#editing && this.#draw.getSnapshotFeature(this.#editing.id);
+    if (!feature || !drawn) return false;
+    if (radiusOf(feature) > 0 && feature.geometry.type === "Point") {
+      const { centre, radius_m } = circleOf((drawn.geometry as Polygon).coordinates[0] ?? []);
+      return radius_m === radiusOf(feature) && JSON.stringify(centre) === JSON.stringify(feature.geometry.coordinates);
+    }
+    return JSON.stringify(rounded(drawn.geometry as Geometry)) === JSON.stringify(rounded(feature.geometry));
+  }
+
+  #click(point: { x: number; y: number }): void {
+    if (this.tool.value !== null) return;
+    const hit = this.#map.queryRenderedFeatures([[point.x - 4, point.y - 4], [point.x + 4, point.y + 4]], { layers: SELECTABLE });
+    const name = hit.sort((a, b) => SELECTABLE.indexOf(a.layer.id) - SELECTABLE.indexOf(b.layer.id))[0]?.properties["fid"];
+    if (typeof name === "string" && name !== scenarios.selection.value) scenarios.selection.set(name);
+  }
+
+  #key(event: KeyboardEvent): void {
+    const typing = event.target instanceof HTMLElement && event.target.matches("input, textarea, select");
+    if (event.key === "Escape" && this.tool.value) this.use(null);
+    else if (typing) return;
+    else if (event.key === "Escape") scenarios.selection.set(null);
+    else if (event.key === "Delete" && scenarios.selection.value !== null) scenarios.delete(scenarios.selection.value);
+    else if ((event.ctrlKey || event.metaKey) && event.key.toLowerCase() === "z") {
+      event.preventDefault();
+      if (event.shiftKey) scenarios.redo();
+      else scenarios.undo();
+    }
+  }
+}

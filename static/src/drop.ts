@@ -1,0 +1,44 @@
+/** Take a scenario file from a drop on the page or from the file dialog. */
+import { byId } from "./dom";
+import { news, report } from "./notices";
+import { parseScenario, scenarios } from "./scenario";
+
+const LIMIT_BYTES = 20_000_000;
+
+export async function openScenario(file: File): Promise<boolean> {
+  try {
+    if (file.size > LIMIT_BYTES) throw new Error(`The file has ${(file.size / 1e6).toFixed(1)} MB, more than a scenario can have.`);
+    const scenario = parseScenario(await file.text());
+    scenario.name ??= file.name.replace(/\.(geo)?json$/i, "");
+    scenarios.load(scenario, true);
+    news(`Opened ${file.name}: ${scenario.features.length} features.`);
+    return true;
+  } catch (error) {
+    report(`${file.name} was not opened`, error);
+    return false;
+  }
+}
+
+/** Let the whole page take a dropped file; `then` runs after one was opened. */
+export function acceptDrops(then: () => void): void {
+  const curtain = byId("drop");
+  let depth = 0;
+  const carriesFile = (event: DragEvent): boolean => event.dataTransfer?.types.includes("Files") ?? false;
+  addEventListener("dragenter", (event) => {
+    if (!carriesFile(event)) return;
+    depth += 1;
+    curtain.hidden = false;
+  });
+  addEventListener("dragleave", () => {
+    depth = Math.max(0, depth - 1);
+    if (depth === 0) curtain.hidden = true;
+  });
+  addEventListener("dragover", (event) => event.preventDefault());
+  addEventListener("drop", (event) => {
+    event.preventDefault();
+    depth = 0;
+    curtain.hidden = true;
+    const file = event.dataTransfer?.files[0];
+    if (file) void openScenario(file).then((opened) => opened && then());
+  });
+}

@@ -1,0 +1,151 @@
+/** How the scenario, the plan and the flight look on the map: layers, in drawing order, and what toggles them. */
+import type { ExpressionSpecification, FilterSpecification, LayerSpecification, Map as MapLibreMap } from "maplibre-gl";
+import { FONT, repaint } from "./map";
+import { onThemeChange, palette, type Palette } from "./theme";
+
+export const SOURCES = ["scenario", "plan", "waypoints", "seen", "track"] as const;
+
+export interface Group {
+  id: string;
+  label: string;
+  swatch: string;
+  colour: keyof Palette;
+  layers: string[];
+}
+
+/** The legend's entries; each can be hidden. */
+export const GROUPS: Group[] = [
+  { id: "roi", label: "Region of interest", swatch: "area", colour: "roi", layers: ["roi-fill", "roi-line"] },
+  { id: "missile", label: "Missile threat", swatch: "area", colour: "missile", layers: ["missile-fill", "missile-line"] },
+  { id: "radar", label: "Radar threat", swatch: "dashed", colour: "radar", layers: ["radar-fill", "radar-line"] },
+  { id: "no_fly", label: "No-fly zone", swatch: "area", colour: "noFly", layers: ["no_fly-fill", "no_fly-line"] },
+  { id: "area", label: "Operating area", swatch: "dashed", colour: "area", layers: ["area-line"] },
+  { id: "terminal", label: "Start, end, base", swatch: "dot", colour: "terminal", layers: ["terminal"] },
+  { id: "footprint", label: "Ground to be seen", swatch: "area", colour: "footprint", layers: ["footprint-fill", "footprint-line"] },
+  { id: "uncovered", label: "Not covered", swatch: "area", colour: "uncovered", layers: ["uncovered-fill", "uncovered-line"] },
+  { id: "path", label: "Path", swatch: "line", colour: "path", layers: ["path-line", "path-arrow"] },
+  { id: "collect", label: "Collect (sensor on)", swatch: "thick", colour: "collect", layers: ["collect-line", "collect-label"] },
+  { id: "waypoints", label: "Waypoints", swatch: "dot", colour: "path", layers: ["waypoint"] },
+  { id: "track", label: "Flown track", swatch: "line", colour: "track", layers: ["track-off"] },
+  { id: "trackOn", label: "Flown, sensor on", swatch: "thick", colour: "trackOn", layers: ["track-on"] },
+  { id: "seen", label: "Ground really seen", swatch: "area", colour: "seen", layers: ["seen-fill", "seen-line"] },
+];
+
+const kindIs = (kind: string): FilterSpecification => ["all", ["==", ["get", "kind"], kind], ["!", ["get", "label"]]] as unknown as FilterSpecification;
+const roleIs = (role: string): FilterSpecification => ["==", ["get", "role"], role];
+
+function shape(id: string, source: string, filter: FilterSpecification, colour: string, opacity: number, width: number, dash?: number[]): LayerSpecification[] {
+  const line: LayerSpecification = {
+    id: `${id}-line`,
+    type: "line",
+    source,
+    filter,
+    paint: { "line-color": colour, "line-width": width, ...(dash ? { "line-dasharray": dash } : {}) },
+  };
+  if (opacity === 0) return [line];
+  return [{ id: `${id}-fill`, type: "fill", source, filter, paint: { "fill-color": colour, "fill-opacity": opacity } }, line];
+}
+
+function layers(c: Palette): LayerSpecification[] {
+  const label: ExpressionSpecification = [
+    "match", ["get", "kind"],
+    "missile", c.missile, "radar", c.radar, "no_fly", c.noFly, "obstacle", c.obstacle,
+    "area", c.area, "terminal", c.terminal, "importance", c.importance, c.roi,
+  ];
+  return [
+    ...shape("area", "scenario", kindIs("area"), c.area, 0, 1.5, [4, 3]),
+    ...shape("importance", "scenario", kindIs("importance"), c.importance, 0.12, 1, [1, 2]),
+    ...shape("seen", "seen", roleIs("seen"), c.seen, 0.22, 1.2),
+    ...shape("footprint", "plan", roleIs("footprint"), c.footprint, 0.16, 0.8),
+    ...shape("roi", "scenario", kindIs("roi"), c.roi, 0.2, 2),
+    ...shape("missile", "scenario", kindIs("missile"), c.missile, 0.16, 1.6),
+    ...shape("radar", "scenario", kindIs("radar"), c.radar, 0.12, 1.6, [3, 2]),
+    ...shape("no_fly", "scenario", kindIs("no_fly"), c.noFly, 0.22, 2.2),
+    ...shape("obstacle", "scenario", kindIs("obstacle"), c.obstacle, 0.35, 1.4),
+    ...shape("uncovered", "plan", roleIs("uncovered"), c.uncovered, 0.55, 1.5),
+    {
+      id: "path-line", type: "line", source: "plan", filter: roleIs("path"),
+      layout: { "line-join": "round" },
+      paint: { "line-color": c.path, "line-width": 1.8, "line-opacity": 0.9 },
+    },
+    {
+      id: "collect-line", type: "line", source: "plan", filter: roleIs("collect"),
+      layout: { "line-cap": "round" },
+      paint: { "line-color": c.collect, "line-width": 4.5 },
+    },
+    {
+      id: "path-arrow", type: "symbol", source: "plan", filter: roleIs("path"),
+      layout: { "symbol-placement": "line", "symbol-spacing": 90, "icon-image": "arrow", "icon-size": 0.75, "icon-allow-overlap": true },
+      paint: { "icon-color": c.path, "icon-halo-color": c.halo, "icon-halo-width": 1 },
+    },
+    {
+      id: "waypoint", type: "circle", source: "waypoints", minzoom: 11,
+      paint: { "circle-radius": 2.4, "circle-color": c.halo, "circle-stroke-color": c.path, "circle-stroke-width": 1.2 },
+    },
+    {
+      id: "terminal", type: "circle", source: "scenario", filter: kindIs("terminal"),
+      paint: { "circle-radius": 6, "circle-color": c.terminal, "circle-stroke-color": c.halo, "circle-stroke-width": 2 },
+    },
+    {
+      id: "track-off", type: "line", source: "track", filter: ["!", ["get", "sensor_on"]],
+      layout: { "line-join": "round" },
+      paint: { "line-color": c.track, "line-width": 3 },
+    },
+    {
+      id: "track-on", type: "line", source: "track", filter: ["get", "sensor_on"],
+      layout: { "line-join": "round", "line-cap": "round" },
+      paint: { "line-color": c.trackOn, "line-width": 5 },
+    },
+    {
+      id: "collect-label", type: "symbol", source: "plan", filter: roleIs("collect"),
+      layout: { "symbol-placement": "line-center", "text-field": ["get", "label"], "text-font": FONT, "text-size": 14, "text-rotation-alignment": "viewport", "text-offset": [0, -1] },
+      paint: { "text-color": c.collect, "text-halo-color": c.halo, "text-halo-width": 2 },
+    },
+    {
+      id: "scenario-label", type: "symbol", source: "scenario", filter: ["get", "label"],
+      layout: { "text-field": ["get", "name"], "text-font": FONT, "text-size": 13, "text-offset": ["match", ["get", "kind"], "terminal", ["literal", [0, -1.1]], ["literal", [0, 0]]] },
+      paint: { "text-color": label, "text-halo-color": c.halo, "text-halo-width": 1.6 },
+    },
+  ];
+}
+
+/** The layers whose features a click selects. */
+export const SELECTABLE = ["terminal", "obstacle-fill", "no_fly-fill", "radar-fill", "missile-fill", "roi-fill", "importance-fill", "area-line"];
+
+const ARROW_PX = 28;
+
+function arrowImage(): ImageData {
+  const canvas = new OffscreenCanvas(ARROW_PX, ARROW_PX);
+  const context = canvas.getContext("2d");
+  if (!context) throw new Error("this browser draws no canvas");
+  context.beginPath();
+  context.moveTo(ARROW_PX - 4, ARROW_PX / 2);
+  context.lineTo(6, 5);
+  context.lineTo(11, ARROW_PX / 2);
+  context.lineTo(6, ARROW_PX - 5);
+  context.closePath();
+  context.fill();
+  return context.getImageData(0, 0, ARROW_PX, ARROW_PX);
+}
+
+export function addLayers(map: MapLibreMap): void {
+  map.addImage("arrow", arrowImage(), { sdf: true, pixelRatio: 2 });
+  for (const source of SOURCES) {
+    map.addSource(source, { type: "geojson", data: { type: "FeatureCollection", features: [] } });
+  }
+  for (const layer of layers(palette())) map.addLayer(layer);
+  onThemeChange(() => repaint(map, layers(palette())));
+}
+
+export function showGroup(map: MapLibreMap, group: Group, visible: boolean): void {
+  for (const layer of group.layers) map.setLayoutProperty(layer, "visibility", visible ? "visible" : "none");
+}
+
+/** Hide a feature while it is being reshaped by its handles. */
+export function hideWhileEdited(map: MapLibreMap, name: string | null): void {
+  for (const layer of layers(palette())) {
+    if (!("source" in layer) || layer.source !== "scenario" || layer.type === "symbol" || !("filter" in layer)) continue;
+    const filter = layer.filter as FilterSpecification;
+    map.setFilter(layer.id, name === null ? filter : (["all", filter, ["!=", ["get", "fid"], name]] as unknown as FilterSpecification));
+  }
+}

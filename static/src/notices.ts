@@ -1,0 +1,54 @@
+/** Errors and news in words, at the corner of the page; errors stay until they are closed. */
+import { ApiError } from "./api";
+import { button, byId, h } from "./dom";
+import type { Finding } from "./types";
+
+const NEWS_MS = 6000;
+
+export function findingText(finding: Finding): string {
+  const fix = finding.fix ? ` ${finding.fix}` : "";
+  const rule = finding.rule ? ` (${finding.rule})` : "";
+  return `${finding.feature}: ${finding.message}${rule}.${fix}`.replace(/\.\./g, ".");
+}
+
+function show(kind: "error" | "news", title: string, lines: string[]): void {
+  const notice = h(
+    "div",
+    { class: `notice ${kind}` },
+    h("strong", {}, title),
+    lines.length > 0 ? h("ul", {}, ...lines.map((line) => h("li", {}, line))) : null,
+    button("×", () => notice.remove(), { class: "close", "aria-label": "Close this notice" }),
+  );
+  const same = [...byId("notices").children].find((other) => other.textContent === notice.textContent);
+  same?.remove();
+  byId("notices").append(notice);
+  if (kind === "news") setTimeout(() => notice.remove(), NEWS_MS);
+}
+
+export function news(text: string): void {
+  show("news", text, []);
+}
+
+export function warn(title: string, ...lines: string[]): void {
+  show("error", title, lines);
+}
+
+/** Say what went wrong: title and detail of a problem document, and each of its errors. */
+export function report(doing: string, error: unknown): void {
+  if (error instanceof ApiError) {
+    const lines = [error.problem.title, error.problem.detail ?? "", ...error.errors.map(findingText)];
+    show("error", doing, lines.filter((line) => line !== ""));
+  } else {
+    show("error", doing, [error instanceof Error ? error.message : String(error)]);
+  }
+}
+
+/** Run something that may fail and report the failure; resolves to null then. */
+export async function attempt<T>(doing: string, action: () => Promise<T>): Promise<T | null> {
+  try {
+    return await action();
+  } catch (error) {
+    report(doing, error);
+    return null;
+  }
+}

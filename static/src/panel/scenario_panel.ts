@@ -1,0 +1,155 @@
+/** The scenario side of the panel: files, findings, features and settings. */
+import { button, fill, h, section } from "../dom";
+import { download } from "../download";
+import { openScenario } from "../drop";
+import { emptyScenario, nameOf, scenarios } from "../scenario";
+import type { Finding } from "../types";
+import { judge, judgement, type Judgement } from "../validation";
+import { featureForm, formKey } from "./feature_form";
+import { textField, type Field } from "./fields";
+import { settingsForm, settingsKey } from "./settings_form";
+
+/** What the panel asks of the map. */
+export interface View {
+  zoomTo(names: string[]): void;
+  zoomToAll(): void;
+}
+
+const STATE_WORDS: Record<Judgement["state"], string> = {
+  empty: "Nothing to check yet: draw or open a scenario.",
+  asking: "Checking …",
+  sound: "The service accepts this scenario.",
+  refused: "The service refuses this scenario:",
+  unknown: "Not checked: the service gave no answer.",
+};
+
+function files(view: View): HTMLElement {
+  const input = h("input", { type: "file", id: "file", accept: ".geojson,.json,application/geo+json,application/json", class: "sr-only", tabindex: "-1" });
+  input.addEventListener("change", () => {
+    const file = input.files?.[0];
+    input.value = "";
+    if (file) void openScenario(file).then((opened) => opened && view.zoomToAll());
+  });
+  const start = (): void => {
+    if (scenarios.edited.value && scenarios.document.value.features.length > 0 && !confirm("Begin a new scenario? Undo brings the present one back.")) return;
+    scenarios.load(emptyScenario(), true);
+  };
+  const save = (): void => download(`${scenarios.document.value.name ?? "scenario"}.geojson`, scenarios.text(), "application/geo+json");
+  return h(
+    "div",
+    { class: "row" },
+    button("Open file …", () => input.click(), { title: "A scenario as GeoJSON; it can also be dropped on the page" }),
+    input,
+    button("Download", save),
+    button("New", start),
+    button("Show all", () => view.zoomToAll()),
+  );
+}
+
+function findingItem(finding: Finding, view: View): HTMLElement {
+  const known = scenarios.find(finding.feature) !== undefined;
+  const text = h(
+    "span",
+    {},
+    h("strong", {}, finding.feature),
+    `: ${finding.message}`,
+    finding.fix ? h("em", {}, ` ${finding.fix}`) : null,
+    finding.rule ? h("code", {}, ` ${finding.rule}`) : null,
+  );
+  const go = (): void => {
+    view.zoomTo([finding.feature]);
+    scenarios.selection.set(finding.feature);
+  };
+  return h(
+    "li",
+    { class: finding.severity ?? "error" },
+    known ? h("button", { type: "button", class: "link", title: "Show on the map", onclick: go }, text) : text,
+  );
+}
+
+function findings(view: View): HTMLElement {
+  const box = h("div", { class: "card", id: "findings", role: "status", "aria-live": "polite" });
+  judgement.watch(({ state, findings: found }) => {
+    box.dataset["state"] = state;
+    fill(
+      box,
+      h("p", {}, STATE_WORDS[state]),
+      found.length > 0 ? h("ul", { class: "findings" }, ...found.map((finding) => findingItem(finding, view))) : null,
+      state === "unknown" ? button("Check again", () => void judge()) : null,
+    );
+  });
+  return box;
+}
+
+const ORDER = ["roi", "threat", "no_fly", "obstacle", "importance", "area", "start", "end", "base"];
+
+function features(view: View): HTMLElement {
+  const box = h("div", { class: "chips" });
+  const draw = (): void => {
+    const sorted = [...scenarios.document.value.features].sort((a, b) => ORDER.indexOf(a.properties.role) - ORDER.indexOf(b.properties.role));
+    fill(
+      box,
+      ...sorted.map((feature) => {
+        const name = nameOf(feature);
+        const select = (): void => {
+          scenarios.selection.set(name);
+          view.zoomTo([name]);
+        };
+        return button(name, select, { class: `chip ${feature.properties.role}`, title: feature.properties.role, "aria-pressed": scenarios.selection.value === name });
+      }),
+      sorted.length === 0 ? h("p", { class: "quiet" }, "No features. Use the tools over the map, or open a file.") : null,
+    );
+  };
+  scenarios.document.watch(draw);
+  scenarios.selection.watch(draw);
+  return section("Features", true, box);
+}
+
+/** A box that holds a form, built anew only when its key changes and otherwise brought up to date. */
+function kept(key: () => string, build: () => Field | null): HTMLElement {
+  const box = h("div", {});
+  let form: Field | null = null;
+  let shown: string | null = null;
+  const update = (): void => {
+    const wanted = key();
+    if (wanted !== shown) {
+      shown = wanted;
+      form = build();
+      fill(box, form?.element ?? null);
+    }
+    form?.sync();
+  };
+  scenarios.document.watch(update);
+  scenarios.selection.watch(update);
+  return box;
+}
+
+export function scenarioPanel(view: View): HTMLElement {
+  const selected = (): ReturnType<typeof scenarios.find> => scenarios.find(scenarios.selection.value);
+  const title = textField({
+    id: "s-name",
+    label: "Scenario",
+    placeholder: "untitled",
+    get: () => scenarios.document.value.name,
+    set: (name) => scenarios.change((draft) => (name === undefined ? delete draft.name : (draft.name = name))),
+  });
+  const origin = h("span", { class: "quiet" });
+  scenarios.edited.watch((edited) => fill(origin, edited ? "kept in this browser" : "as planned by the service"));
+  return h(
+    "div",
+    {},
+    files(view),
+    kept(() => "name", () => title),
+    origin,
+    findings(view),
+    kept(
+      () => formKey(selected()),
+      () => {
+        const feature = selected();
+        return feature ? featureForm(feature, () => view.zoomTo([nameOf(feature)])) : null;
+      },
+    ),
+    features(view),
+    kept(() => settingsKey(scenarios.document.value), () => settingsForm(scenarios.document.value)),
+  );
+}

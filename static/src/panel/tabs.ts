@@ -1,0 +1,41 @@
+/** Tabs as the ARIA practice has them: arrow keys move, one panel shows. */
+import { h } from "../dom";
+
+export interface Tab {
+  id: string;
+  label: string;
+  content: HTMLElement;
+}
+
+export interface Tabs {
+  element: HTMLElement;
+  panels: HTMLElement[];
+  show(id: string): void;
+}
+
+export function tabs(all: Tab[]): Tabs {
+  const heads = all.map((tab) =>
+    h("button", { type: "button", role: "tab", id: `tab-${tab.id}`, "aria-controls": `panel-${tab.id}`, onclick: () => show(tab.id) }, tab.label),
+  );
+  const panels = all.map((tab) => h("div", { role: "tabpanel", id: `panel-${tab.id}`, "aria-labelledby": `tab-${tab.id}`, tabindex: 0 }, tab.content));
+  const show = (id: string): void => {
+    all.forEach((tab, index) => {
+      const chosen = tab.id === id;
+      heads[index]?.setAttribute("aria-selected", String(chosen));
+      heads[index]?.setAttribute("tabindex", chosen ? "0" : "-1");
+      const panel = panels[index];
+      if (panel) panel.hidden = !chosen;
+    });
+  };
+  const element = h("div", { class: "tabs", role: "tablist", "aria-label": "Scenario, plan, flight" }, ...heads);
+  element.addEventListener("keydown", (event) => {
+    const step = event.key === "ArrowRight" ? 1 : event.key === "ArrowLeft" ? -1 : 0;
+    const at = heads.indexOf(document.activeElement as HTMLButtonElement);
+    if (!step || at < 0) return;
+    const next = (at + step + all.length) % all.length;
+    heads[next]?.focus();
+    show((all[next] as Tab).id);
+  });
+  show((all[0] as Tab).id);
+  return { element, panels, show };
+}

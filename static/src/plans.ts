@@ -1,0 +1,128 @@
+/** Plans: asking for one, following its progress, opening one that was made before. */
+import type { Feature } from "geojson";
+import { ApiError, apiUrl, follow, get, list, post, remove } from "./api";
+import { attempt, report } from "./notices";
+import { scenarios } from "./scenario";
+import { Signal } from "./signal";
+import type { PlanCollection, PlanRecord, PlanState, Position, Problem, Scenario } from "./types";
+
+export interface OpenPlan {
+  record: PlanRecord;
+  plan: PlanCollection;
+  waypoints: Position[];
+}
+
+/** The plan being made, if any; the plan on the map, if any; those the service knows, newest first. */
+export const running = new Signal<PlanRecord | null>(null);
+export const open = new Signal<OpenPlan | null>(null);
+export const recent = new Signal<PlanRecord[]>([]);
+
+const ENDED: ReadonlySet<PlanState> = new Set(["done", "failed", "cancelled"]);
+const NAV_WAYPOINT = 16;
+
+export const planUrl = (id: string, file: string): string => apiUrl(`/plans/${encodeURIComponent(id)}/${file}`);
+
+export async function refresh(): Promise<void> {
+  const records = await list<PlanRecord>("/plans", "plans");
+  recent.set([...records].sort((a, b) => (b.created_at ?? "").localeCompare(a.created_at ?? "")));
+}
+
+/** What went wrong with a plan, as a problem document. */
+export function problemOf(record: PlanRecord): Problem | null {
+  if (!record.error) return null;
+  return typeof record.error === "string" ? { title: "Planning failed", detail: record.error } : record.error;
+}
+
+interface QgcItem {
+  command?: number;
+  params?: (number | null)[];
+}
+
+/** The waypoints of a QGroundControl plan, as longitude and latitude. */
+export function waypointsOf(document: unknown): Position[] {
+  const items = (document as { mission?: { items?: QgcItem[] } } | null)?.mission?.items ?? [];
+  return items
+    .filter((item) => item.command === NAV_WAYPOINT && (item.params?.length ?? 0) >= 6)
+    .map((item) => [Number(item.params?.[5]), Number(item.params?.[4])] as Position)
+    .filter(([lon, lat]) => Number.isFinite(lon) && Number.isFinite(lat) && (lon !== 0 || lat !== 0));
+}
+
+/** Bring a plan onto the map, with the scenario it was made from unless the operator keeps their own. */
+export async function openPlan(id: string, withScenario: boolean): Promise<void> {
+  const path = `/plans/${encodeURIComponent(id)}`;
+  const record = await get<PlanRecord>(path);
+  if (withScenario) scenarios.load(await get<Scenario>(`${path}/scenario`), false);
+  if (record.state !== "done") {
+    open.set(null);
+    running.set(record);
+    if (!ENDED.has(record.state)) watchPlan(record);
+    return;
+  }
+  const plan = await get<PlanCollection>(`${path}/plan.geojson`);
+  const mission = await attempt("The mission's waypoints cannot be shown", () => get<unknown>(`${path}/mission.plan`));
+  running.set(null);
+  open.set({ record, plan, waypoints: waypointsOf(mission) });
+}
+
+let unwatch: (() => void) | null = null;
+
+function ended(id: string): void {
+  unwatch?.();
+  unwatch = null;
+  void attempt("The plan's outcome could not be read", async () => {
+    const record = await get<PlanRecord>(`/plans/${encodeURIComponent(id)}`);
+    running.set(record);
+    if (record.state === "done") await openPlan(id, false);
+    else if (record.state === "failed") {
+      const problem = problemOf(record) ?? { title: "Planning failed" };
+      report("Planning failed", new ApiError(problem.status ?? 0, problem));
+    }
+    await refresh();
+  });
+}
+
+function watchPlan(record: PlanRecord): void {
+  unwatch?.();
+  let over = false;
+  unwatch = follow(
+    `/plans/${encodeURIComponent(record.id)}/events`,
+    ({ data }) => {
+      const update = data as Partial<PlanRecord> & { fraction?: number };
+      if (!update || typeof update !== "object" || over) return;
+      const merged = { ...(running.value ?? record), ...update, id: record.id };
+      if (update.progress === undefined && update.fraction !== undefined) merged.progress = update.fraction;
+      running.set(merged);
+      if (ENDED.has(merged.state)) {
+        over = true;
+        ended(record.id);
+      }
+    },
+    () => undefined,
+    (error) => report("The plan's progress cannot be followed", error),
+  );
+}
+
+export async function startPlan(): Promise<void> {
+  const scenario = scenarios.document.value;
+  const record = await post<PlanRecord>("/plans", scenario);
+  running.set(record);
+  watchPlan(record);
+  await refresh();
+}
+
+export async function cancelPlan(): Promise<void> {
+  const record = running.value;
+  if (record) await remove(`/plans/${encodeURIComponent(record.id)}`);
+}
+
+/** Plan features for the map: collects carry the number of their place in flight order. */
+export function planFeatures(plan: PlanCollection): Feature[] {
+  const numbers = new Map<Feature, number>();
+  const collects = plan.features.filter((feature) => feature.properties?.["role"] === "collect");
+  collects.sort((a, b) => Number(a.properties?.["start_m"] ?? 0) - Number(b.properties?.["start_m"] ?? 0));
+  collects.forEach((collect, index) => numbers.set(collect, index + 1));
+  return plan.features.map((feature) => {
+    const place = numbers.get(feature);
+    return place === undefined ? feature : { ...feature, properties: { ...feature.properties, label: String(place) } };
+  });
+}

@@ -1,0 +1,205 @@
+/** The scenario being edited: one GeoJSON document, its selection, its history, kept over a reload. */
+import type { Geometry } from "geojson";
+import { boundsOf, type Bounds } from "./geo";
+import { Signal } from "./signal";
+import type { Role, Scenario, ScenarioFeature } from "./types";
+
+const STORAGE_KEY = "swathplan.scenario";
+const HISTORY_DEPTH = 60;
+const SINGLE: ReadonlySet<Role> = new Set(["area", "start", "end"]);
+
+/** What a new scenario flies with until the operator says otherwise. */
+export function emptyScenario(): Scenario {
+  return {
+    type: "FeatureCollection",
+    name: "untitled",
+    vehicles: [
+      { name: "uav-1", type: "fixed_wing", autopilot: "ardupilot", airspeed_m_s: 20, min_turn_radius_m: 100, max_range_m: 60000 },
+    ],
+    sensors: [
+      { name: "sar", type: "sar", incidence_deg: 45, elevation_beamwidth_deg: 30, azimuth_beamwidth_deg: 10, look: "right" },
+    ],
+    altitude_m: 500,
+    altitude_reference: "terrain",
+    seed: 0,
+    features: [],
+  };
+}
+
+export function nameOf(feature: ScenarioFeature): string {
+  return String(feature.id ?? feature.properties.name ?? "");
+}
+
+export function radiusOf(feature: ScenarioFeature): number {
+  const radius = Number(feature.properties["radius_m"]);
+  return feature.geometry.type === "Point" && radius > 0 ? radius : 0;
+}
+
+function prefix(role: Role, properties: Record<string, unknown>): string {
+  if (role === "threat") return properties["model"] === "radar" ? "D" : "M";
+  return { roi: "R", no_fly: "N", obstacle: "O", importance: "I", base: "B", area: "area", start: "start", end: "end" }[role];
+}
+
+/** Read a file's text as a scenario; throws with words an operator understands. */
+export function parseScenario(text: string): Scenario {
+  let value: unknown;
+  try {
+    value = JSON.parse(text);
+  } catch (error) {
+    throw new Error(`The file is not JSON: ${error instanceof Error ? error.message : String(error)}`);
+  }
+  const document = value as Partial<Scenario> | null;
+  if (!document || document.type !== "FeatureCollection" || !Array.isArray(document.features)) {
+    throw new Error("The file is not a GeoJSON FeatureCollection.");
+  }
+  document.features.forEach((feature, index) => {
+    if (!feature || feature.type !== "Feature" || !feature.geometry || !feature.properties) {
+      throw new Error(`Feature ${index + 1} lacks a geometry or properties.`);
+    }
+    if (typeof feature.properties.role !== "string") {
+      throw new Error(`Feature ${String(feature.id ?? index + 1)} has no property "role": it is no scenario feature.`);
+    }
+  });
+  return document as Scenario;
+}
+
+export class ScenarioStore {
+  readonly document = new Signal<Scenario>(emptyScenario());
+  readonly selection = new Signal<string | null>(null);
+  /** Where the document comes from: edited here, or shown with a plan. */
+  readonly edited = new Signal<boolean>(false);
+  readonly #past: string[] = [];
+  readonly #future: string[] = [];
+
+  /** Bring back what was edited before the page was left; false when there is nothing. */
+  restore(): boolean {
+    const saved = localStorage.getItem(STORAGE_KEY);
+    if (!saved) return false;
+    try {
+      this.document.set(parseScenario(saved));
+    } catch {
+      localStorage.removeItem(STORAGE_KEY);
+      return false;
+    }
+    this.edited.set(true);
+    return true;
+  }
+
+  /** Show another document; with `edited` false it is the service's and need not be kept. */
+  load(scenario: Scenario, edited: boolean): void {
+    this.#remember();
+    this.selection.set(null);
+    this.document.set(scenario);
+    this.#keep(edited);
+  }
+
+  change(alter: (draft: Scenario) => void): void {
+    this.#remember();
+    const draft = structuredClone(this.document.value);
+    alter(draft);
+    this.document.set(draft);
+    this.#keep(true);
+  }
+
+  undo(): void {
+    this.#step(this.#past, this.#future);
+  }
+
+  redo(): void {
+    this.#step(this.#future, this.#past);
+  }
+
+  find(name: string | null): ScenarioFeature | undefined {
+    return name === null ? undefined : this.document.value.features.find((feature) => nameOf(feature) === name);
+  }
+
+  /** Add a feature under a free name; an area, start or end takes the place of the one there was. */
+  add(role: Role, geometry: Geometry, properties: Record<string, unknown> = {}): string {
+    const features = this.document.value.features;
+    const stem = prefix(role, properties);
+    const taken = new Set(features.map(nameOf));
+    let name = SINGLE.has(role) ? stem : `${stem}1`;
+    for (let i = 2; !SINGLE.has(role) && taken.has(name); i += 1) name = `${stem}${i}`;
+    this.change((draft) => {
+      if (SINGLE.has(role)) draft.features = draft.features.filter((feature) => feature.properties.role !== role);
+      draft.features.push({ type: "Feature", id: name, properties: { role, name, ...properties }, geometry });
+    });
+    this.selection.set(name);
+    return name;
+  }
+
+  reshape(name: string, geometry: Geometry, properties: Record<string, unknown> = {}): void {
+    this.change((draft) => {
+      const feature = draft.features.find((candidate) => nameOf(candidate) === name);
+      if (!feature) return;
+      feature.geometry = geometry;
+      Object.assign(feature.properties, properties);
+    });
+  }
+
+  /** Set a property, or take it away with undefined. */
+  setProperty(name: string, property: string, value: unknown): void {
+    this.change((draft) => {
+      const feature = draft.features.find((candidate) => nameOf(candidate) === name);
+      if (!feature) return;
+      if (value === undefined) delete feature.properties[property];
+      else feature.properties[property] = value;
+    });
+  }
+
+  rename(name: string, next: string): boolean {
+    if (next === "" || (next !== name && this.find(next))) return false;
+    this.change((draft) => {
+      const feature = draft.features.find((candidate) => nameOf(candidate) === name);
+      if (!feature) return;
+      feature.id = next;
+      feature.properties.name = next;
+    });
+    this.selection.set(next);
+    return true;
+  }
+
+  delete(name: string): void {
+    this.selection.set(null);
+    this.change((draft) => {
+      draft.features = draft.features.filter((feature) => nameOf(feature) !== name);
+    });
+  }
+
+  bounds(names?: string[]): Bounds | null {
+    const features = this.document.value.features.filter((feature) => !names || names.includes(nameOf(feature)));
+    return boundsOf(features.map((feature) => ({ geometry: feature.geometry, radius_m: radiusOf(feature) })));
+  }
+
+  text(): string {
+    return `${JSON.stringify(this.document.value, null, 1)}\n`;
+  }
+
+  #remember(): void {
+    this.#past.push(JSON.stringify(this.document.value));
+    if (this.#past.length > HISTORY_DEPTH) this.#past.shift();
+    this.#future.length = 0;
+  }
+
+  #step(from: string[], to: string[]): void {
+    const text = from.pop();
+    if (text === undefined) return;
+    to.push(JSON.stringify(this.document.value));
+    this.selection.set(null);
+    this.document.set(JSON.parse(text) as Scenario);
+    this.#keep(true);
+  }
+
+  #keep(edited: boolean): void {
+    this.edited.set(edited);
+    try {
+      if (edited) localStorage.setItem(STORAGE_KEY, JSON.stringify(this.document.value));
+      else localStorage.removeItem(STORAGE_KEY);
+    } catch {
+      // A full or forbidden storage loses only the copy kept over a reload; the document itself is here.
+      this.edited.set(edited);
+    }
+  }
+}
+
+export const scenarios = new ScenarioStore();

@@ -1,0 +1,26 @@
+/** Numbers in words an operator reads. */
+
+export function metres(value: number | null | undefined): string {
+  if (value === null || value === undefined || !Number.isFinite(value)) return "–";
+  return Math.abs(value) >= 1000 ? `${(value / 1000).toFixed(2)} km` : `${value.toFixed(0)} m`;
+}
+
+export function seconds(value: number | null | undefined): string {
+  if (value === null || value === undefined || !Number.isFinite(value)) return "–";
+  if (value < 1) return `${(value * 1000).toFixed(0)} ms`;
+  if (value < 60) return `${value.toFixed(1)} s`;
+  const whole = Math.round(value);
+  const h = Math.floor(whole / 3600);
+  const m = Math.floor((whole % 3600) / 60);
+  return h > 0 ? `${h} h ${m} min` : `${m} min ${whole % 60} s`;
+}
+
+export function percent(fraction: number | null | undefined, digits = 1): string {
+  if (fraction === null || fraction === undefined || !Number.isFinite(fraction)) return "–";
+  return `${(fraction * 100).toFixed(digits)} %`;
+}
+
+export function number(value: number | null | undefined, digits = 1, unit = ""): string {
+  if (value === null || value === undefined || !Number.isFinite(value)) return "–";
+  return unit ? `${value.toFixed(digits)} ${unit}` : value.toFixed(digits);
+}
