@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import shapely
 from shapely.geometry import MultiPolygon, Polygon
@@ -36,6 +36,8 @@ class MergedRegion:
         The closed shape: the parts and the gaps the filter filled.
     originals
         The parts as they were asked for.
+    owners
+        The name of each part's region, in step with ``originals``.
     sensor
         Name of the sensor asked for, None for the scenario's first.
     approach_rad
@@ -47,6 +49,7 @@ class MergedRegion:
     names: tuple[str, ...]
     area: Polygon
     originals: tuple[Polygon, ...]
+    owners: tuple[str, ...]
     sensor: str | None = None
     approach_rad: tuple[float, ...] | None = None
     required: bool = True
@@ -62,6 +65,13 @@ class MergedRegion:
         centroid = self.area.centroid
         return (centroid.x, centroid.y)
 
+    def split(self) -> tuple[MergedRegion, ...]:
+        """The parts again, each for itself."""
+        return tuple(
+            replace(self, names=(owner,), area=part, originals=(part,), owners=(owner,))
+            for owner, part in zip(self.owners, self.originals, strict=True)
+        )
+
 
 def polygons_of(area: BaseGeometry) -> tuple[Polygon, ...]:
     """The polygons of a geometry, in its order."""
@@ -75,7 +85,9 @@ def polygons_of(area: BaseGeometry) -> tuple[Polygon, ...]:
 def split_region(region: Region) -> tuple[MergedRegion, ...]:
     """The connected parts of one region, unmerged; each must be seen, each keeps the region's name."""
     return tuple(
-        MergedRegion((region.name,), part, (part,), region.sensor, region.approach_rad, region.required)
+        MergedRegion(
+            (region.name,), part, (part,), (region.name,), region.sensor, region.approach_rad, region.required
+        )
         for part in polygons_of(region.area)
     )
 
@@ -127,16 +139,11 @@ def _merge_group(parts: list[tuple[int, MergedRegion]], radius_m: float) -> list
     merged: list[tuple[int, MergedRegion]] = []
     for component, group in members.items():
         first_index, first = group[0]
-        names = tuple(dict.fromkeys(part.names[0] for _, part in group))
+        owners = tuple(part.names[0] for _, part in group)
+        names = tuple(dict.fromkeys(owners))
         originals = tuple(part.area for _, part in group)
-        merged.append(
-            (
-                first_index,
-                MergedRegion(
-                    names, components[component], originals, first.sensor, first.approach_rad, first.required
-                ),
-            )
-        )
+        whole = replace(first, names=names, area=components[component], originals=originals, owners=owners)
+        merged.append((first_index, whole))
     return merged
 
 

@@ -106,7 +106,8 @@ def _genetic(legs_m: Floats, first_m: Floats, last_m: Floats, rng: np.random.Gen
     count = len(first_m)
     population = rng.permuted(np.tile(np.arange(count), (_POPULATION, 1)), axis=1)
     lengths_m = _lengths(legs_m, first_m, last_m, population)
-    best, best_m, idle = population[np.argmin(lengths_m)].copy(), float(lengths_m.min()), 0
+    best: Orders = population[np.argmin(lengths_m)].copy()
+    best_m, idle = float(lengths_m.min()), 0
     for _ in range(_GENERATIONS):
         mothers, fathers = population[_select(lengths_m, rng)], population[_select(lengths_m, rng)]
         children = np.where(
@@ -128,7 +129,8 @@ def _select(lengths_m: Floats, rng: np.random.Generator) -> Orders:
     """Winners of one tournament each, shape (P,)."""
     rivals = rng.integers(0, len(lengths_m), (len(lengths_m), _TOURNAMENT))
     best = np.argmin(lengths_m[rivals], axis=1)[:, None]
-    return np.take_along_axis(rivals, best, axis=1).reshape(-1)
+    winners: Orders = np.take_along_axis(rivals, best, axis=1).reshape(-1)
+    return winners
 
 
 def _stretches(shape: tuple[int, int], rng: np.random.Generator) -> tuple[Orders, Orders]:
