@@ -1,0 +1,234 @@
+"""Compiled parts of the joint choice of order, approach angle and offset. They know nothing but numbers.
+
+Poses are float64 (N, 3): east_m, north_m, angle_rad. Discs are float64 (K, 3): east_m, north_m, radius_m.
+``cluster`` is int64 (N,): the region each option belongs to, options of one region side by side.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from planner.dubins.kernels import dubins_length
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+@njit(cache=True)
+def detour_m(e0: float, n0: float, e1: float, n1: float, discs: Floats) -> float:
+    """What going round discs adds to a straight line, each by itself: tangent, arc, tangent.
+
+    A disc that holds one of the ends cannot be gone round and adds nothing.
+    """
+    direct_m = math.hypot(e1 - e0, n1 - n0)
+    if direct_m < 1e-9:
+        return 0.0
+    ue, un = (e1 - e0) / direct_m, (n1 - n0) / direct_m
+    extra_m = 0.0
+    for k in range(discs.shape[0]):
+        ce, cn, r = discs[k, 0] - e0, discs[k, 1] - n0, discs[k, 2]
+        along = ce * ue + cn * un
+        if along <= 0.0 or along >= direct_m:
+            continue
+        across = abs(cn * ue - ce * un)
+        if across >= r:
+            continue
+        d0 = math.hypot(along, across)
+        d1 = math.hypot(direct_m - along, across)
+        if d0 <= r or d1 <= r:
+            continue
+        between = math.atan2(along, across) + math.atan2(direct_m - along, across)
+        arc = between - math.acos(r / d0) - math.acos(r / d1)
+        extra_m += math.sqrt(d0 * d0 - r * r) + math.sqrt(d1 * d1 - r * r) + r * max(arc, 0.0) - direct_m
+    return extra_m
+
+
+@njit(cache=True)
+def point_to_pose_m(e0: float, n0: float, e1: float, n1: float, a1: float, radius: float) -> float:
+    """Shortest line of bounded curvature from a place, in any direction, to a pose: a tangent and an arc."""
+    best = np.inf
+    for side in (1.0, -1.0):
+        ce = e1 - side * radius * math.sin(a1)
+        cn = n1 + side * radius * math.cos(a1)
+        de, dn = e0 - ce, n0 - cn
+        d = math.hypot(de, dn)
+        if d < radius:
+            continue
+        touch = math.atan2(dn, de) + side * math.acos(min(1.0, radius / d))
+        turn = side * (a1 - side * math.pi / 2.0 - touch)
+        turn -= 2.0 * math.pi * math.floor(turn / (2.0 * math.pi))
+        if turn > 2.0 * math.pi - 1e-9:
+            turn = 0.0
+        best = min(best, math.sqrt(max(d * d - radius * radius, 0.0)) + radius * turn)
+    return best
+
+
+@njit(cache=True)
+def transit_costs(exits: Floats, entries: Floats, radius: float, discs: Floats) -> Floats:
+    """Estimated lengths, shape (N, M): the Dubins word and what going round discs adds to it."""
+    costs = np.empty((exits.shape[0], entries.shape[0]))
+    for i in range(exits.shape[0]):
+        e0, n0, a0 = exits[i]
+        for j in range(entries.shape[0]):
+            e1, n1, a1 = entries[j]
+            costs[i, j] = dubins_length(e0, n0, a0, e1, n1, a1, radius) + detour_m(e0, n0, e1, n1, discs)
+    return costs
+
+
+@njit(cache=True)
+def point_costs(e0: float, n0: float, entries: Floats, radius: float, discs: Floats) -> Floats:
+    """The same from a place in any direction, shape (M,)."""
+    costs = np.empty(entries.shape[0])
+    for j in range(entries.shape[0]):
+        e1, n1, a1 = entries[j]
+        costs[j] = point_to_pose_m(e0, n0, e1, n1, a1, radius) + detour_m(e0, n0, e1, n1, discs)
+    return costs
+
+
+@njit(cache=True)
+def best_orders(first: Floats, between: Floats, last: Floats, offsets: Ints) -> tuple[Floats, Ints]:
+    """Cheapest open tours through one option of each cluster, exact: one for each cluster visited last.
+
+    Dynamic programming over subsets of clusters and the option visited last.
+
+    Parameters
+    ----------
+    first, between, last
+        Costs from the start to an option (N,), from an option to another (N, N), from an option to the end
+        (N,); an option's own cost is in the first two.
+    offsets
+        int64 (C + 1,): where the options of each cluster begin.
+
+    Returns
+    -------
+    tuple
+        Costs (C,), inf where there is none, and options in visiting order (C, C).
+    """
+    clusters = len(offsets) - 1
+    count = len(first)
+    full = 1 << clusters
+    best = np.full((full, count), np.inf)
+    came_from = np.full((full, count), -1, dtype=np.int32)
+    for c in range(clusters):
+        for j in range(offsets[c], offsets[c + 1]):
+            best[1 << c, j] = first[j]
+    for visited in range(1, full):
+        for c in range(clusters):
+            if not visited >> c & 1 or visited == 1 << c:
+                continue
+            before = visited ^ (1 << c)
+            for b in range(clusters):
+                if not before >> b & 1:
+                    continue
+                for i in range(offsets[b], offsets[b + 1]):
+                    so_far = best[before, i]
+                    if not so_far < np.inf:
+                        continue
+                    for j in range(offsets[c], offsets[c + 1]):
+                        cost = so_far + between[i, j]
+                        if cost < best[visited, j]:
+                            best[visited, j] = cost
+                            came_from[visited, j] = i
+    costs = np.full(clusters, np.inf)
+    tours = np.full((clusters, clusters), -1, dtype=np.int64)
+    for c in range(clusters):
+        option = -1
+        for j in range(offsets[c], offsets[c + 1]):
+            cost = best[full - 1, j] + last[j]
+            if cost < costs[c]:
+                costs[c] = cost
+                option = j
+        if option < 0:
+            continue
+        visited = full - 1
+        for position in range(clusters - 1, -1, -1):
+            tours[c, position] = option
+            before_option = came_from[visited, option]
+            for b in range(clusters):
+                if offsets[b] <= option < offsets[b + 1]:
+                    visited ^= 1 << b
+                    break
+            option = before_option
+    return costs, tours
+
+
+@njit(cache=True)
+def best_options(
+    first: Floats, between: Floats, last: Floats, offsets: Ints, order: Ints
+) -> tuple[float, Ints]:
+    """Cheapest options for a given order of clusters: a shortest path through layers. Arrays as above."""
+    clusters = len(order)
+    count = len(first)
+    best = np.full(count, np.inf)
+    came_from = np.full(count, -1, dtype=np.int64)
+    for j in range(offsets[order[0]], offsets[order[0] + 1]):
+        best[j] = first[j]
+    for position in range(1, clusters):
+        b, c = order[position - 1], order[position]
+        for i in range(offsets[b], offsets[b + 1]):
+            so_far = best[i]
+            if not so_far < np.inf:
+                continue
+            for j in range(offsets[c], offsets[c + 1]):
+                cost = so_far + between[i, j]
+                if cost < best[j]:
+                    best[j] = cost
+                    came_from[j] = i
+    total = np.inf
+    option = -1
+    for j in range(offsets[order[-1]], offsets[order[-1] + 1]):
+        if best[j] + last[j] < total:
+            total = best[j] + last[j]
+            option = j
+    chosen = np.full(clusters, -1, dtype=np.int64)
+    for position in range(clusters - 1, -1, -1):
+        if option < 0:
+            break
+        chosen[position] = option
+        option = came_from[option]
+    return total, chosen
+
+
+@njit(cache=True)
+def improve_order(
+    first: Floats, between: Floats, last: Floats, offsets: Ints, order: Ints, evaluations: int
+) -> Ints:
+    """Move and reverse runs of clusters as long as the best options get cheaper (Or-opt and 2-opt).
+
+    ``evaluations`` bounds the work, so that the same input gives the same order on any machine.
+    """
+    n = len(order)
+    best_cost, _ = best_options(first, between, last, offsets, order)
+    used = 0
+    improved = True
+    while improved:
+        improved = False
+        for i in range(n):
+            for j in range(i + 1, n + 1):
+                # Reverse order[i:j]; move a run of up to three to each other place.
+                for move in range(-1, n):
+                    if move >= 0 and (j - i > 3 or i <= move <= j):
+                        continue
+                    if move < 0 and j - i < 2:
+                        continue
+                    if used >= evaluations:
+                        return order
+                    trial = np.empty_like(order)
+                    if move < 0:
+                        trial[:] = order
+                        trial[i:j] = order[i:j][::-1]
+                    else:
+                        rest = np.concatenate((order[:i], order[j:]))
+                        at = move if move < i else move - (j - i)
+                        trial[:at] = rest[:at]
+                        trial[at : at + j - i] = order[i:j]
+                        trial[at + j - i :] = rest[at:]
+                    used += 1
+                    cost, _ = best_options(first, between, last, offsets, trial)
+                    if cost < best_cost - 1e-6:
+                        order, best_cost, improved = trial, cost, True
+    return order

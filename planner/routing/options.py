@@ -1,0 +1,196 @@
+"""The ways to see one region, as arrays: what the joint choice chooses among."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+from shapely.geometry import Polygon
+
+from planner.coverage.classify import fits, hull_points, spans_at
+from planner.coverage.neighbourhood import complementary, inside
+from planner.coverage.segments import Neighbourhood
+from planner.dubins.kernels import dubins_lengths
+from planner.environment.kernels import length_in_discs
+from planner.route import CollectPass
+
+Floats = NDArray[np.float64]
+
+#: A metre inside a threat disc costs as much as this many outside: it is flown only where nothing else sees.
+INSIDE_FACTOR = 20.0
+#: An option without room for a full turn at one of its ends is taken only where all others are worse.
+NO_ROOM_M = 5_000.0
+
+
+@dataclass(frozen=True, slots=True)
+class Surroundings:
+    """What the options of all regions have in common.
+
+    Parameters
+    ----------
+    area, room
+        The operating area, and where the centre of a full turn may be; None without an area.
+    hard, soft
+        Discs that may not, and should not, be entered, shape (K, 3).
+    hard_polygons
+        Polygons that may not be entered.
+    radius_m, settle_m
+        Turn radius, and straight flight before each collect.
+    """
+
+    area: Polygon | None
+    room: Polygon | None
+    hard: Floats
+    soft: Floats
+    hard_polygons: tuple[Polygon, ...]
+    radius_m: float
+    settle_m: float
+
+
+@dataclass(frozen=True, slots=True)
+class Options:
+    """Ways to see one region.
+
+    Parameters
+    ----------
+    side
+        Index into the region's neighbourhoods (one a look side), int64 (K,).
+    angles_rad, eta_first, eta_second
+        Of each option; η of the second pass is NaN where there is only one. float64 (K,).
+    entries, exits
+        Poses before the first (settling included) and after the last pass, (K, 3).
+    inner_m
+        Cost from entry to exit: passes, the turn between them, metres inside threats.
+    """
+
+    side: NDArray[np.int64]
+    angles_rad: Floats
+    eta_first: Floats
+    eta_second: Floats
+    entries: Floats
+    exits: Floats
+    inner_m: Floats
+
+
+def make_options(
+    sides: tuple[Neighbourhood, ...], angles_rad: Floats, etas: Floats, around: Surroundings
+) -> Options | None:
+    """Options at the given angles and offsets that keep the hard constraints; None where there are none."""
+    parts = [_of_side(index, side, angles_rad, etas, around) for index, side in enumerate(sides)]
+    found = [part for part in parts if part is not None]
+    if not found:
+        return None
+    return Options(*(np.concatenate([getattr(part, name) for part in found]) for name in Options.__slots__))
+
+
+def collect_passes(sides: tuple[Neighbourhood, ...], options: Options, index: int) -> tuple[CollectPass, ...]:
+    """The passes of one option."""
+    side = _at(sides[int(options.side[index])], options.angles_rad[index : index + 1])
+    first = side.collect(0, float(options.eta_first[index]))
+    if side.turns == 0:
+        return (first,)
+    return (first, side.collect(0, float(options.eta_second[index]), opposite=True))
+
+
+def _at(side: Neighbourhood, angles_rad: Floats) -> Neighbourhood:
+    """The same neighbourhood at other angles: those of them that see the region."""
+    spans = spans_at(hull_points(side.region.area), angles_rad)
+    good = fits(spans.across_m, side.sensor.swath_m(side.height_m), side.turns)
+    kept = spans_at(hull_points(side.region.area), angles_rad[good])
+    return Neighbourhood(
+        side.region, side.sensor, side.height_m, side.look, side.turns, angles_rad[good], kept
+    )
+
+
+def _of_side(
+    index: int, side: Neighbourhood, angles_rad: Floats, etas: Floats, around: Surroundings
+) -> Options | None:
+    here = _at(side, angles_rad)
+    if len(here.angles_rad) == 0:
+        return None
+    first = here.lines(etas)
+    good_first, cost_first = _judge(first, around)
+    if side.turns == 0:
+        rows = np.argwhere(good_first)
+        if len(rows) == 0:
+            return None
+        m, k = rows.T
+        line = first[m, k]
+        entries, exits = _poses(line, here.angles_rad[m], around.settle_m)
+        return _finish(
+            index, here, m, etas[k], np.full(len(m), np.nan), entries, exits, cost_first[m, k], around
+        )
+    second = here.lines(etas, opposite=True)
+    good_second, cost_second = _judge(second, around)
+    both = good_first[:, :, None] & good_second[:, None, :] & complementary(etas)
+    rows = np.argwhere(both)
+    if len(rows) == 0:
+        return None
+    m, k, n = rows.T
+    entries, between0 = _poses(first[m, k], here.angles_rad[m], around.settle_m)
+    between1, exits = _poses(second[m, n], here.angles_rad[m] + math.pi, around.settle_m)
+    inner_m = cost_first[m, k] + cost_second[m, n] + dubins_lengths(between0, between1, around.radius_m)
+    return _finish(index, here, m, etas[k], etas[n], entries, exits, inner_m, around)
+
+
+def _finish(
+    index: int,
+    here: Neighbourhood,
+    m: NDArray[np.int64],
+    eta_first: Floats,
+    eta_second: Floats,
+    entries: Floats,
+    exits: Floats,
+    inner_m: Floats,
+    around: Surroundings,
+) -> Options:
+    cramped = ~(_roomy(entries, around) & _roomy(exits, around))
+    side = np.full(len(m), index, dtype=np.int64)
+    cost_m = inner_m + NO_ROOM_M * cramped
+    return Options(side, here.angles_rad[m], eta_first, eta_second, entries, exits, cost_m)
+
+
+def _judge(lines: Floats, around: Surroundings) -> tuple[NDArray[np.bool_], Floats]:
+    """Which lines (M, K, 2, 2) keep the hard constraints, and what each costs."""
+    shape = lines.shape[:2]
+    good = inside(lines, around.area)
+    geometry = shapely.linestrings(lines)
+    for polygon in around.hard_polygons:
+        good &= ~shapely.intersects(polygon, geometry)
+    delta = lines[:, :, 1] - lines[:, :, 0]
+    cost_m = np.hypot(delta[..., 0], delta[..., 1]) + around.settle_m
+    for m, k in np.ndindex(*shape):
+        if not good[m, k]:
+            continue
+        if len(around.hard) and length_in_discs(lines[m, k], around.hard) > 0.0:
+            good[m, k] = False
+        elif len(around.soft):
+            cost_m[m, k] += INSIDE_FACTOR * length_in_discs(lines[m, k], around.soft)
+    return good, cost_m
+
+
+def _poses(line: Floats, angles_rad: Floats, settle_m: float) -> tuple[Floats, Floats]:
+    """Entry and exit poses of lines (N, 2, 2) flown at angles (N,)."""
+    ahead = np.stack([np.cos(angles_rad), np.sin(angles_rad)], axis=1)
+    wrapped = np.mod(angles_rad + math.pi, 2.0 * math.pi) - math.pi
+    entry = np.column_stack([line[:, 0] - settle_m * ahead, wrapped])
+    return entry, np.column_stack([line[:, 1], wrapped])
+
+
+def _roomy(poses: Floats, around: Surroundings) -> NDArray[np.bool_]:
+    """Whether a full turn to one side or the other fits: inside the area, outside every disc."""
+    roomy = np.zeros(len(poses), dtype=np.bool_)
+    for side in (1.0, -1.0):
+        east_m = poses[:, 0] - side * around.radius_m * np.sin(poses[:, 2])
+        north_m = poses[:, 1] + side * around.radius_m * np.cos(poses[:, 2])
+        free = np.ones(len(poses), dtype=np.bool_)
+        if around.room is not None:
+            free &= shapely.contains_xy(around.room, east_m, north_m)
+        for discs in (around.hard, around.soft):
+            for e, n, r in discs:
+                free &= np.hypot(east_m - e, north_m - n) >= r + around.radius_m
+        roomy |= free
+    return roomy
