@@ -1,8 +1,8 @@
 """Compiled tests of straights and arcs against discs and polygons.
 
 A *piece* is one row: side (0 straight, +1 left, -1 right), east_m, north_m and angle_rad of its start,
-length_m, radius_m, centre east_m and north_m. Polygons are bags of edges (east0, north0, east1, north1) of all
-rings, holes included; inside is where a ray crosses them an odd number of times.
+length_m, radius_m, centre east_m and north_m. Polygons are bags of edges (east0, north0, east1, north1) of
+all rings, holes included; inside is where a ray crosses them an odd number of times.
 """
 
 # mypy: allow-untyped-decorators
