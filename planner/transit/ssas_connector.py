@@ -1,0 +1,290 @@
+"""SSAS as a connector: search, make flyable, judge, and try again with other settings where it fails.
+
+The first try is the paper's. Each further one states what it changes; they are tried in a fixed order and
+the first line that enters nothing it could keep out of is taken.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from shapely.geometry import MultiPoint
+
+from planner.dubins.path import Path
+from planner.dubins.smoothing import smooth
+from planner.environment.threats import metres_inside, threat_arrays
+from planner.environment.zones import MITRE_LIMIT, KeepOut
+from planner.errors import InfeasibleError, OutOfBudgetError
+from planner.progress import Stop, never, raise_if
+from planner.route import Anchor
+from planner.scenario import Scenario, Threat
+from planner.transit.ssas import MIN_CLOSING_PART, SsasParameters, SsasResult, search
+from planner.transit.ssas_kernels import Space
+
+Array = NDArray[np.float64]
+
+#: A path is sampled this finely to compare metres inside threats of lines none of which is free of them.
+SAMPLE_M = 5.0
+
+#: Directions this near to a straight line are on it.
+STRAIGHT_RAD = 1e-9
+
+
+@dataclass(frozen=True, slots=True)
+class Attempt:
+    """One try.
+
+    Parameters
+    ----------
+    coarse_legs
+        As in ``SsasParameters``: more of them are shorter, down to the fine leg.
+    closed
+        Whether soft threats that hold neither anchor are forbidden, not only costly.
+    margins
+        How many margins zones grow and the area shrinks by.
+    lead
+        Whether the first and the last leg begin straight on, with room for half a corner.
+    max_nodes
+        As in ``SsasParameters``.
+    """
+
+    coarse_legs: float
+    closed: bool
+    margins: float
+    lead: bool
+    max_nodes: int
+
+
+#: The paper's setting first; then shorter coarse legs; then threats forbidden; then fine legs alone.
+ATTEMPTS = (
+    Attempt(8.0, False, 0.0, True, 12_000),
+    Attempt(16.0, False, 1.0, True, 12_000),
+    Attempt(16.0, True, 1.0, True, 12_000),
+    Attempt(32.0, True, 1.0, True, 20_000),
+    Attempt(32.0, True, 2.0, True, 20_000),
+    Attempt(math.inf, True, 1.0, True, 40_000),
+    Attempt(32.0, False, 0.0, False, 20_000),
+)
+
+#: Samples stand for each other only when their directions differ by less than half a sector: with the
+#: paper's comparison of places alone most pairs of poses facing apart find no route.
+NEIGHBOUR_ANGLE_RAD = math.radians(10.0)
+
+
+def connect(
+    start: Anchor,
+    goal: Anchor,
+    *,
+    scenario: Scenario,
+    keep_out: KeepOut,
+    radius_m: float,
+    stop: Stop = never,
+) -> tuple[Path, SsasResult]:
+    """A flyable line from one anchor to another by SSAS.
+
+    Parameters
+    ----------
+    start, goal
+        Places, and directions where not None; met exactly.
+    scenario
+        For its threats and the weights of length, missile and radar (eq 25).
+    keep_out
+        Zones and area. Hard ones are never entered; soft threats of positive weight only where one holds an
+        anchor, or where no attempt finds a way round.
+    radius_m
+        Turn radius of the arcs.
+    stop
+        Asked before each attempt and each run of the search.
+
+    Returns
+    -------
+    Path, SsasResult
+        The line, and the legs it was made from.
+
+    Raises
+    ------
+    InfeasibleError
+        Where no attempt gives a line free of hard zones inside the area: the first attempt's reason.
+    OutOfBudgetError
+        The same, where the first attempt ended for want of nodes.
+    """
+    job = _Job(start, goal, scenario, keep_out, radius_m)
+    failure: InfeasibleError | OutOfBudgetError | None = None
+    best: tuple[tuple[float, float], Path, SsasResult] | None = None
+    wanted = job.keep_out_wanted()
+    hard = job.keep_out_hard()
+    attempts = ATTEMPTS if not job.is_straight() else (replace(ATTEMPTS[0], lead=False), *ATTEMPTS)
+    for attempt in attempts:
+        raise_if(stop)
+        try:
+            found = job.search(attempt, stop)
+        except (InfeasibleError, OutOfBudgetError) as error:
+            failure = failure or error
+            continue
+        path = smooth(found.waypoints, start.angle_rad, goal.angle_rad, radius_m, wanted.clear)
+        if wanted.clear(path):
+            return path, found
+        if not hard.clear(path):
+            failure = failure or job.not_clear(hard, path)
+            continue
+        line = path.sample(SAMPLE_M)[:, :2]
+        rank = (metres_inside(line, job.threats, job.altitude_m), path.length_m)
+        if best is None or rank < best[0]:
+            best = (rank, path, found)
+    if best is not None:
+        return best[1], best[2]
+    assert failure is not None  # every attempt returned, failed or gave a line
+    raise failure
+
+
+@dataclass(frozen=True, slots=True)
+class _Job:
+    start: Anchor
+    goal: Anchor
+    scenario: Scenario
+    keep_out: KeepOut
+    radius_m: float
+
+    @property
+    def threats(self) -> tuple[Threat, ...]:
+        return self.scenario.threats
+
+    @property
+    def altitude_m(self) -> float | None:
+        """Altitude over ground, the datum of threat heights; None where the scenario's is another."""
+        return None if self.scenario.altitude_reference == "amsl" else self.scenario.altitude_m
+
+    @property
+    def parameters(self) -> SsasParameters:
+        paper = SsasParameters()
+        # the shortest closing leg holds two half corners: 2 R tan(φmax / 2)
+        least_m = 2.0 * self.radius_m * math.tan(0.5 * paper.max_turn_rad) / MIN_CLOSING_PART
+        fine_m = max(paper.fine_leg_m, 1.01 * least_m)
+        return replace(
+            paper,
+            fine_leg_m=fine_m,
+            neighbour_radius_m=paper.neighbour_radius_m * fine_m / paper.fine_leg_m,
+            neighbour_angle_rad=NEIGHBOUR_ANGLE_RAD,
+            soft_margin_m=self.margin_m,
+        )
+
+    @property
+    def margin_m(self) -> float:
+        """Above what an arc cuts off a corner, R (1 / cos(φmax / 2) - 1) = 0.035 R."""
+        return max(SsasParameters().soft_margin_m, 0.05 * self.radius_m)
+
+    @property
+    def lead_m(self) -> float:
+        """Straight on before the first corner and after the last: half a corner's arc."""
+        return 1.01 * self.radius_m * math.tan(0.5 * SsasParameters().max_turn_rad)
+
+    def is_straight(self) -> bool:
+        """Whether the anchors lie on one straight line in their directions."""
+        (e0, n0), (e1, n1) = self.start.position, self.goal.position
+        bearing_rad = math.atan2(n1 - n0, e1 - e0)
+        return all(
+            anchor.angle_rad is None
+            or abs(math.remainder(anchor.angle_rad - bearing_rad, 2.0 * math.pi)) <= STRAIGHT_RAD
+            for anchor in (self.start, self.goal)
+        )
+
+    def search(self, attempt: Attempt, stop: Stop) -> SsasResult:
+        lead_m = self.lead_m if attempt.lead else 0.0
+        begin, end = _moved(self.start, lead_m), _moved(self.goal, -lead_m)
+        objective = self.scenario.objective
+        found = search(
+            begin,
+            end,
+            self._space(attempt, (self.start, begin, end, self.goal)),
+            (objective.length, objective.missile, objective.radar),
+            replace(self.parameters, coarse_legs=attempt.coarse_legs, max_nodes=attempt.max_nodes),
+            stop,
+        )
+        points = [found.waypoints]
+        if begin != self.start:
+            points.insert(0, np.array([self.start.position]))
+        if end != self.goal:
+            points.append(np.array([self.goal.position]))
+        return replace(found, waypoints=np.vstack(points))
+
+    def _space(self, attempt: Attempt, anchors: tuple[Anchor, ...]) -> Space:
+        margin_m = attempt.margins * self.margin_m
+        places = np.array([anchor.position for anchor in anchors])
+        ignored = self._ignored()
+        discs: list[tuple[float, float, float]] = []
+        for disc in self.keep_out.discs:
+            room_m = float(np.hypot(*(places - (disc.east_m, disc.north_m)).T).min()) - disc.radius_m
+            if disc.hard or (attempt.closed and disc.name not in ignored and room_m > 0.0):
+                # grown no further than to leave the anchors outside
+                grown_m = disc.radius_m + min(margin_m, 0.9 * max(0.0, room_m))
+                discs.append((disc.east_m, disc.north_m, grown_m))
+        zones = self.keep_out if margin_m == 0.0 else self._grown(margin_m, places)
+        missiles, radars = threat_arrays(self.threats, self.altitude_m)
+        edges, offsets = zones.edge_arrays()
+        return Space(
+            missiles=missiles,
+            radars=radars,
+            discs=np.array(discs, dtype=np.float64).reshape(-1, 3),
+            edges=edges,
+            offsets=offsets,
+            area=zones.area_edges(),
+        )
+
+    def _grown(self, margin_m: float, places: Array) -> KeepOut:
+        """Polygons grown and the area shrunk by a margin, those left alone that would take in an anchor."""
+        points = MultiPoint(places)
+        polygons = []
+        for zone in self.keep_out.polygons:
+            grown = zone.polygon.buffer(margin_m, join_style="mitre", mitre_limit=MITRE_LIMIT)
+            fits = grown.geom_type == "Polygon" and not grown.intersects(points)
+            polygons.append(replace(zone, polygon=grown) if fits else zone)
+        area = self.keep_out.area
+        if area is not None:
+            shrunk = area.buffer(-margin_m, join_style="mitre", mitre_limit=MITRE_LIMIT)
+            area = shrunk if shrunk.contains(points) else area
+        return replace(self.keep_out, polygons=tuple(polygons), area=area)
+
+    def _ignored(self) -> frozenset[str]:
+        """Soft threats of no weight."""
+        weight = {"missile": self.scenario.objective.missile, "radar": self.scenario.objective.radar}
+        return frozenset(t.name for t in self.threats if not t.hard and weight[t.model] <= 0.0)
+
+    def keep_out_hard(self) -> KeepOut:
+        """What is never entered."""
+        return self.keep_out.without([disc.name for disc in self.keep_out.discs if not disc.hard])
+
+    def keep_out_wanted(self) -> KeepOut:
+        """The same and the soft threats that can be kept out of: none that holds an anchor."""
+        places = (self.start.position, self.goal.position)
+        names = self._ignored() | {
+            disc.name
+            for disc in self.keep_out.discs
+            if not disc.hard
+            and any(math.dist(place, (disc.east_m, disc.north_m)) < disc.radius_m for place in places)
+        }
+        return self.keep_out.without(names)
+
+    def not_clear(self, zones: KeepOut, path: Path) -> InfeasibleError:
+        conflict = zones.conflict(path)
+        name = "transit" if conflict is None else conflict.zone
+        return InfeasibleError(
+            "area" if name == "area" else "hard-zone",
+            name,
+            f"turns of {self.radius_m:.0f} m from {self.start.position} to {self.goal.position} enter it",
+            "Give the passes more room, or let the aircraft turn tighter.",
+            None if conflict is None else conflict.where,
+        )
+
+
+def _moved(anchor: Anchor, ahead_m: float) -> Anchor:
+    """The anchor some metres on in its direction; itself where it has none."""
+    if anchor.angle_rad is None or ahead_m == 0.0:
+        return anchor
+    return replace(
+        anchor,
+        east_m=anchor.east_m + ahead_m * math.cos(anchor.angle_rad),
+        north_m=anchor.north_m + ahead_m * math.sin(anchor.angle_rad),
+    )
