@@ -44,7 +44,7 @@ $(VENV)/.installed: requirements.lock pyproject.toml | $(VENV)/.created
 	$(BIN)/python -m pip install --quiet --require-hashes -r requirements.lock
 	@mkdir -p static/dist
 	$(BIN)/python -m pip install --quiet --no-deps --no-build-isolation -e .
-	$(BIN)/python -m planner.warm
+	$(BIN)/python -c 'from planner.warm import warm_up; warm_up()'
 	@touch $@
 
 $(VENV)/.installed-dev: requirements-dev.lock $(VENV)/.installed

@@ -1,10 +1,7 @@
-"""The version of the installed distribution."""
+"""The version of the service, which is the planner's."""
 
 from __future__ import annotations
 
-from importlib.metadata import PackageNotFoundError, version
+from planner.version import __version__
 
-try:
-    VERSION = version("swathplan")
-except PackageNotFoundError:  # run from a source tree that is not installed
-    VERSION = "0.1.0"
+VERSION = __version__

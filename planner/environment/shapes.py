@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from shapely.geometry import Point, Polygon
+from shapely.geometry import LineString, Point, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from planner.scenario import Scenario, Threat
@@ -47,12 +47,16 @@ class PolygonShape:
 
 
 def _depth(inside: BaseGeometry, area: Polygon) -> float:
-    """Largest distance to the boundary among the vertices and middles of a line inside."""
-    lines = getattr(inside, "geoms", [inside])
-    middles = [
-        line.interpolate(fraction, normalized=True) for line in lines for fraction in (0.25, 0.5, 0.75)
-    ]
-    return max(float(area.boundary.distance(place)) for place in middles)
+    """Largest distance to the boundary among the places, and the quarters of the lines, inside."""
+    depth_m = 0.0
+    for part in getattr(inside, "geoms", [inside]):
+        places = (
+            [part.interpolate(fraction, normalized=True) for fraction in (0.25, 0.5, 0.75)]
+            if isinstance(part, LineString)
+            else [part]
+        )
+        depth_m = max(depth_m, *(float(area.boundary.distance(place)) for place in places))
+    return depth_m
 
 
 def hard_shapes(scenario: Scenario) -> Iterator[DiscShape | PolygonShape]:

@@ -1,0 +1,207 @@
+"""Reading scenarios: what is right comes through in local metres, what is wrong is named."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from pyproj import Geod
+
+from planner.errors import ScenarioError
+from planner.geojson import read_scenario
+from planner.validate import findings
+from tests.planner.scenarios import case, feature, small, square
+
+GEOD = Geod(ellps="WGS84")
+
+
+def refused(document: Any) -> dict[str, tuple[str, ...]]:
+    with pytest.raises(ScenarioError) as caught:
+        read_scenario(document)
+    found: dict[str, tuple[str, ...]] = {}
+    for finding in caught.value.findings:
+        assert finding.message
+        assert finding.fix
+        found[finding.feature] = (*found.get(finding.feature, ()), finding.rule)
+    return found
+
+
+@pytest.mark.parametrize("number", [1, 2, 3, 4])
+def test_shared_cases_are_read_with_geodesic_areas(number: int) -> None:
+    """Each region's area in the local frame is its geodesic area to a few parts in a million."""
+    document = case(number)
+    scenario = read_scenario(document)
+    assert [r.name for r in scenario.regions] == ["R1", "R2", "R3", "R4", "R5", "R6"]
+    assert len(scenario.threats) == 9
+    rings = {f["id"]: f["geometry"]["coordinates"][0] for f in document["features"]}
+    for region in scenario.regions:
+        lons, lats = zip(*rings[region.name], strict=True)
+        area_m2 = abs(GEOD.polygon_area_perimeter(lons, lats)[0])
+        assert region.area.area == pytest.approx(area_m2, rel=2e-5)
+
+
+def bend(change: Callable[[dict[str, Any]], object]) -> dict[str, Any]:
+    document = small()
+    change(document)
+    return document
+
+
+BAD: dict[str, tuple[dict[str, Any], str, str]] = {
+    "self-intersecting ring": (
+        small(feature("X", "roi", "Polygon", [[[0, 0], [0.01, 0.01], [0.01, 0], [0, 0.01], [0, 0]]])),
+        "X", "ring-self-intersects",
+    ),
+    "empty ring": (small(feature("X", "roi", "Polygon", [[]])), "X", "ring-empty"),
+    "no ring": (small(feature("X", "roi", "Polygon", [])), "X", "ring-empty"),
+    "open ring": (
+        small(feature("X", "roi", "Polygon", [[[0, 0], [0.01, 0], [0.01, 0.01], [0, 0.01]]])), "X", "ring-not-closed",
+    ),
+    "ring on a line": (
+        small(feature("X", "roi", "Polygon", [[[0, 0], [0.01, 0], [0.02, 0], [0, 0]]])), "X", "ring-self-intersects",
+    ),
+    "two points": (small(feature("X", "roi", "Polygon", [[[0, 0], [0.01, 0], [0, 0]]])), "X", "ring-too-short"),
+    "wrong axis order": (small(feature("X", "threat", "Point", [33.5, -117.7], model="missile", radius_m=10)),
+                         "X", "latitude-out-of-range"),
+    "longitude": (small(feature("X", "threat", "Point", [181, 0], model="missile", radius_m=10)),
+                  "X", "longitude-out-of-range"),
+    "NaN place": (small(feature("X", "threat", "Point", [math.nan, 0], model="missile", radius_m=10)),
+                  "X", "not-finite"),
+    "NaN number": (small(altitude_m=math.nan), "scenario", "not-finite"),
+    "text for a number": (small(altitude_m="500"), "scenario", "bad-value"),
+    "true for a number": (small(altitude_m=True), "scenario", "bad-value"),
+    "region outside the area": (small(feature("X", "roi", "Polygon", square(0.2, 0.0, 0.003))),
+                                "X", "roi-outside-area"),
+    "unknown role": (small(feature("X", "target", "Point", [0, 0])), "X", "unknown-role"),
+    "no role": (small({"type": "Feature", "id": "X", "properties": {}, "geometry": None}), "X", "unknown-role"),
+    "unknown property": (small(feature("X", "roi", "Polygon", square(0.01, 0, 0.002), prio=2)),
+                         "X", "unknown-property"),
+    "unknown member": (small(altitude=3), "scenario", "unknown-property"),
+    "wrong geometry": (small(feature("X", "threat", "LineString", [[0, 0], [1, 1]])), "X", "wrong-geometry"),
+    "start in a hard threat": (
+        small(feature("X", "threat", "Point", [-0.02, -0.02], model="missile", radius_m=500, hard=True)),
+        "start", "start-in-hard-zone",
+    ),
+    "start in a no-fly zone": (small(feature("X", "no_fly", "Polygon", square(-0.021, -0.021, 0.002))),
+                               "start", "start-in-hard-zone"),
+    "start outside the area": (
+        bend(lambda d: d["features"][3]["geometry"].update(coordinates=[-0.06, 0])), "start", "outside-area",
+    ),
+    "two starts": (small(feature("X", "start", "Point", [0, 0])), "X", "several-starts"),
+    "same name twice": (small(feature("A", "roi", "Polygon", square(0.01, 0, 0.002))), "A", "duplicate-id"),
+    "turn radius larger than the area": (
+        small(vehicles=[{"name": "uav", "airspeed_m_s": 200.0, "min_turn_radius_m": 9000.0}]),
+        "vehicle uav", "turn-radius-exceeds-area",
+    ),
+    "no turn limit": (small(vehicles=[{"name": "uav", "airspeed_m_s": 20.0}]), "vehicle uav", "missing-property"),
+    "no vehicle": (small(vehicles=[]), "scenario", "missing-member"),
+    "swath not positive": (
+        bend(lambda d: d["sensors"][0].update(elevation_beamwidth_deg=120.0)), "sensor sar", "swath-not-positive",
+    ),
+    "zero beam": (bend(lambda d: d["sensors"][0].update(elevation_beamwidth_deg=0.0)), "sensor sar", "out-of-range"),
+    "unknown sensor": (small(feature("X", "roi", "Polygon", square(0.01, 0, 0.002), sensor="eye")),
+                       "X", "unknown-sensor"),
+    "unknown method": (small(method={"routing": "magic"}), "method", "unknown-value"),
+    "search": (small(task="search"), "scenario", "not-supported"),
+    "far apart": (small(feature("X", "threat", "Point", [60, 50], model="missile", radius_m=10)),
+                  "scenario", "extent-too-large"),
+    "other crs": (small(crs={"type": "name", "properties": {"name": "EPSG:3857"}}), "scenario", "unknown-crs"),
+    "no region": (bend(lambda d: d.update(features=d["features"][2:])), "scenario", "no-region"),
+    "no start": (bend(lambda d: d.update(features=d["features"][:3])), "scenario", "no-start"),
+    "below ground": (
+        bend(lambda d: (d.update(altitude_reference="amsl"),
+                        d["features"][3]["geometry"].update(coordinates=[-0.02, -0.02, 700.0]))),
+        "scenario", "altitude-below-ground",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", BAD)
+def test_what_is_wrong_is_named(name: str) -> None:
+    """Each bad input is refused with the feature and the rule that it breaks."""
+    document, where, rule = BAD[name]
+    assert rule in refused(document).get(where, ()), refused(document)
+
+
+def test_all_findings_are_reported_at_once() -> None:
+    """Three mistakes in three features give three findings, not the first alone."""
+    document = small(
+        feature("X", "target", "Point", [0, 0]),
+        feature("Y", "threat", "Point", [0, 0], model="laser", radius_m=-1),
+    )
+    found = refused(document)
+    assert set(found) == {"X", "Y"}
+    assert set(found["Y"]) == {"unknown-value", "out-of-range"}
+
+
+@pytest.mark.parametrize(
+    "document", [None, [], 3, "x", {}, {"type": "Feature"}, {"type": "FeatureCollection"}]
+)
+def test_what_is_no_collection_is_refused(document: Any) -> None:
+    """Anything but a FeatureCollection with features is refused, not crashed upon."""
+    assert refused(document)["scenario"]
+
+
+JSON = st.recursive(
+    st.none() | st.booleans() | st.floats() | st.integers(-1000, 1000) | st.text(max_size=4),
+    lambda inner: st.lists(inner, max_size=4) | st.dictionaries(st.text(max_size=4), inner, max_size=3),
+    max_leaves=8,
+)
+SPOTS = ["features.0.geometry", "features.0.geometry.coordinates", "features.0.properties", "features.2", "vehicles",
+         "vehicles.0", "sensors.0", "wind", "objective", "method", "seed", "time_budget_s", "clearance_m", "features.3.geometry.coordinates"]  # fmt: skip
+
+
+@given(spot=st.sampled_from(SPOTS), junk=JSON)
+def test_junk_anywhere_is_a_finding_or_fine(spot: str, junk: Any) -> None:
+    """Whatever JSON stands in any place, reading ends with a scenario or a ScenarioError."""
+    document = small()
+    *path, last = spot.split(".")
+    target: Any = document
+    for key in path:
+        target = target[int(key)] if isinstance(target, list) else target[key]
+    target[int(last) if isinstance(target, list) else last] = junk
+    found = findings(document)
+    assert all(f.message and f.fix for f in found)
+
+
+def test_hash_ignores_the_order_of_keys() -> None:
+    """The same document written with its keys the other way round has the same hash."""
+    document = small()
+    turned = json.loads(json.dumps(dict(reversed(list(document.items())))))
+    assert read_scenario(document).scenario_hash == read_scenario(turned).scenario_hash
+    assert read_scenario(small(seed=1)).scenario_hash != read_scenario(document).scenario_hash
+
+
+def test_corridor_and_target_become_areas() -> None:
+    """A LineString with a width and a Point with a radius are areas of that width and radius."""
+    scenario = read_scenario(
+        small(
+            feature("C", "roi", "LineString", [[0.01, 0.0], [0.02, 0.0]], width_m=50.0),
+            feature("T", "roi", "Point", [0.01, 0.01], radius_m=40.0),
+        )
+    )
+    corridor, target = scenario.regions[2:]
+    length_m = GEOD.inv(0.01, 0.0, 0.02, 0.0)[2]
+    assert corridor.area.area == pytest.approx(50.0 * length_m, rel=1e-4)
+    assert target.area.area == pytest.approx(math.pi * 40.0**2, rel=1e-2)
+
+
+def test_headings_are_true() -> None:
+    """An approach heading east of north is that angle in the frame, convergence included."""
+    scenario = read_scenario(small(feature("T", "roi", "Point", [0.01, 0.01], approach_deg=[90.0, 0.0])))
+    approach = scenario.regions[2].approach_rad
+    assert approach is not None
+    assert approach[0] == pytest.approx(0.0, abs=1e-5)
+    assert approach[1] == pytest.approx(math.pi / 2, abs=1e-5)
+
+
+def test_region_no_pass_can_see_is_found_without_planning() -> None:
+    """A required region wider than two swaths, or with no room in the area, is an error; else a warning."""
+    big = feature("X", "roi", "Polygon", square(0.01, -0.04, 0.03))
+    assert [f.rule for f in findings(small(big)) if f.feature == "X"] == ["not-seen-swath"]
+    big["properties"]["required"] = False
+    assert [f.severity for f in findings(small(big)) if f.feature == "X"] == ["warning"]

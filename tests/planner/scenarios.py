@@ -1,0 +1,60 @@
+"""Scenario documents for tests: the shared cases, and a small one to bend."""
+
+from __future__ import annotations
+
+import copy
+import json
+from pathlib import Path
+from typing import Any
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+
+
+def case(number: int) -> dict[str, Any]:
+    """One of the paper's four cases."""
+    document: dict[str, Any] = json.loads((EXAMPLES / f"sar-case-{number}.geojson").read_text())
+    return document
+
+
+def square(lon: float, lat: float, size_deg: float) -> list[list[list[float]]]:
+    """Coordinates of a square polygon with its south-west corner at a place."""
+    e, n = lon + size_deg, lat + size_deg
+    return [[[lon, lat], [e, lat], [e, n], [lon, n], [lon, lat]]]
+
+
+def feature(name: str, role: str, kind: str, coordinates: Any, **properties: Any) -> dict[str, Any]:
+    """One GeoJSON feature."""
+    return {
+        "type": "Feature",
+        "id": name,
+        "properties": {"role": role, **properties},
+        "geometry": {"type": kind, "coordinates": coordinates},
+    }
+
+
+def small(*more: dict[str, Any], **members: Any) -> dict[str, Any]:
+    """Two small regions in a 13 km square, and whatever is added or overridden."""
+    document = {
+        "type": "FeatureCollection",
+        "name": "small",
+        "features": [
+            feature("A", "roi", "Polygon", square(0.0, 0.0, 0.003)),
+            feature("B", "roi", "Polygon", square(0.03, 0.01, 0.003)),
+            feature("area", "area", "Polygon", square(-0.05, -0.05, 0.12)),
+            feature("start", "start", "Point", [-0.02, -0.02]),
+            *more,
+        ],
+        "vehicles": [{"name": "uav", "airspeed_m_s": 20.0, "min_turn_radius_m": 100.0}],
+        "sensors": [
+            {
+                "name": "sar",
+                "type": "sar",
+                "incidence_deg": 45.0,
+                "elevation_beamwidth_deg": 30.0,
+                "azimuth_beamwidth_deg": 10.0,
+                "look": "right",
+            }
+        ],
+        "altitude_m": 500.0,
+    }
+    return copy.deepcopy(document | members)
