@@ -8,10 +8,9 @@
     ├── VehicleNotFoundError no autopilot's heartbeat arrived in time
     ├── NotConnectedError    asked of a vehicle that is not connected, or whose client is closed
     ├── BusyError            another transfer with this vehicle is under way
-    ├── TransferFailedError  a download ended without all items; carries the outcome
-    └── CommandFailedError   a command was refused or not answered; carries the outcome
+    └── TransferFailedError  a download ended without all items; carries the outcome
 
-The outcome of an upload is a value (``transfer.outcome``), not an exception: refused and unknown are answers.
+Outcomes of uploads and commands are values, not exceptions: refused and unknown are answers.
 """
 
 from __future__ import annotations
@@ -19,7 +18,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from mavlink.transfer.command import CommandOutcome
     from mavlink.transfer.outcome import Outcome
 
 
@@ -53,11 +51,3 @@ class TransferFailedError(MavlinkError):
     def __init__(self, what: str, outcome: Outcome) -> None:
         self.outcome = outcome
         super().__init__(f"{what}: {outcome}")
-
-
-class CommandFailedError(MavlinkError):
-    """A command was refused, or not answered."""
-
-    def __init__(self, outcome: CommandOutcome) -> None:
-        self.outcome = outcome
-        super().__init__(str(outcome))

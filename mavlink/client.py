@@ -1,0 +1,228 @@
+"""A ground station's side of one vehicle: connect, transfer, command, watch."""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from collections.abc import AsyncIterator, Callable, Sequence
+from types import TracebackType
+from typing import Final, Self
+
+from mavlink.codec import Codec
+from mavlink.driver import Driver
+from mavlink.errors import NotConnectedError, TransferFailedError, VehicleNotFoundError
+from mavlink.flight import FlightCommands
+from mavlink.items import Command, MissionItem, MissionType
+from mavlink.link import Link
+from mavlink.telemetry import VehicleState
+from mavlink.track import TrackRecorder
+from mavlink.transfer.clear import ClearMachine, SetCurrentMachine
+from mavlink.transfer.command import CommandMachine, CommandOutcome
+from mavlink.transfer.download import DownloadMachine
+from mavlink.transfer.machine import DEFAULT_SETTINGS, Progress, TransferSettings
+from mavlink.transfer.outcome import Outcome
+from mavlink.transfer.upload import UploadMachine
+from mavlink.verify import Compare, Pending, VerifiedUpload, resolve, upload_and_verify
+
+# Messages asked for at connection, and how often a second.
+_INTERVALS_HZ: Final = {
+    33: 4.0,  # GLOBAL_POSITION_INT
+    30: 4.0,  # ATTITUDE
+    74: 2.0,  # VFR_HUD
+    42: 1.0,  # MISSION_CURRENT
+    1: 1.0,  # SYS_STATUS
+    24: 1.0,  # GPS_RAW_INT
+    242: 0.2,  # HOME_POSITION
+    245: 1.0,  # EXTENDED_SYS_STATE
+}
+_MICROSECONDS: Final = 1e6
+
+
+class VehicleClient(FlightCommands):
+    """One vehicle at the other end of a link.
+
+    Parameters
+    ----------
+    link
+        Closed with the client.
+    system_id
+        This ground station's.
+    clock
+        Seconds; only differences matter.
+    settings
+        How patient transfers and commands are.
+    vehicle_system
+        The system id to talk to; 0 takes the first autopilot heard.
+
+    Notes
+    -----
+    One task does all reading and sending; it lives from ``connect`` to ``close``. A vehicle silent for 5 s
+    counts as lost: transfers end as unknown, and the first heartbeat after that connects it again.
+    """
+
+    def __init__(
+        self,
+        link: Link,
+        *,
+        system_id: int = 255,
+        clock: Callable[[], float] = time.monotonic,
+        settings: TransferSettings = DEFAULT_SETTINGS,
+        vehicle_system: int = 0,
+    ) -> None:
+        self._driver = Driver(link, Codec(system_id), clock, self._ask_for_telemetry, vehicle_system)
+        self._settings = settings
+        self._pending: Pending | None = None
+
+    async def __aenter__(self) -> Self:
+        return self
+
+    async def __aexit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        await self.close()
+
+    @property
+    def state(self) -> VehicleState:
+        """All that is known of the vehicle now."""
+        return self._driver.state
+
+    async def connect(self, timeout_s: float = 10.0) -> VehicleState:
+        """Send heartbeats, and wait for an autopilot's; may be called again after a failure.
+
+        Raises
+        ------
+        VehicleNotFoundError
+            None came in time. The client goes on listening until it is closed.
+        NotConnectedError
+            The link has failed.
+        """
+        self._driver.start()
+        try:
+            return await self.wait_for(lambda state: state.connected, timeout_s)
+        except TimeoutError as error:
+            raise VehicleNotFoundError(f"no autopilot's heartbeat within {timeout_s:g} s") from error
+
+    async def wait_for(self, condition: Callable[[VehicleState], bool], timeout_s: float) -> VehicleState:
+        """Wait until the state meets a condition. Raises TimeoutError, or NotConnectedError at the end."""
+        async with asyncio.timeout(timeout_s):
+            async for state in self.states():
+                if condition(state):
+                    return state
+        raise NotConnectedError(self._driver.failure or "the client is closed")
+
+    async def states(self) -> AsyncIterator[VehicleState]:
+        """The state now and after every change, until the client ends; a slow reader skips to the newest."""
+        with self._driver.watching() as changed:
+            while True:
+                changed.clear()
+                yield self.state
+                if self._driver.failure is not None:
+                    return
+                await changed.wait()
+
+    def start_recording(self) -> TrackRecorder:
+        """A recorder fed with everything the vehicle sends from now on."""
+        recorder = TrackRecorder()
+        self._driver.record(recorder)
+        return recorder
+
+    def stop_recording(self, recorder: TrackRecorder) -> None:
+        """Stop feeding a recorder; its track stays."""
+        self._driver.stop_recording(recorder)
+
+    async def upload(
+        self,
+        items: Sequence[MissionItem],
+        mission_type: MissionType,
+        progress: Callable[[Progress], None] | None = None,
+    ) -> Outcome:
+        """Upload without reading back. Raises BusyError, NotConnectedError, CodecError, ValueError."""
+        machine = UploadMachine(items, mission_type, *self._target(), self._settings)
+        return await self._driver.transfer(machine, progress)
+
+    async def download(
+        self, mission_type: MissionType, progress: Callable[[Progress], None] | None = None
+    ) -> tuple[MissionItem, ...]:
+        """What the vehicle holds. Raises TransferFailedError, BusyError, NotConnectedError."""
+        machine = DownloadMachine(mission_type, *self._target(), self._settings)
+        outcome = await self._driver.transfer(machine, progress)
+        if outcome.kind != "accepted":
+            raise TransferFailedError(f"download of the {mission_type.name.lower()}", outcome)
+        return machine.items
+
+    async def clear(self, mission_type: MissionType) -> Outcome:
+        """Empty one of the vehicle's lists. Raises BusyError, NotConnectedError."""
+        return await self._driver.transfer(ClearMachine(mission_type, *self._target(), self._settings))
+
+    async def set_current(self, seq: int) -> Outcome:
+        """Make an item the one flown next. Raises BusyError, NotConnectedError."""
+        return await self._driver.transfer(SetCurrentMachine(seq, *self._target(), self._settings))
+
+    async def upload_verified(
+        self,
+        items: Sequence[MissionItem],
+        mission_type: MissionType,
+        differences: Compare,
+        progress: Callable[[Progress], None] | None = None,
+    ) -> VerifiedUpload:
+        """Upload, read back and compare; an unknown outcome is resolved by what is read back.
+
+        Parameters
+        ----------
+        differences
+            ``differences(meant, held)``: what differs, empty when the vehicle holds what was meant.
+
+        Raises
+        ------
+        BusyError, NotConnectedError, CodecError, ValueError
+            Nothing was begun.
+        """
+        result = await upload_and_verify(self, items, mission_type, differences, progress)
+        unresolved = result.held is None
+        self._pending = (
+            Pending(tuple(items), mission_type, differences, result.outcome) if unresolved else None
+        )
+        return result
+
+    @property
+    def pending(self) -> bool:
+        """True while an upload's outcome waits for ``resolve_pending``."""
+        return self._pending is not None
+
+    async def resolve_pending(self) -> VerifiedUpload | None:
+        """Read back what an upload that ended as unknown left; None when there is nothing to resolve.
+
+        Raises
+        ------
+        BusyError, NotConnectedError
+            Not now; it stays pending.
+        """
+        if self._pending is None:
+            return None
+        self._driver.require_connected()
+        result = await resolve(self, self._pending)
+        if result.held is not None:
+            self._pending = None
+        return result
+
+    async def command(self, command: int, parameters: Sequence[float] = ()) -> CommandOutcome:
+        """Send a command (COMMAND_LONG) until it is answered. Raises NotConnectedError, CodecError."""
+        return await self._driver.command(
+            CommandMachine(command, parameters, *self._target(), self._settings)
+        )
+
+    async def close(self) -> None:
+        """End the task, fail whoever waits, close the link; closing twice is harmless."""
+        await self._driver.close()
+
+    def _target(self) -> tuple[int, int]:
+        self._driver.require_connected()
+        return self.state.system_id, self.state.component_id
+
+    def _ask_for_telemetry(self) -> None:
+        """Ask for what the state is made of; a vehicle that knows no intervals just says so."""
+        for message_id, rate_hz in _INTERVALS_HZ.items():
+            parameters = (float(message_id), _MICROSECONDS / rate_hz)
+            self._driver.post(
+                CommandMachine(Command.SET_MESSAGE_INTERVAL, parameters, *self._target(), self._settings)
+            )

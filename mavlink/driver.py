@@ -1,0 +1,335 @@
+"""One task between a link and the machines: it reads, lets time pass, and sends.
+
+Everything that goes out goes out from this task. Callers hand it machines and wait for their outcomes.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import math
+from collections import deque
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from typing import Any, Final, Generic, TypeVar
+
+from mavlink.codec import Codec
+from mavlink.errors import BusyError, CodecError, LinkError, NotConnectedError
+from mavlink.link import Link
+from mavlink.messages import Message
+from mavlink.modes import GROUND_STATION_TYPE, NO_AUTOPILOT
+from mavlink.telemetry import VehicleState, updated
+from mavlink.track import TrackRecorder
+from mavlink.transfer.command import CommandMachine, CommandOutcome
+from mavlink.transfer.machine import Machine, Progress
+from mavlink.transfer.outcome import Outcome, Unknown
+from mavlink.transfer.upload import UploadMachine
+
+End = TypeVar("End")
+
+_HEARTBEAT_EVERY_S: Final = 1.0
+_LOST_AFTER_S: Final = 5.0
+_ACTIVE: Final = 4  # MAV_STATE_ACTIVE
+
+
+class _Job(Generic[End]):
+    """A machine under way and who waits for it."""
+
+    def __init__(self, machine: Machine[End], progress: Callable[[Progress], None] | None) -> None:
+        self.machine = machine
+        self.done: asyncio.Future[End] = asyncio.get_running_loop().create_future()
+        self._progress = progress
+        self._reported: Progress | None = None
+
+    def report(self) -> None:
+        """Tell of progress made and of the end."""
+        progress = self.machine.progress
+        if self._progress is not None and progress != self._reported:
+            self._reported = progress
+            self._progress(progress)
+        if self.machine.outcome is not None:
+            self.finish(self.machine.outcome)
+
+    def finish(self, outcome: End) -> None:
+        """Give the waiter its answer."""
+        if not self.done.done():
+            self.done.set_result(outcome)
+
+    def fail(self, error: CodecError) -> None:
+        """Give the waiter the reason why its messages cannot be sent."""
+        if not self.done.done():
+            self.done.set_exception(error)
+
+
+class Driver:
+    """Drives machines over a link on behalf of one ground station and one vehicle.
+
+    Parameters
+    ----------
+    on_connect
+        Called whenever the vehicle is first heard, or heard again after it was lost.
+    vehicle_system
+        The system to talk to; 0 takes the first autopilot heard.
+    """
+
+    def __init__(
+        self,
+        link: Link,
+        codec: Codec,
+        clock: Callable[[], float],
+        on_connect: Callable[[], None],
+        vehicle_system: int = 0,
+    ) -> None:
+        self.state = VehicleState()
+        self._link = link
+        self._codec = codec
+        self._clock = clock
+        self._on_connect = on_connect
+        self._vehicle_system = vehicle_system
+        self._task: asyncio.Task[None] | None = None
+        self._timeout: asyncio.Timeout | None = None
+        self._failure: str | None = None
+        self._outgoing: deque[bytes] = deque()
+        self._heard_s = -math.inf
+        self._heartbeat_s = -math.inf
+        self._transfer: _Job[Any] | None = None
+        self._lingering: UploadMachine | None = None
+        self._commands: dict[int, deque[_Job[CommandOutcome]]] = {}
+        self._watchers: set[asyncio.Event] = set()
+        self._recorders: set[TrackRecorder] = set()
+
+    def start(self) -> None:
+        """Begin to read and to send heartbeats; again is harmless."""
+        if self._task is None and self._failure is None:
+            self._task = asyncio.create_task(self._run(), name=f"mavlink {self._link.url}")
+
+    async def close(self) -> None:
+        """End the task, fail whoever waits, close the link."""
+        if self._task is not None:
+            self._task.cancel()
+            with contextlib.suppress(asyncio.CancelledError):
+                await self._task
+            self._task = None
+        self._fail("the client is closed")
+        await self._link.close()
+
+    @property
+    def failure(self) -> str | None:
+        """Why the driver has ended; None while it runs."""
+        return self._failure
+
+    async def transfer(
+        self, machine: Machine[Outcome], progress: Callable[[Progress], None] | None = None
+    ) -> Outcome:
+        """Run a transfer to its end. Raises BusyError when another one is under way."""
+        self.require_connected()
+        if self._transfer is not None:
+            raise BusyError("another transfer with this vehicle is under way")
+        job = _Job(machine, progress)
+        self._transfer, self._lingering = job, None
+        self._send(machine.start(self._clock()), job)
+        try:
+            return await job.done
+        except (asyncio.CancelledError, CodecError):
+            self._send(machine.cancel(self._clock()), job)
+            raise
+        finally:
+            if self._transfer is job:
+                self._transfer = None
+
+    async def command(self, machine: CommandMachine) -> CommandOutcome:
+        """Run a command to its end; those of the same number take turns, as their answers look alike."""
+        self.require_connected()
+        job = self.post(machine)
+        try:
+            return await job.done
+        except (asyncio.CancelledError, CodecError):
+            machine.cancel(self._clock())
+            queue = self._commands.get(machine.command)
+            if queue and queue[0] is job:
+                self._next_command(machine.command)
+            raise
+
+    def post(self, machine: CommandMachine) -> _Job[CommandOutcome]:
+        """Queue a command without waiting for it."""
+        queue = self._commands.setdefault(machine.command, deque())
+        job = _Job(machine, None)
+        queue.append(job)
+        if len(queue) == 1:
+            self._send(machine.start(self._clock()), job)
+        return job
+
+    def require_connected(self) -> None:
+        """Raise NotConnectedError unless the vehicle is there."""
+        if self._failure is not None:
+            raise NotConnectedError(self._failure)
+        if not self.state.connected:
+            raise NotConnectedError("no vehicle is connected")
+
+    @contextlib.contextmanager
+    def watching(self) -> Iterator[asyncio.Event]:
+        """An event that is set at every change of state, and at the end."""
+        changed = asyncio.Event()
+        self._watchers.add(changed)
+        try:
+            yield changed
+        finally:
+            self._watchers.discard(changed)
+
+    def record(self, recorder: TrackRecorder) -> None:
+        """Feed a recorder from now on."""
+        self._recorders.add(recorder)
+
+    def stop_recording(self, recorder: TrackRecorder) -> None:
+        """Stop feeding a recorder."""
+        self._recorders.discard(recorder)
+
+    async def _run(self) -> None:
+        try:
+            while True:
+                self._let_time_pass()
+                await self._flush()
+                data = await self._wait()
+                for message in self._codec.feed(data):
+                    self._take(message)
+                await self._flush()
+        except LinkError as error:
+            self._fail(str(error))
+        except Exception:
+            self._fail("the driver has failed")
+            raise
+
+    async def _wait(self) -> bytes:
+        """Bytes, or none when something is due first."""
+        if self._outgoing:
+            return b""
+        delay_s = max(0.0, self._next_deadline_s() - self._clock())
+        try:
+            async with asyncio.timeout(delay_s) as self._timeout:
+                return await self._link.receive()
+        except TimeoutError:
+            return b""
+        finally:
+            self._timeout = None
+
+    async def _flush(self) -> None:
+        while self._outgoing:
+            await self._link.send(self._outgoing.popleft())
+
+    def _send(self, messages: list[Message], job: _Job[Any]) -> None:
+        """Queue a job's messages for the task, and wake it should it be waiting."""
+        try:
+            self._outgoing.extend([self._codec.pack(message) for message in messages])
+        except CodecError as error:
+            job.fail(error)
+        if self._timeout is not None and not self._timeout.expired():
+            self._timeout.reschedule(asyncio.get_running_loop().time())
+
+    def _machines(self) -> Iterator[_Job[Any]]:
+        if self._transfer is not None:
+            yield self._transfer
+        for queue in self._commands.values():
+            if queue:
+                yield queue[0]
+
+    def _next_deadline_s(self) -> float:
+        deadline_s = self._heartbeat_s + _HEARTBEAT_EVERY_S
+        if self.state.connected:
+            deadline_s = min(deadline_s, self._heard_s + _LOST_AFTER_S)
+        return min([deadline_s, *(job.machine.deadline_s for job in self._machines())])
+
+    def _let_time_pass(self) -> None:
+        now_s = self._clock()
+        if now_s >= self._heartbeat_s + _HEARTBEAT_EVERY_S:
+            self._heartbeat_s = now_s
+            fields = {"type": GROUND_STATION_TYPE, "autopilot": NO_AUTOPILOT, "system_status": _ACTIVE}
+            heartbeat = Message("HEARTBEAT", {**fields, "mavlink_version": 3})
+            self._outgoing.append(self._codec.pack(heartbeat))
+        if self.state.connected and now_s >= self._heard_s + _LOST_AFTER_S:
+            self._lose()
+        for job in list(self._machines()):
+            if now_s >= job.machine.deadline_s:
+                self._send(job.machine.tick(now_s), job)
+                self._settle(job)
+
+    def _take(self, message: Message) -> None:
+        if not self._from_vehicle(message):
+            return
+        now_s = self._clock()
+        self._heard_s = now_s
+        state = updated(self.state, message, now_s)
+        if not self.state.connected:
+            self._set_state(replace(state, connected=True))
+            self._on_connect()
+        elif state is not self.state:
+            self._set_state(state)
+        for recorder in self._recorders:
+            recorder.take(message, self.state)
+        if message.fields.get("target_system", 0) not in (0, self._codec.system_id):
+            return  # meant for another ground station on the same link
+        for job in list(self._machines()):
+            self._send(job.machine.receive(message, now_s), job)
+            self._settle(job)
+        if self._lingering is not None:
+            answers = self._lingering.receive(message, now_s)
+            self._outgoing.extend([self._codec.pack(answer) for answer in answers])
+
+    def _from_vehicle(self, message: Message) -> bool:
+        """True for the autopilot's messages; its heartbeat makes the acquaintance, anew after a loss."""
+        state = self.state
+        if state.connected:
+            return (message.system_id, message.component_id) == (state.system_id, state.component_id)
+        if message.name != "HEARTBEAT" or message.integer("autopilot") == NO_AUTOPILOT:
+            return False
+        if message.integer("type") == GROUND_STATION_TYPE:
+            return False
+        expected = self._vehicle_system or state.system_id
+        return expected in (0, message.system_id)
+
+    def _settle(self, job: _Job[Any]) -> None:
+        job.report()
+        machine = job.machine
+        if machine.outcome is None:
+            return
+        if job is self._transfer:
+            self._transfer = None
+            if isinstance(machine, UploadMachine):
+                self._lingering = machine
+        elif isinstance(machine, CommandMachine):
+            self._next_command(machine.command)
+
+    def _next_command(self, command: int) -> None:
+        queue = self._commands[command]
+        queue.popleft()
+        while queue and queue[0].machine.outcome is not None:
+            queue.popleft()  # cancelled while it waited
+        if queue:
+            self._send(queue[0].machine.start(self._clock()), queue[0])
+
+    def _lose(self) -> None:
+        """The vehicle has vanished: nobody can tell what it still took in."""
+        self._set_state(replace(self.state, connected=False))
+        self._abandon()
+
+    def _abandon(self) -> None:
+        if self._transfer is not None:
+            asked = self._transfer.machine.progress.done
+            self._transfer.finish(Unknown("link-lost", asked or None))
+            self._transfer = None
+        self._lingering = None
+        for queue in self._commands.values():
+            for job in queue:
+                job.finish(CommandOutcome(getattr(job.machine, "command", 0), None))
+        self._commands.clear()
+
+    def _fail(self, reason: str) -> None:
+        if self._failure is not None:
+            return
+        self._failure = reason
+        self._set_state(replace(self.state, connected=False))
+        self._abandon()
+
+    def _set_state(self, state: VehicleState) -> None:
+        self.state = state
+        for changed in self._watchers:
+            changed.set()

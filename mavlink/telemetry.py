@@ -1,0 +1,251 @@
+"""Messages to the state of a vehicle.
+
+``updated`` folds one message into a state; every message it knows has one small function in a table.
+
+Source: MAVLink ``common.xml``; the message is named beside each field's unit.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Final
+
+from mavlink.messages import Message
+from mavlink.modes import Autopilot, VehicleType, autopilot_name, mode_name, vehicle_type_name
+
+_ARMED: Final = 0x80
+_KEPT_TEXTS: Final = 20
+_MISSION_STATES: Final = {1: "none", 2: "not_started", 3: "active", 4: "paused", 5: "complete"}
+_GPS_FIXES: Final = {0: "none", 1: "none", 2: "2d", 3: "3d", 4: "dgps", 5: "rtk_float", 6: "rtk_fixed"}
+
+
+@dataclass(frozen=True, slots=True)
+class StatusText:
+    """What the vehicle said (STATUSTEXT); severity 0 emergency to 7 debug (MAV_SEVERITY)."""
+
+    heard_s: float
+    severity: int
+    text: str
+    id: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class VehicleState:
+    """All that is known of a vehicle now; None where it has not said.
+
+    Parameters
+    ----------
+    connected
+        Something was heard from it lately; decided by the client.
+    heard_s
+        When it last told something of itself, in the client's clock.
+    time_s
+        The vehicle's own time since boot.
+    mode
+        In words, as ``modes.mode_name`` gives it.
+    altitude_amsl_m, relative_altitude_m
+        Above mean sea level; above home.
+    velocity_north_m_s, velocity_east_m_s, velocity_down_m_s
+        Over ground.
+    heading_deg
+        Where the nose points, clockwise from true north.
+    course_deg
+        Where it moves over ground; None below 0.5 m/s.
+    mission_current, mission_total
+        The item flown, and the number of items held, the home row included where there is one.
+    mission_state
+        ``none`` ``not_started`` ``active`` ``paused`` ``complete``.
+    mission_reached
+        The last item reached.
+    sensor_on
+        The payload's switch as reported: NAMED_VALUE_INT ``SAR_ON``.
+    relays_on
+        Bit mask of RELAY_STATUS.
+    """
+
+    system_id: int = 0
+    component_id: int = 0
+    connected: bool = False
+    heard_s: float | None = None
+    time_s: float | None = None
+    autopilot: Autopilot = "generic"
+    type: VehicleType = "other"
+    armed: bool = False
+    mode: str = ""
+    landed: bool | None = None
+    lon_deg: float | None = None
+    lat_deg: float | None = None
+    altitude_amsl_m: float | None = None
+    relative_altitude_m: float | None = None
+    velocity_north_m_s: float | None = None
+    velocity_east_m_s: float | None = None
+    velocity_down_m_s: float | None = None
+    heading_deg: float | None = None
+    course_deg: float | None = None
+    roll_deg: float | None = None
+    pitch_deg: float | None = None
+    ground_speed_m_s: float | None = None
+    airspeed_m_s: float | None = None
+    battery_percent: float | None = None
+    battery_voltage_v: float | None = None
+    gps_fix: str | None = None
+    satellites: int | None = None
+    home_lon_deg: float | None = None
+    home_lat_deg: float | None = None
+    home_altitude_amsl_m: float | None = None
+    mission_current: int | None = None
+    mission_total: int | None = None
+    mission_state: str | None = None
+    mission_reached: int | None = None
+    sensor_on: bool | None = None
+    relays_on: int | None = None
+    texts: tuple[StatusText, ...] = ()
+
+
+def updated(state: VehicleState, message: Message, now_s: float) -> VehicleState:
+    """The state after one of the vehicle's messages; the same object when the message tells nothing of it."""
+    update = _UPDATES.get(message.name)
+    return state if update is None else update(replace(state, heard_s=now_s), message)
+
+
+def _heartbeat(state: VehicleState, message: Message) -> VehicleState:
+    autopilot = autopilot_name(message.integer("autopilot"))
+    vehicle_type = vehicle_type_name(message.integer("type"))
+    return replace(
+        state,
+        system_id=message.system_id,
+        component_id=message.component_id,
+        autopilot=autopilot,
+        type=vehicle_type,
+        armed=bool(message.integer("base_mode") & _ARMED),
+        mode=mode_name(autopilot, vehicle_type, message.integer("custom_mode")),
+    )
+
+
+def _global_position(state: VehicleState, message: Message) -> VehicleState:
+    north, east, down = (message.number(name) / 100.0 for name in ("vx", "vy", "vz"))  # cm/s
+    heading = message.integer("hdg")  # centidegrees
+    moving = math.hypot(north, east) >= 0.5
+    return replace(
+        state,
+        time_s=message.number("time_boot_ms") / 1000.0,
+        lat_deg=message.integer("lat") / 1e7,
+        lon_deg=message.integer("lon") / 1e7,
+        altitude_amsl_m=message.number("alt") / 1000.0,  # mm
+        relative_altitude_m=message.number("relative_alt") / 1000.0,
+        velocity_north_m_s=north,
+        velocity_east_m_s=east,
+        velocity_down_m_s=down,
+        heading_deg=state.heading_deg if heading == 0xFFFF else heading / 100.0,
+        course_deg=math.degrees(math.atan2(east, north)) % 360.0 if moving else None,
+    )
+
+
+def _attitude(state: VehicleState, message: Message) -> VehicleState:
+    roll, pitch, yaw = (math.degrees(message.number(name)) for name in ("roll", "pitch", "yaw"))
+    return replace(state, roll_deg=roll, pitch_deg=pitch, heading_deg=yaw % 360.0)
+
+
+def _vfr_hud(state: VehicleState, message: Message) -> VehicleState:
+    return replace(
+        state, airspeed_m_s=message.number("airspeed"), ground_speed_m_s=message.number("groundspeed")
+    )
+
+
+def _sys_status(state: VehicleState, message: Message) -> VehicleState:
+    percent, millivolts = message.integer("battery_remaining"), message.integer("voltage_battery")
+    return replace(
+        state,
+        battery_percent=state.battery_percent if percent < 0 else float(percent),
+        battery_voltage_v=state.battery_voltage_v if millivolts == 0xFFFF else millivolts / 1000.0,
+    )
+
+
+def _battery_status(state: VehicleState, message: Message) -> VehicleState:
+    percent = message.integer("battery_remaining")
+    if message.integer("id") != 0 or percent < 0:
+        return state
+    return replace(state, battery_percent=float(percent))
+
+
+def _gps_raw(state: VehicleState, message: Message) -> VehicleState:
+    satellites = message.integer("satellites_visible")
+    return replace(
+        state,
+        gps_fix=_GPS_FIXES.get(message.integer("fix_type"), "3d"),
+        satellites=None if satellites == 0xFF else satellites,
+    )
+
+
+def _home_position(state: VehicleState, message: Message) -> VehicleState:
+    return replace(
+        state,
+        home_lat_deg=message.integer("latitude") / 1e7,
+        home_lon_deg=message.integer("longitude") / 1e7,
+        home_altitude_amsl_m=message.number("altitude") / 1000.0,
+    )
+
+
+def _mission_current(state: VehicleState, message: Message) -> VehicleState:
+    total = message.integer("total")
+    known = 0 < total < 0xFFFF
+    # ArduPilot leaves its home row out of the total.
+    rows = total + (state.autopilot == "ardupilot") if known else None
+    return replace(
+        state,
+        mission_current=message.integer("seq"),
+        mission_total=rows,
+        mission_state=_MISSION_STATES.get(message.integer("mission_state")),
+    )
+
+
+def _mission_reached(state: VehicleState, message: Message) -> VehicleState:
+    return replace(state, mission_reached=message.integer("seq"))
+
+
+def _extended_state(state: VehicleState, message: Message) -> VehicleState:
+    landed = message.integer("landed_state")  # MAV_LANDED_STATE: 0 undefined, 1 on ground
+    return replace(state, landed=None if landed == 0 else landed == 1)
+
+
+def _named_int(state: VehicleState, message: Message) -> VehicleState:
+    return replace(state, sensor_on=bool(message.integer("value"))) if is_sensor_switch(message) else state
+
+
+def _relay_status(state: VehicleState, message: Message) -> VehicleState:
+    return replace(state, relays_on=message.integer("on") & message.integer("present"))
+
+
+def _status_text(state: VehicleState, message: Message) -> VehicleState:
+    text, identity = message.text("text"), message.integer("id")
+    heard_s = state.heard_s or 0.0
+    texts = state.texts
+    if identity and message.integer("chunk_seq") and texts and texts[-1].id == identity:
+        return replace(state, texts=(*texts[:-1], replace(texts[-1], text=texts[-1].text + text)))
+    entry = StatusText(heard_s, message.integer("severity"), text, identity)
+    return replace(state, texts=(*texts[1 - _KEPT_TEXTS :], entry))
+
+
+def is_sensor_switch(message: Message) -> bool:
+    """True for the report of the sensor's switch: NAMED_VALUE_INT called ``SAR_ON``."""
+    return message.name == "NAMED_VALUE_INT" and message.text("name") == "SAR_ON"
+
+
+_UPDATES: Final[dict[str, Callable[[VehicleState, Message], VehicleState]]] = {
+    "HEARTBEAT": _heartbeat,
+    "GLOBAL_POSITION_INT": _global_position,
+    "ATTITUDE": _attitude,
+    "VFR_HUD": _vfr_hud,
+    "SYS_STATUS": _sys_status,
+    "BATTERY_STATUS": _battery_status,
+    "GPS_RAW_INT": _gps_raw,
+    "HOME_POSITION": _home_position,
+    "MISSION_CURRENT": _mission_current,
+    "MISSION_ITEM_REACHED": _mission_reached,
+    "EXTENDED_SYS_STATE": _extended_state,
+    "NAMED_VALUE_INT": _named_int,
+    "RELAY_STATUS": _relay_status,
+    "STATUSTEXT": _status_text,
+}

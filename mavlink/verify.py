@@ -1,0 +1,131 @@
+"""Upload, read back, compare: what the vehicle really holds afterwards.
+
+An acknowledgement is not enough: ArduPilot acknowledges fences it then drops, and PX4 acknowledges an item
+repeated after it gave the upload up. A refusal is not enough either: ArduPilot keeps part of a refused list.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Final, Literal, Protocol
+
+from mavlink.compare import Difference
+from mavlink.errors import BusyError, NotConnectedError, TransferFailedError
+from mavlink.items import MissionItem, MissionResult, MissionType
+from mavlink.transfer.machine import Progress
+from mavlink.transfer.outcome import Accepted, Outcome, Refused, Unknown
+
+Compare = Callable[[tuple[MissionItem, ...], tuple[MissionItem, ...]], Sequence[Difference]]
+
+# ArduPilot denies downloads until it has given up an upload whose items stopped coming: 8 s.
+_DENIED_TRIES: Final = 6
+_DENIED_PAUSE_S: Final = 2.0
+
+
+@dataclass(frozen=True, slots=True)
+class VerifiedUpload:
+    """An upload and what came of it.
+
+    Parameters
+    ----------
+    outcome
+        As the vehicle answered; accepted also when no answer came but the read-back equals what was meant.
+    held
+        Read back; None when that failed too.
+    differences
+        Between meant and held.
+    resolved_from
+        The unknown outcome that the read-back turned into an accepted one.
+    """
+
+    outcome: Outcome
+    held: tuple[MissionItem, ...] | None
+    differences: tuple[Difference, ...] = ()
+    resolved_from: Unknown | None = None
+
+    @property
+    def status(self) -> Literal["stored", "different", "refused", "unknown"]:
+        """``stored``: the vehicle holds what was meant. ``different``: it holds something else."""
+        if self.outcome.kind == "refused":
+            return "refused"
+        if self.held is None:
+            return "unknown"
+        return "different" if self.differences else "stored"
+
+
+@dataclass(frozen=True, slots=True)
+class Pending:
+    """An upload of which nobody knows what came."""
+
+    items: tuple[MissionItem, ...]
+    mission_type: MissionType
+    compare: Compare
+    outcome: Outcome
+
+
+class Transfers(Protocol):
+    """What is needed of a vehicle's client."""
+
+    async def upload(
+        self,
+        items: Sequence[MissionItem],
+        mission_type: MissionType,
+        progress: Callable[[Progress], None] | None = None,
+    ) -> Outcome:
+        """Upload without reading back."""
+
+    async def download(self, mission_type: MissionType) -> tuple[MissionItem, ...]:
+        """What the vehicle holds."""
+
+    async def clear(self, mission_type: MissionType) -> Outcome:
+        """Empty a list."""
+
+
+async def upload_and_verify(
+    vehicle: Transfers,
+    items: Sequence[MissionItem],
+    mission_type: MissionType,
+    compare: Compare,
+    progress: Callable[[Progress], None] | None,
+) -> VerifiedUpload:
+    """Upload, read back and compare; a fence is cleared first.
+
+    ArduPilot acknowledges circles uploaded over a stored polygon and is then left with no fence at all.
+    """
+    if mission_type is MissionType.FENCE:
+        cleared = await vehicle.clear(mission_type)
+        if cleared.kind == "unknown":
+            return await resolve(vehicle, Pending(tuple(items), mission_type, compare, cleared))
+        if cleared.kind == "refused":
+            return await _read_back(vehicle, Pending(tuple(items), mission_type, compare, cleared))
+    outcome = await vehicle.upload(items, mission_type, progress)
+    return await resolve(vehicle, Pending(tuple(items), mission_type, compare, outcome))
+
+
+async def resolve(vehicle: Transfers, pending: Pending) -> VerifiedUpload:
+    """Read back and compare; a silent success becomes accepted, an unread one unknown."""
+    result = await _read_back(vehicle, pending)
+    if result.held is None and result.outcome.kind == "accepted":
+        return VerifiedUpload(Unknown("not-read-back"), None)
+    if isinstance(result.outcome, Unknown) and result.status == "stored":
+        return VerifiedUpload(Accepted(), result.held, (), result.outcome)
+    return result
+
+
+async def _read_back(vehicle: Transfers, pending: Pending) -> VerifiedUpload:
+    for attempt in range(_DENIED_TRIES):
+        if attempt:
+            await asyncio.sleep(_DENIED_PAUSE_S)
+        try:
+            held = await vehicle.download(pending.mission_type)
+        except (NotConnectedError, BusyError):
+            return VerifiedUpload(pending.outcome, None)
+        except TransferFailedError as error:
+            if isinstance(error.outcome, Refused) and error.outcome.result == MissionResult.DENIED:
+                continue
+            return VerifiedUpload(pending.outcome, None)
+        differences = tuple(pending.compare(pending.items, held))
+        return VerifiedUpload(pending.outcome, held, differences)
+    return VerifiedUpload(pending.outcome, None)
