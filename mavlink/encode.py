@@ -1,0 +1,132 @@
+"""Plan to mission, fence and rally points, in the dialect of an autopilot.
+
+In flight order: the home row (ArduPilot), the take-off, a circle up to the plan's altitude (fixed wing), the
+speed, then the path: waypoints at the ends of its straights, points on its arcs, and exactly both ends of
+each collect, the sensor switched right behind them; last the return or the landing.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import replace
+
+from mavlink.dialects import Autopilot
+from mavlink.encoding.ends import beginning, ending
+from mavlink.encoding.fence import fence_items
+from mavlink.encoding.options import EncodeError, EncodeOptions, Finish
+from mavlink.encoding.stops import Stop, stops_along
+from mavlink.encoding.task import Task, task_of
+from mavlink.items import Command, Frame, MissionItem, MissionResult, MissionType
+from mavlink.mission import Mission, home_item, numbered, placed
+from mavlink.payload import ActuatorPayload, Payload, PayloadError, RelayPayload, switch_items
+from planner.plan import Plan
+
+__all__ = ["EncodeError", "EncodeOptions", "Finish", "Mission", "encode"]
+
+_DEFAULT = EncodeOptions()
+
+
+def encode(
+    plan: Plan,
+    vehicle: str | None = None,
+    autopilot: Autopilot | None = None,
+    options: EncodeOptions = _DEFAULT,
+) -> Mission:
+    """The mission of one vehicle of a plan.
+
+    Parameters
+    ----------
+    plan
+        As checked; its violations are not looked at here.
+    vehicle
+        Name; None where the plan has one vehicle.
+    autopilot
+        Instead of the vehicle's own.
+    options
+        Choices that the plan leaves open.
+
+    Returns
+    -------
+    Mission
+        In wire units. Whether the autopilot takes it is for ``Mission.dialect.check`` to say: a mission may
+        be longer than the vehicle holds.
+
+    Raises
+    ------
+    EncodeError
+        No such vehicle, or something the autopilot cannot be told.
+    """
+    task = task_of(plan, vehicle, autopilot, options)
+    payload, payload_notes = _payload(task)
+    on, off = _switches(task, payload)
+    first, last = beginning(task), ending(task)
+    stops = stops_along(task.path, task.collects, task.local, options.chord_error_m, options.off_delay_m)
+    home = [home_item(plan.home, options.home_altitude_m)] if task.dialect.home_row else []
+    flight = _flight(task, (stop for stop in stops if stop.along_m > first.skipped_m), on, off)
+    fence, fence_notes = fence_items(plan, (task.path,))
+    chord_note = f"arcs are waypoints with a chord error of at most {options.chord_error_m:g} m"
+    return Mission(
+        mission=numbered([*home, *first.items, *flight, *last.items]),
+        fence=fence,
+        rally=_rally(task),
+        autopilot=task.dialect.autopilot,
+        vehicle=task.vehicle.name,
+        vehicle_type=task.vehicle.type,
+        home=plan.home,
+        notes=(chord_note, *payload_notes, *first.notes, *last.notes, *fence_notes),
+        home_altitude_m=options.home_altitude_m,
+        speed_m_s=task.vehicle.airspeed_m_s,
+    )
+
+
+def _payload(task: Task) -> tuple[Payload, tuple[str, ...]]:
+    """The payload as the autopilot can switch it, and a note where it is another than asked for."""
+    payload = task.options.payload
+    if not (task.is_px4 and isinstance(payload, RelayPayload)):
+        return payload, ()
+    try:
+        actuator = ActuatorPayload(payload.relay + 1)
+    except PayloadError as error:
+        raise EncodeError(f"PX4 has no relays, and no actuator stands for this one: {error}") from error
+    return actuator, (
+        f"PX4 takes no relay in missions: actuator {actuator.actuator} is set to 1 for on, -1 for off",
+    )
+
+
+def _switches(task: Task, payload: Payload) -> tuple[MissionItem, MissionItem]:
+    switches = switch_items(payload)
+    for item in switches:
+        # Numbered as if in flight: item 0 of ArduPilot is never looked at.
+        result = task.dialect.answer(replace(item, seq=1))
+        if result != MissionResult.ACCEPTED:
+            raise EncodeError(
+                f"{task.dialect.name} refuses the payload's command {item.command}: {result.name}"
+            )
+    return switches
+
+
+def _flight(task: Task, stops: Iterable[Stop], on: MissionItem, off: MissionItem) -> list[MissionItem]:
+    """Waypoints along the path, the sensor switched right behind those where a collect starts or ends."""
+    acceptance_m = float(round(task.options.acceptance_radius_m or 0.0))
+    parameters = (0.0, acceptance_m, 0.0, task.any_yaw)
+    items: list[MissionItem] = []
+    collecting = 0
+    for stop in stops:
+        items.append(placed(Command.NAV_WAYPOINT, stop.place, stop.altitude_m, task.frame, parameters))
+        before, collecting = collecting, collecting + stop.on - stop.off
+        # Where collects overlap the sensor stays on until the last has ended.
+        if stop.off and (collecting == 0 or stop.on):
+            items.append(off)
+        if stop.on and (before == 0 or stop.off):
+            items.append(on)
+    return items
+
+
+def _rally(task: Task) -> tuple[MissionItem, ...]:
+    if not task.options.rally_at_home:
+        return ()
+    # ArduPilot keeps whole metres.
+    height_m = float(max(1, math.floor(task.altitude_over_home_m)))
+    home = placed(Command.NAV_RALLY_POINT, task.plan.home, height_m, Frame.GLOBAL_RELATIVE_ALT)
+    return numbered([home], MissionType.RALLY)

@@ -1,0 +1,1 @@
+"""The parts of a mission: fence, stops along the path, both ends."""

@@ -1,0 +1,99 @@
+"""The plan's fence as items, and as the room that manoeuvres of the mission must keep to."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from shapely.geometry import LineString, Point, Polygon
+from shapely.geometry.base import BaseGeometry
+from shapely.ops import unary_union
+
+from mavlink.geometry import LocalMap, Xy
+from mavlink.items import Command, Frame, MissionItem, MissionType
+from mavlink.mission import numbered, placed
+from planner.plan import Fence, FlownPath, Plan, ZoneCircle, ZonePolygon
+
+
+def fence_items(plan: Plan, paths: tuple[FlownPath, ...]) -> tuple[tuple[MissionItem, ...], tuple[str, ...]]:
+    """The fence of a plan as NAV_FENCE items, and notes on zones that it cannot say.
+
+    Fences of both autopilots are horizontal. A zone with a floor or a ceiling that the paths fly over or
+    under would stop the vehicle in flight, so it is left out, with a note.
+    """
+    items: list[MissionItem] = []
+    notes: list[str] = []
+    for zone in plan.fence.inclusion:
+        items += _polygon(Command.NAV_FENCE_POLYGON_VERTEX_INCLUSION, zone)
+    local = LocalMap(plan.home)
+    lines = [LineString([local.xy((lon, lat)) for lon, lat, _ in path.line]) for path in paths]
+    for zone in plan.fence.exclusion:
+        if _is_flown_over(zone, zone_shape(zone, local), lines):
+            notes.append(_left_out(zone.name))
+        else:
+            items += _polygon(Command.NAV_FENCE_POLYGON_VERTEX_EXCLUSION, zone)
+    for circle in plan.fence.exclusion_circles:
+        if _is_flown_over(circle, zone_shape(circle, local), lines):
+            notes.append(_left_out(circle.name))
+        else:
+            item = placed(Command.NAV_FENCE_CIRCLE_EXCLUSION, circle.centre, 0.0, Frame.GLOBAL)
+            items.append(replace(item, param1=_radius_m(circle)))
+    return numbered(items, MissionType.FENCE), tuple(notes)
+
+
+def _radius_m(circle: ZoneCircle) -> float:
+    if not 0.0 < circle.radius_m < float("inf"):
+        raise ValueError(f"fence circle {circle.name!r} has radius {circle.radius_m}")
+    return circle.radius_m
+
+
+def _polygon(command: int, zone: ZonePolygon) -> list[MissionItem]:
+    return [
+        replace(placed(command, corner, 0.0, Frame.GLOBAL), param1=float(len(zone.ring)))
+        for corner in zone.ring
+    ]
+
+
+def _is_flown_over(zone: ZonePolygon | ZoneCircle, shape: BaseGeometry, lines: list[LineString]) -> bool:
+    if zone.floor_m is None and zone.ceiling_m is None:
+        return False
+    return any(shape.intersects(line) for line in lines)
+
+
+def _left_out(name: str) -> str:
+    return f"fence: zone {name!r} is passed above or below, and fences have no heights: left out"
+
+
+def zone_shape(zone: ZonePolygon | ZoneCircle, local: LocalMap) -> BaseGeometry:
+    """A zone in local metres."""
+    if isinstance(zone, ZoneCircle):
+        return Point(local.xy(zone.centre)).buffer(zone.radius_m, quad_segs=32)
+    return Polygon([local.xy(corner) for corner in zone.ring])
+
+
+@dataclass(frozen=True, slots=True)
+class Room:
+    """Where the vehicle may be, in local metres: in ``allowed`` (anywhere when None), not in ``barred``."""
+
+    allowed: BaseGeometry | None
+    barred: BaseGeometry
+
+    def outside_m2(self, shape: BaseGeometry) -> float:
+        """Area of a shape that lies where the vehicle may not be."""
+        outside = 0.0 if self.allowed is None else float(shape.difference(self.allowed).area)
+        return outside + float(shape.intersection(self.barred).area)
+
+    def line_outside_m2(self, line: list[Xy], margin_m: float) -> float:
+        """The same for a line and the margin round it."""
+        return self.outside_m2(LineString(line).buffer(margin_m))
+
+    def orbit_outside_m2(self, centre: Xy, radius_m: float, margin_m: float) -> float:
+        """The same for a circle flown round a centre, its inside included: wind pushes inwards too."""
+        return self.outside_m2(Point(centre).buffer(radius_m + margin_m))
+
+
+def room_of(fence: Fence, local: LocalMap) -> Room:
+    """The room that a plan's fence leaves, zones with floor or ceiling taken as barred at all heights."""
+    inside = [zone_shape(zone, local) for zone in fence.inclusion]
+    barred = [zone_shape(zone, local) for zone in fence.exclusion]
+    barred += [zone_shape(circle, local) for circle in fence.exclusion_circles]
+    return Room(unary_union(inside) if inside else None, unary_union(barred))

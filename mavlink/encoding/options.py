@@ -1,0 +1,79 @@
+"""What a mission leaves to choose."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+from mavlink.payload import Payload, RelayPayload
+
+Finish = Literal["auto", "rtl", "land", "loiter"]
+
+DEFAULT_PAYLOAD: Payload = RelayPayload(relay=0)
+
+
+class EncodeError(ValueError):
+    """A plan that cannot be said in the dialect asked for, or not with these options."""
+
+
+@dataclass(frozen=True, slots=True)
+class EncodeOptions:
+    """Choices a mission leaves open.
+
+    Parameters
+    ----------
+    chord_error_m
+        Largest distance between an arc of the path and the lines between its waypoints.
+    payload
+        How the sensor is switched. PX4 has no relays: there a relay becomes the actuator of the same place.
+    finish
+        ``auto`` returns when the path ends near home and lands otherwise; PX4's fixed wings always land.
+    acceptance_radius_m
+        Distance at which a waypoint counts as reached, where the autopilot lets items say it; None for the
+        vehicle's own.
+    takeoff_altitude_m
+        Height over home that the take-off of a fixed wing climbs to, straight ahead.
+    climb_radius_m
+        Radius of the circles up and down; None for a little more than the tightest turn.
+    approach_altitude_m, approach_slope_deg
+        Where the straight approach of a fixed wing begins, and how steep it is; PX4 allows 5°.
+    near_home_m
+        Ends nearer to home than this are left to the return.
+    off_delay_m
+        How far past a collect's end the sensor is switched off, as far as the straight goes on: for
+        autopilots that pass waypoints early.
+    home_altitude_m
+        Height of home above sea level, where known.
+    rally_at_home
+        Whether home becomes a rally point too.
+    """
+
+    chord_error_m: float = 2.0
+    payload: Payload = DEFAULT_PAYLOAD
+    finish: Finish = "auto"
+    acceptance_radius_m: float | None = None
+    takeoff_altitude_m: float = 50.0
+    climb_radius_m: float | None = None
+    approach_altitude_m: float = 40.0
+    approach_slope_deg: float = 4.0
+    near_home_m: float = 200.0
+    off_delay_m: float = 0.0
+    home_altitude_m: float = 0.0
+    rally_at_home: bool = False
+
+    def __post_init__(self) -> None:
+        positive = {
+            "chord_error_m": self.chord_error_m,
+            "takeoff_altitude_m": self.takeoff_altitude_m,
+            "climb_radius_m": 1.0 if self.climb_radius_m is None else self.climb_radius_m,
+            "approach_altitude_m": self.approach_altitude_m,
+            "approach_slope_deg": self.approach_slope_deg,
+        }
+        for name, value in positive.items():
+            if not (math.isfinite(value) and value > 0.0):
+                raise EncodeError(f"{name} is {value}: a positive number is meant")
+        if self.acceptance_radius_m is not None and not 1.0 <= self.acceptance_radius_m <= 255.0:
+            raise EncodeError(f"acceptance_radius_m is {self.acceptance_radius_m}: 1 to 255 is meant")
+        if not (math.isfinite(self.off_delay_m) and self.off_delay_m >= 0.0):
+            raise EncodeError(f"off_delay_m is {self.off_delay_m}: 0 or more is meant")

@@ -1,0 +1,136 @@
+"""The places a mission names along a flown path, and what is switched there."""
+
+from __future__ import annotations
+
+import math
+from bisect import bisect_right
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+from mavlink.geometry import LocalMap, arc_points, chord_step_rad, distance_m
+from planner.plan import Collect, FlownPath, LonLat, PathSegment
+
+#: Places nearer than this along the path are one; those of a collect win.
+MERGE_M = 0.5
+#: No arc is cut into chords of more than this, however large the chord error allowed.
+LARGEST_STEP_RAD = math.radians(45.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Stop:
+    """A place of the path that becomes a waypoint.
+
+    Parameters
+    ----------
+    along_m
+        Distance along the path.
+    off, on
+        How many collects end and begin here.
+    """
+
+    along_m: float
+    place: LonLat
+    altitude_m: float
+    off: int = 0
+    on: int = 0
+
+
+def stops_along(
+    path: FlownPath,
+    collects: Sequence[Collect],
+    local: LocalMap,
+    chord_error_m: float,
+    off_delay_m: float = 0.0,
+) -> tuple[Stop, ...]:
+    """Ends of the straights, points on the arcs, and exactly both ends of each collect, in flight order.
+
+    Parameters
+    ----------
+    chord_error_m
+        Largest distance between an arc and the line through its points (the sagitta of each chord).
+    off_delay_m
+        How far past a collect's end the sensor is switched off, as far as the straight goes on.
+    """
+    altitude = _altitudes(path)
+    stops: list[Stop] = []
+    for collect in collects:
+        (start_lon, start_lat, _), (end_lon, end_lat, _) = collect.line
+        stops.append(Stop(collect.start_m, (start_lon, start_lat), altitude(collect.start_m), on=1))
+        end = Stop(collect.end_m, (end_lon, end_lat), altitude(collect.end_m))
+        late = _late_stop(path, collect, local, off_delay_m)
+        if late is None:
+            stops.append(replace(end, off=1))
+        else:
+            stops += [end, replace(late, altitude_m=altitude(late.along_m), off=1)]
+    for segment in path.segments:
+        places = _segment_places(segment, local, chord_error_m)
+        for number, place in enumerate(places):
+            along_m = segment.start_m + segment.length_m * number / (len(places) - 1)
+            stops.append(Stop(along_m, place, altitude(along_m)))
+    return _merged(stops, {(c.line[0][:2]) for c in collects} | {(c.line[1][:2]) for c in collects})
+
+
+def _segment_places(segment: PathSegment, local: LocalMap, chord_error_m: float) -> list[LonLat]:
+    """Places evenly spread over a segment, both ends among them."""
+    if segment.kind == "straight" or segment.centre is None or segment.turn_deg is None:
+        return [segment.start, segment.end]
+    start, end, centre = (local.xy(place) for place in (segment.start, segment.end, segment.centre))
+    turn_rad = math.radians(segment.turn_deg) * (1.0 if segment.kind == "left" else -1.0)
+    step_rad = chord_step_rad(math.dist(start, centre), chord_error_m, LARGEST_STEP_RAD)
+    between = arc_points(start, end, centre, turn_rad, step_rad)
+    return [segment.start, *(local.lonlat(point) for point in between), segment.end]
+
+
+def _late_stop(path: FlownPath, collect: Collect, local: LocalMap, off_delay_m: float) -> Stop | None:
+    """Where the sensor goes off past the end of a collect; None where the straight ends there."""
+    if off_delay_m <= MERGE_M:
+        return None
+    for segment in path.segments:
+        segment_end_m = segment.start_m + segment.length_m
+        if segment.kind == "straight" and segment.start_m <= collect.end_m < segment_end_m - MERGE_M:
+            along_m = min(collect.end_m + off_delay_m, segment_end_m)
+            part = (along_m - segment.start_m) / segment.length_m
+            start, end = local.xy(segment.start), local.xy(segment.end)
+            middle = (start[0] + part * (end[0] - start[0]), start[1] + part * (end[1] - start[1]))
+            return Stop(along_m, local.lonlat(middle), 0.0)
+    return None
+
+
+def _merged(stops: list[Stop], exact: set[LonLat]) -> tuple[Stop, ...]:
+    """Stops in order; those nearer than MERGE_M to each other are one, at an exact place if there is one."""
+    merged: list[Stop] = []
+    for stop in sorted(stops, key=lambda s: (s.along_m, -s.off, s.on)):
+        if not merged or stop.along_m - merged[-1].along_m > MERGE_M:
+            merged.append(stop)
+            continue
+        last = merged[-1]
+        both_exact = last.place in exact and stop.place in exact
+        if both_exact and last.place != stop.place:
+            merged.append(stop)
+        else:
+            kept = stop if stop.place in exact else last
+            merged[-1] = replace(kept, off=last.off + stop.off, on=last.on + stop.on)
+    return tuple(merged)
+
+
+class _altitudes:  # noqa: N801 - used like a function
+    """Altitude along a path, linear between the vertices of its line."""
+
+    def __init__(self, path: FlownPath) -> None:
+        self._altitudes_m = [altitude_m for _, _, altitude_m in path.line]
+        steps_m = [distance_m(a[:2], b[:2]) for a, b in pairwise(path.line)]
+        total_m = math.fsum(steps_m)
+        # Geodesic chords are a little shorter than the arcs they cut.
+        scale = path.length_m / total_m if total_m > 0.0 else 1.0
+        self._along_m = [0.0]
+        for step_m in steps_m:
+            self._along_m.append(self._along_m[-1] + step_m * scale)
+
+    def __call__(self, along_m: float) -> float:
+        index = min(bisect_right(self._along_m, along_m), len(self._along_m) - 1)
+        before = max(0, index - 1)
+        low_m, high_m = self._along_m[before], self._along_m[index]
+        part = min(1.0, max(0.0, (along_m - low_m) / (high_m - low_m))) if high_m > low_m else 0.0
+        low, high = self._altitudes_m[before], self._altitudes_m[index]
+        return low + part * (high - low)

@@ -1,0 +1,116 @@
+"""One vehicle's part of a plan, with the dialect and options it is encoded in."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from mavlink.dialects import Autopilot, Dialect, dialect_for
+from mavlink.encoding.fence import Room, room_of
+from mavlink.encoding.manoeuvres import orbit_radius_m
+from mavlink.encoding.options import EncodeError, EncodeOptions
+from mavlink.geometry import LocalMap
+from mavlink.items import Frame
+from planner.plan import Collect, FlownPath, PathSegment, Plan, PlanVehicle
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """All that the parts of a mission are made from; ``local`` has its origin at home."""
+
+    plan: Plan
+    vehicle: PlanVehicle
+    path: FlownPath
+    collects: tuple[Collect, ...]
+    dialect: Dialect
+    options: EncodeOptions
+    local: LocalMap
+    room: Room
+
+    @property
+    def is_px4(self) -> bool:
+        """Whether the autopilot is PX4."""
+        return self.dialect.autopilot == "px4"
+
+    @property
+    def hovers(self) -> bool:
+        """Whether the vehicle is a multirotor."""
+        return self.vehicle.type == "multirotor"
+
+    @property
+    def frame(self) -> int:
+        """Frame of the plan's altitude."""
+        # Without a raster the ground is flat at the height of home, so heights over it count from home.
+        return Frame.GLOBAL if self.plan.altitude_reference == "amsl" else Frame.GLOBAL_RELATIVE_ALT
+
+    @property
+    def altitude_over_home_m(self) -> float:
+        """The plan's altitude, as far as the height of home is known."""
+        over_sea = self.plan.altitude_reference == "amsl"
+        return self.plan.altitude_m - (self.options.home_altitude_m if over_sea else 0.0)
+
+    @property
+    def any_yaw(self) -> float:
+        """Param 4 that leaves the heading to the autopilot."""
+        return math.nan if self.is_px4 else 0.0
+
+    @property
+    def orbit_radius_m(self) -> float:
+        """Radius of the circles up and down."""
+        return self.options.climb_radius_m or orbit_radius_m(self.vehicle.min_turn_radius_m)
+
+    def direction_rad(self, segment: PathSegment, *, at_start: bool) -> float:
+        """Direction of flight at one end of a segment, counter-clockwise from east."""
+        here, there = self.local.xy(segment.start), self.local.xy(segment.end)
+        if segment.centre is None:
+            return math.atan2(there[1] - here[1], there[0] - here[0])
+        centre = self.local.xy(segment.centre)
+        place = here if at_start else there
+        outward_rad = math.atan2(place[1] - centre[1], place[0] - centre[0])
+        return outward_rad + (math.pi / 2.0 if segment.kind == "left" else -math.pi / 2.0)
+
+    @property
+    def free_straight_m(self) -> float:
+        """How much of the path's beginning is straight, before anything is collected."""
+        first = self.path.segments[0]
+        if first.kind != "straight":
+            return 0.0
+        return min([first.length_m, *(collect.start_m for collect in self.collects)])
+
+
+def task_of(plan: Plan, name: str | None, autopilot: Autopilot | None, options: EncodeOptions) -> Task:
+    """The task of one vehicle; EncodeError where there is nothing to encode."""
+    vehicle = _vehicle(plan, name)
+    path = next((path for path in plan.paths if path.vehicle == vehicle.name), None)
+    if path is None or not path.segments or path.length_m <= 0.0:
+        raise EncodeError(f"the plan has no path for {vehicle.name!r}")
+    collects = plan.collects_of(vehicle.name)
+    for collect in collects:
+        if not collect.start_m < collect.end_m:
+            raise EncodeError(f"collect {collect.seq} of {vehicle.name!r} ends where it starts")
+    local = LocalMap(plan.home)
+    task = Task(
+        plan,
+        vehicle,
+        path,
+        collects,
+        dialect_for(autopilot or vehicle.autopilot, vehicle.type),
+        options,
+        local,
+        room_of(plan.fence, local),
+    )
+    if not task.altitude_over_home_m > 0.0:
+        raise EncodeError(f"the plan's altitude is {task.altitude_over_home_m:g} m over home")
+    return task
+
+
+def _vehicle(plan: Plan, name: str | None) -> PlanVehicle:
+    names = ", ".join(vehicle.name for vehicle in plan.vehicles)
+    if name is None:
+        if len(plan.vehicles) != 1:
+            raise EncodeError(f"the plan has several vehicles, one must be named: {names}")
+        return plan.vehicles[0]
+    for vehicle in plan.vehicles:
+        if vehicle.name == name:
+            return vehicle
+    raise EncodeError(f"the plan has no vehicle {name!r}, only {names}")

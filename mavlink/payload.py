@@ -1,0 +1,237 @@
+"""How the sensor is switched on and off: the item right behind the waypoint at each end of a collect."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from mavlink.items import Command, Frame, MissionItem
+
+Parameters = tuple[float, float, float, float, float, float, float]
+
+_NOTHING: Parameters = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+
+class PayloadError(ValueError):
+    """A payload that cannot be switched as asked."""
+
+
+@dataclass(frozen=True, slots=True)
+class RelayPayload:
+    """A relay, closed while the sensor is on: DO_SET_RELAY."""
+
+    relay: int = 0
+
+    def __post_init__(self) -> None:
+        if not 0 <= self.relay <= 15:
+            raise PayloadError(f"relay {self.relay}: ArduPilot counts relays from 0 to 15")
+
+
+@dataclass(frozen=True, slots=True)
+class ServoPayload:
+    """A servo output with two positions, pulse widths in microseconds: DO_SET_SERVO."""
+
+    servo: int
+    on_pwm_us: int = 1900
+    off_pwm_us: int = 1100
+
+    def __post_init__(self) -> None:
+        if not 1 <= self.servo <= 32:
+            raise PayloadError(f"servo {self.servo}: outputs are numbered 1 to 32")
+        for pwm_us in (self.on_pwm_us, self.off_pwm_us):
+            if not 500 <= pwm_us <= 2500:
+                raise PayloadError(f"pulse width {pwm_us} µs: between 500 and 2500 is meant")
+
+
+@dataclass(frozen=True, slots=True)
+class ActuatorPayload:
+    """One of PX4's actuators by function, values -1 to 1: DO_SET_ACTUATOR.
+
+    Actuators 5 and 6 travel in the integers of an item, where "unchanged" cannot be said: each order centres
+    them, so they must not be in use for anything else.
+    """
+
+    actuator: int = 1
+    on_value: float = 1.0
+    off_value: float = -1.0
+
+    def __post_init__(self) -> None:
+        if not 1 <= self.actuator <= 4:
+            raise PayloadError(f"actuator {self.actuator}: 1 to 4 can be set by a mission item")
+        for value in (self.on_value, self.off_value):
+            if not -1.0 <= value <= 1.0:
+                raise PayloadError(f"actuator value {value}: between -1 and 1 is meant")
+
+
+@dataclass(frozen=True, slots=True)
+class CameraPayload:
+    """A shutter released every so many metres: DO_SET_CAM_TRIGG_DIST."""
+
+    distance_m: float
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.distance_m) and self.distance_m > 0.0):
+            raise PayloadError(f"shutter distance {self.distance_m} m: a positive number is meant")
+
+
+@dataclass(frozen=True, slots=True)
+class ImagePayload:
+    """A camera of the camera protocol: IMAGE_START_CAPTURE and IMAGE_STOP_CAPTURE."""
+
+    interval_s: float = 1.0
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.interval_s) and self.interval_s > 0.0):
+            raise PayloadError(f"interval {self.interval_s} s: a positive number is meant")
+
+
+@dataclass(frozen=True, slots=True)
+class CommandPayload:
+    """Any command, with its seven parameters for on and for off.
+
+    Parameters five and six travel as integers; fractions are refused.
+    """
+
+    on_command: int
+    on: Parameters
+    off_command: int
+    off: Parameters
+
+    def __post_init__(self) -> None:
+        for command in (self.on_command, self.off_command):
+            if not 0 < command <= 65535:
+                raise PayloadError(f"command {command}: 1 to 65535 is meant")
+        for parameters in (self.on, self.off):
+            for number in (5, 6):
+                value = parameters[number - 1]
+                if not (math.isfinite(value) and value == round(value)):
+                    raise PayloadError(f"parameter {number} travels as an integer, {value} does not fit")
+
+
+Payload = RelayPayload | ServoPayload | ActuatorPayload | CameraPayload | ImagePayload | CommandPayload
+
+
+def switch_items(payload: Payload) -> tuple[MissionItem, MissionItem]:
+    """The items that switch a payload on and off, in the frame of items without a place, not yet numbered."""
+    if isinstance(payload, RelayPayload):
+        return _item(Command.DO_SET_RELAY, payload.relay, 1.0), _item(
+            Command.DO_SET_RELAY, payload.relay, 0.0
+        )
+    if isinstance(payload, ServoPayload):
+        return (
+            _item(Command.DO_SET_SERVO, payload.servo, payload.on_pwm_us),
+            _item(Command.DO_SET_SERVO, payload.servo, payload.off_pwm_us),
+        )
+    if isinstance(payload, ActuatorPayload):
+        return _actuator(payload.actuator, payload.on_value), _actuator(payload.actuator, payload.off_value)
+    if isinstance(payload, CameraPayload):
+        # Param 3 takes the first picture at once: at the collect's start, not a spacing later.
+        return (
+            _item(Command.DO_SET_CAM_TRIGG_DIST, payload.distance_m, 0.0, 1.0),
+            _item(Command.DO_SET_CAM_TRIGG_DIST, 0.0),
+        )
+    if isinstance(payload, ImagePayload):
+        return (
+            _item(Command.IMAGE_START_CAPTURE, 0.0, payload.interval_s, 0.0),
+            _item(Command.IMAGE_STOP_CAPTURE, 0.0),
+        )
+    return _raw(payload.on_command, payload.on), _raw(payload.off_command, payload.off)
+
+
+def parse_payload(text: str) -> Payload:
+    """The payload of a specification.
+
+    ``relay:0`` · ``servo:9:1900:1100`` (output, on, off in µs) · ``actuator:1:1:-1`` (number, on, off) ·
+    ``camera:distance=25`` (m) · ``image:interval=2`` (s) · ``command:2000:0,2,0/2001:0`` (command and
+    parameters for on, then for off; the off command may be left out when it is the same).
+
+    Raises
+    ------
+    PayloadError
+        Naming what is not understood.
+    """
+    kind, _, rest = text.strip().partition(":")
+    try:
+        if kind == "relay":
+            return RelayPayload(int(rest or "0"))
+        if kind == "servo":
+            return ServoPayload(*(int(part) for part in rest.split(":")))
+        if kind == "actuator":
+            number, *values = rest.split(":") if rest else ["1"]
+            return ActuatorPayload(int(number), *(float(value) for value in values))
+        if kind == "camera":
+            return CameraPayload(_named(rest, "distance"))
+        if kind == "image":
+            return ImagePayload(_named(rest, "interval"))
+        if kind == "command":
+            return _parse_command(rest)
+    except PayloadError:
+        raise
+    except (TypeError, ValueError) as error:
+        raise PayloadError(f"payload {text!r}: {error}") from error
+    raise PayloadError(
+        f"payload {text!r}: begins with none of relay, servo, actuator, camera, image, command"
+    )
+
+
+def _parse_command(text: str) -> CommandPayload:
+    on_text, slash, off_text = text.partition("/")
+    if not slash:
+        raise PayloadError(f"command payload {text!r}: on and off are divided by a slash")
+    on_command, _, on_parameters = on_text.partition(":")
+    off_command, colon, off_parameters = off_text.partition(":")
+    if not colon:
+        off_command, off_parameters = on_command, off_text
+    return CommandPayload(
+        int(on_command), _parameters(on_parameters), int(off_command), _parameters(off_parameters)
+    )
+
+
+def _parameters(text: str) -> Parameters:
+    values = [float(part) for part in text.split(",")] if text else []
+    if len(values) > len(_NOTHING):
+        raise PayloadError(f"{len(values)} parameters, a command has seven")
+    p1, p2, p3, p4, p5, p6, p7 = [*values, *_NOTHING[len(values) :]]
+    return (p1, p2, p3, p4, p5, p6, p7)
+
+
+def _named(text: str, name: str) -> float:
+    key, equals, value = text.partition("=")
+    if key != name or not equals:
+        raise PayloadError(f"{text!r}: {name}=… is meant")
+    return float(value)
+
+
+def _item(command: int, param1: float = 0.0, param2: float = 0.0, param3: float = 0.0) -> MissionItem:
+    return MissionItem(
+        0, Frame.MISSION, command, param1=float(param1), param2=float(param2), param3=float(param3)
+    )
+
+
+def _actuator(actuator: int, value: float) -> MissionItem:
+    param1, param2, param3, param4 = (value if actuator == n else math.nan for n in (1, 2, 3, 4))
+    return MissionItem(
+        0,
+        Frame.MISSION,
+        Command.DO_SET_ACTUATOR,
+        param1=param1,
+        param2=param2,
+        param3=param3,
+        param4=param4,
+    )
+
+
+def _raw(command: int, values: Parameters) -> MissionItem:
+    param1, param2, param3, param4, x, y, z = values
+    return MissionItem(
+        0,
+        Frame.MISSION,
+        command,
+        param1=param1,
+        param2=param2,
+        param3=param3,
+        param4=param4,
+        x=round(x),
+        y=round(y),
+        z=z,
+    )
