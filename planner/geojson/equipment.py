@@ -19,7 +19,7 @@ MULTIROTOR_BANK_DEG = 25.0
 
 METHODS = {
     "coverage": ("auto", "li2018"),
-    "routing": ("auto", "li2018"),
+    "routing": ("auto", "joint", "li2018", "li2018-threat-aware"),
     "transit": ("auto", "ssas", "tangent"),
     "smoothing": ("auto", "fillet", "shortcut"),
     "search": ("auto",),

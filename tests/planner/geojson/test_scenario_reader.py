@@ -54,70 +54,130 @@ def bend(change: Callable[[dict[str, Any]], object]) -> dict[str, Any]:
 BAD: dict[str, tuple[dict[str, Any], str, str]] = {
     "self-intersecting ring": (
         small(feature("X", "roi", "Polygon", [[[0, 0], [0.01, 0.01], [0.01, 0], [0, 0.01], [0, 0]]])),
-        "X", "ring-self-intersects",
+        "X",
+        "ring-self-intersects",
     ),
     "empty ring": (small(feature("X", "roi", "Polygon", [[]])), "X", "ring-empty"),
     "no ring": (small(feature("X", "roi", "Polygon", [])), "X", "ring-empty"),
     "open ring": (
-        small(feature("X", "roi", "Polygon", [[[0, 0], [0.01, 0], [0.01, 0.01], [0, 0.01]]])), "X", "ring-not-closed",
+        small(feature("X", "roi", "Polygon", [[[0, 0], [0.01, 0], [0.01, 0.01], [0, 0.01]]])),
+        "X",
+        "ring-not-closed",
     ),
     "ring on a line": (
-        small(feature("X", "roi", "Polygon", [[[0, 0], [0.01, 0], [0.02, 0], [0, 0]]])), "X", "ring-self-intersects",
+        small(feature("X", "roi", "Polygon", [[[0, 0], [0.01, 0], [0.02, 0], [0, 0]]])),
+        "X",
+        "ring-self-intersects",
     ),
-    "two points": (small(feature("X", "roi", "Polygon", [[[0, 0], [0.01, 0], [0, 0]]])), "X", "ring-too-short"),
-    "wrong axis order": (small(feature("X", "threat", "Point", [33.5, -117.7], model="missile", radius_m=10)),
-                         "X", "latitude-out-of-range"),
-    "longitude": (small(feature("X", "threat", "Point", [181, 0], model="missile", radius_m=10)),
-                  "X", "longitude-out-of-range"),
-    "NaN place": (small(feature("X", "threat", "Point", [math.nan, 0], model="missile", radius_m=10)),
-                  "X", "not-finite"),
+    "two points": (
+        small(feature("X", "roi", "Polygon", [[[0, 0], [0.01, 0], [0, 0]]])),
+        "X",
+        "ring-too-short",
+    ),
+    "wrong axis order": (
+        small(feature("X", "threat", "Point", [33.5, -117.7], model="missile", radius_m=10)),
+        "X",
+        "latitude-out-of-range",
+    ),
+    "longitude": (
+        small(feature("X", "threat", "Point", [181, 0], model="missile", radius_m=10)),
+        "X",
+        "longitude-out-of-range",
+    ),
+    "NaN place": (
+        small(feature("X", "threat", "Point", [math.nan, 0], model="missile", radius_m=10)),
+        "X",
+        "not-finite",
+    ),
     "NaN number": (small(altitude_m=math.nan), "scenario", "not-finite"),
     "text for a number": (small(altitude_m="500"), "scenario", "bad-value"),
     "true for a number": (small(altitude_m=True), "scenario", "bad-value"),
-    "region outside the area": (small(feature("X", "roi", "Polygon", square(0.2, 0.0, 0.003))),
-                                "X", "roi-outside-area"),
+    "region outside the area": (
+        small(feature("X", "roi", "Polygon", square(0.2, 0.0, 0.003))),
+        "X",
+        "roi-outside-area",
+    ),
     "unknown role": (small(feature("X", "target", "Point", [0, 0])), "X", "unknown-role"),
-    "no role": (small({"type": "Feature", "id": "X", "properties": {}, "geometry": None}), "X", "unknown-role"),
-    "unknown property": (small(feature("X", "roi", "Polygon", square(0.01, 0, 0.002), prio=2)),
-                         "X", "unknown-property"),
+    "no role": (
+        small({"type": "Feature", "id": "X", "properties": {}, "geometry": None}),
+        "X",
+        "unknown-role",
+    ),
+    "unknown property": (
+        small(feature("X", "roi", "Polygon", square(0.01, 0, 0.002), prio=2)),
+        "X",
+        "unknown-property",
+    ),
     "unknown member": (small(altitude=3), "scenario", "unknown-property"),
     "wrong geometry": (small(feature("X", "threat", "LineString", [[0, 0], [1, 1]])), "X", "wrong-geometry"),
     "start in a hard threat": (
         small(feature("X", "threat", "Point", [-0.02, -0.02], model="missile", radius_m=500, hard=True)),
-        "start", "start-in-hard-zone",
+        "start",
+        "start-in-hard-zone",
     ),
-    "start in a no-fly zone": (small(feature("X", "no_fly", "Polygon", square(-0.021, -0.021, 0.002))),
-                               "start", "start-in-hard-zone"),
+    "start in a no-fly zone": (
+        small(feature("X", "no_fly", "Polygon", square(-0.021, -0.021, 0.002))),
+        "start",
+        "start-in-hard-zone",
+    ),
     "start outside the area": (
-        bend(lambda d: d["features"][3]["geometry"].update(coordinates=[-0.06, 0])), "start", "outside-area",
+        bend(lambda d: d["features"][3]["geometry"].update(coordinates=[-0.06, 0])),
+        "start",
+        "outside-area",
     ),
     "two starts": (small(feature("X", "start", "Point", [0, 0])), "X", "several-starts"),
     "same name twice": (small(feature("A", "roi", "Polygon", square(0.01, 0, 0.002))), "A", "duplicate-id"),
     "turn radius larger than the area": (
         small(vehicles=[{"name": "uav", "airspeed_m_s": 200.0, "min_turn_radius_m": 9000.0}]),
-        "vehicle uav", "turn-radius-exceeds-area",
+        "vehicle uav",
+        "turn-radius-exceeds-area",
     ),
-    "no turn limit": (small(vehicles=[{"name": "uav", "airspeed_m_s": 20.0}]), "vehicle uav", "missing-property"),
+    "no turn limit": (
+        small(vehicles=[{"name": "uav", "airspeed_m_s": 20.0}]),
+        "vehicle uav",
+        "missing-property",
+    ),
     "no vehicle": (small(vehicles=[]), "scenario", "missing-member"),
     "swath not positive": (
-        bend(lambda d: d["sensors"][0].update(elevation_beamwidth_deg=120.0)), "sensor sar", "swath-not-positive",
+        bend(lambda d: d["sensors"][0].update(elevation_beamwidth_deg=120.0)),
+        "sensor sar",
+        "swath-not-positive",
     ),
-    "zero beam": (bend(lambda d: d["sensors"][0].update(elevation_beamwidth_deg=0.0)), "sensor sar", "out-of-range"),
-    "unknown sensor": (small(feature("X", "roi", "Polygon", square(0.01, 0, 0.002), sensor="eye")),
-                       "X", "unknown-sensor"),
+    "zero beam": (
+        bend(lambda d: d["sensors"][0].update(elevation_beamwidth_deg=0.0)),
+        "sensor sar",
+        "out-of-range",
+    ),
+    "unknown sensor": (
+        small(feature("X", "roi", "Polygon", square(0.01, 0, 0.002), sensor="eye")),
+        "X",
+        "unknown-sensor",
+    ),
     "unknown method": (small(method={"routing": "magic"}), "method", "unknown-value"),
     "search": (small(task="search"), "scenario", "not-supported"),
-    "far apart": (small(feature("X", "threat", "Point", [60, 50], model="missile", radius_m=10)),
-                  "scenario", "extent-too-large"),
-    "other crs": (small(crs={"type": "name", "properties": {"name": "EPSG:3857"}}), "scenario", "unknown-crs"),
+    "far apart": (
+        small(feature("X", "threat", "Point", [60, 50], model="missile", radius_m=10)),
+        "scenario",
+        "extent-too-large",
+    ),
+    "other crs": (
+        small(crs={"type": "name", "properties": {"name": "EPSG:3857"}}),
+        "scenario",
+        "unknown-crs",
+    ),
     "no region": (bend(lambda d: d.update(features=d["features"][2:])), "scenario", "no-region"),
     "no start": (bend(lambda d: d.update(features=d["features"][:3])), "scenario", "no-start"),
     "below ground": (
-        bend(lambda d: (d.update(altitude_reference="amsl"),
-                        d["features"][3]["geometry"].update(coordinates=[-0.02, -0.02, 700.0]))),
-        "scenario", "altitude-below-ground",
+        bend(
+            lambda d: (
+                d.update(altitude_reference="amsl"),
+                d["features"][3]["geometry"].update(coordinates=[-0.02, -0.02, 700.0]),
+            )
+        ),
+        "scenario",
+        "altitude-below-ground",
     ),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("name", BAD)
@@ -151,8 +211,22 @@ JSON = st.recursive(
     lambda inner: st.lists(inner, max_size=4) | st.dictionaries(st.text(max_size=4), inner, max_size=3),
     max_leaves=8,
 )
-SPOTS = ["features.0.geometry", "features.0.geometry.coordinates", "features.0.properties", "features.2", "vehicles",
-         "vehicles.0", "sensors.0", "wind", "objective", "method", "seed", "time_budget_s", "clearance_m", "features.3.geometry.coordinates"]  # fmt: skip
+SPOTS = [
+    "features.0.geometry",
+    "features.0.geometry.coordinates",
+    "features.0.properties",
+    "features.2",
+    "vehicles",
+    "vehicles.0",
+    "sensors.0",
+    "wind",
+    "objective",
+    "method",
+    "seed",
+    "time_budget_s",
+    "clearance_m",
+    "features.3.geometry.coordinates",
+]
 
 
 @given(spot=st.sampled_from(SPOTS), junk=JSON)

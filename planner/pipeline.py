@@ -1,0 +1,213 @@
+"""make_plan: the stages in turn, each chosen by name, and the judge at the end."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+
+from planner.check import judge
+from planner.dubins.path import Path, Segment, join
+from planner.environment.zones import KeepOut, keep_out
+from planner.errors import Finding, InfeasibleError
+from planner.metrics import measure
+from planner.plan import Plan
+from planner.progress import Progress, Stop, never, raise_if, silent
+from planner.publish import Leg, assemble, uncovered, whole_path
+from planner.route import Anchor, CollectPass, Route
+from planner.routing.greedy import greedy
+from planner.routing.joint import joint_route
+from planner.scenario import Method, Scenario
+from planner.transit import ssas_connector, tangent
+from planner.vehicle.aircraft import Aircraft
+from planner.version import __version__
+
+Clock = Callable[[], float]
+
+#: Transits keep this far from zones and the area's edge, more than the chords of arcs can cut.
+TRANSIT_MARGIN_M = 2.0
+
+#: What ``auto`` stands for.
+AUTO = {
+    "coverage": "li2018",
+    "routing": "joint",
+    "transit": "tangent",
+    "smoothing": "fillet",
+    "search": "none",
+}
+
+
+@dataclass(slots=True)
+class _Stopwatch:
+    """Seconds by stage, on the caller's clock; nothing without one."""
+
+    clock: Clock | None
+    seconds: dict[str, float] = field(default_factory=dict)
+
+    @contextmanager
+    def stage(self, name: str) -> Iterator[None]:
+        began = self.clock() if self.clock else 0.0
+        yield
+        if self.clock:
+            self.seconds[name] = round(self.clock() - began, 6)
+
+
+def make_plan(
+    scenario: Scenario,
+    progress: Progress = silent,
+    stop: Stop = never,
+    clock: Clock | None = None,
+) -> Plan:
+    """Plan a scenario.
+
+    Parameters
+    ----------
+    scenario
+        From ``planner.geojson.read_scenario``.
+    progress
+        Takes the stage at work and the fraction done.
+    stop
+        Asked between steps; planning ends with CancelledError once it says True.
+    clock
+        Seconds, for ``metrics.planning_time_s``; the same scenario gives the same plan whatever it says.
+
+    Raises
+    ------
+    InfeasibleError
+        With the constraint, the feature and the nearest relaxation.
+    """
+    aircraft = scenario.aircraft[0]
+    methods = chosen_methods(scenario.method)
+    watch = _Stopwatch(clock)
+    with watch.stage("routing"):
+        route, dropped = _route(scenario, aircraft, methods, _part(progress, 0.0, 0.5), stop)
+    with watch.stage("transit"):
+        legs, notes = _connect(scenario, aircraft, methods, route, _part(progress, 0.5, 0.9), stop)
+    with watch.stage("publish"):
+        path = whole_path(legs, route.passes)
+        draft = assemble(
+            scenario,
+            aircraft,
+            legs,
+            route.passes,
+            metrics=measure(scenario, aircraft, path, route.passes, {}, {}),
+            methods=methods,
+            planner_version=__version__,
+            warnings=tuple(str(f) for f in (*scenario.warnings, *dropped)) + notes,
+        )
+    progress("check", 0.95)
+    with watch.stage("check"):
+        verdict = judge(scenario, draft)
+    reasons = {name: f.message for f in dropped for name in f.feature.split("+")}
+    progress("done", 1.0)
+    return replace(
+        draft,
+        metrics=replace(draft.metrics, coverage=verdict.coverage, planning_time_s=dict(watch.seconds)),
+        violations=verdict.violations,
+        uncovered=uncovered(scenario, verdict.unseen, reasons),
+    )
+
+
+def chosen_methods(method: Method) -> dict[str, str]:
+    """The algorithm of each stage, ``auto`` resolved."""
+    asked = {name: getattr(method, name) for name in Method.__slots__}
+    chosen = {name: AUTO[name] if value == "auto" else value for name, value in asked.items()}
+    if method.routing == "auto" and method.coverage == "li2018":
+        # Asking for the paper's neighbourhoods by name means the paper's choice among them.
+        chosen["routing"] = "li2018"
+    return chosen
+
+
+def _route(
+    scenario: Scenario, aircraft: Aircraft, methods: dict[str, str], progress: Progress, stop: Stop
+) -> tuple[Route, tuple[Finding, ...]]:
+    if methods["routing"] != "joint":
+        aware = methods["routing"] == "li2018-threat-aware"
+        chosen = greedy(scenario, progress, stop, threat_aware=aware, aircraft=aircraft)
+        return chosen.route, tuple(_dropped(error) for error in chosen.dropped)
+    joint = joint_route(scenario, aircraft, progress, stop)
+    return joint.route, joint.dropped
+
+
+def _dropped(error: InfeasibleError) -> Finding:
+    rule = f"not-seen-{error.constraint}"
+    return Finding(error.feature, rule, error.message, error.relaxation, "warning")
+
+
+def _connect(
+    scenario: Scenario,
+    aircraft: Aircraft,
+    methods: dict[str, str],
+    route: Route,
+    progress: Progress,
+    stop: Stop,
+) -> tuple[tuple[Leg, ...], tuple[str, ...]]:
+    """A flyable leg from the start through all collects to the end."""
+    zones = keep_out(scenario, TRANSIT_MARGIN_M)
+    starts = [Anchor(*scenario.start.position, scenario.start.angle_rad)] + [
+        Anchor(*p.end, p.angle_rad) for p in route.passes
+    ]
+    goals = [_settled(p, aircraft.settle_m) for p in route.passes] + [
+        Anchor(*scenario.end.position, scenario.end.angle_rad)
+    ]
+    names = [scenario.start.name, *("+".join(p.regions) for p in route.passes), scenario.end.name]
+    legs: list[Leg] = []
+    notes: list[str] = []
+    for k, (start, goal) in enumerate(zip(starts, goals, strict=True)):
+        raise_if(stop)
+        progress("transit", k / len(starts))
+        path, method = _leg(
+            scenario, aircraft, methods["transit"], zones, start, goal, stop, notes, names[k : k + 2]
+        )
+        if k < len(route.passes) and aircraft.settle_m > 0.0:
+            path = _extended(path, route.passes[k])
+        legs.append(Leg(names[k], names[k + 1], path, method))
+    return tuple(legs), tuple(notes)
+
+
+def _leg(
+    scenario: Scenario,
+    aircraft: Aircraft,
+    method: str,
+    zones: KeepOut,
+    start: Anchor,
+    goal: Anchor,
+    stop: Stop,
+    notes: list[str],
+    names: list[str],
+) -> tuple[Path, str]:
+    """One connection; where SSAS finds none, the tangent connector does, and the plan says so."""
+    radius_m = aircraft.planned_turn_radius_m
+    if method == "ssas":
+        try:
+            path, _ = ssas_connector.connect(
+                start, goal, scenario=scenario, keep_out=zones, radius_m=radius_m, stop=stop
+            )
+        except InfeasibleError as error:
+            notes.append(f"SSAS connects {names[0]} and {names[1]} in no way ({error.message}): tangent used")
+        else:
+            return path, "ssas"
+    return tangent.connect(start, goal, zones, radius_m, stop), "tangent"
+
+
+def _settled(collect: CollectPass, settle_m: float) -> Anchor:
+    """Where the straight flight before a collect begins."""
+    ahead = collect.start[0] - collect.end[0], collect.start[1] - collect.end[1]
+    scale = settle_m / collect.length_m
+    return Anchor(collect.start[0] + scale * ahead[0], collect.start[1] + scale * ahead[1], collect.angle_rad)
+
+
+def _extended(path: Path, collect: CollectPass) -> Path:
+    """A leg with its settling run: straight on to where the collect begins."""
+    gap_m = math.dist(path.end.position, collect.start)
+    return join(path, Path((Segment("straight", path.end, gap_m),)))
+
+
+def _part(progress: Progress, low: float, high: float) -> Progress:
+    """Progress of one stage as a part of the whole."""
+
+    def report(stage: str, fraction: float) -> None:
+        progress(stage, low + (high - low) * min(max(fraction, 0.0), 1.0))
+
+    return report

@@ -1,0 +1,98 @@
+"""Compile every kernel once, so that the first plan is as fast as the second."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from planner.geojson import read_scenario
+from planner.pipeline import make_plan
+
+#: Small, and enough to run each stage by each of its methods.
+_SCENARIO: dict[str, Any] = {
+    "type": "FeatureCollection",
+    "name": "warm-up",
+    "features": [
+        {
+            "type": "Feature",
+            "id": f"R{k}",
+            "properties": {"role": "roi"},
+            "geometry": {
+                "type": "Polygon",
+                "coordinates": [
+                    [[x, 0.0], [x + w, 0.0], [x + w, w], [x, w], [x, 0.0]]
+                    for x, w in [(0.02 * k, (0.003, 0.007, 0.003)[k])]
+                ][0:1],
+            },
+        }
+        for k in range(3)
+    ]
+    + [
+        {
+            "type": "Feature",
+            "id": name,
+            "properties": {
+                "role": "threat",
+                "model": model,
+                "radius_m": 300.0,
+                "intensity_m": 300.0,
+                "hard": hard,
+            },
+            "geometry": {"type": "Point", "coordinates": [lon, lat]},
+        }
+        for name, model, lon, lat, hard in (
+            ("M", "missile", 0.012, 0.006, False),
+            ("D", "radar", 0.012, -0.012, False),
+            ("H", "missile", 0.03, 0.012, True),
+        )
+    ]
+    + [
+        {
+            "type": "Feature",
+            "id": "Z",
+            "properties": {"role": "no_fly"},
+            "geometry": {
+                "type": "Polygon",
+                "coordinates": [
+                    [[0.05, 0.012], [0.053, 0.012], [0.053, 0.016], [0.05, 0.016], [0.05, 0.012]]
+                ],
+            },
+        },
+        {
+            "type": "Feature",
+            "id": "area",
+            "properties": {"role": "area"},
+            "geometry": {
+                "type": "Polygon",
+                "coordinates": [[[-0.03, -0.03], [0.08, -0.03], [0.08, 0.04], [-0.03, 0.04], [-0.03, -0.03]]],
+            },
+        },
+        {
+            "type": "Feature",
+            "id": "start",
+            "properties": {"role": "start"},
+            "geometry": {"type": "Point", "coordinates": [-0.02, -0.02]},
+        },
+    ],
+    "vehicles": [{"name": "v", "airspeed_m_s": 20.0, "min_turn_radius_m": 100.0}],
+    "sensors": [
+        {
+            "name": "s",
+            "type": "sar",
+            "incidence_deg": 45.0,
+            "elevation_beamwidth_deg": 30.0,
+            "azimuth_beamwidth_deg": 10.0,
+            "look": "both",
+        }
+    ],
+    "altitude_m": 500.0,
+}
+
+
+def warm_up() -> None:
+    """Plan a small scenario by each method."""
+    for method in (
+        {},
+        {"routing": "li2018", "transit": "ssas", "smoothing": "fillet"},
+        {"routing": "li2018", "transit": "ssas", "smoothing": "shortcut"},
+    ):
+        make_plan(read_scenario(_SCENARIO | {"method": method}))
