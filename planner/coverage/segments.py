@@ -56,7 +56,7 @@ class Neighbourhood:
     angles_rad: Floats
     spans: Spans
 
-    def lines(self, etas: Floats, *, opposite: bool = False, run_m: float = 0.0) -> Floats:
+    def lines(self, etas: Floats, *, opposite: bool = False) -> Floats:
         """Ends of the collection segments of eqs 18 and 19.
 
         Parameters
@@ -65,8 +65,6 @@ class Neighbourhood:
             η, shape (K,).
         opposite
             The second passes of a distributed region, flown at θ + 180° on the other side.
-        run_m
-            Longer by this much at both ends.
 
         Returns
         -------
@@ -76,7 +74,7 @@ class Neighbourhood:
         spans = _turned(self.spans) if opposite else self.spans
         angles_rad = self.angles_rad + (math.pi if opposite else 0.0)
         swath_m, near_m = self.sensor.swath_m(self.height_m), self.sensor.near_m(self.height_m)
-        half_m = self.sensor.aperture_m(self.height_m) / 2.0 + run_m
+        half_m = self.sensor.aperture_m(self.height_m) / 2.0
         # Eq 19 for a right-looking sensor, mirrored for a left-looking one.
         inner_m = spans.y_max_m + near_m
         outer_m = spans.y_min_m + (self.turns + 1) * swath_m + near_m

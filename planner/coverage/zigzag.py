@@ -1,4 +1,4 @@
-"""Zigzag baselines, section 5.3.1 of Li, Chen, Wang, Li (2018): what one flies without planning for the sensor.
+"""Zigzag baselines of section 5.3.1 of Li, Chen, Wang, Li (2018): flying without planning for the sensor.
 
 All regions are taken as one; a rectangle round them is cut into strips one swath wide, and one lane is flown
 along each strip that holds ground to be seen. A side-looking sensor sees the strip from a line beside it: a
@@ -81,9 +81,9 @@ def zigzag(scenario: Scenario, direction: Direction) -> Zigzag:
     """The shortest zigzag from start to end with lanes north–south or east–west.
 
     Strips are laid from either edge of the rectangle, the sweep begins at either, and the first lane is flown
-    either way: of these eight, by where start and end are, the shortest is taken. Lanes without anything to see are left out, and each lane
-    reaches as far as it or the lane next to it needs, half an aperture beyond the regions. The operating area
-    and threats are not looked at, as in the paper.
+    either way: of these eight, by where start and end are, the shortest is taken. Lanes without anything to
+    see are left out, and each lane reaches as far as it or the lane next to it needs, half an aperture beyond
+    the regions. The operating area and threats are not looked at, as in the paper.
 
     Parameters
     ----------
