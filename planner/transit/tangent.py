@@ -1,0 +1,229 @@
+"""The shortest flyable line round zones: tangents and arcs.
+
+Where a Dubins word is clear it is the answer. Otherwise the line follows the circles that hug the zones
+(never tighter than the turn radius) and the turning circles at its ends, and changes between them along their
+common tangents; the shortest such line is found by A* over the circles, each taken both ways round. Zones
+come into the search only when a line found without them enters them, so it stays as small as the way demands.
+
+This is the tangent graph of Y.-H. Liu and S. Arimoto, "Path planning using a tangent graph for mobile robots
+among polygonal and curved obstacles", International Journal of Robotics Research 11 (1992), with the turning
+circles of Dubins' words in the place of its end points.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planner.dubins.path import Path, Segment, SegmentKind, join
+from planner.dubins.words import candidates_between
+from planner.environment.zone_kernels import edge_distance, inside
+from planner.environment.zones import AREA, TOUCH_M, Disc, KeepOut
+from planner.errors import InfeasibleError
+from planner.progress import Stop, never, raise_if
+from planner.route import Anchor, Pose
+from planner.transit.tangent_kernels import search, turn_between
+from planner.transit.wheels import End, end_of, obstacles_of
+
+Array = NDArray[np.float64]
+
+
+def connect(start: Anchor, goal: Anchor, keep_out: KeepOut, radius_m: float, stop: Stop = never) -> Path:
+    """The shortest line found from one anchor to another that keeps clear of zones and in the area.
+
+    Never longer than any Dubins word that is clear. Soft zones are kept clear as far as possible:
+
+    - one that holds the start or the goal cannot be, and is left out;
+    - where no line keeps clear of all the others, they are given up one at a time, each time the one entered
+      least deeply by the line found so far, beginning with the line that minds hard zones only. What was
+      given up in vain is taken up again in the end.
+
+    Parameters
+    ----------
+    start, goal
+        A place each, and a direction unless it is free.
+    keep_out
+        Zones and area, margins included. Lines may touch them.
+    radius_m
+        Smallest turn radius, > 0.
+    stop
+        Asked between searches.
+
+    Raises
+    ------
+    InfeasibleError
+        ``"hard-zone"`` or ``"area"``: an end lies inside a hard zone or outside the area, or no line was
+        found that keeps clear of them; names the zone and the place.
+    CancelledError
+        ``stop`` said so.
+    """
+    if not (radius_m > 0.0 and math.isfinite(radius_m)):
+        raise ValueError(f"the turn radius must be positive and finite, not {radius_m}")
+    zones = _without_held_ends(start, goal, keep_out)
+    path = _solve(start, goal, zones, radius_m, stop)
+    if path is not None:
+        return path
+    soft = {name for name, hard in _named(zones) if not hard}
+    path = _solve(start, goal, zones.without(soft), radius_m, stop) if soft else None
+    if path is None:
+        raise _infeasible(start, goal, zones.without(soft), radius_m)
+    given_up: list[str] = []
+    while True:
+        conflicts = zones.without(given_up).conflicts(path)
+        if not conflicts:
+            break
+        given_up.append(min(conflicts, key=lambda conflict: (conflict.depth_m, conflict.zone)).zone)
+        path = _solve(start, goal, zones.without(given_up), radius_m, stop) or path
+    for name in given_up:
+        fewer = [other for other in given_up if other != name]
+        better = _solve(start, goal, zones.without(fewer), radius_m, stop)
+        if better is not None:
+            given_up, path = fewer, better
+    return path
+
+
+def _solve(start: Anchor, goal: Anchor, zones: KeepOut, radius_m: float, stop: Stop) -> Path | None:
+    """The shortest line found that is clear of all zones; None where none was found."""
+    words = candidates_between(start, goal, radius_m)
+    if zones.clear(words[0]):
+        return words[0]
+    found = [word for word in words[1:] if zones.clear(word)][:1]
+    every = {name for name, _ in _named(zones)}
+    for rich in (False, True):
+        minded = {conflict.zone for conflict in zones.conflicts(words[0])} - {AREA}
+        while True:
+            raise_if(stop)
+            path = _search(start, goal, zones.without(every - minded), radius_m, rich)
+            entered = {conflict.zone for conflict in zones.conflicts(path)} if path else every
+            if not entered - minded:
+                break
+            minded |= entered
+        if path is not None and not entered:
+            found.append(path)
+        if found:
+            break
+    return min(found, key=lambda path: path.length_m, default=None)
+
+
+def _search(start: Anchor, goal: Anchor, zones: KeepOut, radius_m: float, rich: bool) -> Path | None:
+    """The shortest line over the circles of these zones."""
+    obstacles = obstacles_of(zones, radius_m)
+    first = end_of(start, radius_m, zones, goal=False, rich=rich)
+    last = end_of(goal, radius_m, zones, goal=True, rich=rich)
+    both_ways = np.concatenate([obstacles.circles, obstacles.circles * [1.0, 1.0, -1.0]])
+    wheels = np.concatenate([first.wheels, last.wheels, both_ways])
+    length_m, visits = search(
+        wheels,
+        _entry_rows(first, 0),
+        _entry_rows(last, len(first.wheels)),
+        np.array(goal.position),
+        obstacles.discs,
+        obstacles.edges,
+    )
+    if not math.isfinite(length_m):
+        return None
+    lead_in, lead_out = first.entries[int(visits[0, 0])][2], last.entries[int(visits[0, 1])][2]
+    return join(
+        *(Path((lead,)) for lead in (lead_in,) if lead is not None),
+        _path(wheels, visits[1:], start, goal),
+        *(Path((lead,)) for lead in (lead_out,) if lead is not None),
+    )
+
+
+def _named(zones: KeepOut) -> list[tuple[str, bool]]:
+    """Names of the zones, and whether they are hard."""
+    return [*((d.name, d.hard) for d in zones.discs), *((z.name, z.hard) for z in zones.polygons)]
+
+
+def _entry_rows(end: End, first_wheel: int) -> Array:
+    rows = [
+        (wheel + first_wheel, angle, lead.length_m if lead else 0.0) for wheel, angle, lead in end.entries
+    ]
+    return np.array(rows, dtype=np.float64)
+
+
+def _path(wheels: Array, visits: Array, start: Anchor, goal: Anchor) -> Path:
+    """Arcs on the wheels visited and straights between them."""
+    segments: list[Segment] = []
+    for row, (wheel, arriving, leaving) in enumerate(visits):
+        east_m, north_m, signed_m = (float(value) for value in wheels[int(wheel)])
+
+        def pose(angle_rad: float, e: float = east_m, n: float = north_m, s: float = signed_m) -> Pose:
+            return Pose(e + s * math.sin(angle_rad), n - s * math.cos(angle_rad), angle_rad)
+
+        turn = float(turn_between(signed_m, arriving, leaving))
+        if turn > 0.0:
+            kind: SegmentKind = "left" if signed_m > 0.0 else "right"
+            segments.append(Segment(kind, pose(float(arriving)), turn * abs(signed_m), abs(signed_m)))
+        if row + 1 < len(visits):
+            begin = pose(float(leaving))
+            east_m, north_m, signed_m = (float(value) for value in wheels[int(visits[row + 1, 0])])
+            end = Pose(
+                east_m + signed_m * math.sin(leaving), north_m - signed_m * math.cos(leaving), float(leaving)
+            )
+            segments.append(Segment("straight", begin, math.dist(begin.position, end.position)))
+    if not segments:
+        angle_rad = start.angle_rad if start.angle_rad is not None else goal.angle_rad or 0.0
+        segments.append(Segment("straight", Pose(start.east_m, start.north_m, angle_rad), 0.0))
+    return Path(tuple(segments))
+
+
+def _without_held_ends(start: Anchor, goal: Anchor, zones: KeepOut) -> KeepOut:
+    """The zones without the soft ones that hold an end; discs an end touches shrunk to pass through it.
+
+    Raises InfeasibleError where a hard zone holds an end or the area does not.
+    """
+    left_out: set[str] = set()
+    for end, which in ((start, "start"), (goal, "end")):
+        for zone, depth_m, hard in _holding(end, zones):
+            if hard:
+                raise InfeasibleError(
+                    AREA if zone == AREA else "hard-zone",
+                    zone,
+                    f"the {which} of a transit lies {depth_m:.1f} m "
+                    + ("outside the area" if zone == AREA else "inside the zone"),
+                    f"Move it at least {depth_m:.1f} m, or change the zone or its margin.",
+                    end.position,
+                )
+            left_out.add(zone)
+    zones = zones.without(left_out)
+    discs = tuple(
+        Disc(
+            d.name, d.east_m, d.north_m, min(d.radius_m, *(_from_disc_m(e, d) for e in (start, goal))), d.hard
+        )
+        for d in zones.discs
+    )
+    return zones if discs == zones.discs else KeepOut(discs, zones.polygons, zones.area)
+
+
+def _from_disc_m(end: Anchor, disc: Disc) -> float:
+    return math.hypot(end.east_m - disc.east_m, end.north_m - disc.north_m)
+
+
+def _holding(end: Anchor, zones: KeepOut) -> list[tuple[str, float, bool]]:
+    """Zones that hold an end deeper than by a touch: name, depth in metres, hard."""
+    held = [(d.name, d.radius_m - _from_disc_m(end, d), d.hard) for d in zones.discs]
+    edges, offsets = zones.edge_arrays()
+    for zone, first, last in zip(zones.polygons, offsets[:-1], offsets[1:], strict=True):
+        if inside(edges, first, last, end.east_m, end.north_m):
+            held.append((zone.name, edge_distance(edges, first, last, end.east_m, end.north_m), zone.hard))
+    area = zones.area_edges()
+    if zones.area is not None and not inside(area, 0, len(area), end.east_m, end.north_m):
+        held.append((AREA, edge_distance(area, 0, len(area), end.east_m, end.north_m), True))
+    return [(name, depth_m, hard) for name, depth_m, hard in held if depth_m > 0.5 * TOUCH_M]
+
+
+def _infeasible(start: Anchor, goal: Anchor, zones: KeepOut, radius_m: float) -> InfeasibleError:
+    """Why there is no line: the worst conflict of the Dubins word."""
+    conflict = zones.conflict(candidates_between(start, goal, radius_m)[0])
+    assert conflict is not None, "a clear word is a line"
+    return InfeasibleError(
+        AREA if conflict.zone == AREA else "hard-zone",
+        conflict.zone,
+        f"no line with turns of {radius_m:.1f} m was found from ({start.east_m:.0f}, {start.north_m:.0f}) to "
+        f"({goal.east_m:.0f}, {goal.north_m:.0f}) m that keeps clear of it and of its neighbours",
+        "Move the ends or the zone, or use a smaller margin or turn radius.",
+        conflict.where,
+    )
