@@ -15,7 +15,7 @@ from typing import Any, Final, Generic, TypeVar
 
 from mavlink.codec import Codec
 from mavlink.errors import BusyError, CodecError, LinkError, NotConnectedError
-from mavlink.link import Link
+from mavlink.link import DirectLink, Link
 from mavlink.messages import Message
 from mavlink.modes import GROUND_STATION_TYPE, NO_AUTOPILOT
 from mavlink.telemetry import VehicleState, updated
@@ -82,6 +82,9 @@ class Driver:
     ) -> None:
         self.state = VehicleState()
         self._link = link
+        self._direct = link if isinstance(link, DirectLink) else None
+        self._due_s = math.inf
+        self._error: Exception | None = None
         self._codec = codec
         self._clock = clock
         self._on_connect = on_connect
@@ -185,25 +188,44 @@ class Driver:
         self._recorders.discard(recorder)
 
     async def _run(self) -> None:
+        if self._direct is not None:
+            self._direct.listen(self._hear)
         try:
-            while True:
+            while self._error is None:
                 self._let_time_pass()
                 await self._flush()
-                data = await self._wait()
-                for message in self._codec.feed(data):
+                for message in self._codec.feed(await self._wait()):
                     self._take(message)
                 await self._flush()
+            raise self._error
         except LinkError as error:
             self._fail(str(error))
         except Exception:
             self._fail("the driver has failed")
             raise
+        finally:
+            if self._direct is not None:
+                self._direct.listen(None)
+
+    def _hear(self, data: bytes) -> None:
+        """Take in and answer at once what a direct link brings; the task only lets time pass."""
+        assert self._direct is not None
+        try:
+            for message in self._codec.feed(data):
+                self._take(message)
+            while self._outgoing:
+                self._direct.send_now(self._outgoing.popleft())
+        except Exception as error:  # noqa: BLE001 - raised again in the task, whose business it is
+            self._error = error
+        if self._error is not None or self._next_deadline_s() < self._due_s:
+            self._wake()
 
     async def _wait(self) -> bytes:
         """Bytes, or none when something is due first."""
         if self._outgoing:
             return b""
-        delay_s = max(0.0, self._next_deadline_s() - self._clock())
+        self._due_s = self._next_deadline_s()
+        delay_s = max(0.0, self._due_s - self._clock())
         try:
             async with asyncio.timeout(delay_s) as self._timeout:
                 return await self._link.receive()
@@ -218,10 +240,16 @@ class Driver:
 
     def _send(self, messages: list[Message], job: _Job[Any]) -> None:
         """Queue a job's messages for the task, and wake it should it be waiting."""
+        self._queue(messages, job)
+        self._wake()
+
+    def _queue(self, messages: list[Message], job: _Job[Any]) -> None:
         try:
             self._outgoing.extend([self._codec.pack(message) for message in messages])
         except CodecError as error:
             job.fail(error)
+
+    def _wake(self) -> None:
         if self._timeout is not None and not self._timeout.expired():
             self._timeout.reschedule(asyncio.get_running_loop().time())
 
@@ -268,7 +296,9 @@ class Driver:
         if message.fields.get("target_system", 0) not in (0, self._codec.system_id):
             return  # meant for another ground station on the same link
         for job in list(self._machines()):
-            self._send(job.machine.receive(message, now_s), job)
+            answers = job.machine.receive(message, now_s)
+            if answers:
+                self._queue(answers, job)
             self._settle(job)
         if self._lingering is not None:
             answers = self._lingering.receive(message, now_s)

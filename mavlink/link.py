@@ -6,7 +6,8 @@ Addresses: ``udpin:host:port`` listens, ``udpout:host:port`` sends first, ``tcp:
 
 from __future__ import annotations
 
-from typing import Final, Protocol
+from collections.abc import Callable
+from typing import Final, Protocol, runtime_checkable
 
 from mavlink.errors import LinkError
 from mavlink.links.memory import LinkFaults, MemoryLink, memory_pair
@@ -14,7 +15,7 @@ from mavlink.links.serial_port import open_serial
 from mavlink.links.tcp import open_tcp_client, open_tcp_server
 from mavlink.links.udp import open_udp
 
-__all__ = ["FORMS", "Link", "LinkFaults", "MemoryLink", "memory_pair", "open_link"]
+__all__ = ["FORMS", "DirectLink", "Link", "LinkFaults", "MemoryLink", "memory_pair", "open_link"]
 
 FORMS: Final = "udpin:host:port, udpout:host:port, tcp:host:port, tcpin:host:port or serial:device:baud"
 
@@ -34,6 +35,17 @@ class Link(Protocol):
 
     async def close(self) -> None:
         """Close, and end a waiting receive with LinkError; closing twice is harmless."""
+
+
+@runtime_checkable
+class DirectLink(Link, Protocol):
+    """A link that can do without the event loop's next turn in both directions."""
+
+    def listen(self, listener: Callable[[bytes], None] | None) -> None:
+        """Hand bytes to ``listener`` the moment they arrive, not to ``receive``; None ends that."""
+
+    def send_now(self, data: bytes) -> None:
+        """Send without waiting."""
 
 
 async def open_link(url: str) -> Link:

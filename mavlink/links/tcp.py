@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 from typing import Final, cast
 
 from mavlink.errors import LinkError
@@ -22,7 +23,8 @@ class TcpClientLink:
         self._port = port
         self._reader = reader
         self._writer: asyncio.StreamWriter | None = writer
-        self._closed = asyncio.Event()
+        self._closed = False
+        self._attempt: asyncio.Task[tuple[asyncio.StreamReader, asyncio.StreamWriter]] | None = None
 
     @property
     def url(self) -> str:
@@ -31,14 +33,14 @@ class TcpClientLink:
 
     async def send(self, data: bytes) -> None:
         """Write; dropped while the peer is away."""
-        if self._closed.is_set():
+        if self._closed:
             raise LinkError("link closed")
         if self._writer is not None and not self._writer.is_closing():
             self._writer.write(data)
 
     async def receive(self) -> bytes:
         """Wait for bytes, connecting anew when the peer has gone."""
-        while not self._closed.is_set():
+        while not self._closed:
             if self._writer is None:
                 await self._reconnect()
                 continue
@@ -53,21 +55,34 @@ class TcpClientLink:
         raise LinkError("link closed")
 
     async def _reconnect(self) -> None:
-        try:
-            await asyncio.wait_for(self._closed.wait(), _RECONNECT_EVERY_S)
-        except TimeoutError:
-            try:
-                self._reader, self._writer = await asyncio.open_connection(self._host, self._port)
-            except OSError:
-                return  # not back yet; the caller's loop tries again
-            if self._closed.is_set():
+        """Try once, a while later; a caller that stops waiting does not stop the attempt."""
+        attempt = self._attempt or asyncio.create_task(self._connect_later())
+        self._attempt = attempt
+        await asyncio.wait({attempt})
+        self._attempt = None
+        if attempt.cancelled():
+            return
+        error = attempt.exception()
+        if error is None:
+            self._reader, self._writer = attempt.result()
+            if self._closed:
                 self._writer.close()
+        elif not isinstance(error, OSError):
+            raise error
+
+    async def _connect_later(self) -> tuple[asyncio.StreamReader, asyncio.StreamWriter]:
+        await asyncio.sleep(_RECONNECT_EVERY_S)
+        return await asyncio.open_connection(self._host, self._port)
 
     async def close(self) -> None:
         """Close the connection and stop making it anew."""
-        self._closed.set()
+        self._closed = True
+        if self._attempt is not None:
+            self._attempt.cancel()
         if self._writer is not None:
             self._writer.close()
+            with contextlib.suppress(OSError):  # the peer may have reset the connection
+                await self._writer.wait_closed()
 
 
 async def open_tcp_client(host: str, port: int) -> TcpClientLink:

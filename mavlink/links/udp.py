@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import socket
+from collections.abc import Callable
 from typing import Any, Final, cast
 
 from mavlink.errors import LinkError
@@ -31,6 +32,8 @@ class UdpLink(asyncio.DatagramProtocol):
         self._peers: dict[Address, float] = {}
         self._inbox = Inbox()
         self._transport: asyncio.DatagramTransport | None = None
+        self._lost = asyncio.Event()
+        self._listener: Callable[[bytes], None] | None = None
 
     @property
     def url(self) -> str:
@@ -54,7 +57,10 @@ class UdpLink(asyncio.DatagramProtocol):
         """Take a datagram (asyncio)."""
         if self._fixed_peer is None:
             self._hear(addr)
-        self._inbox.put(data)
+        if self._listener is None:
+            self._inbox.put(data)
+        else:
+            self._listener(data)
 
     def error_received(self, exc: Exception) -> None:
         """A peer that is not listening (asyncio): like a radio out of range, it may come back."""
@@ -62,6 +68,7 @@ class UdpLink(asyncio.DatagramProtocol):
     def connection_lost(self, exc: Exception | None) -> None:
         """End the reader (asyncio)."""
         self._inbox.fail(f"link closed: {exc}" if exc else "link closed")
+        self._lost.set()
 
     def _hear(self, peer: Address) -> None:
         now_s = asyncio.get_running_loop().time()
@@ -74,8 +81,19 @@ class UdpLink(asyncio.DatagramProtocol):
             while len(self._peers) > _MOST_PEERS:
                 del self._peers[min(self._peers, key=self._peers.__getitem__)]
 
+    def listen(self, listener: Callable[[bytes], None] | None) -> None:
+        """Hand datagrams to ``listener`` the moment they arrive, not to ``receive``; None ends that.
+
+        Saves a turn of the event loop for each, which is half the time of a transfer on a fast link.
+        """
+        self._listener = listener
+
     async def send(self, data: bytes) -> None:
         """Send to the fixed peer, or to every peer heard."""
+        self.send_now(data)
+
+    def send_now(self, data: bytes) -> None:
+        """The same without waiting, which datagrams never do."""
         transport = self._transport
         if transport is None or transport.is_closing():
             raise LinkError("link closed")
@@ -90,10 +108,11 @@ class UdpLink(asyncio.DatagramProtocol):
         return await self._inbox.get()
 
     async def close(self) -> None:
-        """Close the socket."""
+        """Close the socket; the port is free again on return."""
+        self._inbox.fail("link closed")
         if self._transport is not None:
             self._transport.close()
-        self._inbox.fail("link closed")
+            await self._lost.wait()
 
 
 async def open_udp(host: str, port: int, *, listen: bool) -> UdpLink:
