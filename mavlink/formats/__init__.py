@@ -1,1 +1,10 @@
-"""Mission files: .plan, .waypoints, KML."""
+"""Mission files: QGroundControl's ``.plan``, ``QGC WPL 110``, and KML for looking at."""
+
+from __future__ import annotations
+
+from mavlink.formats.errors import FormatError
+from mavlink.formats.kml import write_kml
+from mavlink.formats.qgc_plan import read_plan, write_plan
+from mavlink.formats.waypoints import read_waypoints, write_waypoints
+
+__all__ = ["FormatError", "read_plan", "read_waypoints", "write_kml", "write_plan", "write_waypoints"]

@@ -1,0 +1,115 @@
+"""A plan as KML, for looking at it on a globe."""
+
+from __future__ import annotations
+
+import math
+from xml.sax.saxutils import escape
+
+import simplekml
+
+from mavlink.geometry import LocalMap, offset
+from planner.plan import Collect, FlownPath, Footprint, Plan, ZoneCircle, ZonePolygon
+
+_PATH = "ff00a5ff"
+_COLLECT = "ff00ff00"
+_FOOTPRINT = "4000ff00"
+_AREA = "ffffffff"
+_BARRED = "400000ff"
+_CIRCLE_POINTS = 72
+
+
+def write_kml(plan: Plan, vehicle: str | None = None) -> str:
+    """The paths, collects and footprints of a plan, and its fence, as a KML document.
+
+    Parameters
+    ----------
+    plan
+        As checked.
+    vehicle
+        Name of one vehicle; None for all.
+
+    Raises
+    ------
+    ValueError
+        Where the plan has no such vehicle.
+    """
+    names = [v.name for v in plan.vehicles if vehicle in (None, v.name)]
+    if not names:
+        raise ValueError(f"the plan has no vehicle {vehicle!r}")
+    mode = (
+        simplekml.AltitudeMode.absolute
+        if plan.altitude_reference == "amsl"
+        else simplekml.AltitudeMode.relativetoground
+    )
+    document = simplekml.Kml(name=escape(plan.name))
+    home = document.newpoint(name="home", coords=[plan.home])
+    home.description = "Take-off"
+    for name in names:
+        folder = document.newfolder(name=escape(name))
+        for path in plan.paths:
+            if path.vehicle == name:
+                _add_path(folder, path, mode)
+        for collect in plan.collects_of(name):
+            _add_collect(folder, collect, mode)
+        for footprint in plan.footprints:
+            if footprint.vehicle == name:
+                _add_footprint(folder, footprint)
+    fence = document.newfolder(name="fence")
+    for zone in plan.fence.inclusion:
+        _add_zone(fence, zone, barred=False)
+    for zone in plan.fence.exclusion:
+        _add_zone(fence, zone, barred=True)
+    for circle in plan.fence.exclusion_circles:
+        _add_circle(fence, circle)
+    return str(document.kml())
+
+
+def _add_path(folder: simplekml.Folder, path: FlownPath, mode: str) -> None:
+    line = folder.newlinestring(name=f"path of {escape(path.vehicle)}", coords=list(path.line))
+    line.altitudemode = mode
+    line.description = f"{path.length_m / 1000.0:.2f} km, {path.duration_s:.0f} s"
+    line.style.linestyle.color = _PATH
+    line.style.linestyle.width = 2
+
+
+def _add_collect(folder: simplekml.Folder, collect: Collect, mode: str) -> None:
+    line = folder.newlinestring(
+        name=f"collect {collect.seq}: {escape(collect.roi)}", coords=list(collect.line)
+    )
+    line.altitudemode = mode
+    line.description = escape(
+        f"sensor {collect.sensor} looking {collect.look}, heading {collect.heading_deg:.1f}°, "
+        f"{collect.end_m - collect.start_m:.0f} m"
+    )
+    line.style.linestyle.color = _COLLECT
+    line.style.linestyle.width = 5
+
+
+def _add_footprint(folder: simplekml.Folder, footprint: Footprint) -> None:
+    polygon = folder.newpolygon(
+        name=f"footprint {footprint.seq}: {escape(footprint.roi)}", outerboundaryis=_closed(footprint.ring)
+    )
+    polygon.altitudemode = simplekml.AltitudeMode.clamptoground
+    polygon.style.polystyle.color = _FOOTPRINT
+    polygon.style.linestyle.color = _COLLECT
+
+
+def _add_zone(folder: simplekml.Folder, zone: ZonePolygon, *, barred: bool) -> None:
+    polygon = folder.newpolygon(name=escape(zone.name), outerboundaryis=_closed(zone.ring))
+    polygon.altitudemode = simplekml.AltitudeMode.clamptoground
+    polygon.style.polystyle.fill = int(barred)
+    polygon.style.polystyle.color = _BARRED
+    polygon.style.linestyle.color = _AREA
+
+
+def _add_circle(folder: simplekml.Folder, circle: ZoneCircle) -> None:
+    local = LocalMap(circle.centre)
+    ring = tuple(
+        local.lonlat(offset((0.0, 0.0), 2.0 * math.pi * n / _CIRCLE_POINTS, circle.radius_m))
+        for n in range(_CIRCLE_POINTS)
+    )
+    _add_zone(folder, ZonePolygon(circle.name, ring), barred=True)
+
+
+def _closed(ring: tuple[tuple[float, float], ...]) -> list[tuple[float, float]]:
+    return [*ring, ring[0]] if ring[0] != ring[-1] else list(ring)

@@ -1,0 +1,121 @@
+"""QGroundControl's ``.plan`` file: JSON with mission, fence and rally points.
+
+The home position stands in ``plannedHomePosition`` and is no item. Items are numbered by ``doJumpId`` from 1,
+and jumps name that number. A parameter that is null is NaN.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from typing import Any
+
+from mavlink.dialects.base import CIRCLE_COMMANDS, GLOBAL_FRAMES, fence_shapes, is_polygon
+from mavlink.formats.errors import FormatError
+from mavlink.formats.qgc_plan_read import read_plan
+from mavlink.items import Command, Frame, MissionItem
+from mavlink.mission import Mission
+
+__all__ = ["FormatError", "read_plan", "write_plan"]
+
+#: QGroundControl's altitude modes by frame.
+_ALTITUDE_MODES = {
+    Frame.GLOBAL_RELATIVE_ALT: 1,
+    Frame.GLOBAL_RELATIVE_ALT_INT: 1,
+    Frame.GLOBAL: 2,
+    Frame.GLOBAL_INT: 2,
+    Frame.GLOBAL_TERRAIN_ALT: 4,
+    Frame.GLOBAL_TERRAIN_ALT_INT: 4,
+}
+
+
+def write_plan(mission: Mission) -> str:
+    """The mission, its fence and its rally points as a ``.plan`` file."""
+    dialect = mission.dialect
+    items = mission.mission[1:] if dialect.home_row else mission.mission
+    home = [mission.home[1], mission.home[0], mission.home_altitude_m]
+    if dialect.home_row and mission.mission:
+        row = mission.mission[0]
+        home = [row.x / 1e7, row.y / 1e7, row.z]
+    first_jump_id = 1 - (items[0].seq if items else 0)
+    document: dict[str, Any] = {
+        "fileType": "Plan",
+        "groundStation": "Swathplan",
+        "version": 1,
+        "geoFence": _fence(mission.fence),
+        "mission": {
+            "version": 2,
+            "firmwareType": dialect.firmware_type,
+            "vehicleType": dialect.mav_type,
+            "cruiseSpeed": mission.speed_m_s,
+            "hoverSpeed": mission.speed_m_s,
+            "globalPlanAltitudeMode": 1,
+            "plannedHomePosition": home,
+            "items": [_simple_item(item, first_jump_id) for item in items],
+        },
+        "rallyPoints": {
+            "version": 2,
+            "points": [[item.x / 1e7, item.y / 1e7, item.z] for item in mission.rally],
+        },
+    }
+    return json.dumps(document, indent=4, allow_nan=False) + "\n"
+
+
+def _simple_item(item: MissionItem, first_jump_id: int) -> dict[str, Any]:
+    param1 = item.param1
+    if item.command == Command.DO_JUMP and math.isfinite(param1):
+        param1 += first_jump_id
+    scale = 1e7 if item.frame in GLOBAL_FRAMES else 1.0
+    x: float = item.x / scale if item.frame in GLOBAL_FRAMES else item.x
+    y: float = item.y / scale if item.frame in GLOBAL_FRAMES else item.y
+    entry: dict[str, Any] = {
+        "autoContinue": item.autocontinue,
+        "command": int(item.command),
+        "doJumpId": item.seq + first_jump_id,
+        "frame": int(item.frame),
+        "params": [
+            *(_null(value) for value in (param1, item.param2, item.param3, item.param4)),
+            x,
+            y,
+            _null(item.z),
+        ],
+        "type": "SimpleItem",
+    }
+    mode = _ALTITUDE_MODES.get(Frame(item.frame)) if item.frame in GLOBAL_FRAMES else None
+    if mode is not None:
+        entry |= {"AMSLAltAboveTerrain": None, "Altitude": _null(item.z), "AltitudeMode": mode}
+    return entry
+
+
+def _null(value: float) -> float | None:
+    return None if math.isnan(value) else value
+
+
+def _fence(items: tuple[MissionItem, ...]) -> dict[str, Any]:
+    polygons: list[dict[str, Any]] = []
+    circles: list[dict[str, Any]] = []
+    fence: dict[str, Any] = {"version": 2, "polygons": polygons, "circles": circles}
+    for command, shape in fence_shapes(items):
+        first = shape[0]
+        place = [first.x / 1e7, first.y / 1e7]
+        if is_polygon(command):
+            polygons.append(
+                {
+                    "version": 1,
+                    "inclusion": command == Command.NAV_FENCE_POLYGON_VERTEX_INCLUSION,
+                    "polygon": [[item.x / 1e7, item.y / 1e7] for item in shape],
+                }
+            )
+        elif command in CIRCLE_COMMANDS:
+            circles.append(
+                {
+                    "version": 1,
+                    "inclusion": command == Command.NAV_FENCE_CIRCLE_INCLUSION,
+                    "circle": {"center": place, "radius": first.param1},
+                }
+            )
+        elif command == Command.NAV_FENCE_RETURN_POINT:
+            fence["breachReturn"] = [*place, first.z]
+        else:
+            raise ValueError(f"command {command} is no part of a fence")
+    return fence
