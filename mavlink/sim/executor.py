@@ -1,0 +1,318 @@
+"""Runs a stored mission: one navigation item at a time, with the DO items between them."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from mavlink.items import Command, Frame, MissionItem
+from mavlink.sim.dynamics import AircraftState, FlightCommand
+from mavlink.sim.geodesy import Place, offset_m
+from mavlink.sim.guidance import PolylineFollower, climb_towards_m_s
+from mavlink.sim.manoeuvres import GoTo, Landing, Loiter, Manoeuvre, Takeoff
+from mavlink.sim.modes import Flavour
+from mavlink.sim.settings import SimSettings
+
+NAVIGATION = frozenset(
+    {
+        Command.NAV_WAYPOINT,
+        Command.NAV_LOITER_UNLIM,
+        Command.NAV_LOITER_TURNS,
+        Command.NAV_LOITER_TIME,
+        Command.NAV_RETURN_TO_LAUNCH,
+        Command.NAV_LAND,
+        Command.NAV_TAKEOFF,
+        Command.NAV_LOITER_TO_ALT,
+    }
+)
+_CONDITIONS = frozenset({Command.CONDITION_DELAY, Command.CONDITION_DISTANCE})
+_MOST_JUMPS_AT_ONCE = 100
+
+
+@dataclass(frozen=True, slots=True)
+class Reached:
+    """A navigation item is done."""
+
+    seq: int
+
+
+@dataclass(frozen=True, slots=True)
+class Do:
+    """A DO item is to be carried out now."""
+
+    item: MissionItem
+
+
+@dataclass(frozen=True, slots=True)
+class Landed:
+    """The aircraft stands after a landing."""
+
+
+@dataclass(frozen=True, slots=True)
+class Said:
+    """Something for the operator; ``severity`` is MAV_SEVERITY."""
+
+    severity: int
+    text: str
+
+
+Event = Reached | Do | Landed | Said
+
+
+def place_of(item: MissionItem, home: Place) -> Place:
+    """Where an item is; the ground is flat, so terrain altitudes count from home."""
+    above_sea = item.frame in (Frame.GLOBAL, Frame.GLOBAL_INT)
+    altitude_m = item.z if above_sea else home.altitude_m + item.z
+    return Place(item.x / 1e7, item.y / 1e7, altitude_m)
+
+
+class MissionRun:
+    """A mission being flown.
+
+    Attributes
+    ----------
+    current
+        Sequence number of the navigation item being flown.
+    finished
+        Nothing is left to fly.
+    returning
+        It ended with an order to return.
+    events
+        What happened since the caller last emptied it.
+    """
+
+    def __init__(self, items: Sequence[MissionItem], settings: SimSettings, home: Place) -> None:
+        self._items = list(items)
+        self._settings = settings
+        self._tuning = settings.tuning
+        self._home = home
+        self._first = 1 if settings.autopilot is Flavour.ARDUPILOT else 0
+        self._manoeuvre: Manoeuvre | None = None
+        self._path: PolylineFollower | None = None
+        self._path_seqs: deque[int] = deque()
+        self._last_vertex: Place | None = None
+        self._pending: deque[MissionItem] = deque()
+        self._wait_from_s: float | None = None
+        self._jumps: dict[int, int] = {}
+        self.current = self._first
+        self.finished = False
+        self.returning = False
+        self.cross_track_m = 0.0
+        self.events: list[Event] = []
+
+    @property
+    def first_navigation(self) -> MissionItem | None:
+        """The first navigation item of the list."""
+        return next((item for item in self._items[self._first :] if item.command in NAVIGATION), None)
+
+    def begin(self, seq: int, state: AircraftState) -> None:
+        """Fly on from an item."""
+        self._path = self._last_vertex = None
+        self._pending.clear()
+        self._go(max(seq, self._first), state)
+
+    def command(self, state: AircraftState, airspeed_m_s: float) -> FlightCommand:
+        """What to do at this instant; level flight once finished."""
+        if self.finished:
+            return FlightCommand(0.0, airspeed_m_s, 0.0)
+        self._run_pending(state)
+        if self._manoeuvre is not None:
+            command = self._manoeuvre.command(state, airspeed_m_s)
+            if self._manoeuvre.done:
+                if isinstance(self._manoeuvre, Landing):
+                    self.events.append(Landed())
+                self._reached(state)
+            return command
+        path = self._path
+        if path is None:
+            raise RuntimeError(f"mission item {self.current} has neither a path nor a manoeuvre")
+        for _ in range(len(self._items)):
+            acceptance_m = self._items[self.current].param2 or self._settings.acceptance_m
+            if self._settings.autopilot is Flavour.PX4:
+                acceptance_m = self._settings.acceptance_m
+            if path.finished or not path.passed(state, acceptance_m):
+                break
+            self._last_vertex = place_of(self._items[self.current], self._home)
+            self._reached(state)
+            if self._path is not path or self._manoeuvre is not None or self.finished:
+                return self.command(state, airspeed_m_s)
+        bank_rad = path.bank_rad(state)
+        self.cross_track_m = path.cross_track_m
+        climb_m_s = climb_towards_m_s(
+            self._tuning, state.altitude_m, path.wanted_altitude_m, path.slope_climb_m_s
+        )
+        return FlightCommand(bank_rad, airspeed_m_s, climb_m_s)
+
+    def _reached(self, state: AircraftState) -> None:
+        self.events.append(Reached(self.current))
+        self._go(self.current + 1, state)
+
+    def _go(self, seq: int, state: AircraftState) -> None:
+        """Move on to the next navigation item at or after ``seq``, collecting the DO items before it."""
+        self._flush(state)
+        jumps = 0
+        while seq < len(self._items):
+            item = self._items[seq]
+            if item.command == Command.NAV_RETURN_TO_LAUNCH:
+                self.current = seq
+                self._run_pending(state)
+                self.finished = self.returning = True
+                return
+            if item.command in NAVIGATION:
+                self.current = seq
+                self._start(item, state)
+                self._run_pending(state)
+                return
+            if item.command == Command.DO_JUMP:
+                jumps += 1
+                target = self._jump(item)
+                if target is not None and jumps < _MOST_JUMPS_AT_ONCE:
+                    seq = target
+                    continue
+            else:
+                self._pending.append(item)
+            seq += 1
+        self._run_pending(state)
+        self.finished = True
+
+    def _jump(self, item: MissionItem) -> int | None:
+        repeat = int(item.param2)
+        used = self._jumps.get(item.seq, 0)
+        if 0 <= repeat < 65535 and used >= repeat:
+            return None
+        self._jumps[item.seq] = used + 1
+        self._path = None
+        return int(item.param1)
+
+    def _flush(self, state: AircraftState) -> None:
+        """DO items still waiting for a condition are dropped when the next navigation item begins."""
+        self._run_pending(state)
+        self._pending.clear()
+        self._wait_from_s = None
+
+    def _run_pending(self, state: AircraftState) -> None:
+        while self._pending:
+            item = self._pending[0]
+            if item.command in _CONDITIONS:
+                if self._wait_from_s is None:
+                    self._wait_from_s = state.time_s
+                if not self._condition_met(item, state):
+                    return
+                self._wait_from_s = None
+                self._pending.popleft()
+                continue
+            self._pending.popleft()
+            self.events.append(Do(item))
+
+    def _condition_met(self, item: MissionItem, state: AircraftState) -> bool:
+        if item.command == Command.CONDITION_DELAY:
+            return self._wait_from_s is not None and state.time_s - self._wait_from_s >= item.param1
+        if self._path is not None and not self._path.finished:
+            return self._path.distance_to_target_m(state) <= item.param1
+        return True
+
+    def _start(self, item: MissionItem, state: AircraftState) -> None:
+        settings = self._settings
+        place = self._placed(item, state)
+        if item.command == Command.NAV_WAYPOINT:
+            self._manoeuvre = None
+            if self._path is None or not self._path_seqs or self._path_seqs[0] != item.seq:
+                self._start_path(item.seq, state)
+            self._path_seqs.popleft()
+            return
+        previous, self._path = self._last_vertex, None
+        self._last_vertex = None
+        match item.command:
+            case Command.NAV_TAKEOFF:
+                towards = place if settings.autopilot is Flavour.PX4 and (item.x or item.y) else None
+                self._manoeuvre = Takeoff(
+                    self._tuning,
+                    state,
+                    place.altitude_m,
+                    settings.climb_m_s,
+                    towards,
+                    settings.turn_radius_m,
+                )
+            case Command.NAV_LAND:
+                self._manoeuvre = Landing(
+                    self._tuning,
+                    previous or state.place,
+                    place,
+                    ground_m=settings.home.altitude_m,
+                    sink_m_s=settings.sink_m_s,
+                    radius_m=settings.turn_radius_m,
+                )
+            case _:
+                self._manoeuvre = self._loiter(item, place)
+
+    def _loiter(self, item: MissionItem, place: Place) -> Loiter:
+        ardupilot = self._settings.autopilot is Flavour.ARDUPILOT
+        radius_m = item.param2 if item.command == Command.NAV_LOITER_TO_ALT else item.param3
+        if abs(radius_m) <= 1.0:
+            radius_m = -self._settings.turn_radius_m if radius_m < 0.0 else self._settings.turn_radius_m
+        aligned = item.param1 if item.command == Command.NAV_LOITER_TO_ALT else item.param2
+        # ArduPlane leaves every loiter towards the next item; PX4 where the item says so.
+        exit_towards = self._next_place(item.seq) if ardupilot or aligned == 1.0 else None
+        turns = item.param1 if item.command == Command.NAV_LOITER_TURNS else None
+        seconds = item.param1 if item.command == Command.NAV_LOITER_TIME else None
+        return Loiter(
+            self._tuning,
+            place,
+            radius_m,
+            turns=turns,
+            seconds=seconds,
+            until_altitude=item.command == Command.NAV_LOITER_TO_ALT,
+            exit_towards=exit_towards,
+        )
+
+    def _start_path(self, seq: int, state: AircraftState) -> None:
+        """The polyline from here through the waypoints that follow, to a landing place if one does."""
+        places, self._path_seqs = [], deque()
+        for item in self._items[seq:]:
+            if item.command == Command.DO_JUMP:
+                break
+            if item.command not in NAVIGATION:
+                continue
+            if item.command in (Command.NAV_WAYPOINT, Command.NAV_LAND):
+                places.append(self._placed(item, state))
+                self._path_seqs.append(item.seq)
+            if item.command != Command.NAV_WAYPOINT:
+                break
+        self._path = PolylineFollower(self._tuning, [state.place, *places])
+
+    def _placed(self, item: MissionItem, state: AircraftState) -> Place:
+        """Where an item is; without coordinates it is where the aircraft is."""
+        place = place_of(item, self._home)
+        if item.x == 0 and item.y == 0:
+            return Place(state.lat_deg, state.lon_deg, place.altitude_m)
+        return place
+
+    def _next_place(self, seq: int) -> Place | None:
+        for item in self._items[seq + 1 :]:
+            if item.command == Command.NAV_RETURN_TO_LAUNCH:
+                return self._home
+            if item.command in NAVIGATION:
+                return place_of(item, self._home)
+        return None
+
+    def distance_to_current_m(self, state: AircraftState) -> float:
+        """Distance to the place of the item being flown."""
+        place = self._placed(self._items[self.current], state)
+        north_m, east_m = offset_m(state.lat_deg, state.lon_deg, place.lat_deg, place.lon_deg)
+        return float((north_m**2 + east_m**2) ** 0.5)
+
+
+def return_home(state: AircraftState, settings: SimSettings, home: Place) -> Manoeuvre:
+    """ArduPlane goes home at its return altitude and circles; PX4 goes home and lands."""
+    if settings.autopilot is Flavour.PX4:
+        return Landing(
+            settings.tuning,
+            state.place,
+            home,
+            ground_m=settings.home.altitude_m,
+            sink_m_s=settings.sink_m_s,
+            radius_m=settings.turn_radius_m,
+        )
+    above = replace(home, altitude_m=home.altitude_m + settings.rtl_altitude_m)
+    return GoTo(settings.tuning, state.place, above, settings.turn_radius_m)

@@ -1,0 +1,353 @@
+"""The vehicle's side of the mission protocol: upload, download, clear; no socket, no clock.
+
+Source: MAVLink mission protocol; the manners of each autopilot as measured on ArduPlane 4.6 and PX4 1.16
+simulators. ArduPilot writes mission items as they come (a failed upload leaves new items in front, old ones
+behind) and asks with MISSION_REQUEST; PX4 stores a list whole or not at all and asks with
+MISSION_REQUEST_INT. Fence and rally lists are stored whole by both.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+from mavlink.items import MissionItem, MissionResult, MissionType
+from mavlink.messages import Message
+from mavlink.sim.acceptance import PLACED, as_stored, finished_list, home_item, refusal
+from mavlink.sim.faults import Fault
+from mavlink.sim.geodesy import Place
+from mavlink.sim.modes import Flavour
+from mavlink.sim.replies import item_message, received_item, status_text
+
+_ASK_AGAIN_S = {Flavour.ARDUPILOT: 1.0, Flavour.PX4: 0.25}
+_GIVE_UP_S = {Flavour.ARDUPILOT: 8.0, Flavour.PX4: 5.0}
+_CAPACITY = {
+    (Flavour.ARDUPILOT, MissionType.MISSION): 655,
+    (Flavour.ARDUPILOT, MissionType.FENCE): 84,
+    (Flavour.ARDUPILOT, MissionType.RALLY): 20,
+    (Flavour.PX4, MissionType.MISSION): 1000,
+    (Flavour.PX4, MissionType.FENCE): 64,
+    (Flavour.PX4, MissionType.RALLY): 32,
+}
+#: MAV_MISSION_TYPE_ALL
+_ALL_TYPES = 255
+_HANDLED = frozenset(
+    {
+        "MISSION_COUNT",
+        "MISSION_ITEM_INT",
+        "MISSION_ITEM",
+        "MISSION_REQUEST_LIST",
+        "MISSION_REQUEST_INT",
+        "MISSION_REQUEST",
+        "MISSION_ACK",
+        "MISSION_CLEAR_ALL",
+    }
+)
+
+
+@dataclass(slots=True)
+class _Upload:
+    partner: tuple[int, int]
+    kind: MissionType
+    count: int
+    heard_s: float
+    asked_s: float
+    items: list[MissionItem] = field(default_factory=list)
+    misled: bool = False
+
+
+@dataclass(slots=True)
+class _Download:
+    partner: tuple[int, int]
+    kind: MissionType
+    heard_s: float
+
+
+class MissionServer:
+    """Stores of mission, fence and rally items, and the protocol that fills and reads them.
+
+    Attributes
+    ----------
+    revision
+        Grows whenever the stored mission changes.
+    flying
+        Set by the autopilot while it flies the mission: ArduPilot then refuses to clear it.
+    """
+
+    def __init__(
+        self,
+        flavour: Flavour,
+        home: Place,
+        *,
+        faults: frozenset[Fault] = frozenset(),
+        max_items: int | None = None,
+        sensor_command: int = 0,
+        vanish_after_items: int = 3,
+        vanish_for_s: float = 10.0,
+    ) -> None:
+        self._flavour = flavour
+        self.home = home
+        self._faults = faults
+        self._max_items = max_items
+        self._sensor_command = sensor_command
+        self._vanish_after_items = vanish_after_items
+        self._vanish_for_s = vanish_for_s
+        self._stores: dict[MissionType, list[MissionItem]] = {kind: [] for kind in MissionType}
+        self._upload: _Upload | None = None
+        self._download: _Download | None = None
+        self._last_stored: tuple[MissionType, int] | None = None
+        self._silent_until_s: float | None = None
+        self._vanished = False
+        self._counters: dict[Fault, int] = {}
+        self.revision = 0
+        self.flying = False
+
+    def items(self, kind: MissionType = MissionType.MISSION) -> tuple[MissionItem, ...]:
+        """The stored items; ArduPilot's mission begins with home."""
+        stored = self._stores[kind]
+        if kind is MissionType.MISSION and self._flavour is Flavour.ARDUPILOT and stored:
+            return (home_item(self.home), *stored[1:])
+        return tuple(stored)
+
+    @property
+    def receiving(self) -> bool:
+        """Whether an upload is going on."""
+        return self._upload is not None
+
+    def silent(self, now_s: float) -> bool:
+        """Whether the vehicle has vanished from the link."""
+        return self._silent_until_s is not None and now_s < self._silent_until_s
+
+    def receive(self, message: Message, now_s: float) -> list[Message]:
+        """Answers to one message of the protocol; none for other messages."""
+        if message.name not in _HANDLED or self.silent(now_s):
+            return []
+        expired = self.advance(now_s)
+        number = message.integer("mission_type") if "mission_type" in message.fields else 0
+        if message.name == "MISSION_CLEAR_ALL" and number == _ALL_TYPES:
+            return expired + self._clear(message, list(MissionType))
+        if number not in list(MissionType):
+            return [*expired, self._ack(message, MissionType.MISSION, MissionResult.UNSUPPORTED)]
+        kind = MissionType(number)
+        match message.name:
+            case "MISSION_COUNT":
+                answers = self._count(message, kind, now_s)
+            case "MISSION_ITEM_INT" | "MISSION_ITEM":
+                answers = self._item(message, kind, now_s)
+            case "MISSION_REQUEST_LIST":
+                answers = self._list(message, kind, now_s)
+            case "MISSION_REQUEST_INT" | "MISSION_REQUEST":
+                answers = self._request(message, kind, now_s)
+            case "MISSION_CLEAR_ALL":
+                answers = self._clear(message, [kind])
+            case _:
+                answers = []
+                if self._download is not None and self._download.partner == _sender(message):
+                    self._download = None
+                elif self._upload is not None and self._upload.partner == _sender(message):
+                    # A ground station ends an upload early with an acknowledgement of its own.
+                    self._upload = None
+        return expired + answers
+
+    def advance(self, now_s: float) -> list[Message]:
+        """What is due by the clock: repeated requests, giving up."""
+        if self._silent_until_s is not None:
+            if now_s < self._silent_until_s:
+                return []
+            self._silent_until_s = None
+        if self._download is not None and now_s - self._download.heard_s > _GIVE_UP_S[self._flavour]:
+            self._download = None
+        upload = self._upload
+        if upload is None:
+            return []
+        if now_s - upload.heard_s >= _GIVE_UP_S[self._flavour]:
+            self._upload = None
+            text = status_text(4, "Mission upload timeout")
+            if self._flavour is Flavour.PX4:
+                return [text]
+            return [text, _ack_to(upload.partner, upload.kind, MissionResult.OPERATION_CANCELLED)]
+        if now_s - upload.asked_s >= _ASK_AGAIN_S[self._flavour]:
+            upload.asked_s = now_s
+            return self._ask(upload)
+        return []
+
+    def _count(self, message: Message, kind: MissionType, now_s: float) -> list[Message]:
+        if Fault.NO_RESPONSE_TO_COUNT in self._faults:
+            return []
+        partner, count = _sender(message), message.integer("count")
+        if self._upload is not None and self._upload.partner != partner:
+            return [self._ack(message, kind, MissionResult.DENIED)]
+        if self._flavour is Flavour.PX4 and self._download is not None:
+            return [self._ack(message, kind, MissionResult.ERROR)]
+        if Fault.ERROR_ACK_AT_0 in self._faults:
+            return [self._ack(message, kind, MissionResult.ERROR)]
+        if count > self._capacity(kind):
+            return [self._ack(message, kind, MissionResult.NO_SPACE)]
+        self._download = None
+        self._last_stored = None
+        if count == 0:
+            self._upload = None
+            self._store(kind, [])
+            return [self._ack(message, kind, MissionResult.ACCEPTED)]
+        if self._in_place(kind):
+            self._store(kind, self._stores[kind][:count])
+        self._upload = _Upload(partner, kind, count, now_s, now_s)
+        return self._ask(self._upload)
+
+    def _item(self, message: Message, kind: MissionType, now_s: float) -> list[Message]:
+        upload, partner = self._upload, _sender(message)
+        item = received_item(message, kind)
+        if upload is None or upload.partner != partner or upload.kind is not kind:
+            again = self._flavour is Flavour.PX4 and self._last_stored == (kind, item.seq)
+            if again:
+                # PX4 takes it for a lost acknowledgement, also after an abort that stored nothing.
+                return [self._ack(message, kind, MissionResult.ACCEPTED)]
+            return [self._ack(message, kind, MissionResult.ERROR)]
+        if self._lost(Fault.LOST_ITEMS):
+            return []
+        upload.heard_s = now_s
+        if item.seq != len(upload.items):
+            if self._flavour is Flavour.ARDUPILOT:
+                return [self._ack(message, kind, MissionResult.INVALID_SEQUENCE)]
+            upload.asked_s = now_s
+            return self._ask(upload)
+        if Fault.ERROR_ACK_AT_1 in self._faults and item.seq == 0:
+            self._upload = None
+            return [self._ack(message, kind, MissionResult.ERROR)]
+        refused = refusal(self._flavour, item, upload.count, self._sensor_command)
+        if refused is not None:
+            self._upload = None
+            text = status_text(4, f"Mission item {item.seq}: {refused.name}")
+            return [text, self._ack(message, kind, refused)]
+        upload.items.append(as_stored(self._flavour, item, self.home))
+        upload.asked_s = now_s
+        if self._in_place(kind):
+            self._store(kind, [*upload.items, *self._stores[kind][len(upload.items) :]])
+        self._last_stored = (kind, upload.count - 1)
+        if Fault.EARLY_ACK in self._faults and upload.count > 1:
+            self._upload = None
+            self._store(kind, upload.items)
+            return [self._ack(message, kind, MissionResult.ACCEPTED)]
+        if (
+            Fault.VANISH_MID_UPLOAD in self._faults
+            and not self._vanished
+            and len(upload.items) == self._vanish_after_items
+        ):
+            self._vanished = True
+            self._silent_until_s = now_s + self._vanish_for_s
+            return []
+        if len(upload.items) == upload.count:
+            return self._complete(upload)
+        return self._ask(upload)
+
+    def _complete(self, upload: _Upload) -> list[Message]:
+        self._upload = None
+        items, reason = upload.items, ""
+        if upload.kind is not MissionType.MISSION:
+            items, reason = finished_list(self._flavour, upload.items, self._stores[upload.kind])
+        if reason:
+            return [status_text(4, reason), _ack_to(upload.partner, upload.kind, MissionResult.ERROR)]
+        if Fault.ALTERED_ITEM in self._faults:
+            items = _altered(items)
+        self._store(upload.kind, items)
+        if Fault.NO_FINAL_ACK in self._faults:
+            return []
+        return [_ack_to(upload.partner, upload.kind, MissionResult.ACCEPTED)]
+
+    def _ask(self, upload: _Upload) -> list[Message]:
+        if self._lost(Fault.LOST_REQUESTS):
+            return []
+        seq = len(upload.items)
+        if Fault.WRONG_SEQUENCE_REQUEST in self._faults and seq == 1 and not upload.misled:
+            upload.misled = True
+            seq = 2
+        name = "MISSION_REQUEST" if self._flavour is Flavour.ARDUPILOT else "MISSION_REQUEST_INT"
+        system, component = upload.partner
+        fields = {
+            "target_system": system,
+            "target_component": component,
+            "seq": seq,
+            "mission_type": int(upload.kind),
+        }
+        return [Message(name, fields)]
+
+    def _list(self, message: Message, kind: MissionType, now_s: float) -> list[Message]:
+        if Fault.NO_RESPONSE_TO_LIST in self._faults:
+            return []
+        if self._upload is not None:
+            return [self._ack(message, kind, MissionResult.DENIED)]
+        self._download = _Download(_sender(message), kind, now_s)
+        fields = {
+            "target_system": message.system_id,
+            "target_component": message.component_id,
+            "count": len(self.items(kind)),
+            "mission_type": int(kind),
+        }
+        return [Message("MISSION_COUNT", fields)]
+
+    def _request(self, message: Message, kind: MissionType, now_s: float) -> list[Message]:
+        if self._upload is not None:
+            return [self._ack(message, kind, MissionResult.DENIED)]
+        stored, seq = self.items(kind), message.integer("seq")
+        if seq >= len(stored):
+            return [self._ack(message, kind, MissionResult.INVALID_SEQUENCE)]
+        if self._download is not None:
+            self._download.heard_s = now_s
+        if self._lost(Fault.LOST_DOWNLOAD_ITEMS):
+            return []
+        item = replace(stored[seq], seq=seq, mission_type=kind)
+        return [item_message(item, _sender(message), integer=message.name == "MISSION_REQUEST_INT")]
+
+    def _clear(self, message: Message, kinds: list[MissionType]) -> list[Message]:
+        kind = kinds[0]
+        if self._upload is not None:
+            return [self._ack(message, kind, MissionResult.ERROR)]
+        if self._flavour is Flavour.ARDUPILOT and self.flying and MissionType.MISSION in kinds:
+            return [self._ack(message, kind, MissionResult.ERROR)]
+        for each in kinds:
+            self._store(each, [])
+        return [self._ack(message, kind, MissionResult.ACCEPTED)]
+
+    def _store(self, kind: MissionType, items: Sequence[MissionItem]) -> None:
+        self._stores[kind] = [replace(item, seq=seq) for seq, item in enumerate(items)]
+        if kind is MissionType.MISSION:
+            self.revision += 1
+
+    def _in_place(self, kind: MissionType) -> bool:
+        return self._flavour is Flavour.ARDUPILOT and kind is MissionType.MISSION
+
+    def _capacity(self, kind: MissionType) -> int:
+        if kind is MissionType.MISSION and self._max_items is not None:
+            return self._max_items
+        return _CAPACITY[self._flavour, kind]
+
+    def _lost(self, fault: Fault) -> bool:
+        """Whether a fault that loses every third message strikes now."""
+        if fault not in self._faults:
+            return False
+        self._counters[fault] = self._counters.get(fault, 0) + 1
+        return self._counters[fault] % 3 == 0
+
+    def _ack(self, message: Message, kind: MissionType, result: MissionResult) -> Message:
+        return _ack_to(_sender(message), kind, result)
+
+
+def _sender(message: Message) -> tuple[int, int]:
+    return message.system_id, message.component_id
+
+
+def _ack_to(partner: tuple[int, int], kind: MissionType, result: MissionResult) -> Message:
+    fields = {
+        "target_system": partner[0],
+        "target_component": partner[1],
+        "type": int(result),
+        "mission_type": int(kind),
+    }
+    return Message("MISSION_ACK", fields)
+
+
+def _altered(items: list[MissionItem]) -> list[MissionItem]:
+    for index in range(len(items) - 1, -1, -1):
+        if items[index].command in PLACED and index > 0:
+            return [*items[:index], replace(items[index], z=items[index].z + 10.0), *items[index + 1 :]]
+    return items

@@ -1,0 +1,75 @@
+"""The few parameters a ground station asks a vehicle for; read only.
+
+Source: MAVLink parameter protocol; names of ArduPlane 4.6 and PX4 1.16.
+"""
+
+from __future__ import annotations
+
+import math
+
+from mavlink.messages import Message
+from mavlink.sim.modes import Flavour
+from mavlink.sim.settings import SimSettings
+
+_REAL32 = 9
+
+
+class Parameters:
+    """Answers PARAM_REQUEST_READ, PARAM_REQUEST_LIST and PARAM_SET (which changes nothing and says so)."""
+
+    def __init__(self, settings: SimSettings) -> None:
+        bank_deg = math.degrees(settings.bank_limit_rad)
+        if settings.autopilot is Flavour.ARDUPILOT:
+            self._values = {
+                "SYSID_THISMAV": float(settings.system_id),
+                "AIRSPEED_CRUISE": settings.airspeed_m_s,
+                "NAVL1_PERIOD": settings.l1_period_s,
+                "ROLL_LIMIT_DEG": bank_deg,
+                "RTL_ALTITUDE": settings.rtl_altitude_m,
+                "RTL_AUTOLAND": 0.0,
+                "WP_LOITER_RAD": settings.turn_radius_m,
+                "WP_RADIUS": settings.acceptance_m,
+            }
+        else:
+            self._values = {
+                "MAV_SYS_ID": float(settings.system_id),
+                "FW_AIRSPD_TRIM": settings.airspeed_m_s,
+                "NPFG_PERIOD": settings.l1_period_s,
+                "FW_R_LIM": bank_deg,
+                "MIS_TKO_LAND_REQ": 2.0,
+                "NAV_ACC_RAD": settings.acceptance_m,
+                "NAV_LOITER_RAD": settings.turn_radius_m,
+                "RTL_RETURN_ALT": settings.rtl_altitude_m,
+            }
+
+    def receive(self, message: Message) -> list[Message]:
+        """Answers to one message of the parameter protocol; none for others, and none for unknown names."""
+        names = list(self._values)
+        if message.name == "PARAM_REQUEST_LIST":
+            return [self._value(index) for index in range(len(names))]
+        if message.name == "PARAM_REQUEST_READ":
+            index = message.integer("param_index")
+            if index < 0:
+                index = self._index(message.text("param_id"))
+            return [self._value(index)] if 0 <= index < len(names) else []
+        if message.name == "PARAM_SET":
+            index = self._index(message.text("param_id"))
+            return [self._value(index)] if index >= 0 else []
+        return []
+
+    def _index(self, name: str) -> int:
+        names = list(self._values)
+        return names.index(name) if name in names else -1
+
+    def _value(self, index: int) -> Message:
+        name = list(self._values)[index]
+        return Message(
+            "PARAM_VALUE",
+            {
+                "param_id": name,
+                "param_value": self._values[name],
+                "param_type": _REAL32,
+                "param_count": len(self._values),
+                "param_index": index,
+            },
+        )

@@ -1,0 +1,202 @@
+"""Payload outputs of the simulated aircraft: relays, servos, camera trigger, and the sensor they switch.
+
+Source: MAVLink ``common.xml`` (DO_SET_RELAY, DO_SET_SERVO, DO_SET_ACTUATOR, DO_SET_CAM_TRIGG_DIST,
+IMAGE_START_CAPTURE, CAMERA_FEEDBACK, CAMERA_IMAGE_CAPTURED).
+"""
+
+from __future__ import annotations
+
+import math
+
+from mavlink.items import Command
+from mavlink.messages import Message
+from mavlink.sim.dynamics import AircraftState
+from mavlink.sim.faults import Fault
+from mavlink.sim.geodesy import Place, distance_m
+from mavlink.sim.modes import Flavour
+from mavlink.sim.settings import SimSettings
+
+_SERVO_ON_US = 1500.0
+_RELAYS_PRESENT = 0b1111
+SENSOR_NAME = "SAR_ON"
+
+Params = tuple[float, float, float, float]
+
+
+class Payload:
+    """What the sensor does, and the messages that say so.
+
+    Attributes
+    ----------
+    sensor_on
+        Whether the sensor is on.
+    """
+
+    def __init__(self, settings: SimSettings, faults: frozenset[Fault]) -> None:
+        self._settings = settings
+        self._dead = Fault.SENSOR_DEAD in faults
+        self.sensor_on = False
+        self._relays = 0
+        self._spacing_m = 0.0
+        self._interval_s = 0.0
+        self._left: int | None = None
+        self._last_place: Place | None = None
+        self._last_photo_s = 0.0
+        self._photos = 0
+
+    def handle(self, command: int, params: Params, state: AircraftState) -> list[Message] | None:
+        """Carry out a payload command; None when it is none.
+
+        Parameters
+        ----------
+        params
+            The command's first four parameters.
+        """
+        p1, p2, p3, _ = params
+        settings = self._settings
+        answers: list[Message] = []
+        match command:
+            case Command.DO_SET_RELAY:
+                bit = 1 << int(p1)
+                self._relays = self._relays | bit if p2 else self._relays & ~bit
+                answers.append(self.relay_status(state))
+                if settings.sensor_relay in (None, int(p1)):
+                    answers += self._switch(p2 != 0.0, state)
+            case Command.DO_SET_SERVO:
+                if settings.sensor_servo in (None, int(p1)):
+                    answers += self._switch(p2 > _SERVO_ON_US, state)
+            case Command.DO_SET_ACTUATOR:
+                value = params[settings.sensor_actuator - 1] if settings.sensor_actuator <= 4 else math.nan
+                if not math.isnan(value):
+                    answers += self._switch(value > 0.0, state)
+            case Command.DO_SET_CAM_TRIGG_DIST:
+                self._trigger(spacing_m=max(p1, 0.0))
+                answers += self._switch(p1 > 0.0, state)
+                if p1 > 0.0 and p3 == 1.0:
+                    answers += self._photo(state)
+            case Command.DO_SET_CAM_TRIGG_INTERVAL:
+                # Milliseconds, unlike IMAGE_START_CAPTURE's seconds.
+                self._trigger(interval_s=max(p1, 0.0) / 1000.0)
+                answers += self._switch(p1 > 0.0, state)
+            case Command.IMAGE_START_CAPTURE:
+                self._trigger(interval_s=max(p2, 0.0), photos=int(p3) if p3 > 0.0 else None)
+                answers += self._switch(True, state)
+                answers += self._photo(state)
+            case Command.IMAGE_STOP_CAPTURE | Command.VIDEO_STOP_CAPTURE:
+                self._trigger()
+                answers += self._switch(False, state)
+            case Command.VIDEO_START_CAPTURE:
+                answers += self._switch(True, state)
+            case Command.DO_DIGICAM_CONTROL:
+                answers += self._photo(state)
+            case Command.DO_TRIGGER_CONTROL:
+                answers += self._switch(p1 == 1.0, state)
+            case settings.sensor_command:
+                answers += self._switch(p1 != 0.0, state)
+            case _:
+                return None
+        return answers
+
+    def step(self, state: AircraftState) -> list[Message]:
+        """Photos due by distance or time."""
+        if self._spacing_m > 0.0:
+            if self._last_place is None:
+                self._last_place = state.place
+            elif distance_m(self._last_place, state.place) >= self._spacing_m:
+                return self._photo(state)
+        elif self._interval_s > 0.0 and state.time_s - self._last_photo_s >= self._interval_s - 1e-9:
+            return self._photo(state)
+        return []
+
+    def sensor_report(self, state: AircraftState) -> Message:
+        """Whether the sensor is on, as NAMED_VALUE_INT."""
+        return Message(
+            "NAMED_VALUE_INT",
+            {"time_boot_ms": _ms(state), "name": SENSOR_NAME, "value": int(self.sensor_on)},
+        )
+
+    def relay_status(self, state: AircraftState) -> Message:
+        """RELAY_STATUS."""
+        return Message(
+            "RELAY_STATUS", {"time_boot_ms": _ms(state), "on": self._relays, "present": _RELAYS_PRESENT}
+        )
+
+    def _switch(self, on: bool, state: AircraftState) -> list[Message]:
+        on = on and not self._dead
+        if on == self.sensor_on:
+            return []
+        self.sensor_on = on
+        return [self.sensor_report(state)]
+
+    def _trigger(self, *, spacing_m: float = 0.0, interval_s: float = 0.0, photos: int | None = None) -> None:
+        self._spacing_m, self._interval_s, self._left = spacing_m, interval_s, photos
+        self._last_place = None
+        self._last_photo_s = -math.inf if interval_s > 0.0 else 0.0
+
+    def _photo(self, state: AircraftState) -> list[Message]:
+        self._last_place, self._last_photo_s = state.place, state.time_s
+        if self._dead:
+            return []
+        self._photos += 1
+        if self._left is not None:
+            self._left -= 1
+            if self._left <= 0:
+                self._trigger()
+        return [self._feedback(state)]
+
+    def _feedback(self, state: AircraftState) -> Message:
+        lat, lon = round(state.lat_deg * 1e7), round(state.lon_deg * 1e7)
+        relative_m = state.altitude_m - self._settings.home.altitude_m
+        if self._settings.autopilot is Flavour.ARDUPILOT:
+            return Message(
+                "CAMERA_FEEDBACK",
+                {
+                    "time_usec": round(state.time_s * 1e6),
+                    "target_system": 0,
+                    "cam_idx": 0,
+                    "img_idx": self._photos & 0xFFFF,
+                    "lat": lat,
+                    "lng": lon,
+                    "alt_msl": state.altitude_m,
+                    "alt_rel": relative_m,
+                    "roll": math.degrees(state.bank_rad),
+                    "pitch": math.degrees(state.pitch_rad),
+                    "yaw": math.degrees(state.heading_rad),
+                    "foc_len": 0.0,
+                    "flags": 0,
+                    "completed_captures": self._photos & 0xFFFF,
+                },
+            )
+        return Message(
+            "CAMERA_IMAGE_CAPTURED",
+            {
+                "time_boot_ms": _ms(state),
+                "time_utc": 0,
+                "camera_id": 1,
+                "lat": lat,
+                "lon": lon,
+                "alt": round(state.altitude_m * 1000.0),
+                "relative_alt": round(relative_m * 1000.0),
+                "q": quaternion(state.bank_rad, state.pitch_rad, state.heading_rad),
+                "image_index": self._photos - 1,
+                "capture_result": 1,
+                "file_url": "",
+            },
+        )
+
+
+def quaternion(roll_rad: float, pitch_rad: float, yaw_rad: float) -> tuple[float, float, float, float]:
+    """Attitude quaternion (w, x, y, z) of Tait-Bryan angles, yaw first."""
+    cr, sr = math.cos(roll_rad / 2.0), math.sin(roll_rad / 2.0)
+    cp, sp = math.cos(pitch_rad / 2.0), math.sin(pitch_rad / 2.0)
+    cy, sy = math.cos(yaw_rad / 2.0), math.sin(yaw_rad / 2.0)
+    return (
+        cr * cp * cy + sr * sp * sy,
+        sr * cp * cy - cr * sp * sy,
+        cr * sp * cy + sr * cp * sy,
+        cr * cp * sy - sr * sp * cy,
+    )
+
+
+def _ms(state: AircraftState) -> int:
+    return round(state.time_s * 1000.0)

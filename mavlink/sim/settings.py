@@ -1,0 +1,131 @@
+"""Settings of the simulated aircraft."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+from mavlink.sim.dynamics import GRAVITY_M_S2, Limits
+from mavlink.sim.faults import parse_faults
+from mavlink.sim.geodesy import Place
+from mavlink.sim.guidance import Tuning
+from mavlink.sim.modes import Flavour
+
+_LEAST_BANK_LIMIT_DEG = 45.0
+_BANK_MARGIN_DEG = 15.0
+_GREATEST_BANK_DEG = 65.0
+
+
+@dataclass(frozen=True, slots=True)
+class SimSettings:
+    """Everything a simulated aircraft starts from.
+
+    Parameters
+    ----------
+    home
+        Where it stands; its altitude is that of the ground, above mean sea level, flat all round.
+    turn_radius_m
+        Radius of loiters that name none, and what the bank limit must allow with a margin.
+    max_bank_deg
+        None: 45 degrees, or 15 more than the turn radius needs at the airspeed, whichever is larger (65 at
+        most).
+    wind_from_deg
+        Where the steady wind comes from, clockwise from true north.
+    speedup
+        Simulated seconds per second while armed. Disarmed, time runs at its own pace.
+    dynamics
+        ``kinematic``, ``jsbsim``, or ``auto``: see ``mavlink.sim.models``.
+    acceptance_m
+        How far before a waypoint it counts as reached, where the item does not say; 0: when abeam of it.
+    sensor_relay, sensor_servo, sensor_actuator
+        The output that switches the sensor; None: any relay or servo does.
+    sensor_command
+        A user command (31000-31014) that switches the sensor by its param 1.
+    max_items
+        Mission capacity; None: 655 for ArduPilot, 1000 for PX4.
+    faults
+        Names of ``mavlink.sim.faults.Fault``.
+    vanish_after_items, vanish_for_s
+        When and for how long the fault ``vanish_mid_upload`` strikes, in the link's time.
+    """
+
+    home: Place = field(default_factory=lambda: Place(47.3977, 8.5456, 488.0))
+    heading_deg: float = 0.0
+    autopilot: Flavour = Flavour.ARDUPILOT
+    vehicle_type: str = "fixed_wing"
+    system_id: int = 1
+    component_id: int = 1
+    airspeed_m_s: float = 20.0
+    turn_radius_m: float = 100.0
+    max_bank_deg: float | None = None
+    roll_rate_deg_s: float = 75.0
+    climb_m_s: float = 5.0
+    sink_m_s: float = 4.0
+    l1_period_s: float = 7.0
+    wind_m_s: float = 0.0
+    wind_from_deg: float = 0.0
+    gust_m_s: float = 0.0
+    seed: int = 0
+    speedup: float = 1.0
+    dynamics: str = "kinematic"
+    battery_wh: float = 500.0
+    cruise_power_w: float = 250.0
+    mass_kg: float = 8.0
+    rtl_altitude_m: float = 100.0
+    acceptance_m: float = 0.0
+    sensor_relay: int | None = None
+    sensor_servo: int | None = None
+    sensor_actuator: int = 1
+    sensor_command: int = 31010
+    max_items: int | None = None
+    faults: tuple[str, ...] = ()
+    vanish_after_items: int = 3
+    vanish_for_s: float = 10.0
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "autopilot", Flavour(self.autopilot))
+        if self.vehicle_type != "fixed_wing":
+            raise ValueError(f"only a fixed_wing is simulated, not {self.vehicle_type!r}")
+        if self.dynamics not in ("auto", "kinematic", "jsbsim"):
+            raise ValueError(f"dynamics is auto, kinematic or jsbsim, not {self.dynamics!r}")
+        for name in ("airspeed_m_s", "turn_radius_m", "climb_m_s", "sink_m_s", "l1_period_s", "speedup"):
+            value = getattr(self, name)
+            if not (math.isfinite(value) and value > 0.0):
+                raise ValueError(f"{name} must be a positive number, not {value!r}")
+        if not 0.0 <= self.wind_m_s < 0.9 * self.airspeed_m_s:
+            raise ValueError(f"wind of {self.wind_m_s} m/s cannot be flown at {self.airspeed_m_s} m/s")
+        if not abs(self.home.lat_deg) <= 89.0:
+            raise ValueError(
+                f"home latitude must be within 89 degrees of the equator, not {self.home.lat_deg}"
+            )
+        needed_deg = math.degrees(math.atan(self.airspeed_m_s**2 / (GRAVITY_M_S2 * self.turn_radius_m)))
+        if needed_deg > _GREATEST_BANK_DEG - _BANK_MARGIN_DEG:
+            raise ValueError(
+                f"a turn of {self.turn_radius_m} m at {self.airspeed_m_s} m/s needs "
+                f"{needed_deg:.0f} degrees of bank; the limit is {_GREATEST_BANK_DEG - _BANK_MARGIN_DEG:.0f}"
+            )
+        parse_faults(self.faults)
+
+    @property
+    def bank_limit_rad(self) -> float:
+        """Largest bank."""
+        if self.max_bank_deg is not None:
+            return math.radians(self.max_bank_deg)
+        needed_rad = math.atan(self.airspeed_m_s**2 / (GRAVITY_M_S2 * self.turn_radius_m))
+        return max(math.radians(_LEAST_BANK_LIMIT_DEG), needed_rad + math.radians(_BANK_MARGIN_DEG))
+
+    @property
+    def limits(self) -> Limits:
+        """The airframe's limits."""
+        return Limits(
+            airspeed_m_s=self.airspeed_m_s,
+            max_bank_rad=self.bank_limit_rad,
+            roll_rate_rad_s=math.radians(self.roll_rate_deg_s),
+            climb_m_s=self.climb_m_s,
+            sink_m_s=self.sink_m_s,
+        )
+
+    @property
+    def tuning(self) -> Tuning:
+        """Guidance tuning."""
+        return Tuning(l1_period_s=self.l1_period_s, max_bank_rad=self.bank_limit_rad)
