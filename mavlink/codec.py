@@ -47,7 +47,9 @@ class _Layout:
     crc_extra: bytes
     payload: struct.Struct
     fields: tuple[_Field, ...]
-    names: frozenset[str]
+    names: tuple[str, ...]
+    known: frozenset[str]
+    plain: bool  # numbers only, one a field: packed and unpacked without looking at each
 
 
 def _layout(message_id: int, definition: Any) -> _Layout:
@@ -67,7 +69,9 @@ def _layout(message_id: int, definition: Any) -> _Layout:
         bytes([definition.crc_extra]),
         definition.unpacker,
         tuple(fields),
+        tuple(definition.ordered_fieldnames),
         frozenset(wire_type),
+        all(field.length == 1 and not field.text_bytes for field in fields),
     )
 
 
@@ -118,12 +122,15 @@ class Codec:
         layout = _BY_NAME.get(message.name)
         if layout is None:
             raise CodecError(f"no message is called {message.name!r} in the dialect")
-        unknown = message.fields.keys() - layout.names
-        if unknown:
-            raise CodecError(f"{message.name} has no field {', '.join(sorted(unknown))}")
+        if not layout.known.issuperset(message.fields):
+            unknown = sorted(message.fields.keys() - layout.known)
+            raise CodecError(f"{message.name} has no field {', '.join(unknown)}")
         flat: list[Any] = []
-        for field in layout.fields:
-            _append(flat, message, field)
+        if layout.plain:
+            flat = [message.fields.get(name, 0) for name in layout.names]
+        else:
+            for field in layout.fields:
+                _append(flat, message, field)
         try:
             payload = layout.payload.pack(*flat)
         except (struct.error, OverflowError) as error:
@@ -193,7 +200,10 @@ class Codec:
         size = layout.payload.size
         payload = bytes(buffer[body : body + min(length, size)]).ljust(size, b"\0")
         flat = layout.payload.unpack(payload)
-        fields = {field.name: _value(flat, field) for field in layout.fields}
+        if layout.plain:
+            fields: dict[str, Value] = dict(zip(layout.names, flat, strict=True))
+        else:
+            fields = {field.name: _value(flat, field) for field in layout.fields}
         messages.append(Message(layout.name, fields, system_id, component_id))
         return True
 

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import socket
 from collections.abc import Callable
-from typing import Any, Final, cast
+from typing import Any, Final
 
 from mavlink.errors import LinkError
 from mavlink.links.inbox import Inbox
@@ -15,63 +16,57 @@ _RECEIVE_BUFFER_BYTES: Final = 1 << 20
 # A silent peer is forgotten, unless it is the only one: it may have restarted on another port.
 _FORGET_AFTER_S: Final = 30.0
 _MOST_PEERS: Final = 16
+# A MAVLink frame has at most 280 bytes, and some bridges put several into a datagram.
+_MOST_BYTES: Final = 1 << 16
 
 Address = tuple[Any, ...]
 
 
-class UdpLink(asyncio.DatagramProtocol):
+class UdpLink:
     """A datagram socket. Opened by ``open_udp``.
 
     A listening link answers whoever it has heard; a calling one sends to its fixed peer from the start.
+    It reads its socket itself: asyncio's transport reserves 256 KiB for every datagram.
     """
 
-    def __init__(self, form: str, host: str, peer: Address | None) -> None:
+    def __init__(self, form: str, host: str, sock: socket.socket, peer: Address | None) -> None:
         self._form = form
         self._host = host
+        self._socket = sock
         self._fixed_peer = peer
         self._peers: dict[Address, float] = {}
         self._inbox = Inbox()
-        self._transport: asyncio.DatagramTransport | None = None
-        self._lost = asyncio.Event()
         self._listener: Callable[[bytes], None] | None = None
+        self._loop = asyncio.get_running_loop()
+        self._closed = False
+        self._port = int(sock.getsockname()[1])
+        self._loop.add_reader(sock, self._readable)
 
     @property
     def url(self) -> str:
         """The address, with the port really used."""
-        port = self.local_port if self._fixed_peer is None else self._fixed_peer[1]
+        port = self._port if self._fixed_peer is None else self._fixed_peer[1]
         return f"{self._form}:{self._host}:{port}"
 
     @property
     def local_port(self) -> int:
         """The port bound on this machine."""
-        if self._transport is None:
-            raise LinkError(f"{self._form}:{self._host} is not open")
-        return int(self._transport.get_extra_info("sockname")[1])
+        return self._port
 
-    def connection_made(self, transport: asyncio.BaseTransport) -> None:
-        """Keep the transport (asyncio)."""
-        # asyncio's own datagram transport is no subclass of DatagramTransport before Python 3.12.
-        self._transport = cast(asyncio.DatagramTransport, transport)
-
-    def datagram_received(self, data: bytes, addr: Address) -> None:
-        """Take a datagram (asyncio)."""
+    def _readable(self) -> None:
+        try:
+            data, peer = self._socket.recvfrom(_MOST_BYTES)
+        except OSError:
+            return  # a peer that is not listening (yet): like a radio out of range, it may come back
         if self._fixed_peer is None:
-            self._hear(addr)
+            self._hear(peer)
         if self._listener is None:
             self._inbox.put(data)
         else:
             self._listener(data)
 
-    def error_received(self, exc: Exception) -> None:
-        """A peer that is not listening (asyncio): like a radio out of range, it may come back."""
-
-    def connection_lost(self, exc: Exception | None) -> None:
-        """End the reader (asyncio)."""
-        self._inbox.fail(f"link closed: {exc}" if exc else "link closed")
-        self._lost.set()
-
     def _hear(self, peer: Address) -> None:
-        now_s = asyncio.get_running_loop().time()
+        now_s = self._loop.time()
         new = peer not in self._peers
         self._peers[peer] = now_s
         if new:
@@ -94,14 +89,12 @@ class UdpLink(asyncio.DatagramProtocol):
 
     def send_now(self, data: bytes) -> None:
         """The same without waiting, which datagrams never do."""
-        transport = self._transport
-        if transport is None or transport.is_closing():
+        if self._closed:
             raise LinkError("link closed")
-        if self._fixed_peer is not None:
-            transport.sendto(data, self._fixed_peer)
-            return
-        for peer in self._peers:
-            transport.sendto(data, peer)
+        for peer in self._peers if self._fixed_peer is None else (self._fixed_peer,):
+            # A full buffer, or nobody listening there: the datagram is lost, as on any radio.
+            with contextlib.suppress(OSError):
+                self._socket.sendto(data, peer)
 
     async def receive(self) -> bytes:
         """Wait for datagrams."""
@@ -109,10 +102,11 @@ class UdpLink(asyncio.DatagramProtocol):
 
     async def close(self) -> None:
         """Close the socket; the port is free again on return."""
-        self._inbox.fail("link closed")
-        if self._transport is not None:
-            self._transport.close()
-            await self._lost.wait()
+        if not self._closed:
+            self._closed = True
+            self._loop.remove_reader(self._socket)
+            self._socket.close()
+            self._inbox.fail("link closed")
 
 
 async def open_udp(host: str, port: int, *, listen: bool) -> UdpLink:
@@ -120,7 +114,6 @@ async def open_udp(host: str, port: int, *, listen: bool) -> UdpLink:
     loop = asyncio.get_running_loop()
     found = await loop.getaddrinfo(host, port, type=socket.SOCK_DGRAM, proto=socket.IPPROTO_UDP)
     family, _, _, _, address = found[0]
-    link = UdpLink("udpin" if listen else "udpout", host, None if listen else address)
     any_address = ("::", 0) if family == socket.AF_INET6 else ("0.0.0.0", 0)
     sock = socket.socket(family, socket.SOCK_DGRAM)
     try:
@@ -128,8 +121,7 @@ async def open_udp(host: str, port: int, *, listen: bool) -> UdpLink:
         sock.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, _RECEIVE_BUFFER_BYTES)
         sock.setsockopt(socket.SOL_SOCKET, socket.SO_BROADCAST, 1)
         sock.bind(address if listen else any_address)
-        await loop.create_datagram_endpoint(lambda: link, sock=sock)
-    except BaseException:
+    except OSError:
         sock.close()
         raise
-    return link
+    return UdpLink("udpin" if listen else "udpout", host, sock, None if listen else address)
