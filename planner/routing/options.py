@@ -132,7 +132,8 @@ def _of_side(
     m, k, n = rows.T
     entries, between0 = _poses(first[m, k], here.angles_rad[m], around.settle_m)
     between1, exits = _poses(second[m, n], here.angles_rad[m] + math.pi, around.settle_m)
-    inner_m = cost_first[m, k] + cost_second[m, n] + dubins_lengths(between0, between1, around.radius_m)
+    turn_m = dubins_lengths(between0, between1, around.radius_m)
+    inner_m = cost_first[m, k] + cost_second[m, n] + turn_m + _cramped_m(between0, between1, around)
     return _finish(index, here, m, etas[k], etas[n], entries, exits, inner_m, around)
 
 
@@ -147,9 +148,8 @@ def _finish(
     inner_m: Floats,
     around: Surroundings,
 ) -> Options:
-    cramped = ~(_roomy(entries, around) & _roomy(exits, around))
     side = np.full(len(m), index, dtype=np.int64)
-    cost_m = inner_m + NO_ROOM_M * cramped
+    cost_m = inner_m + _cramped_m(entries, exits, around)
     return Options(side, here.angles_rad[m], eta_first, eta_second, entries, exits, cost_m)
 
 
@@ -178,6 +178,11 @@ def _poses(line: Floats, angles_rad: Floats, settle_m: float) -> tuple[Floats, F
     wrapped = np.mod(angles_rad + math.pi, 2.0 * math.pi) - math.pi
     entry = np.column_stack([line[:, 0] - settle_m * ahead, wrapped])
     return entry, np.column_stack([line[:, 1], wrapped])
+
+
+def _cramped_m(arriving: Floats, leaving: Floats, around: Surroundings) -> Floats:
+    """What two poses cost where a full turn fits at neither side of one of them."""
+    return NO_ROOM_M * (~(_roomy(arriving, around) & _roomy(leaving, around))).astype(np.float64)
 
 
 def _roomy(poses: Floats, around: Surroundings) -> NDArray[np.bool_]:
