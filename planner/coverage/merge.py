@@ -20,6 +20,9 @@ from planner.scenario import Region
 #: 15 pixels of 5.4 m, section 5.1.
 PAPER_RADIUS_M = 81.0
 
+#: A smaller disk bridges nothing that matters and is lost in the rounding of coordinates.
+_LEAST_RADIUS_M = 0.001
+
 #: Segments per quarter circle: the disk is 0.1 m too small at most at the paper's radius.
 _QUADRANT_SEGMENTS = 16
 
@@ -153,7 +156,7 @@ def close_filter(area: BaseGeometry, radius_m: float) -> BaseGeometry:
     As with a true disk, the result holds ``area`` and keeps to the convex hull of what the dilation joins:
     what the polygonal disk nibbles off or adds is put right, so a lone region keeps its exact spans.
     """
-    if radius_m <= 0.0:
+    if radius_m < _LEAST_RADIUS_M:
         return shapely.union_all([area])
     grown = area.buffer(radius_m, quad_segs=_QUADRANT_SEGMENTS)
     pieces: list[BaseGeometry] = []

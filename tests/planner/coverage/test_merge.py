@@ -78,7 +78,7 @@ def test_nothing_is_lost(areas: list[Polygon], radius_m: float) -> None:
     assert closed.difference(whole.convex_hull.buffer(1e-6)).area <= 1e-9 * whole.area
     again = close_filter(closed, radius_m)
     # The disk has 64 corners: its radius is right to 0.12 %.
-    assert again.area <= closed.area + 0.0025 * radius_m * closed.length
+    assert again.area <= (1.0 + 1e-9) * closed.area + 0.0025 * radius_m * closed.length
 
 
 @settings(max_examples=60, deadline=None)
