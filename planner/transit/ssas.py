@@ -143,6 +143,8 @@ def search(
     weights: tuple[float, float, float] = (1.0, 1.0, 1.0),
     parameters: SsasParameters | None = None,
     stop: Stop = never,
+    *,
+    from_goal: bool = False,
 ) -> SsasResult:
     """Join two anchors by legs of bounded turning angle (Algorithm 3, section 4.4.4).
 
@@ -158,6 +160,9 @@ def search(
         None for the defaults.
     stop
         Asked before each run.
+    from_goal
+        Between two vectors, grow from the goal and turn the route round: the better way where the goal is
+        the end that is hemmed in. Ours.
 
     Raises
     ------
@@ -171,7 +176,9 @@ def search(
         return job.point_run(start, goal, backwards=False)
     if start.angle_rad is None:
         return job.point_run(_reversed(goal), start, backwards=True)
-    return job.three_stages(start.angle_rad, goal.angle_rad)
+    if from_goal:
+        return job.three_stages(_reversed(goal), _reversed(start), backwards=True)
+    return job.three_stages(start, goal, backwards=False)
 
 
 def _reversed(anchor: Anchor) -> Anchor:
@@ -202,22 +209,23 @@ class _Job:
         path, stage = self._run("coarse", self._root(root), aim, rules)
         return self._result(path, (stage,), backwards)
 
-    def three_stages(self, start_rad: float, goal_rad: float) -> SsasResult:
+    def three_stages(self, root: Anchor, aim: Anchor, backwards: bool) -> SsasResult:
         fine_m = self.parameters.fine_leg_m
-        behind = self._root(_reversed(self.goal))
-        back, inverse = self._run("inverse", behind, self.start, self._rules(tree.INVERSE, fine_m))
+        rules = self._rules(tree.INVERSE, fine_m, True, not backwards)
+        back, inverse = self._run("inverse", self._root(_reversed(aim)), root, rules)
         middle = Anchor(float(back[-1, tree.EAST]), float(back[-1, tree.NORTH]))
-        rules = self._rules(tree.NEAR_POINT, self.coarse_leg_m)
-        far, coarse = self._run("coarse", self._root(self.start), middle, rules)
-        close, fine = self._run("fine", far[-1], self.goal, self._rules(tree.TO_VECTOR, fine_m))
-        return self._result(np.vstack((far, close[1:])), (inverse, coarse, fine), False)
+        rules = self._rules(tree.NEAR_POINT, self.coarse_leg_m, True, backwards)
+        far, coarse = self._run("coarse", self._root(root), middle, rules)
+        rules = self._rules(tree.TO_VECTOR, fine_m, True, backwards)
+        close, fine = self._run("fine", far[-1], aim, rules)
+        return self._result(np.vstack((far, close[1:])), (inverse, coarse, fine), backwards)
 
     def _root(self, anchor: Anchor) -> Array:
         missiles, radars = self.space.missiles, self.space.radars
         kill, detection = point_risk(*anchor.position, missiles, radars, self.parameters.soft_margin_m)
         return np.array([*anchor.position, anchor.angle_rad or 0.0, 0.0, kill, detection])
 
-    def _rules(self, mode: int, leg_m: float, directed: bool = True, backwards: bool = False) -> Rules:
+    def _rules(self, mode: int, leg_m: float, directed: bool, backwards: bool) -> Rules:
         p = self.parameters
         return Rules(
             mode=mode,

@@ -14,8 +14,10 @@ from numba import njit
 from numpy.typing import NDArray
 
 from planner.environment.kernels import CLEAR, OUTSIDE, leg_risk, leg_verdict
+from planner.transit.kernels import BUCKETS, forget, nearest, pop, push, remember, wrap
 
 Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
 
 # What a run aims at, and so when it ends.
 TO_POINT = 0  # the goal has no direction: ring of eq 26 without its second condition, then one leg
@@ -37,7 +39,6 @@ _GOAL = 3
 # Columns of a node.
 EAST, NORTH, ANGLE, LENGTH, KILL, DETECTION = range(6)
 
-_BUCKETS = 1 << 16
 _SLACK_RAD = 1e-9
 
 
@@ -53,7 +54,7 @@ class Space(NamedTuple):
     radars: Array
     discs: Array
     edges: Array
-    offsets: NDArray[np.int64]
+    offsets: Indices
     area: Array
 
 
@@ -84,30 +85,14 @@ class Rules(NamedTuple):
 
 
 @njit(cache=True)
-def wrap(angle_rad: float) -> float:
-    """The same angle in [-π, π)."""
-    return (angle_rad + math.pi) % (2.0 * math.pi) - math.pi
-
-
-@njit(cache=True)
 def _verdict(e0: float, n0: float, e1: float, n1: float, space: Space) -> int:
     return leg_verdict(e0, n0, e1, n1, space.discs, space.edges, space.offsets, space.area)
 
 
 @njit(cache=True)
 def _leg_cost(e0: float, n0: float, e1: float, n1: float, space: Space, rules: Rules) -> tuple[float, float]:
-    return leg_risk(
-        e0,
-        n0,
-        e1,
-        n1,
-        space.missiles,
-        space.radars,
-        rules.dividing_m,
-        rules.margin_m,
-        rules.clipping,
-        rules.backwards,
-    )
+    m, r = space.missiles, space.radars
+    return leg_risk(e0, n0, e1, n1, m, r, rules.dividing_m, rules.margin_m, rules.clipping, rules.backwards)
 
 
 @njit(cache=True)
@@ -157,96 +142,7 @@ def _advance(nodes: Array, parent: int, child: int, e1: float, n1: float, space:
 
 
 @njit(cache=True)
-def _push(keys: Array, items: NDArray[np.int64], size: int, key: float, item: int) -> int:
-    """Binary heap; equal keys leave in order of item, so runs repeat exactly."""
-    place = size
-    while place > 0:
-        above = (place - 1) >> 1
-        if keys[above] < key or (keys[above] == key and items[above] < item):
-            break
-        keys[place] = keys[above]
-        items[place] = items[above]
-        place = above
-    keys[place] = key
-    items[place] = item
-    return size + 1
-
-
-@njit(cache=True)
-def _pop(keys: Array, items: NDArray[np.int64], size: int) -> tuple[int, int]:
-    top = items[0]
-    size -= 1
-    key, item = keys[size], items[size]
-    place = 0
-    while True:
-        below = 2 * place + 1
-        if below >= size:
-            break
-        right = below + 1
-        if right < size and (
-            keys[right] < keys[below] or (keys[right] == keys[below] and items[right] < items[below])
-        ):
-            below = right
-        if key < keys[below] or (key == keys[below] and item < items[below]):
-            break
-        keys[place] = keys[below]
-        items[place] = items[below]
-        place = below
-    keys[place] = key
-    items[place] = item
-    return top, size
-
-
-@njit(cache=True)
-def _bucket(column: int, row: int) -> int:
-    return ((column * 73856093) ^ (row * 19349663)) & (_BUCKETS - 1)
-
-
-@njit(cache=True)
-def _cell_of(east: float, north: float, size_m: float) -> int:
-    return _bucket(math.floor(east / size_m), math.floor(north / size_m))
-
-
-@njit(cache=True)
-def _nearest_reached(
-    nodes: Array, child: int, heads: NDArray[np.int64], chain: NDArray[np.int64], rules: Rules
-) -> int:
-    """Nearest reached node closer than ``neighbour_radius_m`` (lines 10 and 11), -1 where there is none."""
-    size_m = rules.neighbour_radius_m
-    east, north = nodes[child, EAST], nodes[child, NORTH]
-    column, row = math.floor(east / size_m), math.floor(north / size_m)
-    best = -1
-    best_m = size_m
-    for i in range(column - 1, column + 2):
-        for j in range(row - 1, row + 2):
-            other = heads[_bucket(i, j)]
-            while other >= 0:
-                apart_m = math.hypot(nodes[other, EAST] - east, nodes[other, NORTH] - north)
-                if (apart_m < best_m or (apart_m == best_m and best >= 0 and other < best)) and (
-                    abs(wrap(nodes[other, ANGLE] - nodes[child, ANGLE])) <= rules.neighbour_angle_rad
-                ):
-                    best = other
-                    best_m = apart_m
-                other = chain[other]
-    return best
-
-
-@njit(cache=True)
-def _forget(
-    nodes: Array, node: int, heads: NDArray[np.int64], chain: NDArray[np.int64], size_m: float
-) -> None:
-    bucket = _cell_of(nodes[node, EAST], nodes[node, NORTH], size_m)
-    if heads[bucket] == node:
-        heads[bucket] = chain[node]
-        return
-    other = heads[bucket]
-    while chain[other] != node:
-        other = chain[other]
-    chain[other] = chain[node]
-
-
-@njit(cache=True)
-def _trace(nodes: Array, parents: NDArray[np.int64], last: int) -> Array:
+def _trace(nodes: Array, parents: Indices, last: int) -> Array:
     count = 1
     node = last
     while parents[node] >= 0:
@@ -269,8 +165,8 @@ def _turn_ok(before_rad: float, after_rad: float, limit_rad: float) -> bool:
 @njit(cache=True)
 def _close(
     nodes: Array,
-    parents: NDArray[np.int64],
-    depths: NDArray[np.int64],
+    parents: Indices,
+    depths: Indices,
     node: int,
     free: int,
     directed: bool,
@@ -392,7 +288,8 @@ def grow(root: Array, goal: Array, space: Space, rules: Rules) -> tuple[int, int
     costs = np.empty(capacity)
     keys = np.empty(capacity)
     items = np.empty(capacity, np.int64)
-    heads = np.full(_BUCKETS, -1, np.int64)
+    heads = np.full(BUCKETS, -1, np.int64)
+    cell_m = rules.neighbour_radius_m
     outside = 0
     forbidden = 0
 
@@ -401,15 +298,13 @@ def grow(root: Array, goal: Array, space: Space, rules: Rules) -> tuple[int, int
     depths[0] = 0
     states[0] = _OPEN
     costs[0] = 0.0
-    first = _cell_of(root[EAST], root[NORTH], rules.neighbour_radius_m)
-    chain[0] = heads[first]
-    heads[first] = 0
-    size = _push(keys, items, 0, 0.0, 0)
+    remember(root[EAST], root[NORTH], 0, heads, chain, cell_m)
+    size = push(keys, items, 0, 0.0, 0)
     count = 1
     deepest = 0
 
     while size > 0:
-        node, size = _pop(keys, items, size)
+        node, size = pop(keys, items, size)
         if states[node] == _REPLACED:
             continue
         if states[node] == _GOAL:
@@ -421,9 +316,8 @@ def grow(root: Array, goal: Array, space: Space, rules: Rules) -> tuple[int, int
         directed = rules.directed or node > 0
         rest_m = math.hypot(goal[EAST] - e0, goal[NORTH] - n0)
         near = rest_m <= 2.0 * rules.leg_m
-        if rules.mode == NEAR_POINT and near:
-            return FOUND, count, outside, forbidden, _trace(nodes, parents, node)
-        if rules.mode == INVERSE and node > 0 and (near or depths[node] >= rules.max_depth):
+        far_enough = node > 0 and (near or depths[node] >= rules.max_depth)
+        if (rules.mode == NEAR_POINT and near) or (rules.mode == INVERSE and far_enough):
             return FOUND, count, outside, forbidden, _trace(nodes, parents, node)
         if count + rules.sectors + 2 >= rules.max_nodes:
             return SPENT, count, outside, forbidden, _trace(nodes, parents, deepest)
@@ -438,7 +332,7 @@ def grow(root: Array, goal: Array, space: Space, rules: Rules) -> tuple[int, int
                 states[count] = _CLOSED
                 states[last] = _GOAL
                 costs[last] = _actual(nodes[last], rules)
-                size = _push(keys, items, size, costs[last], last)
+                size = push(keys, items, size, costs[last], last)
                 count = last + 1
 
         width_rad = 2.0 * rules.max_turn_rad / rules.sectors
@@ -463,7 +357,10 @@ def grow(root: Array, goal: Array, space: Space, rules: Rules) -> tuple[int, int
             nodes[child, EAST] = e1
             nodes[child, NORTH] = n1
             nodes[child, ANGLE] = wrap(towards_rad)
-            other = _nearest_reached(nodes, child, heads, chain, rules)
+            # lines 10 and 11 of Algorithm 3
+            other = nearest(
+                e1, n1, nodes[child, ANGLE], nodes, heads, chain, cell_m, rules.neighbour_angle_rad
+            )
             if other >= 0:
                 # risks only add: what its length alone makes too dear needs no look at the surroundings
                 nodes[child, LENGTH] = nodes[node, LENGTH] + rules.leg_m
@@ -486,14 +383,12 @@ def grow(root: Array, goal: Array, space: Space, rules: Rules) -> tuple[int, int
                     continue
                 if states[other] == _OPEN:
                     states[other] = _REPLACED
-                _forget(nodes, other, heads, chain, rules.neighbour_radius_m)
+                forget(nodes[other, EAST], nodes[other, NORTH], other, heads, chain, cell_m)
             parents[child] = node
             depths[child] = depths[node] + 1
             states[child] = _OPEN
             costs[child] = cost
-            bucket = _cell_of(e1, n1, rules.neighbour_radius_m)
-            chain[child] = heads[bucket]
-            heads[bucket] = child
-            size = _push(keys, items, size, cost, child)
+            remember(e1, n1, child, heads, chain, cell_m)
+            size = push(keys, items, size, cost, child)
             count += 1
     return EMPTY, count, outside, forbidden, _trace(nodes, parents, deepest)
