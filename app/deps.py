@@ -6,8 +6,10 @@ from typing import Annotated, cast
 
 from fastapi import Depends, Request
 
+from app.services.flights import FlightService
 from app.services.house import House
 from app.services.planning import PlanningService
+from app.services.vehicles.fleet import Fleet
 from app.settings import Settings
 
 
@@ -23,6 +25,16 @@ def _planning(house: Annotated[House, Depends(_house)]) -> PlanningService:
     return house.planning
 
 
+def _fleet(house: Annotated[House, Depends(_house)]) -> Fleet:
+    return house.fleet
+
+
+def _flights(house: Annotated[House, Depends(_house)]) -> FlightService:
+    return house.flights
+
+
 HouseDep = Annotated[House, Depends(_house)]
 SettingsDep = Annotated[Settings, Depends(_settings)]
 PlanningDep = Annotated[PlanningService, Depends(_planning)]
+FleetDep = Annotated[Fleet, Depends(_fleet)]
+FlightsDep = Annotated[FlightService, Depends(_flights)]

@@ -12,7 +12,7 @@ from fastapi.responses import HTMLResponse
 from fastapi.staticfiles import StaticFiles
 
 from app import middleware, problems
-from app.routers import artefacts, health, plans, scenarios
+from app.routers import artefacts, flights, health, plans, scenarios, vehicles
 from app.services.house import House, Limits
 from app.settings import Settings
 from app.version import VERSION
@@ -68,7 +68,7 @@ def create_app(settings: Settings | None = None, build_house: Callable[[Limits],
     )
     app.state.settings = settings
     problems.install(app)
-    for module in (plans, artefacts, scenarios, health):
+    for module in (plans, artefacts, scenarios, vehicles, flights, health):
         app.include_router(module.router)
     _add_map(app, settings)
     # The last added stands outermost.

@@ -71,7 +71,13 @@ def make(document: dict[str, Any], time_limit_s: float | None = None) -> dict[st
 
     narrator = Narrator()
     try:
-        return write_plan(make_plan(read_valid(document), progress=narrator, stop=Deadline(time_limit_s)))
+        plan = make_plan(
+            read_valid(document),
+            progress=narrator,
+            stop=Deadline(time_limit_s),
+            clock=time.perf_counter,
+        )
+        return write_plan(plan)
     except errors.ScenarioError as error:
         raise CommandError("the scenario is refused", Exit.BAD_INPUT, error.findings) from error
     except errors.InfeasibleError as error:

@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
-from fastapi import APIRouter, Response
+import asyncio
+from typing import Annotated
+
+from fastapi import APIRouter, Query, Response
 
 from app.deps import PlanningDep
 from app.problems import responses
+from app.services.missions import AutopilotName, MissionChoice, mission_text, plan_of
+from app.services.report import write_report
 
 router = APIRouter(prefix="/api/v1/plans/{plan_id}", tags=["artefacts"])
 
@@ -32,3 +37,65 @@ async def scenario(plan_id: str, planning: PlanningDep) -> Response:
 async def plan(plan_id: str, planning: PlanningDep) -> Response:
     """The plan as a GeoJSON FeatureCollection; 409 while there is none."""
     return Response(await planning.plan_text(plan_id), media_type=GEOJSON)
+
+
+VehicleQuery = Annotated[
+    str | None, Query(description="Vehicle of the plan; its first when left out.", max_length=200)
+]
+AutopilotQuery = Annotated[
+    AutopilotName | None, Query(description="Encode for this autopilot instead of the plan's.")
+]
+PayloadQuery = Annotated[
+    str | None,
+    Query(
+        description="How the sensor is switched: relay:0, servo:9:1900:1100, actuator:1:1:-1, "
+        "camera:distance=25, image:interval=2, command:….",
+        max_length=200,
+    ),
+]
+
+
+def _mission_route(form: str, name: str, media_type: str, summary: str) -> None:
+    @router.get(
+        f"/{name}",
+        summary=summary,
+        operation_id=f"mission_{form}",
+        response_class=Response,
+        responses=responses(404, 409, 422) | {200: {"content": {media_type: {"schema": {"type": "string"}}}}},
+    )
+    async def mission(
+        plan_id: str,
+        planning: PlanningDep,
+        vehicle: VehicleQuery = None,
+        autopilot: AutopilotQuery = None,
+        payload: PayloadQuery = None,
+    ) -> Response:
+        """The mission of one vehicle, as a file to save."""
+        text = await planning.plan_text(plan_id)
+        choice = MissionChoice(vehicle, autopilot, payload)
+        body = await asyncio.to_thread(lambda: mission_text(plan_of(text), choice, form))
+        return Response(
+            body,
+            media_type=media_type,
+            headers={"Content-Disposition": f'attachment; filename="{plan_id[:8]}-{name}"'},
+        )
+
+
+_mission_route("plan", "mission.plan", "application/json", "QGroundControl plan")
+_mission_route("waypoints", "mission.waypoints", "text/plain", "Waypoint file (QGC WPL 110)")
+_mission_route("kml", "mission.kml", "application/vnd.google-earth.kml+xml", "KML")
+
+
+@router.get(
+    "/report.html",
+    summary="Printable report",
+    response_class=Response,
+    responses=responses(404, 409) | {200: {"content": {"text/html": {"schema": {"type": "string"}}}}},
+)
+async def report(plan_id: str, planning: PlanningDep) -> Response:
+    """Metrics, violations, collects and methods on one page without scripts."""
+    record = await planning.get(plan_id)
+    plan_text, scenario_text = await planning.plan_text(plan_id), await planning.scenario_text(plan_id)
+    page = await asyncio.to_thread(write_report, record, plan_text, scenario_text)
+    policy = "default-src 'none'; style-src 'unsafe-inline'; frame-ancestors 'self'"
+    return Response(page, media_type="text/html", headers={"Content-Security-Policy": policy})

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import asyncio
-import contextlib
 from collections.abc import Callable, Mapping
-from concurrent.futures import Future
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -13,11 +10,15 @@ from typing import Any
 import structlog
 
 from app.services import work
+from app.services.flights import FlightService
 from app.services.planning import PlanningService, Task
 from app.services.pool import WorkerPool
 from app.services.store.database import Database
+from app.services.store.flights import FlightStore
 from app.services.store.plans import PlanStore
+from app.services.store.uploads import UploadStore
 from app.services.validation import Verdict, judge
+from app.services.vehicles.fleet import Fleet
 
 log = structlog.get_logger(__name__)
 
@@ -55,22 +56,20 @@ class House:
             task=task,
             judge_scenario=judge_scenario,
         )
-        self._warm: Future[int] | None = None
+        flights = FlightStore(self.database)
+        self.flights = FlightService(flights, self.planning)
+        self.fleet = Fleet(self.planning, UploadStore(self.database), flights, limits.track_interval_s)
 
     async def open(self) -> None:
         """Open the database, start the workers, take up waiting plans."""
         await self.database.open()
-        self._warm = self.pool.warm()
+        self.pool.warm()
         await self.planning.start()
+        await self.fleet.open()
 
     async def close(self) -> None:
         """Stop everything, in the opposite order."""
-        with contextlib.suppress(asyncio.CancelledError):
-            await self.planning.stop()
+        await self.fleet.close()
+        await self.planning.stop()
         await self.pool.stop()
         await self.database.close()
-
-    @property
-    def workers_ready(self) -> bool:
-        """Whether a planning process has its kernels compiled."""
-        return self._warm is not None and self._warm.done() and self._warm.exception() is None

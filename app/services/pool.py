@@ -36,6 +36,8 @@ class WorkerPool:
         self._workers = workers
         self._initialiser = initialiser
         self._pool = self._build()
+        self._warm: Future[int] | None = None
+        self._stopped = False
 
     def _build(self) -> ProcessPool:
         # spawn: a forked child would inherit the service's sockets, threads and locks
@@ -45,10 +47,14 @@ class WorkerPool:
             context=multiprocessing.get_context("spawn"),
         )
 
-    def warm(self) -> Future[int]:
-        """Start the processes; done when the first has its kernels compiled."""
-        future: Future[int] = self._pool.schedule(work.ping)
-        return future
+    def warm(self) -> None:
+        """Start the processes, which compile their kernels; see ``ready``."""
+        self._warm = self._pool.schedule(work.ping)
+
+    @property
+    def ready(self) -> bool:
+        """Whether a process has answered since the pool was built."""
+        return self._warm is not None and self._warm.done() and self._warm.exception() is None
 
     async def run(self, function: Callable[..., Any], args: tuple[Any, ...], timeout_s: float) -> Any:
         """Run a function in a worker; cancelling this kills the worker.
@@ -61,27 +67,32 @@ class WorkerPool:
             The worker ended by itself, with the exit code in the text.
         """
         for attempt in (1, 2):
+            pool = self._pool
             try:
-                return await asyncio.wrap_future(self._pool.schedule(function, args=args, timeout=timeout_s))
+                return await asyncio.wrap_future(pool.schedule(function, args=args, timeout=timeout_s))
             except ProcessExpired as error:
                 raise WorkerDiedError(f"the planning process ended with {_exit(error.exitcode)}") from error
             except (BrokenProcessPool, RuntimeError) as error:
                 # A worker killed while idle leaves pebble's pool broken for good.
-                if attempt == 2 or not self._broken(error):
+                broken = isinstance(error, BrokenProcessPool) or not pool.active
+                if not broken or self._stopped:
                     raise
-                log.warning("worker pool rebuilt", reason=str(error))
-                await self._rebuild()
+                await self._replace(pool, str(error))
+                if attempt == 2:
+                    raise WorkerDiedError("no planning process could be started") from error
         raise AssertionError("unreachable")
 
-    def _broken(self, error: BaseException) -> bool:
-        return isinstance(error, BrokenProcessPool) or not self._pool.active
-
-    async def _rebuild(self) -> None:
-        broken, self._pool = self._pool, self._build()
-        await asyncio.to_thread(_end, broken)
+    async def _replace(self, broken: ProcessPool, reason: str) -> None:
+        # several runs learn of the same broken pool; the first replaces it
+        if self._pool is broken:
+            log.warning("worker pool rebuilt", reason=reason)
+            self._pool = self._build()
+            self.warm()
+            await asyncio.to_thread(_end, broken)
 
     async def stop(self) -> None:
         """Kill every worker and wait for the end."""
+        self._stopped = True
         await asyncio.to_thread(_end, self._pool)
 
 

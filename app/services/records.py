@@ -10,6 +10,48 @@ PlanState = Literal["queued", "running", "done", "failed", "cancelled"]
 ENDED: frozenset[PlanState] = frozenset({"done", "failed", "cancelled"})
 
 
+FlightState = Literal["flying", "ended", "interrupted"]
+
+
+@dataclass(frozen=True, slots=True)
+class TrackSample:
+    """One recorded place of a flight; ``time_s`` is the vehicle's time since boot."""
+
+    time_s: float
+    lon_deg: float
+    lat_deg: float
+    altitude_amsl_m: float | None
+    altitude_home_m: float | None
+    heading_deg: float | None
+    roll_deg: float | None
+    ground_speed_m_s: float | None
+    mission_seq: int | None
+    sensor_on: bool
+
+
+@dataclass(frozen=True, slots=True)
+class FlightRecord:
+    """One flight, from the first movement of an armed vehicle to its landing or disarming.
+
+    Parameters
+    ----------
+    plan_id, plan_vehicle
+        The plan last uploaded to the vehicle and its name there; None when none was.
+    state
+        ``interrupted``: the service ended, or the vehicle vanished, before the flight did.
+    """
+
+    id: str
+    vehicle_id: str
+    vehicle_name: str
+    plan_id: str | None
+    plan_vehicle: str | None
+    state: FlightState
+    started_at: datetime
+    ended_at: datetime | None
+    points: int
+
+
 @dataclass(frozen=True, slots=True)
 class PlanRecord:
     """One request to plan and what became of it.

@@ -62,7 +62,7 @@ class PipeProgress:
 
 def initialise() -> None:
     """Compile the kernels before the first plan."""
-    from planner.pipeline import warm_up
+    from planner.warm import warm_up
 
     warm_up()
 
@@ -85,11 +85,10 @@ def finding_json(finding: Any) -> dict[str, str]:
 
 def plan_scenario(scenario_text: str, progress_path: str) -> WorkResult:
     """Plan one scenario, reporting into the pipe at ``progress_path``."""
-    from planner.pipeline import make_plan
-
     from app.services.summary import summary_of
     from planner import errors
     from planner.geojson import read_scenario, write_plan
+    from planner.pipeline import make_plan
 
     progress = PipeProgress(progress_path)
     frame = None
@@ -97,7 +96,7 @@ def plan_scenario(scenario_text: str, progress_path: str) -> WorkResult:
         progress("reading", 0.0)
         scenario = read_scenario(json.loads(scenario_text))
         frame = scenario.frame
-        plan = make_plan(scenario, progress=progress)
+        plan = make_plan(scenario, progress=progress, clock=time.perf_counter)
         document = write_plan(plan)
         text = json.dumps(document, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
         return WorkResult(plan=text, summary=summary_of(document))

@@ -1,0 +1,130 @@
+"""Vehicles: connect, watch, upload, command."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator
+from typing import Annotated
+
+from fastapi import APIRouter, Query, Response
+from sse_starlette import EventSourceResponse, ServerSentEvent
+
+from app.deps import FleetDep
+from app.problems import responses
+from app.schemas_vehicles import (
+    ClearedOut,
+    CommandIn,
+    CommandOut,
+    HeldOut,
+    MissionIn,
+    Part,
+    UploadOut,
+    VehicleIn,
+    VehicleList,
+    VehicleOut,
+)
+from app.services.missions import MissionChoice
+from mavlink.transfer.command import CommandOutcome
+
+router = APIRouter(prefix="/api/v1/vehicles", tags=["vehicles"])
+
+Parts = Annotated[list[Part], Query(description="Repeat for several.")]
+
+
+@router.post("", status_code=201, summary="Connect a vehicle", responses=responses(409, 422, 502))
+async def connect(body: VehicleIn, fleet: FleetDep, response: Response) -> VehicleOut:
+    """Open the link and wait for a heartbeat.
+
+    A vehicle that stays silent is listed as not connected, and connects when it is heard.
+    """
+    vehicle = await fleet.connect(body.name, body.url, body.timeout_s)
+    response.headers["Location"] = f"/api/v1/vehicles/{vehicle.id}"
+    return VehicleOut.of(vehicle)
+
+
+@router.get("", summary="List vehicles")
+async def list_vehicles(fleet: FleetDep) -> VehicleList:
+    """Vehicles, oldest first."""
+    return VehicleList(vehicles=[VehicleOut.of(vehicle) for vehicle in fleet.all()])
+
+
+@router.get("/{vehicle_id}", summary="Read a vehicle", responses=responses(404))
+async def get_vehicle(vehicle_id: str, fleet: FleetDep) -> VehicleOut:
+    """Its state, its last upload, what is at work on it."""
+    return VehicleOut.of(fleet.get(vehicle_id))
+
+
+@router.delete("/{vehicle_id}", status_code=204, summary="Let a vehicle go", responses=responses(404))
+async def disconnect(vehicle_id: str, fleet: FleetDep) -> None:
+    """Close the link; a simulated aircraft ends. The vehicle itself gets no command."""
+    await fleet.disconnect(vehicle_id)
+
+
+@router.get(
+    "/{vehicle_id}/telemetry",
+    summary="Watch a vehicle",
+    response_class=EventSourceResponse,
+    responses=responses(404)
+    | {
+        200: {
+            "description": "Events `state`, at most five a second; the data is the vehicle's record.",
+            "content": {"text/event-stream": {"schema": {"type": "string"}}},
+        }
+    },
+)
+async def telemetry(vehicle_id: str, fleet: FleetDep) -> EventSourceResponse:
+    """Server-sent events until the vehicle is let go."""
+    fleet.get(vehicle_id)
+
+    async def stream() -> AsyncIterator[ServerSentEvent]:
+        async for vehicle in fleet.telemetry(vehicle_id):
+            yield ServerSentEvent(VehicleOut.of(vehicle).model_dump_json(), event="state")
+
+    return EventSourceResponse(stream(), ping=15)
+
+
+@router.post(
+    "/{vehicle_id}/mission",
+    summary="Upload a plan",
+    responses=responses(404, 409, 422, 502)
+    | {202: {"model": UploadOut, "description": "The outcome is unknown until the vehicle comes back."}},
+)
+async def upload(vehicle_id: str, body: MissionIn, fleet: FleetDep, response: Response) -> UploadOut:
+    """Encode the plan for the autopilot that is there, upload, read back, compare.
+
+    Plans that break a hard constraint, missions for another kind of vehicle and vehicles in flight are
+    refused (409) unless `override` is true and `reason` says why. `outcome` tells what the vehicle said:
+    `accepted`, `refused`, or `unknown` when it vanished meanwhile; `held` and `differences` tell what it
+    holds.
+    """
+    choice = MissionChoice(body.vehicle, None, body.payload)
+    report = await fleet.upload(
+        vehicle_id, body.plan_id, body.parts, choice, body.reason if body.override else None
+    )
+    response.status_code = 202 if report.outcome == "unknown" else 200
+    return UploadOut.of(report)
+
+
+@router.get("/{vehicle_id}/mission", summary="Download", responses=responses(404, 409, 422, 502))
+async def download(vehicle_id: str, fleet: FleetDep, part: Parts = ["mission"]) -> HeldOut:  # noqa: B006
+    """What the vehicle holds."""
+    return HeldOut(vehicle_id=vehicle_id, parts=await fleet.download(vehicle_id, list(dict.fromkeys(part))))
+
+
+@router.delete("/{vehicle_id}/mission", summary="Clear", responses=responses(404, 409, 422, 502))
+async def clear(vehicle_id: str, fleet: FleetDep, part: Parts = ["mission"]) -> ClearedOut:  # noqa: B006
+    """Empty the vehicle's lists."""
+    outcomes = await fleet.clear(vehicle_id, list(dict.fromkeys(part)))
+    return ClearedOut(vehicle_id=vehicle_id, parts={name: o.kind for name, o in outcomes.items()})
+
+
+@router.post("/{vehicle_id}/commands", summary="Command", responses=responses(404, 409, 422, 502))
+async def command(vehicle_id: str, body: CommandIn, fleet: FleetDep) -> CommandOut:
+    """An explicit flight command; nothing else arms or moves a vehicle. 409 when the vehicle says no."""
+    outcome = await fleet.command(vehicle_id, body.command, body.seq)
+    known = outcome.accepted if isinstance(outcome, CommandOutcome) else outcome.kind == "accepted"
+    return CommandOut(
+        vehicle_id=vehicle_id,
+        command=body.command,
+        outcome="accepted" if known else "unknown",
+        detail=str(outcome),
+    )

@@ -1,0 +1,219 @@
+"""Bodies of requests and answers about vehicles and flights."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from datetime import datetime
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import BaseModel, Field, field_validator, model_validator
+
+from app.schemas import FindingOut, Strict
+from app.services.records import FlightRecord
+from app.services.vehicles.items import state_json
+from app.services.vehicles.uploads import UploadReport
+from app.services.vehicles.vehicle import Vehicle
+from app.services.work import finding_json
+
+Part = Literal["mission", "fence", "rally"]
+CommandName = Literal["arm", "disarm", "start", "pause", "resume", "rtl", "goto_item"]
+
+
+class VehicleIn(Strict):
+    """A vehicle to connect."""
+
+    name: str = Field(min_length=1, max_length=100, pattern=r"\S", examples=["uav-1"])
+    url: str = Field(
+        min_length=1,
+        max_length=300,
+        description="udpin:host:port, udpout:host:port, tcp:host:port, serial:device:baud, or sim: for a "
+        "simulated aircraft, e.g. sim:?speedup=20&home=33.48,-117.75&autopilot=px4&airspeed=20"
+        "&turn_radius=100&wind=8,270. Without a home it stands where the plan it gets begins.",
+        examples=["sim:", "udpin:127.0.0.1:14550"],
+    )
+    timeout_s: float = Field(
+        default=10.0, ge=0.1, le=60, description="How long to wait for its first heartbeat."
+    )
+
+
+class MissionIn(Strict):
+    """What to upload."""
+
+    plan_id: str = Field(max_length=36)
+    parts: Annotated[list[Part], Field(min_length=1, max_length=3)] = Field(
+        default=["mission"], description="Uploaded in this order; the first refusal ends it."
+    )
+    vehicle: str | None = Field(default=None, max_length=200, description="Vehicle of the plan; its first.")
+    payload: str | None = Field(
+        default=None, max_length=200, description="How the sensor is switched, e.g. relay:0."
+    )
+    override: bool = Field(
+        default=False, description="Upload although a hard constraint is broken; needs a reason."
+    )
+    reason: str | None = Field(
+        default=None, min_length=3, max_length=500, description="Why to override; logged with the upload."
+    )
+
+    @field_validator("parts")
+    @classmethod
+    def _each_once(cls, parts: list[Part]) -> list[Part]:
+        return list(dict.fromkeys(parts))
+
+    @model_validator(mode="after")
+    def _say_why(self) -> Self:
+        if self.override and self.reason is None:
+            raise ValueError("an override needs a reason")
+        return self
+
+
+class PartOut(BaseModel):
+    """What became of one part."""
+
+    outcome: Literal["accepted", "refused", "unknown", "not_attempted"]
+    reason: str
+    verified: bool = Field(description="Read back, and equal to what was meant, roundings aside.")
+    meant: int = Field(description="Items sent.")
+    differences: list[dict[str, Any]] | None = Field(description="None when it could not be read back.")
+    held: list[dict[str, Any]] | None = Field(description="Items the vehicle holds now; None: not known.")
+
+
+class UploadOut(BaseModel):
+    """An upload: what was meant and what the vehicle now holds."""
+
+    number: int
+    plan_id: str
+    plan_vehicle: str
+    outcome: Literal["accepted", "refused", "unknown", "not_attempted"] = Field(
+        description="unknown: nobody here can tell what the vehicle holds; resolved when it comes back."
+    )
+    verified: bool
+    parts: dict[str, PartOut]
+    findings: list[FindingOut]
+    notes: list[str]
+    override_reason: str | None
+
+    @classmethod
+    def of(cls, report: UploadReport, items: bool = True) -> Self:
+        """The answer for a report, with the items held or without."""
+        return cls(
+            number=report.number,
+            plan_id=report.plan_id,
+            plan_vehicle=report.plan_vehicle,
+            outcome=report.outcome,
+            verified=report.verified,
+            parts={
+                name: PartOut(
+                    outcome=part.outcome,
+                    reason=part.reason,
+                    verified=part.verified,
+                    meant=part.meant,
+                    differences=part.differences,
+                    held=part.held if items else None,
+                )
+                for name, part in report.parts.items()
+            },
+            findings=[FindingOut.model_validate(finding_json(finding)) for finding in report.findings],
+            notes=list(report.notes),
+            override_reason=report.override_reason,
+        )
+
+
+class VehicleOut(BaseModel):
+    """A vehicle and how it is."""
+
+    id: str
+    name: str
+    url: str
+    connected: bool
+    simulated: bool
+    created_at: datetime
+    operation: str | None = Field(description="What is at work on it now.")
+    transfer: dict[str, Any] | None = Field(description="Of an upload at work: part, done, total.")
+    pending: bool = Field(description="An upload's outcome is unknown; it is read back on reconnection.")
+    plan_id: str | None = Field(description="The plan it holds, read back and compared.")
+    flight_id: str | None = Field(description="The flight being recorded.")
+    upload: UploadOut | None = Field(description="The last upload, without its items.")
+    state: dict[str, Any] = Field(description="Position, attitude, mode, mission, battery …; null: not said.")
+
+    @classmethod
+    def of(cls, vehicle: Vehicle) -> Self:
+        """The answer for a vehicle."""
+        return cls(
+            id=vehicle.id,
+            name=vehicle.name,
+            url=vehicle.url,
+            connected=vehicle.state.connected,
+            simulated=vehicle.simulated is not None,
+            created_at=vehicle.created_at,
+            operation=vehicle.operation,
+            transfer=vehicle.progress,
+            pending=vehicle.pending,
+            plan_id=vehicle.held.plan_id if vehicle.held else None,
+            flight_id=vehicle.flight_id,
+            upload=UploadOut.of(vehicle.upload, items=False) if vehicle.upload else None,
+            state=state_json(vehicle.state),
+        )
+
+
+class VehicleList(BaseModel):
+    """Vehicles, oldest first."""
+
+    vehicles: list[VehicleOut]
+
+
+class HeldOut(BaseModel):
+    """What a vehicle holds."""
+
+    vehicle_id: str
+    parts: dict[str, list[dict[str, Any]]]
+
+
+class ClearedOut(BaseModel):
+    """How clearing went, part by part."""
+
+    vehicle_id: str
+    parts: dict[str, Literal["accepted", "refused", "unknown"]]
+
+
+class CommandIn(Strict):
+    """An explicit flight command."""
+
+    command: CommandName
+    seq: int | None = Field(default=None, ge=0, le=65535, description="Item, for goto_item.")
+
+
+class CommandOut(BaseModel):
+    """What became of a command; a refusal is a 409 problem."""
+
+    vehicle_id: str
+    command: CommandName
+    outcome: Literal["accepted", "unknown"]
+    detail: str
+
+
+class FlightOut(BaseModel):
+    """One flight."""
+
+    id: str
+    vehicle_id: str
+    vehicle_name: str
+    plan_id: str | None
+    plan_vehicle: str | None
+    state: Literal["flying", "ended", "interrupted"]
+    started_at: datetime
+    ended_at: datetime | None
+    points: int
+    links: dict[str, str]
+
+    @classmethod
+    def of(cls, record: FlightRecord) -> Self:
+        """The answer for a record."""
+        base = f"/api/v1/flights/{record.id}"
+        links = {"self": base} | {name: f"{base}/{name}" for name in ("track.geojson", "coverage.geojson")}
+        return cls(**asdict(record), links=links)
+
+
+class FlightList(BaseModel):
+    """Flights, newest first."""
+
+    flights: list[FlightOut]

@@ -1,0 +1,151 @@
+"""What was flown, and what was really seen."""
+
+from __future__ import annotations
+
+import asyncio
+from dataclasses import asdict
+from functools import partial
+from typing import Any
+
+from shapely import transform
+from shapely.geometry import mapping
+from shapely.geometry.base import BaseGeometry
+
+from app.services.documents import read_object
+from app.services.errors import ConflictError, NotFoundError
+from app.services.missions import plan_of
+from app.services.planning import PlanningService
+from app.services.records import FlightRecord, TrackSample
+from app.services.store.flights import FlightStore
+from planner.coverage import flown
+from planner.frames import LocalFrame
+from planner.geojson import read_scenario
+
+
+class FlightService:
+    """Flights, their tracks, and the ground they saw."""
+
+    def __init__(self, store: FlightStore, planning: PlanningService) -> None:
+        self._store = store
+        self._planning = planning
+
+    async def newest(self, limit: int, offset: int, vehicle_id: str | None) -> tuple[FlightRecord, ...]:
+        """Flights, newest first."""
+        return await self._store.newest(limit, offset, vehicle_id)
+
+    async def get(self, flight_id: str) -> FlightRecord:
+        """One flight; raises NotFoundError."""
+        return await self._store.get(flight_id)
+
+    async def track(self, flight_id: str) -> dict[str, Any]:
+        """The track as GeoJSON: the line, and a piece for each time the sensor was on."""
+        record = await self._store.get(flight_id)
+        return track_geojson(record, await self._store.track(flight_id))
+
+    async def coverage(self, flight_id: str) -> dict[str, Any]:
+        """The ground seen, as GeoJSON, with the fraction of each region and the cross-track errors.
+
+        Raises
+        ------
+        ConflictError
+            The flight followed no plan of this service, or the plan has been deleted.
+        """
+        record = await self._store.get(flight_id)
+        if record.plan_id is None:
+            raise ConflictError("the flight followed no plan of this service")
+        try:
+            plan_text = await self._planning.plan_text(record.plan_id)
+            scenario_text = await self._planning.scenario_text(record.plan_id)
+        except NotFoundError as error:
+            raise ConflictError("the flight's plan has been deleted") from error
+        samples = await self._store.track(flight_id)
+        return await asyncio.to_thread(coverage_geojson, record, plan_text, scenario_text, samples)
+
+
+def _feature(geometry: dict[str, Any], **properties: Any) -> dict[str, Any]:
+    return {"type": "Feature", "geometry": geometry, "properties": properties}
+
+
+def _place(sample: TrackSample) -> list[float]:
+    place = [sample.lon_deg, sample.lat_deg]
+    return place if sample.altitude_amsl_m is None else [*place, sample.altitude_amsl_m]
+
+
+def track_geojson(record: FlightRecord, samples: tuple[TrackSample, ...]) -> dict[str, Any]:
+    """A track as a FeatureCollection: roles ``track`` and ``sensor_on``.
+
+    Beside the line stand the vehicle's times in seconds since boot, the height above home, heading, roll and
+    ground speed, one of each for every vertex.
+    """
+    features = []
+    if len(samples) > 1:
+        line = {"type": "LineString", "coordinates": [_place(sample) for sample in samples]}
+        columns = {
+            "times_s": [sample.time_s for sample in samples],
+            "altitudes_home_m": [sample.altitude_home_m for sample in samples],
+            "headings_deg": [sample.heading_deg for sample in samples],
+            "rolls_deg": [sample.roll_deg for sample in samples],
+            "ground_speeds_m_s": [sample.ground_speed_m_s for sample in samples],
+            "sensor_on": [sample.sensor_on for sample in samples],
+        }
+        features.append(_feature(line, role="track", vehicle=record.vehicle_name, **columns))
+    for run in _runs(samples):
+        line = {"type": "LineString", "coordinates": [_place(sample) for sample in run]}
+        times = {"start_s": run[0].time_s, "end_s": run[-1].time_s}
+        features.append(_feature(line, role="sensor_on", vehicle=record.vehicle_name, **times))
+    return {"type": "FeatureCollection", "flight": record.id, "plan": record.plan_id, "features": features}
+
+
+def _runs(samples: tuple[TrackSample, ...]) -> list[list[TrackSample]]:
+    runs: list[list[TrackSample]] = [[]]
+    for sample in samples:
+        if sample.sensor_on:
+            runs[-1].append(sample)
+        elif runs[-1]:
+            runs.append([])
+    return [run for run in runs if len(run) > 1]
+
+
+def coverage_geojson(
+    record: FlightRecord, plan_text: str, scenario_text: str, samples: tuple[TrackSample, ...]
+) -> dict[str, Any]:
+    """What a flight saw: roles ``seen`` and ``unseen`` by region, and figures as foreign members.
+
+    Members: ``coverage`` {region: fraction as flown}, ``planned_coverage``, and ``collects`` with the
+    distance of the track from each planned line while the sensor was on.
+    """
+    scenario = read_scenario(read_object(scenario_text))
+    plan = plan_of(plan_text)
+    # Heights count from home, and the ground is taken as flat at home's height.
+    track = [
+        flown.TrackSample(
+            time_s=sample.time_s,
+            lon_deg=sample.lon_deg,
+            lat_deg=sample.lat_deg,
+            height_m=sample.altitude_home_m or 0.0,
+            roll_deg=sample.roll_deg or 0.0,
+            sensor_on=sample.sensor_on,
+        )
+        for sample in samples
+    ]
+    result = flown.flown_coverage(scenario, plan, track)
+    to_wgs84 = partial(_to_wgs84, scenario.frame)
+    features = [
+        _feature(mapping(to_wgs84(shape)), role=role, roi=name, fraction=result.fraction[name])
+        for role, shapes in (("seen", result.seen), ("unseen", result.unseen))
+        for name, shape in shapes.items()
+        if not shape.is_empty
+    ]
+    return {
+        "type": "FeatureCollection",
+        "flight": record.id,
+        "plan": record.plan_id,
+        "coverage": result.fraction,
+        "planned_coverage": plan.metrics.coverage,
+        "collects": [asdict(collect) for collect in result.passes],
+        "features": features,
+    }
+
+
+def _to_wgs84(frame: LocalFrame, shape: BaseGeometry) -> BaseGeometry:
+    return transform(shape, frame.to_wgs84)

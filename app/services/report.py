@@ -1,0 +1,64 @@
+"""The printable report of a plan."""
+
+from __future__ import annotations
+
+import json
+import math
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined, Template, select_autoescape
+
+from app.services.records import PlanRecord
+from app.services.report_map import draw_map
+
+TEMPLATES = Path(__file__).resolve().parents[1] / "templates"
+
+
+def _number(value: float | None, decimals: int = 1) -> str:
+    if value is None or not math.isfinite(value):
+        return "–"
+    return f"{value:,.{decimals}f}".replace(",", "\u202f")
+
+
+def _clock(seconds: float | None) -> str:
+    if seconds is None:
+        return "–"
+    minutes, rest = divmod(round(seconds), 60)
+    hours, minutes = divmod(minutes, 60)
+    return f"{hours}:{minutes:02d}:{rest:02d}" if hours else f"{minutes}:{rest:02d}"
+
+
+@lru_cache(maxsize=1)
+def _template() -> Template:
+    environment = Environment(
+        loader=FileSystemLoader(TEMPLATES),
+        autoescape=select_autoescape(default=True, default_for_string=True),
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters |= {"number": _number, "clock": _clock}
+    return environment.get_template("report.html.jinja")
+
+
+def write_report(record: PlanRecord, plan_text: str, scenario_text: str) -> str:
+    """The report of a done plan as one HTML page without scripts or outside parts."""
+    plan: dict[str, Any] = json.loads(plan_text)
+    scenario: dict[str, Any] = json.loads(scenario_text)
+    by_role: dict[str, list[dict[str, Any]]] = {}
+    for feature in plan["features"]:
+        by_role.setdefault(feature["properties"]["role"], []).append(feature["properties"])
+    return _template().render(
+        plan=plan,
+        scenario=scenario,
+        record=record,
+        map=draw_map(scenario, plan),
+        metrics=plan["metrics"],
+        collects=sorted(by_role.get("collect", []), key=lambda c: (c["vehicle"], c["seq"])),
+        transits=sorted(by_role.get("transit", []), key=lambda t: (t["vehicle"], t["seq"])),
+        paths=by_role.get("path", []),
+        footprints={(f["vehicle"], f["seq"]): f for f in by_role.get("footprint", [])},
+        uncovered=by_role.get("uncovered", []),
+    )

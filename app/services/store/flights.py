@@ -1,0 +1,128 @@
+"""Flights and their tracks in the database."""
+
+from __future__ import annotations
+
+import uuid
+from collections.abc import Sequence
+from dataclasses import asdict
+from typing import Any, cast
+
+from sqlalchemy import ColumnElement, Select, func, insert, select, update
+
+from app.services.errors import NotFoundError
+from app.services.records import FlightRecord, FlightState, TrackSample
+from app.services.store.database import Database
+from app.services.store.plans import now
+from app.services.store.tables import FlightRow, TrackPointRow
+
+
+def _records() -> Select[FlightRow, int]:
+    points: ColumnElement[int] = (
+        select(func.count()).where(TrackPointRow.flight_id == FlightRow.id).scalar_subquery()
+    )
+    return select(FlightRow, points)
+
+
+def _record(row: FlightRow, points: int) -> FlightRecord:
+    return FlightRecord(
+        id=row.id,
+        vehicle_id=row.vehicle_id,
+        vehicle_name=row.vehicle_name,
+        plan_id=row.plan_id,
+        plan_vehicle=row.plan_vehicle,
+        state=cast(FlightState, row.state),
+        started_at=row.started_at,
+        ended_at=row.ended_at,
+        points=points,
+    )
+
+
+class FlightStore:
+    """Flights: begun, added to, ended, read."""
+
+    def __init__(self, database: Database) -> None:
+        self._database = database
+
+    async def begin(
+        self, vehicle_id: str, vehicle_name: str, plan_id: str | None, plan_vehicle: str | None
+    ) -> str:
+        """A new flight; returns its id."""
+        flight_id = str(uuid.uuid4())
+        async with self._database.session() as session:
+            session.add(
+                FlightRow(
+                    id=flight_id,
+                    vehicle_id=vehicle_id,
+                    vehicle_name=vehicle_name,
+                    plan_id=plan_id,
+                    plan_vehicle=plan_vehicle,
+                    state="flying",
+                    started_at=now(),
+                )
+            )
+        return flight_id
+
+    async def add(self, flight_id: str, samples: Sequence[TrackSample]) -> None:
+        """Append to a flight's track."""
+        if not samples:
+            return
+        rows: list[dict[str, Any]] = [{"flight_id": flight_id} | asdict(sample) for sample in samples]
+        async with self._database.session() as session:
+            await session.execute(insert(TrackPointRow), rows)
+
+    async def end(self, flight_id: str, state: FlightState) -> None:
+        """Close a flight."""
+        async with self._database.session() as session:
+            await session.execute(
+                update(FlightRow)
+                .where(FlightRow.id == flight_id, FlightRow.state == "flying")
+                .values(state=state, ended_at=now())
+            )
+
+    async def recover(self) -> None:
+        """After a restart: flights nobody watched to their end are interrupted."""
+        async with self._database.session() as session:
+            await session.execute(
+                update(FlightRow)
+                .where(FlightRow.state == "flying")
+                .values(state="interrupted", ended_at=now())
+            )
+
+    async def newest(self, limit: int, offset: int, vehicle_id: str | None) -> tuple[FlightRecord, ...]:
+        """Flights, newest first."""
+        query = _records().order_by(FlightRow.number.desc()).limit(limit).offset(offset)
+        if vehicle_id is not None:
+            query = query.where(FlightRow.vehicle_id == vehicle_id)
+        async with self._database.session() as session:
+            return tuple(_record(row, points) for row, points in await session.execute(query))
+
+    async def get(self, flight_id: str) -> FlightRecord:
+        """One flight; raises NotFoundError."""
+        async with self._database.session() as session:
+            found = (await session.execute(_records().where(FlightRow.id == flight_id))).first()
+        if found is None:
+            raise NotFoundError("flight", flight_id)
+        return _record(found[0], found[1])
+
+    async def track(self, flight_id: str) -> tuple[TrackSample, ...]:
+        """The recorded places in order."""
+        query = (
+            select(TrackPointRow).where(TrackPointRow.flight_id == flight_id).order_by(TrackPointRow.number)
+        )
+        async with self._database.session() as session:
+            rows = await session.scalars(query)
+            return tuple(
+                TrackSample(
+                    time_s=row.time_s,
+                    lon_deg=row.lon_deg,
+                    lat_deg=row.lat_deg,
+                    altitude_amsl_m=row.altitude_amsl_m,
+                    altitude_home_m=row.altitude_home_m,
+                    heading_deg=row.heading_deg,
+                    roll_deg=row.roll_deg,
+                    ground_speed_m_s=row.ground_speed_m_s,
+                    mission_seq=row.mission_seq,
+                    sensor_on=row.sensor_on,
+                )
+                for row in rows
+            )

@@ -1,0 +1,1 @@
+"""Connected vehicles: links, simulated aircraft, uploads, commands, flights as they happen."""

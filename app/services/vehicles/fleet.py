@@ -1,0 +1,311 @@
+"""All vehicles the service knows: connected, uploaded to, commanded, let go."""
+
+from __future__ import annotations
+
+import asyncio
+import uuid
+from collections.abc import AsyncIterator, Sequence
+from typing import Any
+
+import structlog
+
+from app.services.errors import CommandRefusedError, ConflictError, LinkError, NotFoundError, RefusedError
+from app.services.hub import Hub
+from app.services.metrics import UPLOADS, VEHICLES
+from app.services.missions import PARTS, MissionChoice, PartName, encode_plan, plan_of
+from app.services.planning import PlanningService
+from app.services.store.flights import FlightStore
+from app.services.store.uploads import UploadStore
+from app.services.vehicles.items import item_json
+from app.services.vehicles.recorder import HeldPlan, is_flying
+from app.services.vehicles.uploads import PartResult, UploadReport, judge_upload, send_parts
+from app.services.vehicles.vehicle import Home, Vehicle
+from app.services.work import finding_json
+from mavlink import errors as mavlink_errors
+from mavlink.geometry import distance_m
+from mavlink.mission import Mission
+from mavlink.transfer.command import CommandOutcome
+from mavlink.transfer.machine import Progress
+from mavlink.transfer.outcome import Outcome
+from planner.errors import Finding
+from planner.plan import Plan
+
+log = structlog.get_logger(__name__)
+
+CONNECT_S = 10.0
+MAX_VEHICLES = 64
+#: A simulated aircraft without a home of its own stands where its plan begins; further away, it moves.
+AT_HOME_M = 50.0
+
+
+class Fleet:
+    """The vehicles of one service. They are known as long as it runs; uploads and flights are kept."""
+
+    def __init__(
+        self,
+        planning: PlanningService,
+        uploads: UploadStore,
+        flights: FlightStore,
+        track_interval_s: float,
+    ) -> None:
+        self._planning = planning
+        self._uploads = uploads
+        self._flights = flights
+        self._track_interval_s = track_interval_s
+        self._vehicles: dict[str, Vehicle] = {}
+        self._hub: Hub[Vehicle] = Hub()
+
+    async def open(self) -> None:
+        """Close the flights an earlier service left open."""
+        await self._flights.recover()
+
+    async def close(self) -> None:
+        """Let every vehicle go."""
+        await asyncio.gather(*(vehicle.close() for vehicle in self._vehicles.values()))
+        self._vehicles.clear()
+
+    def all(self) -> tuple[Vehicle, ...]:
+        """Every vehicle, oldest first."""
+        return tuple(self._vehicles.values())
+
+    def get(self, vehicle_id: str) -> Vehicle:
+        """One vehicle, by id; raises NotFoundError."""
+        vehicle = self._vehicles.get(vehicle_id)
+        if vehicle is None:
+            raise NotFoundError("vehicle", vehicle_id)
+        return vehicle
+
+    async def connect(self, name: str, url: str, timeout_s: float = CONNECT_S) -> Vehicle:
+        """Connect a vehicle; when it stays silent it is known all the same, and listened for.
+
+        Raises
+        ------
+        ConflictError
+            The name or the address is in use.
+        RefusedError, LinkError
+            The address is malformed, or the link cannot be opened.
+        """
+        if len(self._vehicles) >= MAX_VEHICLES:
+            raise ConflictError(f"{MAX_VEHICLES} vehicles are connected already")
+        for other in self._vehicles.values():
+            if other.name == name:
+                raise ConflictError(f"there is a vehicle called {name} already")
+            if other.url == url and other.simulated is None:
+                raise ConflictError(f"{url} is in use by {other.name}")
+        vehicle = Vehicle(
+            str(uuid.uuid4()), name, url, self._flights, self._track_interval_s, self._publish, self._resolved
+        )
+        self._vehicles[vehicle.id] = vehicle
+        try:
+            await vehicle.open(await self._default_home(), timeout_s)
+        except BaseException:
+            del self._vehicles[vehicle.id]
+            await vehicle.close()
+            raise
+        log.info("vehicle added", vehicle=name, url=url, connected=vehicle.state.connected)
+        return vehicle
+
+    async def disconnect(self, vehicle_id: str) -> None:
+        """Let a vehicle go; raises NotFoundError."""
+        vehicle = self.get(vehicle_id)
+        del self._vehicles[vehicle_id]
+        await vehicle.close()
+        self._hub.publish(vehicle_id, vehicle)
+        log.info("vehicle let go", vehicle=vehicle.name)
+
+    async def telemetry(self, vehicle_id: str) -> AsyncIterator[Vehicle]:
+        """The vehicle now and at every change, until it is let go."""
+        async with self._hub.listen(vehicle_id) as queue:
+            yield self.get(vehicle_id)
+            while vehicle_id in self._vehicles:
+                vehicle = await queue.get()
+                while not queue.empty():
+                    vehicle = queue.get_nowait()
+                yield vehicle
+
+    async def upload(
+        self,
+        vehicle_id: str,
+        plan_id: str,
+        parts: Sequence[PartName],
+        choice: MissionChoice = MissionChoice(),  # noqa: B008 - a frozen value
+        override: str | None = None,
+    ) -> UploadReport:
+        """Put a plan into a vehicle, read it back, compare.
+
+        Raises
+        ------
+        UnsafeError
+            The plan must not be flown without an override.
+        BusyError
+            Another operation is at work on the vehicle.
+        LinkError
+            The vehicle is not there.
+        """
+        vehicle = self.get(vehicle_id)
+        async with vehicle.busy(f"upload of plan {plan_id}"):
+            plan = plan_of(await self._planning.plan_text(plan_id))
+            if not vehicle.state.connected:
+                raise LinkError(f"{vehicle.name} is not connected")
+            mission = await asyncio.to_thread(encode_plan, plan, _for_vehicle(vehicle, choice))
+            findings = judge_upload(plan, mission, parts, vehicle.state, override)
+            await self._bring_home(vehicle, plan)
+            report = await self._begin_upload(vehicle, plan_id, mission, parts, override, findings)
+
+            def tell(part: PartName, made: Progress) -> None:
+                vehicle.progress = {"part": part, "done": made.done, "total": made.total}
+                self._publish(vehicle)
+
+            if "mission" in parts:
+                vehicle.held = None
+            try:
+                await send_parts(vehicle.client, mission, report, tell)
+            finally:
+                await self._record_upload(vehicle)
+        return report
+
+    async def download(self, vehicle_id: str, parts: Sequence[PartName]) -> dict[str, list[dict[str, Any]]]:
+        """What a vehicle holds, part by part."""
+        vehicle = self.get(vehicle_id)
+        async with vehicle.busy("download"):
+            try:
+                return {
+                    name: [item_json(item) for item in await vehicle.client.download(PARTS[name])]
+                    for name in parts
+                }
+            except mavlink_errors.TransferFailedError as error:
+                raise LinkError(f"{vehicle.name}: {error}") from error
+
+    async def clear(self, vehicle_id: str, parts: Sequence[PartName]) -> dict[str, Outcome]:
+        """Empty a vehicle's lists."""
+        vehicle = self.get(vehicle_id)
+        async with vehicle.busy("clearing"):
+            outcomes: dict[str, Outcome] = {}
+            for name in parts:
+                outcomes[name] = await vehicle.client.clear(PARTS[name])
+                if name == "mission":
+                    vehicle.held = None
+            return outcomes
+
+    async def command(self, vehicle_id: str, command: str, seq: int | None) -> CommandOutcome | Outcome:
+        """An explicit flight command; raises CommandRefusedError when the vehicle says no."""
+        vehicle = self.get(vehicle_id)
+        log.info("flight command", vehicle=vehicle.name, command=command, seq=seq)
+        try:
+            outcome = await self._order(vehicle, command, seq)
+        except (mavlink_errors.NotConnectedError, mavlink_errors.LinkError) as error:
+            raise LinkError(f"{vehicle.name}: {error}") from error
+        except mavlink_errors.BusyError as error:
+            raise ConflictError(f"{vehicle.name} is busy: {error}") from error
+        if isinstance(outcome, CommandOutcome):
+            if outcome.result is not None and not outcome.accepted:
+                said = vehicle.state.texts[-1].text if vehicle.state.texts else ""
+                raise CommandRefusedError(f"{vehicle.name} refused {outcome}{said and f'; it says: {said}'}")
+        elif outcome.kind == "refused":
+            raise CommandRefusedError(f"{vehicle.name}: {outcome}")
+        return outcome
+
+    async def _order(self, vehicle: Vehicle, command: str, seq: int | None) -> CommandOutcome | Outcome:
+        client = vehicle.client
+        match command:
+            case "arm":
+                return await client.arm()
+            case "disarm":
+                return await client.disarm()
+            case "start":
+                return await client.start_mission()
+            case "pause":
+                return await client.pause()
+            case "resume":
+                return await client.resume()
+            case "rtl":
+                return await client.return_to_launch()
+            case "goto_item" if seq is not None:
+                return await client.goto_item(seq)
+        message = f"{command} needs the number of an item in seq"
+        raise RefusedError(message, (Finding("seq", "seq-missing", message, "send seq"),))
+
+    async def _default_home(self) -> Home | None:
+        for record in await self._planning.newest(1, 0, "done"):
+            return _home_of(plan_of(await self._planning.plan_text(record.id)))
+        return None
+
+    async def _bring_home(self, vehicle: Vehicle, plan: Plan) -> None:
+        """A simulated aircraft that stands elsewhere, and was not told where, goes where the plan begins."""
+        if vehicle.simulated is None or vehicle.simulated.home is not None or is_flying(vehicle.state):
+            return
+        state = vehicle.state
+        place = (state.lon_deg or 0.0, state.lat_deg or 0.0)
+        if distance_m(place, plan.home) < AT_HOME_M:
+            return
+        log.info("simulated aircraft moves to the plan's start", vehicle=vehicle.name)
+        await vehicle.move(_home_of(plan), CONNECT_S)
+
+    async def _begin_upload(
+        self,
+        vehicle: Vehicle,
+        plan_id: str,
+        mission: Mission,
+        parts: Sequence[PartName],
+        override: str | None,
+        findings: tuple[Finding, ...],
+    ) -> UploadReport:
+        number = await self._uploads.begin(vehicle.id, vehicle.name, plan_id, parts, override)
+        if override is not None:
+            rules = [finding.rule for finding in findings]
+            log.warning(
+                "upload overrides", vehicle=vehicle.name, plan_id=plan_id, reason=override, rules=rules
+            )
+        report = UploadReport(
+            number,
+            plan_id,
+            mission.vehicle,
+            override,
+            mission.notes,
+            findings,
+            {name: PartResult(len(mission.items_of(PARTS[name]))) for name in parts},
+        )
+        vehicle.upload = report
+        return report
+
+    async def _record_upload(self, vehicle: Vehicle) -> None:
+        report = vehicle.upload
+        assert report is not None
+        mission = report.parts.get("mission")
+        if mission is not None and mission.verified:
+            vehicle.held = HeldPlan(report.plan_id, report.plan_vehicle)
+        outcome = "unknown" if report.outcome == "not_attempted" else report.outcome
+        UPLOADS.labels(outcome=outcome).inc()
+        detail = {
+            "verified": report.verified,
+            "findings": [finding_json(finding) for finding in report.findings],
+            "parts": {
+                name: {"outcome": p.outcome, "reason": p.reason, "differences": p.differences}
+                for name, p in report.parts.items()
+            },
+        }
+        await self._uploads.end(report.number, outcome, detail)
+        log.info("upload ended", vehicle=vehicle.name, plan_id=report.plan_id, outcome=outcome)
+        self._publish(vehicle)
+
+    async def _resolved(self, vehicle: Vehicle) -> None:
+        await self._record_upload(vehicle)
+
+    def _publish(self, vehicle: Vehicle) -> None:
+        connected = sum(other.state.connected for other in self._vehicles.values())
+        VEHICLES.labels(state="connected").set(connected)
+        VEHICLES.labels(state="silent").set(len(self._vehicles) - connected)
+        self._hub.publish(vehicle.id, vehicle)
+
+
+def _home_of(plan: Plan) -> Home:
+    lon_deg, lat_deg = plan.home
+    return lat_deg, lon_deg, 0.0
+
+
+def _for_vehicle(vehicle: Vehicle, choice: MissionChoice) -> MissionChoice:
+    """The choice, encoded for the autopilot that is really there."""
+    autopilot = vehicle.state.autopilot
+    if choice.autopilot is not None or autopilot == "generic":
+        return choice
+    return MissionChoice(choice.vehicle, autopilot, choice.payload)

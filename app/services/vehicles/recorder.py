@@ -1,0 +1,143 @@
+"""Flights as they happen: from the first movement of an armed vehicle to its landing or disarming."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import structlog
+
+from app.services.records import FlightState, TrackSample
+from app.services.store.flights import FlightStore
+from mavlink.client import VehicleClient
+from mavlink.telemetry import VehicleState
+from mavlink.track import Track, TrackPoint, TrackRecorder
+
+log = structlog.get_logger(__name__)
+
+#: An armed vehicle that reports no landed state flies when it is faster than this.
+MOVING_M_S = 3.0
+
+
+def is_flying(state: VehicleState) -> bool:
+    """Whether a vehicle is armed and on its way."""
+    if not state.armed:
+        return False
+    if state.landed is not None:
+        return not state.landed
+    return (state.ground_speed_m_s or 0.0) > MOVING_M_S
+
+
+@dataclass(frozen=True, slots=True)
+class HeldPlan:
+    """The plan a vehicle holds, and its name there."""
+
+    plan_id: str
+    plan_vehicle: str
+
+
+class FlightRecorder:
+    """Records the flights of one vehicle.
+
+    Parameters
+    ----------
+    interval_s
+        Vehicle time between two recorded places; changes of the sensor are always recorded.
+    """
+
+    def __init__(self, store: FlightStore, vehicle_id: str, vehicle_name: str, interval_s: float) -> None:
+        self._store = store
+        self._vehicle_id = vehicle_id
+        self._vehicle_name = vehicle_name
+        self._interval_s = interval_s
+        self._recorder: TrackRecorder | None = None
+        self._thinner = Thinner(interval_s)
+        self.flight_id: str | None = None
+
+    async def look(self, client: VehicleClient, plan: HeldPlan | None) -> None:
+        """Begin, go on with or end a flight, as the vehicle's state says; call about once a second."""
+        state = client.state
+        flying = is_flying(state)
+        if self.flight_id is None:
+            if state.connected and flying:
+                await self._begin(client, plan)
+            return
+        await self._save()
+        if state.connected and not flying:
+            await self.end(client, "ended")
+
+    async def _begin(self, client: VehicleClient, plan: HeldPlan | None) -> None:
+        self._recorder = client.start_recording()
+        self._thinner = Thinner(self._interval_s)
+        self.flight_id = await self._store.begin(
+            self._vehicle_id,
+            self._vehicle_name,
+            plan.plan_id if plan else None,
+            plan.plan_vehicle if plan else None,
+        )
+        log.info("flight begun", vehicle=self._vehicle_name, flight_id=self.flight_id)
+
+    async def _save(self) -> None:
+        if self._recorder is not None and self.flight_id is not None:
+            await self._store.add(self.flight_id, self._thinner.more(self._recorder.track()))
+
+    async def end(self, client: VehicleClient | None, state: FlightState) -> None:
+        """Close the flight, if there is one."""
+        if self.flight_id is None:
+            return
+        await self._save()
+        if client is not None and self._recorder is not None:
+            client.stop_recording(self._recorder)
+        await self._store.end(self.flight_id, state)
+        log.info("flight ended", vehicle=self._vehicle_name, flight_id=self.flight_id, state=state)
+        self.flight_id = self._recorder = None
+
+
+class Thinner:
+    """New places of a growing track, no closer together than an interval unless the sensor changed."""
+
+    def __init__(self, interval_s: float) -> None:
+        self._interval_s = interval_s
+        self._taken = 0
+        self._kept: TrackSample | None = None
+
+    def more(self, track: Track) -> list[TrackSample]:
+        """What has been added since the last call."""
+        kept: list[TrackSample] = []
+        switches = [
+            (event.time_s, event.kind == "on")
+            for event in track.events
+            if event.source == "relay" and event.kind != "photo"
+        ]
+        # A recorder that has run for many hours drops every second place and gets shorter.
+        new = track.points[self._taken :]
+        self._taken = len(track.points)
+        for point in new:
+            sample = _sample(point, switches)
+            last = self._kept
+            if (
+                last is None
+                or sample.sensor_on != last.sensor_on
+                or not 0.0 <= sample.time_s - last.time_s < self._interval_s
+            ):
+                self._kept = sample
+                kept.append(sample)
+        return kept
+
+
+def _sample(point: TrackPoint, switches: list[tuple[float, bool]]) -> TrackSample:
+    sensor_on = point.sensor_on
+    if sensor_on is None:
+        # Autopilots that do not report the payload report its relay.
+        sensor_on = next((on for time_s, on in reversed(switches) if time_s <= point.time_s), False)
+    return TrackSample(
+        time_s=point.time_s,
+        lon_deg=point.lon_deg,
+        lat_deg=point.lat_deg,
+        altitude_amsl_m=point.amsl_m,
+        altitude_home_m=point.relative_m,
+        heading_deg=point.heading_deg,
+        roll_deg=point.roll_deg,
+        ground_speed_m_s=point.ground_speed_m_s,
+        mission_seq=point.mission_current,
+        sensor_on=sensor_on,
+    )

@@ -1,0 +1,144 @@
+"""One upload: judged before, sent part by part, compared, and told as it is."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+from app.services.errors import RefusedError, UnsafeError
+from app.services.missions import PARTS, PartName, mission_findings
+from app.services.vehicles.items import difference_json, item_json
+from app.services.vehicles.recorder import is_flying
+from mavlink.client import VehicleClient
+from mavlink.compare import Difference, differences
+from mavlink.dialects import Dialect
+from mavlink.items import MissionItem
+from mavlink.mission import Mission
+from mavlink.telemetry import VehicleState
+from mavlink.transfer.machine import Progress
+from mavlink.verify import VerifiedUpload
+from planner.errors import Finding
+from planner.plan import Plan
+
+OutcomeName = Literal["accepted", "refused", "unknown", "not_attempted"]
+STATUSES: tuple[OutcomeName, ...] = ("accepted", "not_attempted", "refused", "unknown")
+
+
+@dataclass(slots=True)
+class PartResult:
+    """What became of one part.
+
+    Parameters
+    ----------
+    outcome
+        ``accepted``: the vehicle said so, or what it holds shows it.
+    reason
+        In words, from the vehicle's answer or its absence.
+    differences
+        Between what was meant and what is held, roundings of the autopilot aside; None when not read back.
+    held
+        What the vehicle holds now; None when not known.
+    """
+
+    meant: int
+    outcome: OutcomeName = "not_attempted"
+    reason: str = ""
+    differences: list[dict[str, Any]] | None = None
+    held: list[dict[str, Any]] | None = None
+
+    @property
+    def verified(self) -> bool:
+        """Whether the vehicle holds what was meant."""
+        return self.outcome == "accepted" and self.differences == []
+
+    def take(self, result: VerifiedUpload) -> None:
+        """Fill in from an upload."""
+        self.outcome = result.outcome.kind
+        self.reason = str(result.outcome)
+        if result.held is not None:
+            self.held = [item_json(item) for item in result.held]
+            self.differences = [difference_json(difference) for difference in result.differences]
+
+
+@dataclass(slots=True)
+class UploadReport:
+    """One upload and how it stands."""
+
+    number: int
+    plan_id: str
+    plan_vehicle: str
+    override_reason: str | None
+    notes: tuple[str, ...]
+    findings: tuple[Finding, ...]
+    parts: dict[PartName, PartResult] = field(default_factory=dict)
+
+    @property
+    def outcome(self) -> OutcomeName:
+        """The worst of the parts attempted."""
+        return max((part.outcome for part in self.parts.values()), key=STATUSES.index)
+
+    @property
+    def verified(self) -> bool:
+        """Whether every part is held as meant."""
+        return all(part.verified for part in self.parts.values())
+
+
+def judge_upload(
+    plan: Plan, mission: Mission, parts: Sequence[PartName], state: VehicleState, override: str | None
+) -> tuple[Finding, ...]:
+    """Refuse what must not go up; returns what is worth knowing.
+
+    Raises
+    ------
+    RefusedError
+        The autopilot would refuse or lose part of it: no override helps.
+    UnsafeError
+        A hard violation, another kind of vehicle, or one in flight; an override with a reason passes.
+    """
+    found = mission_findings(mission, [PARTS[name] for name in parts])
+    errors = tuple(finding for finding in found if finding.severity == "error")
+    if errors:
+        raise RefusedError(f"the autopilot would not hold this mission: {errors[0].message}", errors)
+    dangers = [
+        Finding(violation.feature, violation.constraint, violation.message, "plan again, or override")
+        for violation in plan.hard_violations
+    ]
+    if "mission" in parts and state.type not in ("other", mission.vehicle_type):
+        message = f"the plan is for a {mission.vehicle_type}, the vehicle is a {state.type}"
+        dangers.append(Finding("vehicle", "vehicle-type", message, "plan for this vehicle, or override"))
+    if is_flying(state):
+        message = "the vehicle is in flight and would follow the new mission at once"
+        dangers.append(Finding("vehicle", "vehicle-flying", message, "wait until it has landed, or override"))
+    if dangers and override is None:
+        raise UnsafeError(
+            f"not uploaded: {dangers[0].message}; state an override with its reason to upload all the same",
+            tuple(dangers),
+        )
+    return found + tuple(dangers)
+
+
+def comparing(
+    dialect: Dialect,
+) -> Callable[[tuple[MissionItem, ...], tuple[MissionItem, ...]], tuple[Difference, ...]]:
+    """The comparison of what is meant with what is held, in a dialect."""
+    return lambda meant, held: differences(meant, held, dialect)
+
+
+async def send_parts(
+    client: VehicleClient,
+    mission: Mission,
+    report: UploadReport,
+    progress: Callable[[PartName, Progress], None],
+) -> None:
+    """Upload the parts of a report in turn, up to the first that is not accepted."""
+    compare = comparing(mission.dialect)
+    for name, part in report.parts.items():
+        kind = PARTS[name]
+
+        def tell(made: Progress, name: PartName = name) -> None:
+            progress(name, made)
+
+        part.take(await client.upload_verified(mission.items_of(kind), kind, compare, tell))
+        if part.outcome != "accepted":
+            return

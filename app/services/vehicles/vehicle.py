@@ -1,0 +1,187 @@
+"""One connected vehicle: its link, its state, and one operation at a time."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+from collections.abc import AsyncIterator, Callable
+from contextlib import asynccontextmanager
+from datetime import UTC, datetime
+from typing import Any
+
+import structlog
+
+from app.services.errors import BusyError, LinkError, RefusedError
+from app.services.store.flights import FlightStore
+from app.services.vehicles.recorder import FlightRecorder, HeldPlan
+from app.services.vehicles.simulated import SimulatedAircraft, SimulatorProcess, parse_simulated
+from app.services.vehicles.uploads import UploadReport
+from mavlink import errors as mavlink_errors
+from mavlink.client import VehicleClient
+from mavlink.link import FORMS, open_link
+from mavlink.telemetry import VehicleState
+from planner.errors import Finding
+
+log = structlog.get_logger(__name__)
+
+#: Listeners get a new state no more often than this.
+TELEMETRY_S = 0.2
+#: How often flights are looked at.
+LOOK_S = 0.5
+
+Home = tuple[float, float, float]
+
+
+class Vehicle:
+    """A vehicle the service knows, connected or not.
+
+    Parameters
+    ----------
+    publish
+        Called when its state has changed, no more often than ``TELEMETRY_S``.
+    resolved
+        Called when an upload whose outcome was unknown has been resolved by reading back.
+    """
+
+    def __init__(
+        self,
+        vehicle_id: str,
+        name: str,
+        url: str,
+        flights: FlightStore,
+        track_interval_s: float,
+        publish: Callable[[Vehicle], None],
+        resolved: Callable[[Vehicle], Any],
+    ) -> None:
+        self.id = vehicle_id
+        self.name = name
+        self.url = url
+        self.created_at = datetime.now(UTC)
+        self.held: HeldPlan | None = None
+        self.upload: UploadReport | None = None
+        self.progress: dict[str, Any] | None = None
+        self.operation: str | None = None
+        self.simulated: SimulatedAircraft | None = parse_simulated(url) if url.startswith("sim:") else None
+        self._recorder = FlightRecorder(flights, vehicle_id, name, track_interval_s)
+        self._publish = publish
+        self._resolved = resolved
+        self._client: VehicleClient | None = None
+        self._simulator: SimulatorProcess | None = None
+        self._tasks: list[asyncio.Task[None]] = []
+
+    @property
+    def state(self) -> VehicleState:
+        """All that is known of it now."""
+        return VehicleState() if self._client is None else self._client.state
+
+    @property
+    def client(self) -> VehicleClient:
+        """The link's client; raises LinkError while there is none."""
+        if self._client is None:
+            raise LinkError(f"{self.name} has no link")
+        return self._client
+
+    @property
+    def pending(self) -> bool:
+        """Whether an upload's outcome is unknown and waits for the vehicle to come back."""
+        return self._client is not None and self._client.pending
+
+    @property
+    def flight_id(self) -> str | None:
+        """The flight under way."""
+        return self._recorder.flight_id
+
+    async def open(self, home: Home | None, timeout_s: float) -> None:
+        """Open the link, start the simulator where one is asked for, wait for a heartbeat.
+
+        A vehicle that stays silent is not an error: the service goes on listening.
+
+        Raises
+        ------
+        RefusedError
+            The address has none of the known forms.
+        LinkError
+            The link cannot be opened, or the simulator ended.
+        """
+        url = self.url if self.simulated is None else "udpin:127.0.0.1:0"
+        if url.partition(":")[0] not in ("udpin", "udpout", "tcp", "tcpin", "serial"):
+            message = f"{url[:80]} is no link address"
+            raise RefusedError(message, (Finding("url", "link-address", message, f"write {FORMS} or sim:"),))
+        try:
+            link = await open_link(url)
+        except mavlink_errors.LinkError as error:
+            raise LinkError(str(error)) from error
+        self._client = VehicleClient(link)
+        if self.simulated is not None:
+            aircraft = self.simulated if self.simulated.home is not None else self.simulated.at(home)
+            self._simulator = await SimulatorProcess.start(aircraft, int(link.url.rpartition(":")[2]))
+        try:
+            await self._client.connect(timeout_s)
+        except mavlink_errors.VehicleNotFoundError:
+            if self._simulator is not None:
+                await self._simulator.check()
+        except mavlink_errors.NotConnectedError as error:
+            raise LinkError(str(error)) from error
+        self._tasks = [
+            asyncio.create_task(self._watch(self._client)),
+            asyncio.create_task(self._record(self._client)),
+        ]
+
+    async def close(self) -> None:
+        """Close the link, end the simulator, close the flight."""
+        for task in self._tasks:
+            task.cancel()
+        await asyncio.gather(*self._tasks, return_exceptions=True)
+        self._tasks = []
+        await self._recorder.end(self._client, "interrupted")
+        if self._client is not None:
+            await self._client.close()
+        if self._simulator is not None:
+            await self._simulator.stop()
+        self._client = self._simulator = None
+
+    async def move(self, home: Home, timeout_s: float) -> None:
+        """Put a simulated aircraft somewhere else: a new one on a new link."""
+        await self.close()
+        await self.open(home, timeout_s)
+
+    @asynccontextmanager
+    async def busy(self, operation: str) -> AsyncIterator[None]:
+        """One operation at a time; raises BusyError naming the one at work."""
+        if self.operation is not None:
+            raise BusyError(f"{self.name} is busy: {self.operation}")
+        self.operation = operation
+        try:
+            yield
+        except mavlink_errors.BusyError as error:
+            raise BusyError(f"{self.name} is busy: {error}") from error
+        except (mavlink_errors.NotConnectedError, mavlink_errors.LinkError) as error:
+            raise LinkError(f"{self.name}: {error}") from error
+        finally:
+            self.operation = None
+            self.progress = None
+
+    async def _watch(self, client: VehicleClient) -> None:
+        async for state in client.states():
+            self._publish(self)
+            if state.connected and client.pending and self.operation is None:
+                await self._resolve(client)
+            await asyncio.sleep(TELEMETRY_S)
+        self._publish(self)
+
+    async def _resolve(self, client: VehicleClient) -> None:
+        with contextlib.suppress(LinkError, BusyError):
+            async with self.busy("reading back an upload whose outcome is unknown"):
+                result = await client.resolve_pending()
+            if result is None or result.held is None or self.upload is None:
+                return
+            part = next((p for p in self.upload.parts.values() if p.outcome == "unknown"), None)
+            if part is not None:
+                part.take(result)
+                log.info("unknown upload resolved", vehicle=self.name, outcome=part.outcome)
+            await self._resolved(self)
+
+    async def _record(self, client: VehicleClient) -> None:
+        while True:
+            await self._recorder.look(client, self.held)
+            await asyncio.sleep(LOOK_S)
