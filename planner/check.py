@@ -28,6 +28,8 @@ MAX_ARC_EDGE_M = 10.0
 RADIUS_TOLERANCE = 1e-4
 PLACE_TOLERANCE_M = 0.05
 LENGTH_TOLERANCE = 1e-3
+#: What rounding to 11 decimals of a degree may move both ends of an edge against each other.
+DIRECTION_NOISE_M = 2e-6
 #: A region counts as seen when no more than this fraction of it is left out.
 UNSEEN_FRACTION = 1e-5
 
@@ -116,9 +118,9 @@ def turn_radius_m(line_m: NDArray[np.float64]) -> tuple[float, NDArray[np.float6
     directions = np.arctan2(edges[:, 1], edges[:, 0])
     delta = np.abs(np.mod(np.diff(directions) + np.pi, 2.0 * np.pi) - np.pi)
     # Directions of edges are known no better than the coordinates' last digit allows.
-    noise = 2e-5 / np.minimum(lengths_m[:-1], lengths_m[1:])
+    noise = DIRECTION_NOISE_M / np.minimum(lengths_m[:-1], lengths_m[1:])
     with np.errstate(divide="ignore"):
-        radii = (lengths_m[:-1] + lengths_m[1:]) / 2.0 / np.maximum(delta - noise, 0.0)
+        radii = (lengths_m[:-1] + lengths_m[1:]) / 4.0 / np.sin(np.maximum(delta - noise, 0.0) / 2.0)
     worst = int(np.argmin(radii))
     return float(radii[worst]), points[worst + 1]
 

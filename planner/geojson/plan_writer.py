@@ -8,8 +8,8 @@ from typing import Any
 
 from planner.plan import Collect, FlownPath, LonLat, PathSegment, Plan, Ring, ZoneCircle, ZonePolygon
 
-#: A tenth of a nanodegree is a hundredth of a millimetre: fine enough that no turn gets tighter by rounding.
-DECIMALS_DEG = 10
+#: A hundredth of a nanodegree is a micrometre: so fine that no turn on the line gets tighter by rounding.
+DECIMALS_DEG = 11
 DECIMALS_M = 4
 
 

@@ -1,0 +1,166 @@
+"""make_plan: every method by name, deterministic, stoppable, round trip through GeoJSON."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from planner.errors import CancelledError, InfeasibleError
+from planner.geojson import read_plan, read_scenario, write_plan
+from planner.geojson.equipment import METHODS
+from planner.pipeline import make_plan
+from tests.planner.scenarios import case, feature, small, square
+
+
+def without_times(document: dict[str, object]) -> str:
+    metrics = dict(document["metrics"])  # type: ignore[call-overload]
+    metrics.pop("planning_time_s")
+    return json.dumps(document | {"metrics": metrics})
+
+
+@pytest.mark.parametrize("routing", METHODS["routing"])
+@pytest.mark.parametrize("transit", METHODS["transit"])
+def test_every_method_by_name_keeps_the_hard_constraints(routing: str, transit: str) -> None:
+    """Whatever is chosen, all is seen and no hard constraint is broken; the plan names what was used."""
+    wall = feature("Z", "no_fly", "Polygon", square(0.014, -0.002, 0.006))
+    disc = feature("H", "threat", "Point", [0.02, 0.02], model="missile", radius_m=400.0, hard=True)
+    scenario = read_scenario(small(wall, disc, method={"routing": routing, "transit": transit}))
+    plan = make_plan(scenario)
+    assert plan.hard_violations == ()
+    assert plan.metrics.coverage == {"A": 1.0, "B": 1.0}
+    assert plan.methods["routing"] == ("joint" if routing == "auto" else routing)
+    assert {t.method for t in plan.transits} == {"ssas" if transit == "ssas" else "tangent"}
+
+
+@pytest.mark.parametrize("number", [1, 2, 3, 4])
+def test_the_paper_s_stages_keep_the_hard_constraints(number: int) -> None:
+    """Greedy choices and SSAS see every region of the shared cases with no turn too tight."""
+    document = case(number) | {"method": {"coverage": "li2018", "routing": "li2018", "transit": "ssas"}}
+    plan = make_plan(read_scenario(document))
+    assert plan.hard_violations == ()
+    assert min(plan.metrics.coverage.values()) >= 0.9999
+    assert {t.method for t in plan.transits} == {"ssas"}
+    assert not plan.warnings
+
+
+def test_same_scenario_same_plan() -> None:
+    """Planning twice gives the same bytes but for the times."""
+    first, second = (write_plan(make_plan(read_scenario(case(1)))) for _ in range(2))
+    assert without_times(first) == without_times(second)
+
+
+def test_plans_survive_geojson() -> None:
+    """Written, serialised, read and written again, a plan is the same document."""
+    document = json.loads(json.dumps(write_plan(make_plan(read_scenario(case(2))))))
+    again = json.loads(json.dumps(write_plan(read_plan(document))))
+    assert again == document
+
+
+def test_contract_of_the_plan() -> None:
+    """Roles, properties and members are those of the contract; arcs have vertices at most 10 m apart."""
+    document = write_plan(make_plan(read_scenario(case(1))))
+    by_role: dict[str, list[dict[str, object]]] = {}
+    for found in document["features"]:
+        by_role.setdefault(found["properties"]["role"], []).append(found["properties"])
+    assert {"collect", "transit", "path", "footprint"} <= set(by_role)
+    wanted = {
+        "collect": {
+            "vehicle",
+            "seq",
+            "roi",
+            "sensor",
+            "look",
+            "heading_deg",
+            "start_m",
+            "end_m",
+            "start_s",
+            "end_s",
+        },
+        "transit": {"vehicle", "seq", "from", "to", "length_m", "risk_missile", "risk_radar", "method"},
+        "path": {"vehicle", "length_m", "duration_s", "energy_wh", "min_turn_radius_m"},
+        "footprint": {"vehicle", "seq", "roi", "sensor", "resolution_m", "niirs"},
+    }
+    for role, names in wanted.items():
+        assert all(names <= set(properties) for properties in by_role[role]), role
+    assert set(document["metrics"]) >= {
+        "length_m",
+        "collection_length_m",
+        "duty_cycle",
+        "path_length_ratio",
+        "risk_missile",
+        "risk_radar",
+        "turns",
+        "duration_s",
+        "energy_wh",
+        "coverage",
+        "importance_collected",
+        "planning_time_s",
+    }
+    assert {"violations", "scenario_hash", "planner_version", "seed"} <= set(document)
+
+
+def test_collects_and_transits_make_up_the_path() -> None:
+    """Transits and collects end to end are as long as the path, in the order of their numbers."""
+    plan = make_plan(read_scenario(case(3)))
+    total_m = sum(t.length_m for t in plan.transits) + sum(c.end_m - c.start_m for c in plan.collects)
+    assert total_m == pytest.approx(plan.metrics.length_m)
+    assert [c.seq for c in plan.collects] == list(range(1, len(plan.collects) + 1))
+    assert [t.from_name for t in plan.transits[1:]] == [c.roi for c in plan.collects]
+
+
+def test_settling_is_straight_flight_before_each_collect() -> None:
+    """With settle_m the path is straight on the collect's line that far before sensor on."""
+    document = small()
+    document["vehicles"][0]["settle_m"] = 150.0
+    plan = make_plan(read_scenario(document))
+    assert plan.violations == ()
+    path = plan.paths[0]
+    for collect in plan.collects:
+        segment = next(
+            s
+            for s in path.segments
+            if s.kind == "straight"
+            and s.start_m <= collect.start_m - 149.9
+            and s.start_m + s.length_m >= collect.start_m - 0.1
+        )
+        assert segment.start_m + segment.length_m >= collect.start_m - 0.1
+
+
+def test_directions_at_start_and_end_are_flown() -> None:
+    """Headings asked for at start and end are those of the path."""
+    document = small(feature("end", "end", "Point", [0.05, 0.05], heading_deg=180.0))
+    document["features"][3]["properties"]["heading_deg"] = 270.0
+    plan = make_plan(read_scenario(document))
+    assert plan.violations == ()
+    assert plan.paths[0].line[1][0] < plan.paths[0].line[0][0]
+
+
+def test_stop_is_heard_and_progress_rises() -> None:
+    """Progress runs from 0 to 1 without falling; a stop ends planning with CancelledError."""
+    reports: list[float] = []
+    make_plan(read_scenario(small()), progress=lambda _stage, fraction: reports.append(fraction))
+    assert reports == sorted(reports)
+    assert reports[-1] == 1.0
+    with pytest.raises(CancelledError):
+        make_plan(read_scenario(small()), stop=lambda: True)
+
+
+def test_a_region_that_need_not_be_seen_is_dropped_and_named() -> None:
+    """A region too wide for two swaths is left out when not required: uncovered, with the reason."""
+    big = feature("X", "roi", "Polygon", square(0.01, -0.04, 0.03), required=False)
+    plan = make_plan(read_scenario(small(big)))
+    assert [u.roi for u in plan.uncovered] == ["X"]
+    assert "swath" in plan.uncovered[0].reason
+    assert plan.hard_violations == ()
+    big["properties"]["required"] = True
+    with pytest.raises(InfeasibleError, match="X"):
+        make_plan(read_scenario(small(big)))
+
+
+def test_seconds_come_from_the_callers_clock() -> None:
+    """Without a clock there are no times; with one, each stage has its own."""
+    assert make_plan(read_scenario(small())).metrics.planning_time_s == {}
+    ticks = iter(range(100))
+    seconds = make_plan(read_scenario(small()), clock=lambda: float(next(ticks))).metrics.planning_time_s
+    assert set(seconds) == {"routing", "transit", "publish", "check"}
