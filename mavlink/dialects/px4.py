@@ -233,7 +233,8 @@ def _back(item: MissionItem) -> MissionItem:
         if name in flags:
             return 1.0 if value > 0.0 else 0.0
         if name == "param4" and item.command in _YAW and math.isfinite(value):
-            return value % 360.0
+            # A hair below 0 gives 360 itself in binary.
+            return value % 360.0 % 360.0
         return value
 
     return replace(
