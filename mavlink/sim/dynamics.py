@@ -10,6 +10,9 @@ from typing import Protocol
 from mavlink.sim.geodesy import Place
 
 GRAVITY_M_S2 = 9.80665
+#: Airspeeds that JSBSim's light aircraft flies.
+JSBSIM_SLOWEST_M_S = 38.0
+JSBSIM_FASTEST_M_S = 60.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,12 +27,15 @@ class FlightCommand:
         Vertical speed, up is positive.
     launch
         On the ground: run and lift off. Without it an aircraft on the ground brakes and stays there.
+    launch_heading_rad
+        Where to point the standing aircraft before the run; None: leave it.
     """
 
     bank_rad: float = 0.0
     airspeed_m_s: float = 0.0
     climb_m_s: float = 0.0
     launch: bool = False
+    launch_heading_rad: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -225,14 +225,15 @@ class MissionRun:
         self._last_vertex = None
         match item.command:
             case Command.NAV_TAKEOFF:
-                towards = place if settings.autopilot is Flavour.PX4 and (item.x or item.y) else None
+                named = place if item.x or item.y else None
                 self._manoeuvre = Takeoff(
                     self._tuning,
                     state,
                     place.altitude_m,
                     settings.climb_m_s,
-                    towards,
-                    settings.turn_radius_m,
+                    radius_m=settings.turn_radius_m,
+                    towards=named if settings.autopilot is Flavour.PX4 else None,
+                    pointed_at=named if settings.heading_deg is None else None,
                 )
             case Command.NAV_LAND:
                 self._manoeuvre = Landing(

@@ -31,8 +31,8 @@ class Tuning:
         An altitude error is flown away at ``error / altitude_lag_s``.
     """
 
-    l1_period_s: float = 7.0
-    max_bank_rad: float = math.radians(45.0)
+    l1_period_s: float
+    max_bank_rad: float
     altitude_lag_s: float = 2.0
 
     def l1_m(self, ground_speed_m_s: float) -> float:
@@ -122,8 +122,8 @@ class PolylineFollower:
         return True
 
     def distance_to_target_m(self, state: AircraftState) -> float:
-        """Straight distance to the vertex being flown to."""
-        return math.hypot(*self._to(state, self._leg + 1))
+        """Straight distance to the vertex being flown to; to the last one once that is passed."""
+        return math.hypot(*self._to(state, min(self._leg + 1, len(self._vertices) - 1)))
 
     def bank_rad(self, state: AircraftState) -> float:
         """Bank for this instant; updates cross-track error, wanted altitude and slope."""

@@ -10,13 +10,19 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from importlib import import_module
 from typing import Any
 
-from mavlink.sim.dynamics import AircraftState, FlightCommand, Limits, Wind
+from mavlink.sim.dynamics import (
+    JSBSIM_FASTEST_M_S,
+    JSBSIM_SLOWEST_M_S,
+    AircraftState,
+    FlightCommand,
+    Limits,
+    Wind,
+)
 from mavlink.sim.kinematic import KinematicModel
 
-SLOWEST_M_S = 38.0
-FASTEST_M_S = 60.0
 _FT_M = 0.3048
 _W_PER_HP = 745.6998715822702
 _LAUNCH_HEIGHT_M = 15.0
@@ -45,15 +51,17 @@ class JsbsimModel:
     """
 
     def __init__(self, ground: KinematicModel, limits: Limits, wind: Wind, *, ground_m: float) -> None:
-        if not SLOWEST_M_S <= limits.airspeed_m_s <= FASTEST_M_S:
+        if not JSBSIM_SLOWEST_M_S <= limits.airspeed_m_s <= JSBSIM_FASTEST_M_S:
             raise ValueError(
-                f"JSBSim's c172p flies {SLOWEST_M_S:.0f} to {FASTEST_M_S:.0f} m/s, "
+                f"JSBSim's c172p flies {JSBSIM_SLOWEST_M_S:.0f} to {JSBSIM_FASTEST_M_S:.0f} m/s, "
                 f"not {limits.airspeed_m_s:g}; use the kinematic model"
             )
         try:
-            import jsbsim
+            jsbsim: Any = import_module("jsbsim")
         except ImportError as error:
             raise ImportError("dynamics 'jsbsim' needs the jsbsim package (extra 'jsbsim')") from error
+        # It greets on standard output otherwise.
+        jsbsim.FGJSBBase().debug_lvl = 0
         self._jsbsim = jsbsim
         self._ground = ground
         self._limits = limits

@@ -153,7 +153,10 @@ class KinematicModel:
         else:
             speed_m_s = max(old.airspeed_m_s - _BRAKING_M_S2 * dt_s, 0.0)
         run_m = 0.5 * (old.airspeed_m_s + speed_m_s) * dt_s
-        cos, sin = math.cos(old.heading_rad), math.sin(old.heading_rad)
+        heading_rad = old.heading_rad
+        if old.airspeed_m_s == 0.0 and command.launch and command.launch_heading_rad is not None:
+            heading_rad = command.launch_heading_rad % (2.0 * math.pi)
+        cos, sin = math.cos(heading_rad), math.sin(heading_rad)
         lat_deg, lon_deg = old.lat_deg, old.lon_deg
         if run_m > 0.0:
             lat_deg, lon_deg = moved(lat_deg, lon_deg, run_m * cos, run_m * sin)
@@ -163,7 +166,7 @@ class KinematicModel:
             lat_deg=lat_deg,
             lon_deg=lon_deg,
             altitude_m=self._ground_m,
-            heading_rad=old.heading_rad,
+            heading_rad=heading_rad,
             bank_rad=0.0,
             pitch_rad=0.0,
             airspeed_m_s=speed_m_s,

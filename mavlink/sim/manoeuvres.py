@@ -14,6 +14,7 @@ _LEVEL_BELOW_M = 10.0
 _ALTITUDE_REACHED_M = 2.0
 _ALIGNED_RAD = math.radians(10.0)
 _FLARE_M = 4.0
+_LOWEST_CIRCLE_M = 25.0
 _TOUCHDOWN_SINK_M_S = 0.5
 _STOPPED_M_S = 0.05
 _APPROACH_SPEED = 0.85
@@ -38,22 +39,32 @@ class Takeoff:
     towards
         Where to climb to, circling over it until high enough (PX4); None: straight on along the run
         (ArduPlane).
+    pointed_at
+        Where the aircraft is turned to before its run; None: as it stands.
     """
 
     def __init__(
-        self, tuning: Tuning, start: AircraftState, altitude_m: float, climb_m_s: float,
-        towards: Place | None, radius_m: float,
-    ) -> None:  # fmt: skip
+        self,
+        tuning: Tuning,
+        start: AircraftState,
+        altitude_m: float,
+        climb_m_s: float,
+        *,
+        radius_m: float,
+        towards: Place | None = None,
+        pointed_at: Place | None = None,
+    ) -> None:
         self._altitude_m = altitude_m
         self._climb_m_s = climb_m_s
         self.done = not start.on_ground and start.altitude_m >= altitude_m - _ALTITUDE_REACHED_M
+        self._launch_rad = start.heading_rad
+        if pointed_at is not None and start.on_ground:
+            north_m, east_m = offset_m(start.lat_deg, start.lon_deg, pointed_at.lat_deg, pointed_at.lon_deg)
+            self._launch_rad = math.atan2(east_m, north_m)
         end = towards
         if end is None:
-            course = start.heading_rad
-            lat_deg, lon_deg = moved(
-                start.lat_deg, start.lon_deg, 1e4 * math.cos(course), 1e4 * math.sin(course)
-            )
-            end = Place(lat_deg, lon_deg, altitude_m)
+            far_n, far_e = 1e4 * math.cos(self._launch_rad), 1e4 * math.sin(self._launch_rad)
+            end = Place(*moved(start.lat_deg, start.lon_deg, far_n, far_e), altitude_m)
         self._line = PolylineFollower(tuning, [start.place, end])
         self._circle = CircleFollower(tuning, end, radius_m)
         self._ground_m = start.altitude_m if start.on_ground else -math.inf
@@ -69,7 +80,7 @@ class Takeoff:
             follower = self._circle if self._line.finished else self._line
             bank_rad = follower.bank_rad(state)
         climb_m_s = min(self._climb_m_s, max(self._altitude_m - state.altitude_m, 0.5))
-        return FlightCommand(bank_rad, airspeed_m_s, climb_m_s, launch=True)
+        return FlightCommand(bank_rad, airspeed_m_s, climb_m_s, True, self._launch_rad)
 
 
 class Loiter:
@@ -216,8 +227,7 @@ class Landing:
             self._spiral = CircleFollower(
                 self._tuning, Place(lat_deg, lon_deg, state.altitude_m), self._radius_m
             )
-        # Never so low that the approach would start under the glide path's end.
-        sink_m_s = 0.0 if state.altitude_m < self._ground_m + 2.0 * _FLARE_M else self._sink_m_s
+        sink_m_s = 0.0 if state.altitude_m < self._ground_m + _LOWEST_CIRCLE_M else self._sink_m_s
         return FlightCommand(self._spiral.bank_rad(state), airspeed_m_s, -sink_m_s)
 
 

@@ -23,7 +23,7 @@ class Parameters:
             self._values = {
                 "SYSID_THISMAV": float(settings.system_id),
                 "AIRSPEED_CRUISE": settings.airspeed_m_s,
-                "NAVL1_PERIOD": settings.l1_period_s,
+                "NAVL1_PERIOD": settings.tuning.l1_period_s,
                 "ROLL_LIMIT_DEG": bank_deg,
                 "RTL_ALTITUDE": settings.rtl_altitude_m,
                 "RTL_AUTOLAND": 0.0,
@@ -34,7 +34,7 @@ class Parameters:
             self._values = {
                 "MAV_SYS_ID": float(settings.system_id),
                 "FW_AIRSPD_TRIM": settings.airspeed_m_s,
-                "NPFG_PERIOD": settings.l1_period_s,
+                "NPFG_PERIOD": settings.tuning.l1_period_s,
                 "FW_R_LIM": bank_deg,
                 "MIS_TKO_LAND_REQ": 2.0,
                 "NAV_ACC_RAD": settings.acceptance_m,

@@ -15,7 +15,6 @@ from mavlink.messages import Message
 from mavlink.sim.autopilot import SimulatedAircraft
 from mavlink.sim.faults import Fault
 from mavlink.sim.geodesy import Place
-from mavlink.sim.models import chosen_dynamics
 from mavlink.sim.modes import Flavour
 from mavlink.sim.settings import SimSettings
 
@@ -135,7 +134,12 @@ def parser() -> argparse.ArgumentParser:
         metavar="LAT,LON,ALT",
         help="where it stands: degrees, degrees, metres above sea level (default: 47.3977,8.5456,488)",
     )
-    p.add_argument("--heading", type=float, default=0.0, help="heading on the ground, degrees (default: 0)")
+    p.add_argument(
+        "--heading",
+        type=float,
+        default=None,
+        help="heading on the ground, degrees (default: at the take-off)",
+    )
     p.add_argument("--autopilot", choices=[f.value for f in Flavour], default=Flavour.ARDUPILOT.value)
     p.add_argument("--type", choices=["fixed_wing"], default="fixed_wing", help="the only type simulated")
     p.add_argument("--system-id", type=int, default=1)
@@ -150,7 +154,7 @@ def parser() -> argparse.ArgumentParser:
     p.add_argument("--max-bank", type=float, default=None, metavar="DEG")
     p.add_argument("--climb", type=float, default=5.0, metavar="M_S", help="largest climb rate")
     p.add_argument(
-        "--l1-period", type=float, default=7.0, metavar="S", help="lateral guidance; small is tight"
+        "--l1-period", type=float, default=None, metavar="S", help="lateral guidance; small is tight"
     )
     p.add_argument("--acceptance", type=float, default=0.0, metavar="M", help="waypoint acceptance distance")
     p.add_argument("--speedup", type=float, default=1.0, help="simulated seconds per second in flight")
@@ -221,7 +225,7 @@ async def _run(url: str, settings: SimSettings) -> None:
     for number in (signal.SIGINT, signal.SIGTERM):
         loop.add_signal_handler(number, stop.set)
     _say(
-        f"{settings.autopilot.value} fixed wing, {chosen_dynamics(settings)} dynamics, "
+        f"{settings.autopilot.value} fixed wing, {settings.flight_model} dynamics, "
         f"{settings.airspeed_m_s:g} m/s, {settings.speedup:g} times real time in flight, on {url}"
     )
     await serve(url, settings, stop=stop)

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from importlib.util import find_spec
 
-from mavlink.sim.dynamics import GRAVITY_M_S2, Limits
+from mavlink.sim.dynamics import GRAVITY_M_S2, JSBSIM_FASTEST_M_S, JSBSIM_SLOWEST_M_S, Limits
 from mavlink.sim.faults import parse_faults
 from mavlink.sim.geodesy import Place
 from mavlink.sim.guidance import Tuning
@@ -14,6 +15,7 @@ from mavlink.sim.modes import Flavour
 _LEAST_BANK_LIMIT_DEG = 45.0
 _BANK_MARGIN_DEG = 15.0
 _GREATEST_BANK_DEG = 65.0
+_L1_PERIOD_S = {"kinematic": 7.0, "jsbsim": 12.0}
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +36,14 @@ class SimSettings:
     speedup
         Simulated seconds per second while armed. Disarmed, time runs at its own pace.
     dynamics
-        ``kinematic``, ``jsbsim``, or ``auto``: see ``mavlink.sim.models``.
+        ``kinematic``, ``jsbsim``, or ``auto``: JSBSim's Cessna 172P where the package is installed and it
+        flies the airspeed (38 to 60 m/s), the kinematic model otherwise, so also at the 20 m/s of a small
+        UAV, for which JSBSim ships no powered aircraft.
+    heading_deg
+        Where it points on the ground; None: north, and at the place of the mission's take-off once that
+        begins, as whoever launches it would point it.
+    l1_period_s
+        Period of the lateral guidance; None: 7 s, and 12 s under JSBSim, whose roll is slower.
     acceptance_m
         How far before a waypoint it counts as reached, where the item does not say; 0: when abeam of it.
     sensor_relay, sensor_servo, sensor_actuator
@@ -50,7 +59,7 @@ class SimSettings:
     """
 
     home: Place = field(default_factory=lambda: Place(47.3977, 8.5456, 488.0))
-    heading_deg: float = 0.0
+    heading_deg: float | None = None
     autopilot: Flavour = Flavour.ARDUPILOT
     vehicle_type: str = "fixed_wing"
     system_id: int = 1
@@ -61,7 +70,7 @@ class SimSettings:
     roll_rate_deg_s: float = 75.0
     climb_m_s: float = 5.0
     sink_m_s: float = 4.0
-    l1_period_s: float = 7.0
+    l1_period_s: float | None = None
     wind_m_s: float = 0.0
     wind_from_deg: float = 0.0
     gust_m_s: float = 0.0
@@ -88,10 +97,17 @@ class SimSettings:
             raise ValueError(f"only a fixed_wing is simulated, not {self.vehicle_type!r}")
         if self.dynamics not in ("auto", "kinematic", "jsbsim"):
             raise ValueError(f"dynamics is auto, kinematic or jsbsim, not {self.dynamics!r}")
-        for name in ("airspeed_m_s", "turn_radius_m", "climb_m_s", "sink_m_s", "l1_period_s", "speedup"):
+        for name in ("airspeed_m_s", "turn_radius_m", "climb_m_s", "sink_m_s", "speedup"):
             value = getattr(self, name)
             if not (math.isfinite(value) and value > 0.0):
                 raise ValueError(f"{name} must be a positive number, not {value!r}")
+        if self.l1_period_s is not None and not self.l1_period_s > 0.0:
+            raise ValueError(f"l1_period_s must be a positive number, not {self.l1_period_s!r}")
+        if self.dynamics == "jsbsim" and not self._suits_jsbsim:
+            raise ValueError(
+                f"JSBSim's c172p flies {JSBSIM_SLOWEST_M_S:.0f} to {JSBSIM_FASTEST_M_S:.0f} m/s, "
+                f"not {self.airspeed_m_s:g}; use the kinematic model"
+            )
         if not 0.0 <= self.wind_m_s < 0.9 * self.airspeed_m_s:
             raise ValueError(f"wind of {self.wind_m_s} m/s cannot be flown at {self.airspeed_m_s} m/s")
         if not abs(self.home.lat_deg) <= 89.0:
@@ -105,6 +121,17 @@ class SimSettings:
                 f"{needed_deg:.0f} degrees of bank; the limit is {_GREATEST_BANK_DEG - _BANK_MARGIN_DEG:.0f}"
             )
         parse_faults(self.faults)
+
+    @property
+    def _suits_jsbsim(self) -> bool:
+        return JSBSIM_SLOWEST_M_S <= self.airspeed_m_s <= JSBSIM_FASTEST_M_S
+
+    @property
+    def flight_model(self) -> str:
+        """``jsbsim`` or ``kinematic``, as ``auto`` decides."""
+        if self.dynamics != "auto":
+            return self.dynamics
+        return "jsbsim" if self._suits_jsbsim and find_spec("jsbsim") is not None else "kinematic"
 
     @property
     def bank_limit_rad(self) -> float:
@@ -128,4 +155,5 @@ class SimSettings:
     @property
     def tuning(self) -> Tuning:
         """Guidance tuning."""
-        return Tuning(l1_period_s=self.l1_period_s, max_bank_rad=self.bank_limit_rad)
+        period_s = self.l1_period_s or _L1_PERIOD_S[self.flight_model]
+        return Tuning(l1_period_s=period_s, max_bank_rad=self.bank_limit_rad)

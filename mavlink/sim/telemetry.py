@@ -271,7 +271,7 @@ def _home_position(snapshot: Snapshot, settings: SimSettings) -> Message:
             "x": 0.0,
             "y": 0.0,
             "z": 0.0,
-            "q": quaternion(0.0, 0.0, math.radians(settings.heading_deg)),
+            "q": quaternion(0.0, 0.0, math.radians(settings.heading_deg or 0.0)),
             "approach_x": 0.0,
             "approach_y": 0.0,
             "approach_z": 0.0,

@@ -128,9 +128,12 @@ class Station:
             self.fly(1.0)
 
     def upload(
-        self, items: Sequence[MissionItem], kind: MissionType = MissionType.MISSION, patience_s: float = 12.0
+        self,
+        items: Sequence[MissionItem],
+        kind: MissionType = MissionType.MISSION,
+        patience_s: float = 12.0,
     ) -> int | None:
-        """Serve the aircraft's requests; the type of the last MISSION_ACK, None when there is none in time."""
+        """Serve the aircraft's requests; the type of the final MISSION_ACK, None without one in time."""
         rows = numbered(items, kind)
         end_s = self.now_s + patience_s
         inbox = self.say(from_ground("MISSION_COUNT", count=len(rows), mission_type=int(kind)))
@@ -196,9 +199,7 @@ class Station:
         return [message.integer("seq") for message in self.named("MISSION_ITEM_REACHED")]
 
 
-def landing_mission(
-    body: Sequence[MissionItem], *, home_row: bool, height_m: float = 100.0
-) -> list[MissionItem]:
+def landing_mission(body: Sequence[MissionItem], *, home_row: bool) -> list[MissionItem]:
     """A take-off to the north, a body, an approach from the south and a landing at home."""
     ends = [
         *([item(Command.NAV_WAYPOINT, HOME)] if home_row else []),
