@@ -25,7 +25,7 @@ from planner.errors import InfeasibleError
 from planner.progress import Stop, never, raise_if
 from planner.route import Anchor, Pose
 from planner.transit.tangent_kernels import search, turn_between
-from planner.transit.wheels import End, end_of, obstacles_of
+from planner.transit.wheels import End, between, end_of, obstacles_of
 
 Array = NDArray[np.float64]
 
@@ -91,29 +91,30 @@ def _solve(start: Anchor, goal: Anchor, zones: KeepOut, radius_m: float, stop: S
         return words[0]
     found = [word for word in words[1:] if zones.clear(word)][:1]
     every = {name for name, _ in _named(zones)}
-    for rich in (False, True):
-        minded = {conflict.zone for conflict in zones.conflicts(words[0])} - {AREA}
-        while True:
-            raise_if(stop)
-            path = _search(start, goal, zones.without(every - minded), radius_m, rich)
-            entered = {conflict.zone for conflict in zones.conflicts(path)} if path else every
-            if not entered - minded:
-                break
-            minded |= entered
-        if path is not None and not entered:
-            found.append(path)
-        if found:
+    minded = {conflict.zone for conflict in zones.conflicts(words[0])} - {AREA}
+    while True:
+        raise_if(stop)
+        path = _search(start, goal, zones.without(every - minded), radius_m)
+        entered = {conflict.zone for conflict in zones.conflicts(path)} if path else set()
+        if not entered - minded:
             break
+        minded |= entered
+    if path is not None and not entered:
+        found.append(path)
     return min(found, key=lambda path: path.length_m, default=None)
 
 
-def _search(start: Anchor, goal: Anchor, zones: KeepOut, radius_m: float, rich: bool) -> Path | None:
+def _search(start: Anchor, goal: Anchor, zones: KeepOut, radius_m: float) -> Path | None:
     """The shortest line over the circles of these zones."""
     obstacles = obstacles_of(zones, radius_m)
-    first = end_of(start, radius_m, zones, goal=False, rich=rich)
-    last = end_of(goal, radius_m, zones, goal=True, rich=rich)
+    first = end_of(start, radius_m, zones, goal=False)
+    last = end_of(goal, radius_m, zones, goal=True)
     both_ways = np.concatenate([obstacles.circles, obstacles.circles * [1.0, 1.0, -1.0]])
-    wheels = np.concatenate([first.wheels, last.wheels, both_ways])
+    middles = [
+        between(first.turns, np.concatenate([last.turns, both_ways]), radius_m),
+        between(last.turns, both_ways, radius_m),
+    ]
+    wheels = np.concatenate([first.wheels, last.wheels, both_ways, *middles])
     length_m, visits = search(
         wheels,
         _entry_rows(first, 0),

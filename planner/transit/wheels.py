@@ -24,8 +24,11 @@ STEP_RAD = math.radians(30.0)
 #: Zones are this much smaller in the search, so that a line may touch them.
 SHRINK_M = 0.75 * TOUCH_M
 
-#: Straights flown before the first turn (after the last) that the rich search tries, in radii.
+#: Straights flown before the first turn (after the last) that are tried, in radii.
 LEADS_RADII = (0.5, 1.0, 2.0, 4.0)
+
+#: Zones' circles nearest to an end's circle that a middle arc is sought for.
+NEAREST = 12
 
 Array = NDArray[np.float64]
 
@@ -122,12 +125,18 @@ class End:
     wheels: Array
     entries: tuple[tuple[int, float, Segment | None], ...]
 
+    @property
+    def turns(self) -> Array:
+        """The wheels one may start (end) on, shape (T, 3)."""
+        return self.wheels[[wheel for wheel, _, _ in self.entries]]
 
-def end_of(anchor: Anchor, radius_m: float, zones: KeepOut, goal: bool, rich: bool) -> End:
-    """Turning circles at an anchor.
 
-    The two of a direction given, or the place itself. A rich end has more: turns begun after (ended before)
-    a straight, turns the other way beforehand, and any first (last) turn where the direction is free.
+def end_of(anchor: Anchor, radius_m: float, zones: KeepOut, goal: bool) -> End:
+    """Turning circles at an anchor, and what helps to leave (reach) it.
+
+    With a direction given: the circles on either side, at the anchor and after (before) some straights, and
+    circles that touch the first two, for a turn the other way beforehand. With a free direction: the place
+    itself, and circles through it.
     """
     wheels: list[tuple[float, float, float]] = []
     entries: list[tuple[int, float, Segment | None]] = []
@@ -150,13 +159,12 @@ def end_of(anchor: Anchor, radius_m: float, zones: KeepOut, goal: bool, rich: bo
     if anchor.angle_rad is None:
         entries.append((0, 0.0, None))
         wheels.append((anchor.east_m, anchor.north_m, 0.0))
-        if rich:
-            for angle in np.arange(0.0, 2.0 * math.pi - 1e-9, STEP_RAD):
-                add(Pose(anchor.east_m, anchor.north_m, float(angle)), None, False)
+        for angle in np.arange(0.0, 2.0 * math.pi - 1e-9, STEP_RAD):
+            add(Pose(anchor.east_m, anchor.north_m, float(angle)), None, False)
     else:
         pose = Pose(anchor.east_m, anchor.north_m, anchor.angle_rad)
-        add(pose, None, rich)
-        for lead_radii in LEADS_RADII if rich else ():
+        add(pose, None, True)
+        for lead_radii in LEADS_RADII:
             lead = Segment("straight", pose, lead_radii * radius_m)
             if goal:
                 back = lead.at(-lead.length_m)
@@ -164,3 +172,40 @@ def end_of(anchor: Anchor, radius_m: float, zones: KeepOut, goal: bool, rich: bo
             if zones.clear(Path((lead,))):
                 add(lead.start if goal else lead.end, lead, False)
     return End(np.array(wheels, dtype=np.float64), tuple(entries))
+
+
+def between(ends: Array, others: Array, radius_m: float) -> Array:
+    """Wheels that touch an end's wheel and one other of the same sense: the middle of three arcs.
+
+    Parameters
+    ----------
+    ends, others
+        Wheels, shapes (A, 3) and (B, 3); only the nearest few of ``others`` count.
+    radius_m
+        Radius of the wheels between, flown the other way.
+
+    Returns
+    -------
+    ndarray
+        Wheels, shape (C, 3).
+    """
+    found = [np.empty((0, 3))]
+    for end in ends[ends[:, 2] != 0.0]:
+        same = others[others[:, 2] * end[2] > 0.0]
+        offset = same[:, :2] - end[:2]
+        distance = np.hypot(offset[:, 0], offset[:, 1])
+        # A triangle of the two centres and the one between, of sides near, far and distance.
+        near, far = abs(end[2]) + radius_m, np.abs(same[:, 2]) + radius_m
+        possible = np.flatnonzero(
+            (distance > np.abs(far - near)) & (distance < near + far) & (distance > 0.0)
+        )
+        possible = possible[np.argsort((distance - far)[possible], kind="stable")][:NEAREST]
+        offset, distance, far = offset[possible], distance[possible], far[possible]
+        along = (near**2 - far**2 + distance**2) / (2.0 * distance)
+        aside = np.sqrt(np.maximum(near**2 - along**2, 0.0))
+        unit = offset / distance[:, None]
+        for side in (1.0, -1.0):
+            across = side * aside[:, None] * np.column_stack([-unit[:, 1], unit[:, 0]])
+            centres = end[:2] + along[:, None] * unit + across
+            found.append(np.column_stack([centres, np.full(len(centres), -math.copysign(radius_m, end[2]))]))
+    return np.concatenate(found)
