@@ -110,13 +110,14 @@ def nearest(
     """
     column, row = math.floor(east / within_m), math.floor(north / within_m)
     best = -1
-    best_square = within_m * within_m
+    # in square millimetres: places equally far stay so whatever the last bit says
+    best_square = math.floor(within_m * within_m * 1e6)
     for i in range(column - 1, column + 2):
         for j in range(row - 1, row + 2):
             other = heads[_bucket(i, j)]
             while other >= 0:
                 delta_e, delta_n = poses[other, 0] - east, poses[other, 1] - north
-                square = delta_e * delta_e + delta_n * delta_n
+                square = math.floor((delta_e * delta_e + delta_n * delta_n) * 1e6)
                 if (square < best_square or (square == best_square and 0 <= other < best)) and (
                     abs(wrap(poses[other, 2] - angle_rad)) <= within_rad
                 ):

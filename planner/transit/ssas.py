@@ -23,6 +23,9 @@ from planner.transit.ssas_kernels import Rules, Space
 
 Array = NDArray[np.float64]
 
+#: Where length counts for nothing it is searched with this weight: else all of a map free of risk ties.
+LEAST_LENGTH_WEIGHT = 1e-3
+
 #: The legs that close a route are at least this part of a leg: room for the arcs of two corners of 30°
 #: whose radius is a leg (2 tan 15° = 0.54).
 MIN_CLOSING_PART = 0.6
@@ -238,7 +241,7 @@ class _Job:
             neighbour_radius_m=p.neighbour_radius_m,
             neighbour_angle_rad=p.neighbour_angle_rad,
             direct_m=self.direct_m,
-            weight_length=float(self.weights[0]),
+            weight_length=max(float(self.weights[0]), LEAST_LENGTH_WEIGHT),
             weight_missile=float(self.weights[1]),
             weight_radar=float(self.weights[2]),
             heuristic_length=p.heuristic_length,

@@ -40,6 +40,7 @@ _GOAL = 3
 EAST, NORTH, ANGLE, LENGTH, KILL, DETECTION = range(6)
 
 _SLACK_RAD = 1e-9
+_COST_STEP = 1e-9
 
 
 class Space(NamedTuple):
@@ -96,36 +97,32 @@ def _leg_cost(e0: float, n0: float, e1: float, n1: float, space: Space, rules: R
 
 
 @njit(cache=True)
-def _estimate(node: Array, goal: Array, space: Space, rules: Rules) -> float:
-    """Eqs 23 and 25: weighted cost so far and weighted estimate along the straight line to the goal."""
-    rest_m = math.hypot(goal[EAST] - node[EAST], goal[NORTH] - node[NORTH])
-    length: float = (node[LENGTH] + rules.heuristic_length * rest_m) / rules.direct_m
-    kill = node[KILL]
-    detection = node[DETECTION]
-    if rules.heuristic_missile > 0.0 or rules.heuristic_radar > 0.0:
-        rest_kill, rest_detection = _leg_cost(node[EAST], node[NORTH], goal[EAST], goal[NORTH], space, rules)
-        kill += rules.heuristic_missile * rest_kill
-        detection += rules.heuristic_radar * rest_detection
-    total: float = rules.weight_length * length + rules.weight_missile * kill + rules.weight_radar * detection
-    return total
+def _cost(length_m: float, kill: float, detection: float, rules: Rules) -> float:
+    """Eq 25, rounded: legs in another order end at one place at one cost, whatever the last bit says."""
+    total: float = (
+        rules.weight_length * length_m / rules.direct_m
+        + rules.weight_missile * kill
+        + rules.weight_radar * detection
+    )
+    return math.floor(total / _COST_STEP + 0.5) * _COST_STEP
 
 
 @njit(cache=True)
-def _length_bound(node: Array, goal: Array, rules: Rules) -> float:
-    """What ``_estimate`` is at least: without the risks ahead."""
+def _estimate(node: Array, goal: Array, space: Space, rules: Rules, risks_ahead: bool) -> float:
+    """Eqs 23 and 25: cost so far and weighted estimate along the straight line to the goal."""
     rest_m = math.hypot(goal[EAST] - node[EAST], goal[NORTH] - node[NORTH])
-    ahead: float = rules.weight_length * rules.heuristic_length * rest_m / rules.direct_m
-    return _actual(node, rules) + ahead
+    kill = node[KILL]
+    detection = node[DETECTION]
+    if risks_ahead and (rules.heuristic_missile > 0.0 or rules.heuristic_radar > 0.0):
+        rest_kill, rest_detection = _leg_cost(node[EAST], node[NORTH], goal[EAST], goal[NORTH], space, rules)
+        kill += rules.heuristic_missile * rest_kill
+        detection += rules.heuristic_radar * rest_detection
+    return _cost(node[LENGTH] + rules.heuristic_length * rest_m, kill, detection, rules)
 
 
 @njit(cache=True)
 def _actual(node: Array, rules: Rules) -> float:
-    total: float = (
-        rules.weight_length * node[LENGTH] / rules.direct_m
-        + rules.weight_missile * node[KILL]
-        + rules.weight_radar * node[DETECTION]
-    )
-    return total
+    return _cost(node[LENGTH], node[KILL], node[DETECTION], rules)
 
 
 @njit(cache=True)
@@ -366,7 +363,7 @@ def grow(root: Array, goal: Array, space: Space, rules: Rules) -> tuple[int, int
                 nodes[child, LENGTH] = nodes[node, LENGTH] + rules.leg_m
                 nodes[child, KILL] = nodes[node, KILL]
                 nodes[child, DETECTION] = nodes[node, DETECTION]
-                if _length_bound(nodes[child], goal, rules) >= costs[other]:
+                if _estimate(nodes[child], goal, space, rules, False) >= costs[other]:
                     continue
             verdict = _verdict(e0, n0, e1, n1, space)
             if verdict != CLEAR:
@@ -377,7 +374,7 @@ def grow(root: Array, goal: Array, space: Space, rules: Rules) -> tuple[int, int
                 continue
             _advance(nodes, node, child, e1, n1, space, rules)
             nodes[child, ANGLE] = wrap(towards_rad)
-            cost = _estimate(nodes[child], goal, space, rules)
+            cost = _estimate(nodes[child], goal, space, rules, True)
             if other >= 0:
                 if cost >= costs[other]:
                     continue
