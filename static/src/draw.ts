@@ -4,7 +4,7 @@ import { TerraDraw, TerraDrawCircleMode, TerraDrawPointMode, TerraDrawPolygonMod
 import type { GeoJSONStoreFeatures } from "terra-draw";
 import { TerraDrawMapLibreGLAdapter } from "terra-draw-maplibre-gl-adapter";
 import type { Geometry, Polygon } from "geojson";
-import { ahead, circleOf, circleRing, round7 } from "./geo";
+import { ahead, circleOf, circleRing, distance_m, labelPoint, round7 } from "./geo";
 import { hideWhileEdited, SELECTABLE } from "./layers";
 import { warn } from "./notices";
 import { nameOf, radiusOf, scenarios } from "./scenario";
@@ -37,6 +37,8 @@ export const TOOLS: Tool[] = [
 const EDIT_MODE: Record<Tool["mode"], string> = { polygon: "polygon", circle: "circle", point: "point" };
 const IDLE = "static";
 const SQUARE_SHARE = 0.12;
+const HANDLES = 24;
+const NEAR_PX = 4;
 
 function rounded(geometry: Geometry): Geometry {
   if (geometry.type === "Point") return { type: "Point", coordinates: geometry.coordinates.slice(0, 2).map(round7) };
@@ -49,7 +51,7 @@ function editable(feature: ScenarioFeature): GeoJSONStoreFeatures | null {
   const { geometry } = feature;
   const radius_m = radiusOf(feature);
   if (geometry.type === "Point" && radius_m > 0) {
-    const ring = circleRing(geometry.coordinates as Position, radius_m, 64);
+    const ring = circleRing(geometry.coordinates as Position, radius_m, HANDLES);
     return {
       type: "Feature",
       geometry: { type: "Polygon", coordinates: [ring] },
@@ -99,7 +101,9 @@ export class Drawing {
       setTimeout(() => (context.action === "draw" ? this.#take(id) : this.#commit()), 0);
     });
     this.#draw.on("deselect", () => {
-      if (this.#editing) setTimeout(() => this.#deselected(), 0);
+      const left = this.#editing?.name;
+      // A click on another feature selects that one meanwhile.
+      if (left !== undefined) setTimeout(() => this.#deselected(left), 0);
     });
     map.on("click", (event) => this.#click(event.point));
     for (const layer of SELECTABLE) {
@@ -169,9 +173,8 @@ export class Drawing {
     }
   }
 
-  #deselected(): void {
-    const editing = this.#editing;
-    if (editing && scenarios.selection.value === editing.name) scenarios.selection.set(null);
+  #deselected(name: string): void {
+    if (scenarios.selection.value === name) scenarios.selection.set(null);
   }
 
   /** Give the selected feature handles; take them from the one before. */
@@ -209,8 +212,18 @@ export class Drawing {
 
   #click(point: { x: number; y: number }): void {
     if (this.tool.value !== null) return;
-    const hit = this.#map.queryRenderedFeatures([[point.x - 4, point.y - 4], [point.x + 4, point.y + 4]], { layers: SELECTABLE });
-    const name = hit.sort((a, b) => SELECTABLE.indexOf(a.layer.id) - SELECTABLE.indexOf(b.layer.id))[0]?.properties["fid"];
+    const box: [[number, number], [number, number]] = [[point.x - NEAR_PX, point.y - NEAR_PX], [point.x + NEAR_PX, point.y + NEAR_PX]];
+    const place = this.#map.unproject([point.x, point.y]).toArray() as Position;
+    const away = (name: unknown): number => {
+      const at = labelPoint(scenarios.find(String(name))?.geometry ?? { type: "Point", coordinates: place });
+      return at ? distance_m(place, at) : Infinity;
+    };
+    // Small things lie over large ones; among equals the nearest in the middle is meant.
+    const hits = this.#map
+      .queryRenderedFeatures(box, { layers: SELECTABLE })
+      .map(({ layer, properties }) => ({ name: properties["fid"] as unknown, rank: SELECTABLE.indexOf(layer.id), away_m: away(properties["fid"]) }))
+      .sort((a, b) => a.rank - b.rank || a.away_m - b.away_m);
+    const name = hits[0]?.name;
     if (typeof name === "string" && name !== scenarios.selection.value) scenarios.selection.set(name);
   }
 

@@ -1,5 +1,8 @@
 /** What browser tests ask the page: `window.swathplan`. It only tells; it changes nothing. */
 import type { Map as MapLibreMap } from "maplibre-gl";
+import { track } from "./aircraft";
+import { watched } from "./fleet";
+import { flown } from "./flights";
 import { open, running } from "./plans";
 import { scenarios } from "./scenario";
 
@@ -14,6 +17,10 @@ export interface Hook {
   selected(): string | null;
   plan(): { id: string; features: number; waypoints: number } | null;
   planState(): string | null;
+  /** The watched vehicle: where it is, whether it flies, how many places its live track has. */
+  vehicle(): { lon_deg: number | null; lat_deg: number | null; armed: boolean; sensor_on: boolean; flight: string | null; track: number } | null;
+  /** The flight whose seen ground is on the map. */
+  flown(): string | null;
 }
 
 declare global {
@@ -39,5 +46,12 @@ export function installHook(map: MapLibreMap): void {
     selected: () => scenarios.selection.value,
     plan: () => (open.value ? { id: open.value.record.id, features: open.value.plan.features.length, waypoints: open.value.waypoints.length } : null),
     planState: () => running.value?.state ?? null,
+    vehicle: () => {
+      const vehicle = watched.value;
+      if (!vehicle) return null;
+      const { lon_deg, lat_deg, armed, sensor_on } = vehicle.state;
+      return { lon_deg, lat_deg, armed, sensor_on: sensor_on === true, flight: vehicle.flight_id, track: track.points.length };
+    },
+    flown: () => flown.value?.flight.id ?? null,
   };
 }

@@ -1,9 +1,12 @@
 /** The page, put together. */
 import "./style.css";
+import { showAircraft } from "./aircraft";
 import { connection, heartbeat } from "./api";
 import { byId } from "./dom";
 import { Drawing } from "./draw";
 import { acceptDrops } from "./drop";
+import { keepVehicles } from "./fleet";
+import { keepFlights, refreshFlights } from "./flights";
 import { boundsOf } from "./geo";
 import { buildHeader } from "./header";
 import { installHook } from "./hook";
@@ -14,6 +17,7 @@ import { attempt, report } from "./notices";
 import { planPanel } from "./panel/plan_panel";
 import { scenarioPanel } from "./panel/scenario_panel";
 import { tabs } from "./panel/tabs";
+import { vehiclePanel } from "./panel/vehicle_panel";
 import { open, openPlan, planFeatures, recent, refresh } from "./plans";
 import { scenarios } from "./scenario";
 import { scenarioFeatures } from "./scenario_view";
@@ -38,6 +42,7 @@ async function start(): Promise<void> {
   const panel = tabs([
     { id: "scenario", label: "Scenario", content: scenarioPanel(view) },
     { id: "plan", label: "Plan", content: planPanel(view) },
+    { id: "fly", label: "Fly", content: vehiclePanel() },
   ]);
   byId("panel").append(panel.element, ...panel.panels);
   acceptDrops(view.zoomToAll);
@@ -47,6 +52,9 @@ async function start(): Promise<void> {
     const points = shown?.waypoints ?? [];
     setData(map, "waypoints", points.map((coordinates) => ({ type: "Feature", properties: {}, geometry: { type: "Point", coordinates } })));
   });
+  showAircraft(map);
+  keepFlights();
+  keepVehicles();
   heartbeat();
   keepJudging();
   keepListing(scenarios.restore(), () => {
@@ -65,8 +73,8 @@ function keepListing(hasEdits: boolean, shown: () => void): void {
     const cameUp = state === "up" && before !== "up";
     before = state;
     if (!cameUp) return;
-    void attempt("The plans were not listed", async () => {
-      await refresh();
+    void attempt("The plans and flights were not listed", async () => {
+      await Promise.all([refresh(), refreshFlights()]);
       const newest = recent.value.find((record) => record.state === "done");
       if (settled || !newest) return;
       settled = true;

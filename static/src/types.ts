@@ -103,24 +103,74 @@ export interface PlanCollection extends FeatureCollection<Geometry, Record<strin
 }
 
 export interface VehicleState {
-  lon_deg?: number | null;
-  lat_deg?: number | null;
-  relative_m?: number | null;
-  heading_deg?: number | null;
-  armed?: boolean | null;
-  mode?: string | null;
-  groundspeed_m_s?: number | null;
-  mission_current?: number | null;
-  sensor_on?: boolean | null;
-  [field: string]: unknown;
+  connected: boolean;
+  armed: boolean;
+  mode: string;
+  autopilot: string;
+  landed: boolean | null;
+  lon_deg: number | null;
+  lat_deg: number | null;
+  altitude_amsl_m: number | null;
+  relative_altitude_m: number | null;
+  heading_deg: number | null;
+  roll_deg: number | null;
+  ground_speed_m_s: number | null;
+  airspeed_m_s: number | null;
+  battery_percent: number | null;
+  gps_fix: string | null;
+  mission_current: number | null;
+  mission_total: number | null;
+  mission_state: string | null;
+  sensor_on: boolean | null;
+  texts: { severity: number; text: string }[];
 }
 
-export interface VehicleRecord {
+export type UploadOutcome = "accepted" | "refused" | "unknown" | "not_attempted";
+
+export interface Upload {
+  number: number;
+  plan_id: string;
+  outcome: UploadOutcome;
+  verified: boolean;
+  parts: Record<
+    string,
+    { outcome: UploadOutcome; reason: string; verified: boolean; meant: number; differences: { message: string }[] | null }
+  >;
+  findings: Finding[];
+  notes: string[];
+  override_reason: string | null;
+}
+
+export interface Vehicle {
   id: string;
-  name?: string;
-  url?: string;
-  autopilot?: string | null;
-  link?: string | null;
-  state?: VehicleState | string | null;
-  [field: string]: unknown;
+  name: string;
+  url: string;
+  connected: boolean;
+  simulated: boolean;
+  operation: string | null;
+  transfer: { part: string; done: number; total: number } | null;
+  pending: boolean;
+  plan_id: string | null;
+  flight_id: string | null;
+  upload: Upload | null;
+  state: VehicleState;
+}
+
+export interface Flight {
+  id: string;
+  vehicle_id: string;
+  vehicle_name: string;
+  plan_id: string | null;
+  state: "flying" | "ended" | "interrupted";
+  started_at: string;
+  ended_at: string | null;
+  points: number;
+}
+
+export interface SeenCollection extends FeatureCollection<Geometry, Record<string, unknown>> {
+  flight: string;
+  plan: string;
+  coverage: Record<string, number>;
+  planned_coverage: Record<string, number>;
+  collects: { seq: number; roi: string; cross_track_p95_m: number; cross_track_max_m: number; sensor_on_m: number }[];
 }

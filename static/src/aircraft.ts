@@ -1,0 +1,56 @@
+/** The aircraft on the map: its symbol, its track, the ground it has really seen. */
+import { Marker, type Map as MapLibreMap } from "maplibre-gl";
+import { h } from "./dom";
+import { watched } from "./fleet";
+import { flown } from "./flights";
+import { setData } from "./map";
+import { Track } from "./track";
+import type { Position } from "./types";
+
+const SVG = "http://www.w3.org/2000/svg";
+const SHAPE = "M17 1.500 19.500 12 33 20v3.500L19.500 20l-.8 8 4.300 3v2L17 31.500 11 33v-2l4.300-3-.8-8L1 23.500V20l13.500-8z";
+
+function symbol(): HTMLElement {
+  const svg = document.createElementNS(SVG, "svg");
+  svg.setAttribute("viewBox", "0 0 34 34");
+  const path = document.createElementNS(SVG, "path");
+  for (const [name, value] of Object.entries({ d: SHAPE, fill: "#ffd400", stroke: "#1a1a1a", "stroke-width": "1.4" })) {
+    path.setAttribute(name, value);
+  }
+  svg.append(path);
+  const element = h("div", { class: "aircraft", role: "img", "aria-label": "Aircraft" });
+  element.append(svg);
+  return element;
+}
+
+/** The live track of the flight going on; a flight shown afterwards brings its own. */
+export const track = new Track();
+
+export function showAircraft(map: MapLibreMap): void {
+  const marker = new Marker({ element: symbol(), rotationAlignment: "map" });
+  let shownId: string | null = null;
+  let flightId: string | null = null;
+  watched.watch((vehicle) => {
+    const state = vehicle?.state;
+    if (!vehicle || !state || state.lon_deg === null || state.lat_deg === null) {
+      marker.remove();
+      shownId = null;
+      return;
+    }
+    const at: Position = [state.lon_deg, state.lat_deg];
+    marker.setLngLat(at).setRotation(state.heading_deg ?? 0);
+    if (shownId === null) marker.addTo(map);
+    const another = shownId !== null && shownId !== vehicle.id;
+    shownId = vehicle.id;
+    if (another || (vehicle.flight_id !== null && vehicle.flight_id !== flightId)) {
+      track.clear();
+      setData(map, "track", []);
+    }
+    flightId = vehicle.flight_id;
+    if (flightId !== null && track.add({ at, sensor_on: state.sensor_on === true })) setData(map, "track", track.features());
+  });
+  flown.watch((shown) => {
+    setData(map, "seen", shown?.seen.features ?? []);
+    if (shown) setData(map, "track", shown.track);
+  });
+}

@@ -1,0 +1,50 @@
+/** What was flown: the list of flights, and the ground really seen by one of them. */
+import type { Feature, FeatureCollection, LineString } from "geojson";
+import { get, list } from "./api";
+import { watched } from "./fleet";
+import { attempt } from "./notices";
+import { Signal } from "./signal";
+import type { Flight, SeenCollection } from "./types";
+
+export interface Flown {
+  flight: Flight;
+  seen: SeenCollection;
+  track: Feature<LineString>[];
+}
+
+export const flights = new Signal<Flight[]>([]);
+export const flown = new Signal<Flown | null>(null);
+
+export async function refreshFlights(): Promise<void> {
+  flights.set(await list<Flight>("/flights", "flights"));
+}
+
+/** Bring what a flight saw, and where it went, onto the map. */
+export async function showFlight(flight: Flight): Promise<void> {
+  const path = `/flights/${encodeURIComponent(flight.id)}`;
+  const [seen, track] = await Promise.all([get<SeenCollection>(`${path}/coverage.geojson`), get<FeatureCollection<LineString>>(`${path}/track.geojson`)]);
+  const pieces = track.features.map((feature) => ({
+    type: "Feature" as const,
+    geometry: feature.geometry,
+    properties: { sensor_on: feature.properties?.["role"] === "sensor_on" },
+  }));
+  flown.set({ flight, seen, track: pieces });
+}
+
+/** When the watched vehicle's flight ends, show what it saw. */
+export function keepFlights(): void {
+  let flying: string | null = null;
+  watched.watch((vehicle) => {
+    const now = vehicle?.flight_id ?? null;
+    if (now !== null && now !== flying) flown.set(null);
+    const ended = flying !== null && now === null && vehicle !== null ? flying : null;
+    const begun = now !== null && now !== flying;
+    flying = vehicle === null ? flying : now;
+    if (!ended && !begun) return;
+    void attempt("The flights were not listed", async () => {
+      await refreshFlights();
+      const flight = flights.value.find((candidate) => candidate.id === ended);
+      if (flight?.plan_id) await showFlight(flight);
+    });
+  });
+}

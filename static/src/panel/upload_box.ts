@@ -1,0 +1,101 @@
+/** Sending the plan on the map to the vehicle, and what the vehicle answered. */
+import { ApiError } from "../api";
+import { ask } from "../dialog";
+import { button, fill, h } from "../dom";
+import { upload, watched, type Override } from "../fleet";
+import { findingText, report } from "../notices";
+import { open } from "../plans";
+import type { Upload, Vehicle } from "../types";
+
+const DIFFERENCES_SHOWN = 8;
+const WORDS: Record<Upload["outcome"], string> = {
+  accepted: "The vehicle accepted it",
+  refused: "The vehicle refused it",
+  unknown: "Outcome unknown: the vehicle did not answer to the end. It is read back as soon as it is heard again",
+  not_attempted: "Not attempted",
+};
+
+function partLine(name: string, part: Upload["parts"][string]): HTMLElement {
+  const differing = part.differences?.length ?? 0;
+  const compared = part.verified
+    ? "read back equal"
+    : part.differences === null
+      ? "not read back"
+      : `${differing} differences`;
+  const lines = (part.differences ?? []).slice(0, DIFFERENCES_SHOWN).map((difference) => h("li", {}, difference.message));
+  return h(
+    "li",
+    { class: part.verified ? "" : part.outcome === "accepted" || part.outcome === "unknown" ? "warning" : "error" },
+    `${name}: ${part.meant} items, ${part.outcome.replace("_", " ")}, ${compared}${part.reason && part.reason !== part.outcome ? ` – ${part.reason}` : ""}`,
+    lines.length > 0 ? h("ul", {}, ...lines, differing > lines.length ? h("li", {}, `and ${differing - lines.length} more`) : null) : null,
+  );
+}
+
+function answer(result: Upload): HTMLElement {
+  return h(
+    "div",
+    { "data-outcome": result.outcome, "data-verified": String(result.verified) },
+    h("p", { class: result.outcome === "accepted" && result.verified ? "good" : "warning" }, `${WORDS[result.outcome]}${result.verified ? "; read back equal" : ""}.`),
+    h("ul", { class: "findings" }, ...Object.entries(result.parts).map(([name, part]) => partLine(name, part))),
+    result.findings.length > 0 ? h("ul", { class: "findings" }, ...result.findings.map((finding) => h("li", { class: finding.severity ?? "warning" }, findingText(finding)))) : null,
+    ...result.notes.map((note) => h("p", { class: "quiet" }, note)),
+    result.override_reason ? h("p", { class: "warning" }, `Sent against the check's verdict: ${result.override_reason}`) : null,
+  );
+}
+
+export function uploadBox(): HTMLElement {
+  const part = (name: string): HTMLInputElement => h("input", { type: "checkbox", id: `part-${name}`, checked: true, disabled: name === "mission" });
+  const parts = { mission: part("mission"), fence: part("fence") };
+  const result = h("div", { id: "upload-result", "aria-live": "polite" });
+  const moving = h("div", {});
+  const go = button("Upload the plan", () => void send(null), { class: "primary", id: "upload" });
+  const why = h("p", { class: "quiet" });
+
+  const send = async (override: Override | null): Promise<void> => {
+    const vehicle = watched.value;
+    const plan = open.value;
+    if (!vehicle || !plan) return;
+    const chosen = Object.entries(parts).filter(([, box]) => box.checked).map(([name]) => name);
+    go.disabled = true;
+    fill(result, h("p", {}, `Uploading to ${vehicle.name} …`));
+    try {
+      fill(result, answer(await upload(vehicle.id, plan.record.id, chosen, override)));
+    } catch (error) {
+      fill(result);
+      if (error instanceof ApiError && error.problem.type?.endsWith(":unsafe") && !override) await offerOverride(error);
+      else report(`Nothing was uploaded to ${vehicle.name}`, error);
+    } finally {
+      update();
+    }
+  };
+
+  const offerOverride = async (error: ApiError): Promise<void> => {
+    const reasons = error.errors.map(findingText);
+    const reason = await ask({
+      title: "This plan is not to be flown without an explicit override",
+      lines: [error.problem.detail ?? error.problem.title, ...reasons],
+      go: "Upload all the same",
+      reason: "Why it is uploaded all the same (kept with the upload)",
+    });
+    if (reason !== null) await send({ reason });
+    else fill(result, h("p", { class: "warning" }, "Not uploaded: the plan breaks a hard constraint."));
+  };
+
+  let shownNumber: string | null = null;
+  const update = (): void => {
+    const vehicle: Vehicle | null = watched.value;
+    const busy = vehicle?.operation ?? null;
+    go.disabled = !vehicle?.connected || !open.value || busy !== null;
+    fill(why, !vehicle ? "No vehicle is chosen." : !vehicle.connected ? "The vehicle is not heard." : !open.value ? "No plan is on the map." : busy ? `At work: ${busy}` : "");
+    fill(moving, vehicle?.transfer ? h("progress", { max: Math.max(1, vehicle.transfer.total), value: vehicle.transfer.done, "aria-label": "Upload progress" }) : null);
+    const number = vehicle?.upload ? `${vehicle.id}/${vehicle.upload.number}/${vehicle.upload.outcome}/${vehicle.upload.verified}` : null;
+    if (number !== shownNumber) {
+      shownNumber = number;
+      fill(result, vehicle?.upload ? answer(vehicle.upload) : null);
+    }
+  };
+  watched.watch(update);
+  open.watch(update);
+  const tick = (name: keyof typeof parts, label: string): HTMLElement => h("span", { class: "field tick" }, parts[name], h("label", { for: `part-${name}` }, label));
+  return h("div", {}, h("div", { class: "row" }, go, tick("mission", "mission"), tick("fence", "fence")), why, moving, result);
+}
