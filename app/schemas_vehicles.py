@@ -69,7 +69,7 @@ class MissionIn(Strict):
 class PartOut(BaseModel):
     """What became of one part."""
 
-    outcome: Literal["accepted", "refused", "unknown", "not_attempted"]
+    outcome: Literal["accepted", "different", "refused", "unknown", "not_attempted"]
     reason: str
     verified: bool = Field(description="Read back, and equal to what was meant, roundings aside.")
     meant: int = Field(description="Items sent.")
@@ -83,8 +83,9 @@ class UploadOut(BaseModel):
     number: int
     plan_id: str
     plan_vehicle: str
-    outcome: Literal["accepted", "refused", "unknown", "not_attempted"] = Field(
-        description="unknown: nobody here can tell what the vehicle holds; resolved when it comes back."
+    outcome: Literal["accepted", "different", "refused", "unknown", "not_attempted"] = Field(
+        description="unknown: nobody here can tell what the vehicle holds; when it comes back this becomes "
+        "accepted or different."
     )
     verified: bool
     parts: dict[str, PartOut]

@@ -10,7 +10,9 @@ import typer
 
 from app.cli.output import CommandError, Exit, Json, Output, emit, emit_json, read_document, say
 
-Scenario = Annotated[str, typer.Argument(help="Scenario GeoJSON; - is standard input.", metavar="SCENARIO")]
+ScenarioFile = Annotated[
+    str, typer.Argument(help="Scenario GeoJSON; - is standard input.", metavar="SCENARIO")
+]
 
 
 class Narrator:
@@ -105,7 +107,7 @@ def tell_plan(document: dict[str, Any]) -> None:
 
 
 def plan(
-    scenario: Scenario,
+    scenario: ScenarioFile,
     output: Output = "-",
     seed: Annotated[int | None, typer.Option(help="Seed, instead of the scenario's.")] = None,
     method: Annotated[
@@ -127,7 +129,7 @@ def plan(
         emit_json(summary_of(document))
 
 
-def validate(scenario: Scenario, as_json: Json = False) -> None:
+def validate(scenario: ScenarioFile, as_json: Json = False) -> None:
     """Check a scenario without planning it; exits with 2 when it is refused."""
     from app.services.validation import judge
     from app.services.work import finding_json

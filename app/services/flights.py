@@ -20,6 +20,8 @@ from app.services.store.flights import FlightStore
 from planner.coverage import flown
 from planner.frames import LocalFrame
 from planner.geojson import read_scenario
+from planner.plan import Plan
+from planner.scenario import Scenario
 
 
 class FlightService:
@@ -106,17 +108,8 @@ def _runs(samples: tuple[TrackSample, ...]) -> list[list[TrackSample]]:
     return [run for run in runs if len(run) > 1]
 
 
-def coverage_geojson(
-    record: FlightRecord, plan_text: str, scenario_text: str, samples: tuple[TrackSample, ...]
-) -> dict[str, Any]:
-    """What a flight saw: roles ``seen`` and ``unseen`` by region, and figures as foreign members.
-
-    Members: ``coverage`` {region: fraction as flown}, ``planned_coverage``, and ``collects`` with the
-    distance of the track from each planned line while the sensor was on.
-    """
-    scenario = read_scenario(read_object(scenario_text))
-    plan = plan_of(plan_text)
-    # Heights count from home, and the ground is taken as flat at home's height.
+def seen_by(scenario: Scenario, plan: Plan, samples: tuple[TrackSample, ...]) -> flown.FlownCoverage:
+    """The ground a track saw; heights count from home, and the ground is flat at home's height."""
     track = [
         flown.TrackSample(
             time_s=sample.time_s,
@@ -128,7 +121,20 @@ def coverage_geojson(
         )
         for sample in samples
     ]
-    result = flown.flown_coverage(scenario, plan, track)
+    return flown.flown_coverage(scenario, plan, track)
+
+
+def coverage_geojson(
+    record: FlightRecord, plan_text: str, scenario_text: str, samples: tuple[TrackSample, ...]
+) -> dict[str, Any]:
+    """What a flight saw: roles ``seen`` and ``unseen`` by region, and figures as foreign members.
+
+    Members: ``coverage`` {region: fraction as flown}, ``planned_coverage``, and ``collects`` with the
+    distance of the track from each planned line while the sensor was on.
+    """
+    scenario = read_scenario(read_object(scenario_text))
+    plan = plan_of(plan_text)
+    result = seen_by(scenario, plan, samples)
     to_wgs84 = partial(_to_wgs84, scenario.frame)
     features = [
         _feature(mapping(to_wgs84(shape)), role=role, roi=name, fraction=result.fraction[name])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import json
 import uuid
 from collections.abc import AsyncIterator, Sequence
 from typing import Any
@@ -16,11 +17,11 @@ from app.services.missions import PARTS, MissionChoice, PartName, encode_plan, p
 from app.services.planning import PlanningService
 from app.services.store.flights import FlightStore
 from app.services.store.uploads import UploadStore
+from app.services.vehicles.connection import Home
 from app.services.vehicles.items import item_json
 from app.services.vehicles.recorder import HeldPlan, is_flying
-from app.services.vehicles.uploads import PartResult, UploadReport, judge_upload, send_parts
-from app.services.vehicles.vehicle import Home, Vehicle
-from app.services.work import finding_json
+from app.services.vehicles.uploads import UploadReport, judge_upload, new_report, report_json, send_parts
+from app.services.vehicles.vehicle import Vehicle
 from mavlink import errors as mavlink_errors
 from mavlink.geometry import distance_m
 from mavlink.mission import Mission
@@ -226,8 +227,13 @@ class Fleet:
         raise RefusedError(message, (Finding("seq", "seq-missing", message, "send seq"),))
 
     async def _default_home(self) -> Home | None:
-        for record in await self._planning.newest(1, 0, "done"):
-            return _home_of(plan_of(await self._planning.plan_text(record.id)))
+        """Where a simulated aircraft stands at first: the start of the newest scenario."""
+        for record in await self._planning.newest(1, 0, None):
+            scenario = json.loads(await self._planning.scenario_text(record.id))
+            for feature in scenario["features"]:
+                if feature["properties"]["role"] == "start":
+                    lon_deg, lat_deg = feature["geometry"]["coordinates"][:2]
+                    return float(lat_deg), float(lon_deg), 0.0
         return None
 
     async def _bring_home(self, vehicle: Vehicle, plan: Plan) -> None:
@@ -256,15 +262,7 @@ class Fleet:
             log.warning(
                 "upload overrides", vehicle=vehicle.name, plan_id=plan_id, reason=override, rules=rules
             )
-        report = UploadReport(
-            number,
-            plan_id,
-            mission.vehicle,
-            override,
-            mission.notes,
-            findings,
-            {name: PartResult(len(mission.items_of(PARTS[name]))) for name in parts},
-        )
+        report = new_report(number, plan_id, mission, parts, override, findings)
         vehicle.upload = report
         return report
 
@@ -276,15 +274,7 @@ class Fleet:
             vehicle.held = HeldPlan(report.plan_id, report.plan_vehicle)
         outcome = "unknown" if report.outcome == "not_attempted" else report.outcome
         UPLOADS.labels(outcome=outcome).inc()
-        detail = {
-            "verified": report.verified,
-            "findings": [finding_json(finding) for finding in report.findings],
-            "parts": {
-                name: {"outcome": p.outcome, "reason": p.reason, "differences": p.differences}
-                for name, p in report.parts.items()
-            },
-        }
-        await self._uploads.end(report.number, outcome, detail)
+        await self._uploads.end(report.number, outcome, report_json(report))
         log.info("upload ended", vehicle=vehicle.name, plan_id=report.plan_id, outcome=outcome)
         self._publish(vehicle)
 

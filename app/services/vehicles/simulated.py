@@ -11,6 +11,7 @@ from typing import NoReturn
 from urllib.parse import parse_qsl
 
 from app.services.errors import LinkError, RefusedError
+from mavlink.sim.faults import Fault
 from planner.errors import Finding
 
 #: How long a simulated aircraft may take to end by itself.
@@ -22,8 +23,19 @@ _NUMBERS = {
     "airspeed": "--airspeed",
     "turn_radius": "--turn-radius",
     "seed": "--seed",
+    "heading": "--heading",
+    "climb": "--climb",
+    "gust": "--gust",
+    "max_bank": "--max-bank",
+    "l1_period": "--l1-period",
+    "acceptance": "--acceptance",
+    "battery_wh": "--battery-wh",
 }
-_WORDS = {"autopilot": ("ardupilot", "px4"), "dynamics": ("auto", "kinematic", "jsbsim")}
+_WORDS = {
+    "autopilot": ("ardupilot", "px4"),
+    "dynamics": ("auto", "kinematic", "jsbsim"),
+    "fault": tuple(fault.value for fault in Fault),
+}
 FORM = "sim:?speedup=20&home=33.48,-117.75&autopilot=px4&airspeed=20&turn_radius=100&wind=8,270"
 
 

@@ -10,6 +10,7 @@ from app.services.errors import RefusedError, UnsafeError
 from app.services.missions import PARTS, PartName, mission_findings
 from app.services.vehicles.items import difference_json, item_json
 from app.services.vehicles.recorder import is_flying
+from app.services.work import finding_json
 from mavlink.client import VehicleClient
 from mavlink.compare import Difference, differences
 from mavlink.dialects import Dialect
@@ -21,8 +22,8 @@ from mavlink.verify import VerifiedUpload
 from planner.errors import Finding
 from planner.plan import Plan
 
-OutcomeName = Literal["accepted", "refused", "unknown", "not_attempted"]
-STATUSES: tuple[OutcomeName, ...] = ("accepted", "not_attempted", "refused", "unknown")
+OutcomeName = Literal["accepted", "different", "refused", "unknown", "not_attempted"]
+STATUSES: tuple[OutcomeName, ...] = ("accepted", "not_attempted", "different", "refused", "unknown")
 
 
 @dataclass(slots=True)
@@ -32,7 +33,8 @@ class PartResult:
     Parameters
     ----------
     outcome
-        ``accepted``: the vehicle said so, or what it holds shows it.
+        ``accepted``: the vehicle said so, or what it holds shows it. ``different``: it never said, and it
+        holds something else than was meant.
     reason
         In words, from the vehicle's answer or its absence.
     differences
@@ -59,6 +61,8 @@ class PartResult:
         if result.held is not None:
             self.held = [item_json(item) for item in result.held]
             self.differences = [difference_json(difference) for difference in result.differences]
+            if self.outcome == "unknown":
+                self.outcome = "different"
 
 
 @dataclass(slots=True)
@@ -82,6 +86,49 @@ class UploadReport:
     def verified(self) -> bool:
         """Whether every part is held as meant."""
         return all(part.verified for part in self.parts.values())
+
+
+def new_report(
+    number: int,
+    plan_id: str,
+    mission: Mission,
+    parts: Sequence[PartName],
+    override: str | None,
+    findings: tuple[Finding, ...],
+) -> UploadReport:
+    """A report on parts that have not been sent yet."""
+    return UploadReport(
+        number,
+        plan_id,
+        mission.vehicle,
+        override,
+        mission.notes,
+        findings,
+        {name: PartResult(len(mission.items_of(PARTS[name]))) for name in parts},
+    )
+
+
+def report_json(report: UploadReport) -> dict[str, Any]:
+    """A report as plain values, without the items held."""
+    return {
+        "outcome": report.outcome,
+        "verified": report.verified,
+        "plan_vehicle": report.plan_vehicle,
+        "override_reason": report.override_reason,
+        "notes": list(report.notes),
+        "findings": [finding_json(finding) for finding in report.findings],
+        "parts": {
+            name: {
+                "outcome": part.outcome,
+                "reason": part.reason,
+                "verified": part.verified,
+                "meant": part.meant,
+                "held": None if part.held is None else len(part.held),
+                "differences": part.differences,
+            }
+            for name, part in report.parts.items()
+        },
+    }
 
 
 def judge_upload(

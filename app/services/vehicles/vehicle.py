@@ -11,16 +11,15 @@ from typing import Any
 
 import structlog
 
-from app.services.errors import BusyError, LinkError, RefusedError
+from app.services.errors import BusyError, LinkError
 from app.services.store.flights import FlightStore
+from app.services.vehicles.connection import Connection, Home, connect, simulated_of
 from app.services.vehicles.recorder import FlightRecorder, HeldPlan
-from app.services.vehicles.simulated import SimulatedAircraft, SimulatorProcess, parse_simulated
+from app.services.vehicles.simulated import SimulatedAircraft
 from app.services.vehicles.uploads import UploadReport
 from mavlink import errors as mavlink_errors
 from mavlink.client import VehicleClient
-from mavlink.link import FORMS, open_link
 from mavlink.telemetry import VehicleState
-from planner.errors import Finding
 
 log = structlog.get_logger(__name__)
 
@@ -28,8 +27,6 @@ log = structlog.get_logger(__name__)
 TELEMETRY_S = 0.2
 #: How often flights are looked at.
 LOOK_S = 0.5
-
-Home = tuple[float, float, float]
 
 
 class Vehicle:
@@ -61,30 +58,29 @@ class Vehicle:
         self.upload: UploadReport | None = None
         self.progress: dict[str, Any] | None = None
         self.operation: str | None = None
-        self.simulated: SimulatedAircraft | None = parse_simulated(url) if url.startswith("sim:") else None
+        self.simulated: SimulatedAircraft | None = simulated_of(url)
         self._recorder = FlightRecorder(flights, vehicle_id, name, track_interval_s)
         self._publish = publish
         self._resolved = resolved
-        self._client: VehicleClient | None = None
-        self._simulator: SimulatorProcess | None = None
+        self._connection: Connection | None = None
         self._tasks: list[asyncio.Task[None]] = []
 
     @property
     def state(self) -> VehicleState:
         """All that is known of it now."""
-        return VehicleState() if self._client is None else self._client.state
+        return VehicleState() if self._connection is None else self._connection.client.state
 
     @property
     def client(self) -> VehicleClient:
         """The link's client; raises LinkError while there is none."""
-        if self._client is None:
+        if self._connection is None:
             raise LinkError(f"{self.name} has no link")
-        return self._client
+        return self._connection.client
 
     @property
     def pending(self) -> bool:
         """Whether an upload's outcome is unknown and waits for the vehicle to come back."""
-        return self._client is not None and self._client.pending
+        return self._connection is not None and self._connection.client.pending
 
     @property
     def flight_id(self) -> str | None:
@@ -103,28 +99,11 @@ class Vehicle:
         LinkError
             The link cannot be opened, or the simulator ended.
         """
-        url = self.url if self.simulated is None else "udpin:127.0.0.1:0"
-        if url.partition(":")[0] not in ("udpin", "udpout", "tcp", "tcpin", "serial"):
-            message = f"{url[:80]} is no link address"
-            raise RefusedError(message, (Finding("url", "link-address", message, f"write {FORMS} or sim:"),))
-        try:
-            link = await open_link(url)
-        except mavlink_errors.LinkError as error:
-            raise LinkError(str(error)) from error
-        self._client = VehicleClient(link)
-        if self.simulated is not None:
-            aircraft = self.simulated if self.simulated.home is not None else self.simulated.at(home)
-            self._simulator = await SimulatorProcess.start(aircraft, int(link.url.rpartition(":")[2]))
-        try:
-            await self._client.connect(timeout_s)
-        except mavlink_errors.VehicleNotFoundError:
-            if self._simulator is not None:
-                await self._simulator.check()
-        except mavlink_errors.NotConnectedError as error:
-            raise LinkError(str(error)) from error
+        self._connection = await connect(self.url, home, timeout_s)
+        client = self._connection.client
         self._tasks = [
-            asyncio.create_task(self._watch(self._client)),
-            asyncio.create_task(self._record(self._client)),
+            asyncio.create_task(self._watch(client)),
+            asyncio.create_task(self._record(client)),
         ]
 
     async def close(self) -> None:
@@ -133,12 +112,10 @@ class Vehicle:
             task.cancel()
         await asyncio.gather(*self._tasks, return_exceptions=True)
         self._tasks = []
-        await self._recorder.end(self._client, "interrupted")
-        if self._client is not None:
-            await self._client.close()
-        if self._simulator is not None:
-            await self._simulator.stop()
-        self._client = self._simulator = None
+        connection, self._connection = self._connection, None
+        await self._recorder.end(connection.client if connection else None, "interrupted")
+        if connection is not None:
+            await connection.close()
 
     async def move(self, home: Home, timeout_s: float) -> None:
         """Put a simulated aircraft somewhere else: a new one on a new link."""

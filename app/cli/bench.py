@@ -1,0 +1,92 @@
+"""``swathplan bench``."""
+
+from __future__ import annotations
+
+import importlib
+import json
+from enum import StrEnum
+from typing import Annotated, Any
+
+import typer
+
+from app.cli.output import CommandError, Json, emit, say
+
+
+class Benchmark(StrEnum):
+    """Benchmarks by name."""
+
+    SAR = "sar"
+    LINK = "link"
+
+
+def _options(pairs: list[str]) -> dict[str, Any]:
+    options: dict[str, Any] = {}
+    for pair in pairs:
+        name, equals, text = pair.partition("=")
+        if not equals:
+            raise typer.BadParameter(f"{pair}: write it as name=value")
+        try:
+            value = json.loads(text)
+        except json.JSONDecodeError:
+            value = text
+        options[name] = tuple(value) if isinstance(value, list) else value
+    return options
+
+
+def _cell(value: Any) -> str:
+    return f"{value:.4g}" if isinstance(value, float) else "" if value is None else str(value)
+
+
+def _table(rows: list[dict[str, Any]]) -> str:
+    """Rows with the same columns under one head."""
+    parts: list[str] = []
+    columns: list[str] = []
+    block: list[list[str]] = []
+
+    def flush() -> None:
+        if block:
+            widths = [max(map(len, column)) for column in zip(columns, *block, strict=True)]
+            lines = [columns, *block]
+            parts.append(
+                "\n".join(
+                    "  ".join(cell.ljust(w) for cell, w in zip(line, widths, strict=True)) for line in lines
+                )
+            )
+            block.clear()
+
+    for row in rows:
+        if list(row) != columns:
+            flush()
+            columns = list(row)
+        block.append([_cell(value) for value in row.values()])
+    flush()
+    return "\n".join(parts)
+
+
+def bench(
+    name: Annotated[Benchmark, typer.Argument(help="Which benchmark.")],
+    option: Annotated[
+        list[str] | None, typer.Option(help="Option of the benchmark, e.g. repeats=1.", metavar="NAME=VALUE")
+    ] = None,
+    as_json: Json = False,
+) -> None:
+    """Run a benchmark: a table, or JSON lines as they come with --json."""
+    options = _options(option or [])
+    try:
+        module = importlib.import_module(f"benchmarks.{name.value}")
+    except ModuleNotFoundError as error:
+        raise CommandError(f"{error}; benchmarks run from the source tree with its dev extra") from error
+    rows: list[dict[str, Any]] = []
+    for row in module.run(**options):
+        if as_json:
+            emit(json.dumps(row, ensure_ascii=False, default=str))
+        else:
+            say(f"{len(rows) + 1} rows …")
+            rows.append(row)
+    if not as_json:
+        emit(_table(rows))
+
+
+def register(cli: typer.Typer) -> None:
+    """Add the command."""
+    cli.command()(bench)

@@ -1,0 +1,98 @@
+"""A link with a client on it, and the simulated aircraft at its other end where one is asked for."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from dataclasses import dataclass
+
+from app.services.errors import LinkError, RefusedError
+from app.services.vehicles.simulated import SimulatedAircraft, SimulatorProcess, parse_simulated
+from mavlink import errors as mavlink_errors
+from mavlink.client import VehicleClient
+from mavlink.link import FORMS, open_link
+from planner.errors import Finding
+
+#: Latitude, longitude in degrees, metres above sea level.
+Home = tuple[float, float, float]
+
+_FORMS = ("udpin", "udpout", "tcp", "tcpin", "serial")
+
+
+def simulated_of(url: str) -> SimulatedAircraft | None:
+    """What a ``sim:`` address asks for; None for other addresses, RefusedError for malformed ones."""
+    form = url.partition(":")[0]
+    if form == "sim":
+        return parse_simulated(url)
+    if form not in _FORMS:
+        message = f"{url[:80]} is no link address"
+        raise RefusedError(message, (Finding("url", "link-address", message, f"write {FORMS} or sim:"),))
+    return None
+
+
+@dataclass(frozen=True, slots=True)
+class Connection:
+    """An open link."""
+
+    client: VehicleClient
+    simulator: SimulatorProcess | None = None
+
+    async def close(self) -> None:
+        """Close the link and end the simulator."""
+        await self.client.close()
+        if self.simulator is not None:
+            await self.simulator.stop()
+
+
+async def connect(url: str, home: Home | None, timeout_s: float) -> Connection:
+    """Open the link, start the simulator where one is asked for, wait for a heartbeat.
+
+    A vehicle that stays silent is not an error: the client goes on listening.
+
+    Parameters
+    ----------
+    home
+        Where a simulated aircraft stands whose address does not say.
+
+    Raises
+    ------
+    RefusedError
+        The address has none of the known forms.
+    LinkError
+        The link cannot be opened, or the simulator ended.
+    """
+    aircraft = simulated_of(url)
+    try:
+        link = await open_link(url if aircraft is None else "udpin:127.0.0.1:0")
+    except mavlink_errors.LinkError as error:
+        raise LinkError(str(error)) from error
+    client = VehicleClient(link)
+    simulator = None
+    if aircraft is not None:
+        standing = aircraft if aircraft.home is not None else aircraft.at(home)
+        simulator = await SimulatorProcess.start(standing, int(link.url.rpartition(":")[2]))
+    connection = Connection(client, simulator)
+    try:
+        await client.connect(timeout_s)
+    except mavlink_errors.VehicleNotFoundError:
+        if simulator is not None:
+            await simulator.check()
+    except mavlink_errors.NotConnectedError as error:
+        await connection.close()
+        raise LinkError(str(error)) from error
+    except BaseException:
+        await connection.close()
+        raise
+    return connection
+
+
+@asynccontextmanager
+async def connected(url: str, home: Home | None, timeout_s: float) -> AsyncIterator[VehicleClient]:
+    """A client of a vehicle that has been heard; raises LinkError when it stays silent."""
+    connection = await connect(url, home, timeout_s)
+    try:
+        if not connection.client.state.connected:
+            raise LinkError(f"no autopilot was heard on {url} within {timeout_s:g} s")
+        yield connection.client
+    finally:
+        await connection.close()
