@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from typing import Protocol
 
 import numpy as np
@@ -25,6 +26,9 @@ TOUCH_M = 1e-3
 
 #: Name of the operating area in conflicts.
 AREA = "area"
+
+#: Gaps between polygons narrower than twice this are closed: no line passes between adjoining zones.
+SEAM_M = TOUCH_M
 
 #: Corners of inflated polygons are mitred up to this many margins, so that they hold the rounded ones.
 MITRE_LIMIT = 2.0
@@ -90,6 +94,19 @@ class Conflict:
     hard: bool
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Ground:
+    """Polygons and area as one shape: what is free inside an area, else what is forbidden.
+
+    ``shape`` is exact; ``closed`` has the seams between adjoining zones closed, ``edges`` are its edges.
+    """
+
+    shape: Polygon | MultiPolygon
+    closed: Polygon | MultiPolygon
+    edges: Array
+    free: bool
+
+
 @dataclass(frozen=True, slots=True)
 class KeepOut:
     """Discs and polygons to keep out of and the area to stay in, margins included."""
@@ -100,6 +117,7 @@ class KeepOut:
     _discs: Array = field(init=False, repr=False, compare=False)
     _edges: tuple[Array, NDArray[np.int64]] = field(init=False, repr=False, compare=False)
     _area: Array = field(init=False, repr=False, compare=False)
+    _barrier: Array = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         discs = [(disc.east_m, disc.north_m, disc.radius_m) for disc in self.discs]
@@ -109,6 +127,8 @@ class KeepOut:
         object.__setattr__(self, "_discs", np.array(discs, dtype=np.float64).reshape(-1, 3))
         object.__setattr__(self, "_edges", (edges, offsets))
         object.__setattr__(self, "_area", np.empty((0, 4)) if self.area is None else ring_edges(self.area))
+        barrier = self._area if not self.polygons else self.ground().edges
+        object.__setattr__(self, "_barrier", barrier)
 
     def disc_array(self) -> Array:
         """Discs, float64, shape (K, 3): east_m, north_m, radius_m. Not to be written to."""
@@ -125,10 +145,15 @@ class KeepOut:
         """Edges of the area, float64 (A, 4), none without an area. Not to be written to."""
         return self._area
 
+    def ground(self) -> Ground:
+        """The polygons and the area as one."""
+        return _ground(tuple(zone.polygon for zone in self.polygons), self.area)
+
     def conflicts(self, path: Line) -> tuple[Conflict, ...]:
         """Every zone the line enters by more than ``TOUCH_M``, hard ones first, deepest first."""
+        pieces = pieces_of(path)
         edges, offsets = self._edges
-        found = depths(pieces_of(path), self._discs, edges, offsets, self._area, self.area is not None)
+        found = depths(pieces, self._discs, edges, offsets, self._area, self.area is not None)
         names = [
             *((disc.name, disc.hard) for disc in self.discs),
             *((zone.name, zone.hard) for zone in self.polygons),
@@ -139,6 +164,8 @@ class KeepOut:
             for (name, hard), (depth_m, east_m, north_m) in zip(names, found, strict=True)
             if depth_m > TOUCH_M
         ]
+        if not any(depth_m > TOUCH_M for depth_m in found[len(self.discs) :, 0]):
+            conflicts.extend(self._seam_conflicts(pieces))
         return tuple(sorted(conflicts, key=lambda c: (not c.hard, -c.depth_m, c.zone)))
 
     def conflict(self, path: Line) -> Conflict | None:
@@ -147,10 +174,26 @@ class KeepOut:
 
     def clear(self, path: Line) -> bool:
         """Whether the line stays in the area and out of every zone, touching them at most."""
-        edges, offsets = self._edges
-        return bool(
-            is_clear(pieces_of(path), self._discs, edges, offsets, self._area, self.area is not None, TOUCH_M)
-        )
+        return bool(is_clear(pieces_of(path), self._discs, *self._barriers(), TOUCH_M))
+
+    def _barriers(self) -> tuple[Array, NDArray[np.int64], Array, bool]:
+        """Edges, offsets, area edges and whether there is an area, of the polygons and the area as one."""
+        if self.area is None:
+            return self._barrier, np.array([0, len(self._barrier)], dtype=np.int64), self._area, False
+        return np.empty((0, 4)), np.zeros(1, dtype=np.int64), self._barrier, True
+
+    def _seam_conflicts(self, pieces: Array) -> list[Conflict]:
+        """The zones between which a line squeezes that enters neither."""
+        found = depths(pieces, np.empty((0, 3)), *self._barriers())
+        depth_m, east_m, north_m = (float(value) for value in found[int(np.argmax(found[:, 0]))])
+        if depth_m <= TOUCH_M:
+            return []
+        where = shapely.Point(east_m, north_m)
+        return [
+            Conflict(zone.name, (east_m, north_m), depth_m, zone.hard)
+            for zone in self.polygons
+            if zone.polygon.distance(where) <= 4.0 * SEAM_M
+        ]
 
     def without(self, names: Collection[str]) -> KeepOut:
         """The same without the zones of these names; ``"area"`` takes the area away."""
@@ -162,10 +205,19 @@ class KeepOut:
         )
 
 
+@lru_cache(maxsize=1024)
+def _ground(polygons: tuple[Polygon, ...], area: Polygon | MultiPolygon | None) -> Ground:
+    solid = shapely.union_all(polygons)
+    shape, inward = (solid, -1.0) if area is None else (area.difference(solid), 1.0)
+    # Closing what is forbidden is opening what is free.
+    closed = shape.buffer(-inward * SEAM_M, join_style="mitre").buffer(inward * SEAM_M, join_style="mitre")
+    return Ground(shape, closed, ring_edges(closed), area is not None)
+
+
 def ring_edges(area: Polygon | MultiPolygon) -> Array:
     """Edges of all rings, float64 (E, 4): east0, north0, east1, north1."""
     edges: list[Array] = [np.empty((0, 4))]
-    for ring in shapely.get_rings(area):
+    for ring in shapely.get_rings(shapely.get_parts(area)):
         points = shapely.get_coordinates(ring)
         edges.append(np.hstack([points[:-1], points[1:]]))
     return np.ascontiguousarray(np.concatenate(edges))

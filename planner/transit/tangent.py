@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from planner.dubins.path import Path, Segment, SegmentKind, join
 from planner.dubins.words import candidates_between
 from planner.environment.zone_kernels import edge_distance, inside
-from planner.environment.zones import AREA, TOUCH_M, Disc, KeepOut
+from planner.environment.zones import AREA, TOUCH_M, Conflict, Disc, KeepOut
 from planner.errors import InfeasibleError
 from planner.progress import Stop, never, raise_if
 from planner.route import Anchor, Pose
@@ -217,14 +217,33 @@ def _holding(end: Anchor, zones: KeepOut) -> list[tuple[str, float, bool]]:
 
 
 def _infeasible(start: Anchor, goal: Anchor, zones: KeepOut, radius_m: float) -> InfeasibleError:
-    """Why there is no line: the worst conflict of the Dubins word."""
+    """Why there is no line: the zone that corners an end, else the worst conflict of the Dubins word."""
+    for end, which, turned_rad in ((start, "start", 0.0), (goal, "end", math.pi)):
+        if end.angle_rad is None:
+            continue
+        pose = Pose(end.east_m, end.north_m, end.angle_rad + turned_rad)
+        quarter_m = 0.5 * math.pi * radius_m
+        ahead = Segment("straight", pose, radius_m)
+        turns = (Segment("left", pose, quarter_m, radius_m), Segment("right", pose, quarter_m, radius_m))
+        conflicts = [zones.conflict(Path((segment,))) for segment in (ahead, *turns)]
+        if conflicts[0] is not None and all(conflicts):
+            return _refusal(
+                conflicts[0], f"the {which} of a transit is too close to it to turn with {radius_m:.1f} m"
+            )
     conflict = zones.conflict(candidates_between(start, goal, radius_m)[0])
     assert conflict is not None, "a clear word is a line"
+    return _refusal(
+        conflict,
+        f"no line with turns of {radius_m:.1f} m was found from ({start.east_m:.0f}, {start.north_m:.0f}) to "
+        f"({goal.east_m:.0f}, {goal.north_m:.0f}) m that keeps clear of it and of its neighbours",
+    )
+
+
+def _refusal(conflict: Conflict, message: str) -> InfeasibleError:
     return InfeasibleError(
         AREA if conflict.zone == AREA else "hard-zone",
         conflict.zone,
-        f"no line with turns of {radius_m:.1f} m was found from ({start.east_m:.0f}, {start.north_m:.0f}) to "
-        f"({goal.east_m:.0f}, {goal.north_m:.0f}) m that keeps clear of it and of its neighbours",
+        message,
         "Move the ends or the zone, or use a smaller margin or turn radius.",
         conflict.where,
     )

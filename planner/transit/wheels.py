@@ -10,12 +10,12 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
-from shapely.geometry import MultiPolygon, Polygon
 from shapely.geometry.polygon import orient
 
 from planner.dubins.path import Path, Segment
-from planner.environment.zones import TOUCH_M, KeepOut, ring_edges
+from planner.environment.zones import TOUCH_M, Ground, KeepOut, ring_edges
 from planner.route import Anchor, Pose
 
 #: Round a corner sharper than this, and round small discs, circles stand every so many radians.
@@ -49,20 +49,11 @@ class Obstacles:
 def obstacles_of(zones: KeepOut, radius_m: float) -> Obstacles:
     """Zones as the search needs them, with circles of ``radius_m`` or more round each."""
     discs = zones.disc_array()[zones.disc_array()[:, 2] > SHRINK_M]
-    circles = [_disc_circles(disc, radius_m) for disc in discs]
-    edges = []
-    for zone in zones.polygons:
-        zone_edges, corners = _polygon_model(zone.polygon, radius_m, 1.0)
-        edges.append(zone_edges)
-        circles.append(corners)
-    if zones.area is not None:
-        area_edges, corners = _polygon_model(zones.area, radius_m, -1.0)
-        edges.append(area_edges)
-        circles.append(corners)
+    edges, corners = _polygon_model(zones.ground(), radius_m)
     return Obstacles(
         discs - np.array([0.0, 0.0, SHRINK_M]),
-        np.concatenate([np.empty((0, 4)), *edges]),
-        np.concatenate([np.empty((0, 3)), *circles]),
+        edges,
+        np.concatenate([*(_disc_circles(disc, radius_m) for disc in discs), corners]),
     )
 
 
@@ -78,20 +69,18 @@ def _disc_circles(disc: Array, radius_m: float) -> Array:
     )
 
 
-@lru_cache(maxsize=4096)
-def _polygon_model(area: Polygon | MultiPolygon, radius_m: float, side: float) -> tuple[Array, Array]:
-    """Edges to test, and circles through the corners one flies round.
-
-    ``side`` is 1 for a polygon to keep out of, -1 for one to stay in.
-    """
-    slack = area.buffer(-side * SHRINK_M, join_style="mitre")
-    edges = ring_edges(area if slack.is_empty else slack)
+@lru_cache(maxsize=1024)
+def _polygon_model(ground: Ground, radius_m: float) -> tuple[Array, Array]:
+    """Edges to test, and circles through the corners one flies round."""
+    side = -1.0 if ground.free else 1.0
+    loose = ground.closed.buffer(-side * SHRINK_M, join_style="mitre")
     circles: list[tuple[float, float, float]] = []
-    for part in area.geoms if isinstance(area, MultiPolygon) else (area,):
+    for part in shapely.get_parts(ground.shape):
         # What is forbidden lies to the left of every ring.
         oriented = orient(part, side)
         for ring in (oriented.exterior, *oriented.interiors):
             circles.extend(_corner_circles(np.asarray(ring.coords)[:-1, :2], radius_m))
+    edges = ground.edges if loose.is_empty else ring_edges(loose)
     return edges, np.array(circles, dtype=np.float64).reshape(-1, 3)
 
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from shapely.geometry import LineString, MultiPoint, Point, Polygon, box
+from shapely.geometry import LineString, MultiPoint, MultiPolygon, Point, Polygon, box
 
 from planner.dubins.path import Path, Segment
 from planner.dubins.words import shortest
@@ -183,3 +183,27 @@ def test_margins_hold_the_buffered_shapes() -> None:
     assert mast.buffer(1e-9).covers(asked.obstacles[0].area.buffer(45.0))
     assert zones.area is not None
     assert zones.area.equals(box(-985, -985, 985, 985))
+
+
+def test_seam_between_adjoining_zones_is_closed() -> None:
+    """A line along the edge that two polygons share, or along one on the area's edge, enters them."""
+    zones = KeepOut(
+        (),
+        (PolygonZone("north", box(0, 0, 100, 100), True), PolygonZone("south", box(0, -100, 100, 0), False)),
+        box(-200, -300, 300, 100),
+    )
+    along_seam = Path((Segment("straight", Pose(-50.0, 0.0, 0.0), 200.0),))
+    assert [conflict.zone for conflict in zones.conflicts(along_seam)] == ["north", "south"]
+    along_area = Path((Segment("straight", Pose(-50.0, 100.0, 0.0), 200.0),))
+    conflict = zones.conflict(along_area)
+    assert conflict is not None
+    assert conflict.zone == "north"
+    assert zones.without({"north"}).clear(along_seam)
+
+
+def test_area_of_two_parts() -> None:
+    """In an area of two parts each part is free, and what lies between them is not."""
+    zones = KeepOut(area=MultiPolygon([box(0, 0, 100, 100), box(200, 0, 300, 100)]))
+    assert zones.area_edges().shape == (8, 4)
+    for east_m, length_m, free in ((10.0, 80.0, True), (210.0, 80.0, True), (10.0, 280.0, False)):
+        assert zones.clear(Path((Segment("straight", Pose(east_m, 50.0, 0.0), length_m),))) is free
