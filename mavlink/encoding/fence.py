@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 from shapely.geometry import LineString, Point, Polygon
 from shapely.geometry.base import BaseGeometry
 from shapely.ops import unary_union
 
+from mavlink.encoding.options import EncodeError
 from mavlink.geometry import LocalMap, Xy
 from mavlink.items import Command, Frame, MissionItem, MissionType
 from mavlink.mission import numbered, placed
@@ -41,8 +43,9 @@ def fence_items(plan: Plan, paths: tuple[FlownPath, ...]) -> tuple[tuple[Mission
 
 
 def _radius_m(circle: ZoneCircle) -> float:
-    if not 0.0 < circle.radius_m < float("inf"):
-        raise ValueError(f"fence circle {circle.name!r} has radius {circle.radius_m}")
+    # A NaN here would stop ArduPilot's simulator altogether.
+    if not 0.0 < circle.radius_m < math.inf:
+        raise EncodeError(f"fence circle {circle.name!r} has radius {circle.radius_m}")
     return circle.radius_m
 
 
@@ -66,7 +69,7 @@ def _left_out(name: str) -> str:
 def zone_shape(zone: ZonePolygon | ZoneCircle, local: LocalMap) -> BaseGeometry:
     """A zone in local metres."""
     if isinstance(zone, ZoneCircle):
-        return Point(local.xy(zone.centre)).buffer(zone.radius_m, quad_segs=32)
+        return Point(local.xy(zone.centre)).buffer(_radius_m(zone), quad_segs=32)
     return Polygon([local.xy(corner) for corner in zone.ring])
 
 
