@@ -23,6 +23,9 @@ PAPER_RADIUS_M = 81.0
 #: A smaller disk bridges nothing that matters and is lost in the rounding of coordinates.
 _LEAST_RADIUS_M = 0.001
 
+#: Overlays snap to this grid: GEOS 3.14 takes polygons that agree but for 1e-13 m as lying apart.
+GRID_M = 1e-9
+
 #: Segments per quarter circle: the disk is 0.1 m too small at most at the paper's radius.
 _QUADRANT_SEGMENTS = 16
 
@@ -132,7 +135,7 @@ def merge_regions(
 
 
 def _merge_group(parts: list[tuple[int, MergedRegion]], radius_m: float) -> list[tuple[int, MergedRegion]]:
-    closed = close_filter(shapely.union_all([part.area for _, part in parts]), radius_m)
+    closed = close_filter(shapely.union_all([part.area for _, part in parts], grid_size=GRID_M), radius_m)
     components = polygons_of(closed)
     tree = shapely.STRtree(components)
     members: dict[int, list[tuple[int, MergedRegion]]] = defaultdict(list)
@@ -157,12 +160,13 @@ def close_filter(area: BaseGeometry, radius_m: float) -> BaseGeometry:
     what the polygonal disk nibbles off or adds is put right, so a lone region keeps its exact spans.
     """
     if radius_m < _LEAST_RADIUS_M:
-        return shapely.union_all([area])
+        return shapely.union_all([area], grid_size=GRID_M)
     grown = area.buffer(radius_m, quad_segs=_QUADRANT_SEGMENTS)
     pieces: list[BaseGeometry] = []
     for island in polygons_of(grown):
-        inside = shapely.intersection(area, island)
+        inside = shapely.intersection(area, island, grid_size=GRID_M)
         closed = island.buffer(-radius_m, quad_segs=_QUADRANT_SEGMENTS)
-        pieces.append(shapely.union_all([shapely.intersection(closed, inside.convex_hull), inside]))
-    whole = shapely.union_all(pieces)
+        kept = shapely.intersection(closed, inside.convex_hull, grid_size=GRID_M)
+        pieces.append(shapely.union_all([kept, inside], grid_size=GRID_M))
+    whole = shapely.union_all(pieces, grid_size=GRID_M)
     return shapely.MultiPolygon([p for p in shapely.get_parts(whole) if isinstance(p, Polygon)])

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
+from planner.coverage.merge import GRID_M
 from planner.routing.costs import Interval, collection_length_m, duty_cycle, operating_intervals
 from planner.scenario import Point, Scenario
 from planner.sensors.sar import SarSensor
@@ -91,7 +92,7 @@ def zigzag(scenario: Scenario, direction: Direction) -> Zigzag:
         Of the lanes: ``"vertical"`` is north–south.
     """
     sensor, height_m = scenario.sensors[0], scenario.height_m
-    regions = shapely.union_all([region.area for region in scenario.regions])
+    regions = shapely.union_all([region.area for region in scenario.regions], grid_size=GRID_M)
     swap = direction == "horizontal"
     if swap:
         regions = shapely.transform(regions, _swapped)
@@ -113,7 +114,8 @@ def _strips(regions: BaseGeometry, swath_m: float, from_high_edge: bool) -> list
     for number in range(count):
         low_m = across_max - (number + 1) * swath_m if from_high_edge else across_min + number * swath_m
         window = shapely.box(low_m, along_min - 1.0, low_m + swath_m, along_max + 1.0)
-        parts = [p for p in shapely.get_parts(shapely.intersection(regions, window)) if p.area > 0.0]
+        inside = shapely.intersection(regions, window, grid_size=GRID_M)
+        parts = [part for part in shapely.get_parts(inside) if part.area > 0.0]
         if parts:
             spans_m = operating_intervals((part.bounds[1], part.bounds[3]) for part in parts)
             strips.append(_Strip(low_m, low_m + swath_m, spans_m))

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
+from planner.coverage.merge import GRID_M
 from planner.coverage.neighbourhood import inside
 from planner.environment.shapes import hard_shapes, soft_shapes
 from planner.scenario import Scenario
@@ -58,8 +59,8 @@ class Room:
         soft = [shape.polygon().buffer(MARGIN_M) for shape in soft_shapes(scenario)] if threat_aware else []
         return cls(
             scenario.area,
-            shapely.union_all(hard),
-            shapely.union_all(soft),
+            shapely.union_all(hard, grid_size=GRID_M),
+            shapely.union_all(soft, grid_size=GRID_M),
             aircraft.planned_turn_radius_m,
             aircraft.settle_m,
         )
