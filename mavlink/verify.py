@@ -37,7 +37,7 @@ class VerifiedUpload:
     differences
         Between meant and held.
     resolved_from
-        The unknown outcome that the read-back turned into an accepted one.
+        The unknown outcome in whose place the read-back put a known one.
     """
 
     outcome: Outcome
@@ -105,12 +105,20 @@ async def upload_and_verify(
 
 
 async def resolve(vehicle: Transfers, pending: Pending) -> VerifiedUpload:
-    """Read back and compare; a silent success becomes accepted, an unread one unknown."""
+    """Read back and compare.
+
+    A silent success becomes accepted, an unread acknowledgement unknown, and an error after the last item a
+    refusal, once it is seen that the vehicle does not hold what was meant.
+    """
     result = await _read_back(vehicle, pending)
     if result.held is None and result.outcome.kind == "accepted":
         return VerifiedUpload(Unknown("not-read-back"), None)
-    if isinstance(result.outcome, Unknown) and result.status == "stored":
+    if not isinstance(result.outcome, Unknown) or result.held is None:
+        return result
+    if not result.differences:
         return VerifiedUpload(Accepted(), result.held, (), result.outcome)
+    if result.outcome.reason == "error-at-end":
+        return VerifiedUpload(Refused(MissionResult.ERROR), result.held, result.differences, result.outcome)
     return result
 
 

@@ -30,13 +30,20 @@ MEANING: Final[dict[int, str]] = {
 }
 
 UnknownReason = Literal[
-    "timeout", "lost-acknowledgement", "early-acceptance", "cancelled", "link-lost", "not-read-back"
+    "timeout",
+    "lost-acknowledgement",
+    "early-acceptance",
+    "error-at-end",
+    "cancelled",
+    "link-lost",
+    "not-read-back",
 ]
 
 _UNKNOWN_WORDS: Final[dict[UnknownReason, str]] = {
     "timeout": "the vehicle stopped answering",
     "lost-acknowledgement": "every item was asked for, but the final acknowledgement never came",
     "early-acceptance": "the vehicle acknowledged before it had asked for every item",
+    "error-at-end": "it reported an error after the last item, which ArduPilot also does for a duplicate",
     "cancelled": "cancelled before the vehicle answered",
     "link-lost": "the vehicle vanished",
     "not-read-back": "acknowledged, but it could not be read back",

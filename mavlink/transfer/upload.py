@@ -40,6 +40,7 @@ class Event(Enum):
     ACCEPTS = auto()  # ACCEPTED, and every item was asked for
     ACCEPTS_EARLY = auto()  # ACCEPTED, though some item was never asked for
     COMPLAINS = auto()  # INVALID_SEQUENCE: ArduPilot's word on a duplicate, while it goes on
+    ERRS_AT_END = auto()  # ERROR when every item was asked for: also ArduPilot's word on a late duplicate
     REFUSES = auto()  # any other result
     TIMEOUT = auto()  # time to announce again
     GIVES_UP = auto()  # no retry left, silence too long, or the same item over and over
@@ -67,6 +68,7 @@ TRANSITIONS: Final[dict[tuple[State, Event], State]] = {
     (State.ASKED_ALL, Event.ASKS_LAST): State.ASKED_ALL,
     (State.ASKED_ALL, Event.ACCEPTS): State.ACCEPTED,
     (State.ASKED_ALL, Event.COMPLAINS): State.ASKED_ALL,
+    (State.ASKED_ALL, Event.ERRS_AT_END): State.UNKNOWN,
     (State.ASKED_ALL, Event.REFUSES): State.REFUSED,
     (State.ASKED_ALL, Event.GIVES_UP): State.UNKNOWN,
     (State.ASKED_ALL, Event.CANCEL): State.UNKNOWN,
@@ -186,6 +188,8 @@ class UploadMachine(Machine[Outcome]):
         elif result == MissionResult.INVALID_SEQUENCE:
             if self._move(Event.COMPLAINS):
                 self._complained = True
+        elif result == MissionResult.ERROR and self._move(Event.ERRS_AT_END):
+            self._end_unknown("error-at-end")
         elif self._move(Event.REFUSES):
             self._end(Refused(result, self._last_asked))
 

@@ -1,0 +1,190 @@
+"""The vehicle's side of the mission protocol, as far as tests of our side need it; no I/O, no clock.
+
+Two manners, as measured on simulators. ArduPilot stores item by item, asks every second, gives up after 8 s,
+says INVALID_SEQUENCE to duplicates and ERROR to items nobody asked for. PX4 stores at the end, asks every
+0.25 s, gives up after 5 s, and acknowledges the last item whenever it comes again.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from mavlink.items import MissionItem, MissionResult, MissionType
+from mavlink.messages import Message, Value
+
+GROUND = (255, 190)
+VEHICLE = (1, 1)
+
+
+def waypoints(count: int, mission_type: MissionType = MissionType.MISSION) -> tuple[MissionItem, ...]:
+    """Items that all differ."""
+    return tuple(
+        MissionItem(
+            seq,
+            3,
+            16,
+            1.5,
+            2.0,
+            -1.0,
+            0.25,
+            10_000_000 + seq,
+            -20_000_000 - seq,
+            100.0 + seq,
+            mission_type=mission_type,
+        )
+        for seq in range(count)
+    )
+
+
+def from_vehicle(name: str, **fields: Value) -> Message:
+    """A message of the vehicle to our ground station."""
+    addressed: dict[str, Value] = {
+        "target_system": GROUND[0],
+        "target_component": GROUND[1],
+        "mission_type": 0,
+    }
+    return Message(name, {**addressed, **fields}, *VEHICLE)
+
+
+def item_of(message: Message) -> MissionItem:
+    """The item in a MISSION_ITEM_INT, read without the code under test."""
+    whole = {name: message.integer(name) for name in ("seq", "frame", "command", "x", "y")}
+    real = {name: message.number(name) for name in ("param1", "param2", "param3", "param4", "z")}
+    return MissionItem(
+        **whole,
+        **real,
+        current=message.integer("current") == 1,
+        autocontinue=message.integer("autocontinue") == 1,
+        mission_type=MissionType(message.integer("mission_type")),
+    )
+
+
+@dataclass
+class _Upload:
+    count: int
+    asked_s: float
+    heard_s: float
+    items: list[MissionItem] = field(default_factory=list)
+
+
+class StubVehicle:
+    """One vehicle.
+
+    Attributes
+    ----------
+    held
+        What it holds now, by type.
+    stored
+        Every list it ever acknowledged, oldest first.
+    said
+        Every result it ever sent.
+    refuse_item
+        The result an item draws instead of being taken, by number.
+    """
+
+    def __init__(
+        self, manner: str = "ardupilot", refuse_item: dict[int, MissionResult] | None = None
+    ) -> None:
+        self.manner = manner
+        self.refuse_item = refuse_item or {}
+        self.held: dict[int, tuple[MissionItem, ...]] = {0: (), 1: (), 2: ()}
+        self.stored: list[tuple[MissionItem, ...]] = []
+        self.said: list[int] = []
+        self.lose_final = False
+        self._ask_every_s, self._give_up_s = (1.0, 8.0) if manner == "ardupilot" else (0.25, 5.0)
+        self._uploads: dict[int, _Upload] = {}
+
+    @property
+    def deadline_s(self) -> float:
+        """When it wants its next tick."""
+        due = (
+            min(up.asked_s + self._ask_every_s, up.heard_s + self._give_up_s) for up in self._uploads.values()
+        )
+        return min(due, default=math.inf)
+
+    def receive(self, message: Message, now_s: float) -> list[Message]:
+        """Take a message, give the answers."""
+        kind = message.fields.get("mission_type", 0)
+        assert isinstance(kind, int)
+        match message.name:
+            case "MISSION_COUNT":
+                return self._count(message.integer("count"), kind, now_s)
+            case "MISSION_ITEM_INT":
+                return self._item(item_of(message), kind, now_s)
+            case "MISSION_REQUEST_LIST":
+                return [from_vehicle("MISSION_COUNT", count=len(self.held[kind]), mission_type=kind)]
+            case "MISSION_REQUEST_INT":
+                return self._give(message.integer("seq"), kind)
+            case "MISSION_CLEAR_ALL":
+                self.held[kind] = ()
+                return [self._ack(MissionResult.ACCEPTED, kind)]
+            case "MISSION_ACK" if message.integer("type") != 0:
+                self._uploads.pop(kind, None)
+        return []
+
+    def tick(self, now_s: float) -> list[Message]:
+        """Ask again, or give up."""
+        answers = []
+        for kind, upload in list(self._uploads.items()):
+            if now_s >= upload.heard_s + self._give_up_s:
+                del self._uploads[kind]
+                answers.append(self._ack(MissionResult.OPERATION_CANCELLED, kind))
+            elif now_s >= upload.asked_s + self._ask_every_s:
+                answers.append(self._ask(kind, now_s))
+        return answers
+
+    def _count(self, count: int, kind: int, now_s: float) -> list[Message]:
+        if count == 0:
+            self._uploads.pop(kind, None)
+            return self._commit((), kind)
+        self._uploads[kind] = _Upload(count, now_s, now_s)
+        if self.manner == "ardupilot":
+            self.held[kind] = self.held[kind][:count]
+        return [self._ask(kind, now_s)]
+
+    def _item(self, item: MissionItem, kind: int, now_s: float) -> list[Message]:
+        upload = self._uploads.get(kind)
+        if upload is None:
+            if self.manner == "ardupilot":
+                return [self._ack(MissionResult.ERROR, kind)]
+            return [self._ack(MissionResult.ACCEPTED, kind)] if item.seq + 1 == len(self.held[kind]) else []
+        upload.heard_s = now_s
+        if item.seq != len(upload.items):
+            return [self._ack(MissionResult.INVALID_SEQUENCE, kind)] if self.manner == "ardupilot" else []
+        if item.seq in self.refuse_item:
+            del self._uploads[kind]
+            return [self._ack(self.refuse_item[item.seq], kind)]
+        upload.items.append(item)
+        if self.manner == "ardupilot":
+            self.held[kind] = (*upload.items, *self.held[kind][len(upload.items) :])
+        if len(upload.items) == upload.count:
+            del self._uploads[kind]
+            return self._commit(tuple(upload.items), kind)
+        return [self._ask(kind, now_s)]
+
+    def _commit(self, items: Sequence[MissionItem], kind: int) -> list[Message]:
+        self.held[kind] = tuple(items)
+        self.stored.append(tuple(items))
+        acknowledgement = self._ack(MissionResult.ACCEPTED, kind)
+        return [] if self.lose_final else [acknowledgement]
+
+    def _ask(self, kind: int, now_s: float) -> Message:
+        upload = self._uploads[kind]
+        upload.asked_s = now_s
+        name = "MISSION_REQUEST" if self.manner == "ardupilot" else "MISSION_REQUEST_INT"
+        return from_vehicle(name, seq=len(upload.items), mission_type=kind)
+
+    def _give(self, seq: int, kind: int) -> list[Message]:
+        if seq >= len(self.held[kind]):
+            return [self._ack(MissionResult.INVALID_SEQUENCE, kind)]
+        item = self.held[kind][seq]
+        names = ("seq", "frame", "command", "param1", "param2", "param3", "param4", "x", "y", "z")
+        fields = {name: getattr(item, name) for name in names}
+        flags = {"current": int(item.current), "autocontinue": int(item.autocontinue), "mission_type": kind}
+        return [from_vehicle("MISSION_ITEM_INT", **fields, **flags)]
+
+    def _ack(self, result: MissionResult, kind: int) -> Message:
+        self.said.append(int(result))
+        return from_vehicle("MISSION_ACK", type=int(result), mission_type=kind)
