@@ -9,7 +9,7 @@ from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
-from shapely import unary_union
+from shapely import difference, intersection, union_all
 from shapely.geometry import LineString, MultiPoint, Polygon
 from shapely.geometry.base import BaseGeometry
 
@@ -21,6 +21,8 @@ from planner.sensors.sar import SarSensor
 MAX_LOOK_RAD = math.radians(85.0)
 #: Footprints are built of slices this long along the track.
 SLICE_M = 10.0
+#: Overlays are done on a grid: without one, outlines equal but for rounding can be taken for disjoint.
+GRID_M = 1e-6
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,12 +78,12 @@ def flown_coverage(scenario: Scenario, plan: Plan, track: Sequence[TrackSample])
         sensor = next(s for s in scenario.sensors if s.name == collect.sensor)
         strips.setdefault(collect.sensor, []).extend(_strip(sensor, collect.look, places, interval))
         passes.append(_pass(scenario, collect, places))
-    seen_by = {name: unary_union(parts) for name, parts in strips.items()}
+    seen_by = {name: union_all(parts, grid_size=GRID_M) for name, parts in strips.items()}
     fraction, seen, unseen = {}, {}, {}
     for region in scenario.regions:
         ground = seen_by.get(scenario.sensor_for(region).name, Polygon())
-        seen[region.name] = region.area.intersection(ground)
-        unseen[region.name] = region.area.difference(ground)
+        seen[region.name] = intersection(region.area, ground, grid_size=GRID_M)
+        unseen[region.name] = difference(region.area, ground, grid_size=GRID_M)
         fraction[region.name] = float(seen[region.name].area / region.area.area)
     return FlownCoverage(fraction, seen, unseen, tuple(sorted(passes, key=lambda p: p.seq)))
 
