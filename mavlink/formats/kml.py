@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from xml.sax.saxutils import escape
+import threading
 
 import simplekml
 
@@ -16,6 +16,9 @@ _FOOTPRINT = "4000ff00"
 _AREA = "ffffffff"
 _BARRED = "400000ff"
 _CIRCLE_POINTS = 72
+
+#: simplekml counts its ids, and keeps what it is writing, in class variables.
+_LOCK = threading.Lock()
 
 
 def write_kml(plan: Plan, vehicle: str | None = None) -> str:
@@ -41,11 +44,17 @@ def write_kml(plan: Plan, vehicle: str | None = None) -> str:
         if plan.altitude_reference == "amsl"
         else simplekml.AltitudeMode.relativetoground
     )
-    document = simplekml.Kml(name=escape(plan.name))
+    with _LOCK:
+        simplekml.Kml.resetidcounter()
+        return _document(plan, names, mode)
+
+
+def _document(plan: Plan, names: list[str], mode: str) -> str:
+    document = simplekml.Kml(name=_text(plan.name))
     home = document.newpoint(name="home", coords=[plan.home])
     home.description = "Take-off"
     for name in names:
-        folder = document.newfolder(name=escape(name))
+        folder = document.newfolder(name=_text(name))
         for path in plan.paths:
             if path.vehicle == name:
                 _add_path(folder, path, mode)
@@ -65,7 +74,7 @@ def write_kml(plan: Plan, vehicle: str | None = None) -> str:
 
 
 def _add_path(folder: simplekml.Folder, path: FlownPath, mode: str) -> None:
-    line = folder.newlinestring(name=f"path of {escape(path.vehicle)}", coords=list(path.line))
+    line = folder.newlinestring(name=f"path of {_text(path.vehicle)}", coords=list(path.line))
     line.altitudemode = mode
     line.description = f"{path.length_m / 1000.0:.2f} km, {path.duration_s:.0f} s"
     line.style.linestyle.color = _PATH
@@ -74,10 +83,10 @@ def _add_path(folder: simplekml.Folder, path: FlownPath, mode: str) -> None:
 
 def _add_collect(folder: simplekml.Folder, collect: Collect, mode: str) -> None:
     line = folder.newlinestring(
-        name=f"collect {collect.seq}: {escape(collect.roi)}", coords=list(collect.line)
+        name=f"collect {collect.seq}: {_text(collect.roi)}", coords=list(collect.line)
     )
     line.altitudemode = mode
-    line.description = escape(
+    line.description = _text(
         f"sensor {collect.sensor} looking {collect.look}, heading {collect.heading_deg:.1f}°, "
         f"{collect.end_m - collect.start_m:.0f} m"
     )
@@ -87,7 +96,7 @@ def _add_collect(folder: simplekml.Folder, collect: Collect, mode: str) -> None:
 
 def _add_footprint(folder: simplekml.Folder, footprint: Footprint) -> None:
     polygon = folder.newpolygon(
-        name=f"footprint {footprint.seq}: {escape(footprint.roi)}", outerboundaryis=_closed(footprint.ring)
+        name=f"footprint {footprint.seq}: {_text(footprint.roi)}", outerboundaryis=_closed(footprint.ring)
     )
     polygon.altitudemode = simplekml.AltitudeMode.clamptoground
     polygon.style.polystyle.color = _FOOTPRINT
@@ -95,7 +104,7 @@ def _add_footprint(folder: simplekml.Folder, footprint: Footprint) -> None:
 
 
 def _add_zone(folder: simplekml.Folder, zone: ZonePolygon, *, barred: bool) -> None:
-    polygon = folder.newpolygon(name=escape(zone.name), outerboundaryis=_closed(zone.ring))
+    polygon = folder.newpolygon(name=_text(zone.name), outerboundaryis=_closed(zone.ring))
     polygon.altitudemode = simplekml.AltitudeMode.clamptoground
     polygon.style.polystyle.fill = int(barred)
     polygon.style.polystyle.color = _BARRED
@@ -113,3 +122,13 @@ def _add_circle(folder: simplekml.Folder, circle: ZoneCircle) -> None:
 
 def _closed(ring: tuple[tuple[float, float], ...]) -> list[tuple[float, float]]:
     return [*ring, ring[0]] if ring[0] != ring[-1] else list(ring)
+
+
+def _text(text: str) -> str:
+    """Text that XML can hold; simplekml escapes it, but for what looks like a CDATA section."""
+    held = "".join(character for character in text if character in "\t\n\r" or _is_xml(ord(character)))
+    return held.replace("<![CDATA[", "[CDATA[")
+
+
+def _is_xml(code: int) -> bool:
+    return 0x20 <= code <= 0xD7FF or 0xE000 <= code <= 0xFFFD or code >= 0x10000
