@@ -45,7 +45,7 @@ class KinematicModel:
         airborne: bool = False,
         cruise_power_w: float = 250.0,
         mass_kg: float = 8.0,
-        step_s: float = 0.05,
+        step_s: float = 0.025,
     ) -> None:
         self._limits = limits
         self._wind = wind

@@ -14,6 +14,9 @@ from mavlink.sim.manoeuvres import GoTo, Loiter, Manoeuvre
 from mavlink.sim.modes import Flavour, Mode
 from mavlink.sim.settings import SimSettings
 
+#: MAV_SEVERITY_INFO
+_INFO = 6
+
 
 class Pilot:
     """Turns mode, mission and state into a flight command.
@@ -97,8 +100,6 @@ class Pilot:
         reason = infeasible(self._settings.autopilot, self._items)
         if reason:
             return reason
-        if self._seq >= len(self._items):
-            self._seq = self._first
         run = MissionRun(self._items, self._settings, self.home)
         first = run.first_navigation
         if state.on_ground and (first is None or first.command != Command.NAV_TAKEOFF):
@@ -111,9 +112,10 @@ class Pilot:
             self._seq = self._run.current
         self.mode = mode
         self._run = self._manoeuvre = None
-        if state.on_ground:
+        if mode is Mode.AUTO and (state.on_ground or self._seq >= len(self._items)):
             # Whatever is left of an earlier flight, a start from the ground begins with the take-off.
-            self._seq = self._first if mode is Mode.AUTO else self._seq
+            self._seq = self._first
+        if state.on_ground:
             return
         settings = self._settings
         if mode is Mode.LOITER:
@@ -168,7 +170,9 @@ class Pilot:
             self.events.append(event)
         run.events.clear()
         if run.returning:
+            self.events.append(Said(_INFO, "Mission complete, returning"))
             self.set_mode(Mode.RTL, state)
+            self._seq = len(self._items)
         elif run.finished:
             self._mission_over(state)
 
@@ -179,10 +183,10 @@ class Pilot:
             self.mode = Mode.MANUAL if self._settings.autopilot is Flavour.ARDUPILOT else Mode.LOITER
             return
         if self._settings.autopilot is Flavour.ARDUPILOT:
-            self.events.append(Said(6, "Mission complete, changing mode to RTL"))
+            self.events.append(Said(_INFO, "Mission complete, changing mode to RTL"))
             self.set_mode(Mode.RTL, state)
         else:
-            self.events.append(Said(6, "Mission finished, loitering"))
+            self.events.append(Said(_INFO, "Mission finished, loitering"))
             self.set_mode(Mode.LOITER, state)
 
     def _wanted_airspeed_m_s(self, state: AircraftState) -> float:
