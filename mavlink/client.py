@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import time
-from collections.abc import AsyncIterator, Callable, Sequence
+from collections.abc import AsyncGenerator, Callable, Sequence
 from types import TracebackType
 from typing import Final, Self
 
@@ -53,11 +53,13 @@ class VehicleClient(FlightCommands):
         How patient transfers and commands are.
     vehicle_system
         The system id to talk to; 0 takes the first autopilot heard.
+    lost_after_s
+        A vehicle silent this long counts as lost: what is under way ends as unknown.
 
     Notes
     -----
-    One task does all reading and sending; it lives from ``connect`` to ``close``. A vehicle silent for 5 s
-    counts as lost: transfers end as unknown, and the first heartbeat after that connects it again.
+    One task does all reading and sending; it lives from ``connect`` to ``close``. The first heartbeat after a
+    loss connects the vehicle again.
     """
 
     def __init__(
@@ -68,8 +70,10 @@ class VehicleClient(FlightCommands):
         clock: Callable[[], float] = time.monotonic,
         settings: TransferSettings = DEFAULT_SETTINGS,
         vehicle_system: int = 0,
+        lost_after_s: float = 5.0,
     ) -> None:
-        self._driver = Driver(link, Codec(system_id), clock, self._ask_for_telemetry, vehicle_system)
+        codec = Codec(system_id)
+        self._driver = Driver(link, codec, clock, self._ask_for_telemetry, vehicle_system, lost_after_s)
         self._settings = settings
         self._pending: Pending | None = None
 
@@ -104,13 +108,16 @@ class VehicleClient(FlightCommands):
 
     async def wait_for(self, condition: Callable[[VehicleState], bool], timeout_s: float) -> VehicleState:
         """Wait until the state meets a condition. Raises TimeoutError, or NotConnectedError at the end."""
-        async with asyncio.timeout(timeout_s):
-            async for state in self.states():
-                if condition(state):
-                    return state
+        with self._driver.watching() as changed:
+            async with asyncio.timeout(timeout_s):
+                while self._driver.failure is None or condition(self.state):
+                    if condition(self.state):
+                        return self.state
+                    changed.clear()
+                    await changed.wait()
         raise NotConnectedError(self._driver.failure or "the client is closed")
 
-    async def states(self) -> AsyncIterator[VehicleState]:
+    async def states(self) -> AsyncGenerator[VehicleState, None]:
         """The state now and after every change, until the client ends; a slow reader skips to the newest."""
         with self._driver.watching() as changed:
             while True:

@@ -28,7 +28,6 @@ from mavlink.transfer.upload import UploadMachine
 End = TypeVar("End")
 
 _HEARTBEAT_EVERY_S: Final = 1.0
-_LOST_AFTER_S: Final = 5.0
 _ACTIVE: Final = 4  # MAV_STATE_ACTIVE
 
 
@@ -79,6 +78,7 @@ class Driver:
         clock: Callable[[], float],
         on_connect: Callable[[], None],
         vehicle_system: int = 0,
+        lost_after_s: float = 5.0,
     ) -> None:
         self.state = VehicleState()
         self._link = link
@@ -89,6 +89,7 @@ class Driver:
         self._clock = clock
         self._on_connect = on_connect
         self._vehicle_system = vehicle_system
+        self._lost_after_s = lost_after_s
         self._task: asyncio.Task[None] | None = None
         self._timeout: asyncio.Timeout | None = None
         self._failure: str | None = None
@@ -224,6 +225,7 @@ class Driver:
         """Bytes, or none when something is due first."""
         if self._outgoing:
             return b""
+        # Until when nothing is expected to happen here.
         self._due_s = self._next_deadline_s()
         delay_s = max(0.0, self._due_s - self._clock())
         try:
@@ -263,7 +265,7 @@ class Driver:
     def _next_deadline_s(self) -> float:
         deadline_s = self._heartbeat_s + _HEARTBEAT_EVERY_S
         if self.state.connected:
-            deadline_s = min(deadline_s, self._heard_s + _LOST_AFTER_S)
+            deadline_s = min(deadline_s, self._heard_s + self._lost_after_s)
         return min([deadline_s, *(job.machine.deadline_s for job in self._machines())])
 
     def _let_time_pass(self) -> None:
@@ -273,7 +275,10 @@ class Driver:
             fields = {"type": GROUND_STATION_TYPE, "autopilot": NO_AUTOPILOT, "system_status": _ACTIVE}
             heartbeat = Message("HEARTBEAT", {**fields, "mavlink_version": 3})
             self._outgoing.append(self._codec.pack(heartbeat))
-        if self.state.connected and now_s >= self._heard_s + _LOST_AFTER_S:
+        # Time in which this process stood still is not the vehicle's silence.
+        self._heard_s += max(0.0, now_s - self._due_s)
+        self._due_s = math.inf
+        if self.state.connected and now_s >= self._heard_s + self._lost_after_s:
             self._lose()
         for job in list(self._machines()):
             if now_s >= job.machine.deadline_s:

@@ -38,7 +38,7 @@ def waypoints(count: int, mission_type: MissionType = MissionType.MISSION) -> tu
     )
 
 
-def from_vehicle(name: str, **fields: Value) -> Message:
+def from_vehicle(name: str, /, **fields: Value) -> Message:
     """A message of the vehicle to our ground station."""
     addressed: dict[str, Value] = {
         "target_system": GROUND[0],
