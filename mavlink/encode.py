@@ -74,7 +74,7 @@ def encode(
         vehicle=task.vehicle.name,
         vehicle_type=task.vehicle.type,
         home=plan.home,
-        notes=(chord_note, *payload_notes, *first.notes, *last.notes, *fence_notes),
+        notes=(chord_note, *payload_notes, *_pass_by_notes(task), *first.notes, *last.notes, *fence_notes),
         home_altitude_m=options.home_altitude_m,
         speed_m_s=task.vehicle.airspeed_m_s,
     )
@@ -108,11 +108,10 @@ def _switches(task: Task, payload: Payload) -> tuple[MissionItem, MissionItem]:
 
 def _flight(task: Task, stops: Iterable[Stop], on: MissionItem, off: MissionItem) -> list[MissionItem]:
     """Waypoints along the path, the sensor switched right behind those where a collect starts or ends."""
-    acceptance_m = float(round(task.options.acceptance_radius_m or 0.0))
-    parameters = (0.0, acceptance_m, 0.0, task.any_yaw)
     items: list[MissionItem] = []
     collecting = 0
     for stop in stops:
+        parameters = (0.0, _acceptance_m(task, stop), 0.0, task.any_yaw)
         items.append(placed(Command.NAV_WAYPOINT, stop.place, stop.altitude_m, task.frame, parameters))
         before, collecting = collecting, collecting + stop.on - stop.off
         # Where collects overlap the sensor stays on until the last has ended.
@@ -121,6 +120,25 @@ def _flight(task: Task, stops: Iterable[Stop], on: MissionItem, off: MissionItem
         if stop.on and (before == 0 or stop.off):
             items.append(on)
     return items
+
+
+def _acceptance_m(task: Task, stop: Stop) -> float:
+    """Param 2 of a waypoint: 0 leaves it to the vehicle."""
+    if task.options.acceptance_radius_m is not None:
+        return float(round(task.options.acceptance_radius_m))
+    # Before a turn Plane counts a waypoint as reached some metres early, and the sensor would go off there.
+    return 1.0 if stop.off and task.is_plane else 0.0
+
+
+def _pass_by_notes(task: Task) -> tuple[str, ...]:
+    if not (task.is_px4 and task.vehicle.type == "fixed_wing" and task.collects):
+        return ()
+    if task.options.off_delay_m > 0.0:
+        return ()
+    return (
+        "PX4's fixed wings count a waypoint as reached some 30 m early: the sensor goes off that much too"
+        " soon, unless it is switched off late (off_delay_m) and the passes have straights behind them",
+    )
 
 
 def _rally(task: Task) -> tuple[MissionItem, ...]:

@@ -13,7 +13,7 @@ from mavlink.encoding.options import EncodeError
 from mavlink.geometry import LocalMap, Xy
 from mavlink.items import Command, Frame, MissionItem, MissionType
 from mavlink.mission import numbered, placed
-from planner.plan import Fence, FlownPath, Plan, ZoneCircle, ZonePolygon
+from planner.plan import Fence, FlownPath, LonLat, Plan, ZoneCircle, ZonePolygon
 
 
 def fence_items(plan: Plan, paths: tuple[FlownPath, ...]) -> tuple[tuple[MissionItem, ...], tuple[str, ...]]:
@@ -49,11 +49,19 @@ def _radius_m(circle: ZoneCircle) -> float:
     return circle.radius_m
 
 
+def _corners(zone: ZonePolygon) -> tuple[LonLat, ...]:
+    """Corners of a ring, a last one that repeats the first left out."""
+    ring = zone.ring
+    corners = ring[:-1] if len(ring) > 1 and ring[0] == ring[-1] else ring
+    if len(corners) < 3:
+        raise EncodeError(f"fence polygon {zone.name!r} has {len(corners)} corners")
+    return corners
+
+
 def _polygon(command: int, zone: ZonePolygon) -> list[MissionItem]:
-    return [
-        replace(placed(command, corner, 0.0, Frame.GLOBAL), param1=float(len(zone.ring)))
-        for corner in zone.ring
-    ]
+    corners = _corners(zone)
+    count = float(len(corners))
+    return [replace(placed(command, corner, 0.0, Frame.GLOBAL), param1=count) for corner in corners]
 
 
 def _is_flown_over(zone: ZonePolygon | ZoneCircle, shape: BaseGeometry, lines: list[LineString]) -> bool:
@@ -70,7 +78,7 @@ def zone_shape(zone: ZonePolygon | ZoneCircle, local: LocalMap) -> BaseGeometry:
     """A zone in local metres."""
     if isinstance(zone, ZoneCircle):
         return Point(local.xy(zone.centre)).buffer(_radius_m(zone), quad_segs=32)
-    return Polygon([local.xy(corner) for corner in zone.ring])
+    return Polygon([local.xy(corner) for corner in _corners(zone)])
 
 
 @dataclass(frozen=True, slots=True)

@@ -33,6 +33,11 @@ class Task:
         return self.dialect.autopilot == "px4"
 
     @property
+    def is_plane(self) -> bool:
+        """Whether it is ArduPlane."""
+        return not self.is_px4 and not self.hovers
+
+    @property
     def hovers(self) -> bool:
         """Whether the vehicle is a multirotor."""
         return self.vehicle.type == "multirotor"

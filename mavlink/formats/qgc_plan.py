@@ -30,7 +30,13 @@ _ALTITUDE_MODES = {
 
 
 def write_plan(mission: Mission) -> str:
-    """The mission, its fence and its rally points as a ``.plan`` file."""
+    """The mission, its fence and its rally points as a ``.plan`` file.
+
+    Raises
+    ------
+    FormatError
+        Where an item cannot be said in it.
+    """
     dialect = mission.dialect
     items = mission.mission[1:] if dialect.home_row else mission.mission
     home = [mission.home[1], mission.home[0], mission.home_altitude_m]
@@ -58,7 +64,10 @@ def write_plan(mission: Mission) -> str:
             "points": [[item.x / 1e7, item.y / 1e7, item.z] for item in mission.rally],
         },
     }
-    return json.dumps(document, indent=4, allow_nan=False) + "\n"
+    try:
+        return json.dumps(document, indent=4, allow_nan=False) + "\n"
+    except ValueError as error:
+        raise FormatError(f"JSON has no infinite numbers: {error}") from error
 
 
 def _simple_item(item: MissionItem, first_jump_id: int) -> dict[str, Any]:
@@ -117,5 +126,5 @@ def _fence(items: tuple[MissionItem, ...]) -> dict[str, Any]:
         elif command == Command.NAV_FENCE_RETURN_POINT:
             fence["breachReturn"] = [*place, first.z]
         else:
-            raise ValueError(f"command {command} is no part of a fence")
+            raise FormatError(f"command {command} is no part of a fence")
     return fence

@@ -133,6 +133,28 @@ def test_triggers_bracket_each_collect(autopilot: Autopilot, kind: VehicleType) 
     assert states == ([1.0, 0.0, 1.0, 0.0] if autopilot == "ardupilot" else [1.0, -1.0, 1.0, -1.0])
 
 
+def test_plane_flies_up_to_the_end_of_a_collect() -> None:
+    """Waypoints where the sensor goes off count as reached at a metre, others where the vehicle says."""
+    ends = [
+        items[index - 1]
+        for items in [flight(encode(make_plan()))]
+        for index, item in enumerate(items)
+        if item.command == R and item.param2 == 0.0
+    ]
+    assert [end.param2 for end in ends] == [1.0, 1.0]
+    waypoints = [item for item in flight(encode(make_plan())) if item.command == W]
+    assert sum(item.param2 for item in waypoints) == 2.0
+    told = encode(make_plan(), options=EncodeOptions(acceptance_radius_m=30.0))
+    assert {item.param2 for item in flight(told) if item.command == W} == {30.0}
+
+
+def test_px4_passing_by_early_is_said() -> None:
+    """PX4 ignores a waypoint's own radius: a note says what is lost, unless the sensor goes off late."""
+    assert any("30 m early" in note for note in encode(make_plan(), autopilot="px4").notes)
+    late = encode(make_plan(), autopilot="px4", options=EncodeOptions(off_delay_m=40.0))
+    assert not any("30 m early" in note for note in late.notes)
+
+
 def test_collects_that_meet_share_a_waypoint() -> None:
     """Where one collect ends as the next begins, off stands before on."""
     legs = (Leg(length_m=1000.0, collect_m=(400.0, 1000.0)), Leg(length_m=1000.0, collect_m=(0.0, 500.0)))
@@ -443,6 +465,17 @@ def test_fence_says_area_and_zones() -> None:
     assert [i.seq for i in mission.fence] == list(range(8))
     assert any("airway" in note for note in mission.notes)
     assert not any("tower" in note for note in mission.notes)
+
+
+def test_a_closed_ring_is_one_corner_less() -> None:
+    """A fence ring whose last corner repeats the first is not sent with it."""
+    area = square_fence(6000.0).inclusion[0]
+    closed = Fence(inclusion=(replace(area, ring=(*area.ring, area.ring[0])),))
+    assert encode(make_plan(fence=closed)).fence == encode(make_plan()).fence
+    with pytest.raises(EncodeError, match="2 corners"):
+        encode(
+            make_plan(fence=Fence(inclusion=(replace(area, ring=area.ring[:2]),)), vehicle_type="multirotor")
+        )
 
 
 def test_a_nan_radius_is_never_encoded() -> None:

@@ -168,6 +168,16 @@ def test_faults_are_named_by_their_member(path: str, value: object, says: str) -
         read_plan(json.dumps(_set(document(), path, value)))
 
 
+def test_what_json_cannot_say_is_refused() -> None:
+    """An infinite number and a command that is no fence raise FormatError."""
+    mission = encode(make_plan())
+    infinite = replace(mission.mission[1], z=math.inf)
+    with pytest.raises(FormatError, match="infinite"):
+        write_plan(replace(mission, mission=(mission.mission[0], infinite)))
+    with pytest.raises(FormatError, match="no part of a fence"):
+        write_plan(replace(mission, fence=mission.mission[:1]))
+
+
 def test_text_that_is_no_json_is_refused_with_the_line() -> None:
     """The JSON reader's line is passed on."""
     with pytest.raises(FormatError) as caught:
