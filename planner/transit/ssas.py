@@ -47,9 +47,11 @@ class SsasParameters:
         Sectors, and so branches, of a fan-tail.
     neighbour_radius_m
         r_c: one sample stands for its neighbourhood of this radius.
-    neighbour_angle_rad
-        Only samples whose directions differ by no more than this stand for each other; π, as in the paper,
-        compares places alone. Ours.
+    neighbour_part
+        Where legs are coarse r_c is at least this part of a leg; 0 in the paper. Ours.
+    neighbour_angle_rad, coarse_neighbour_angle_rad
+        Only samples whose directions differ by no more than this stand for each other, in stages 1 and 3 and
+        in stage 2; π, as in the paper, compares places alone. Ours.
     heuristic_length, heuristic_missile, heuristic_radar
         Weights α1, α2, α3 of eq 23.
     dividing_m
@@ -67,7 +69,9 @@ class SsasParameters:
     max_turn_rad: float = math.radians(30.0)
     sectors: int = 5
     neighbour_radius_m: float = 50.0
+    neighbour_part: float = 0.0
     neighbour_angle_rad: float = math.pi
+    coarse_neighbour_angle_rad: float = math.pi
     heuristic_length: float = 1.0
     heuristic_missile: float = 0.0
     heuristic_radar: float = 0.0
@@ -80,6 +84,8 @@ class SsasParameters:
         """Refuse what would never end: neighbourhoods as wide as a leg swallow every child."""
         if not 0.0 < self.neighbour_radius_m < self.fine_leg_m:
             raise ValueError("neighbour_radius_m must be positive and less than fine_leg_m")
+        if not 0.0 <= self.neighbour_part < 1.0:
+            raise ValueError("neighbour_part must be at least 0 and less than 1")
         if not 0.0 < self.max_turn_rad < math.pi / 2.0 or self.sectors < 1:
             raise ValueError("max_turn_rad must lie between 0 and π/2, sectors must be at least 1")
         if not (self.coarse_legs > 0.0 and self.dividing_m > 0.0 and self.soft_margin_m >= 0.0):
@@ -87,7 +93,14 @@ class SsasParameters:
 
     def faithful(self) -> SsasParameters:
         """The same without what is ours: risks at samples alone, places alone compared."""
-        return replace(self, soft_margin_m=0.0, clipping=False, neighbour_angle_rad=math.pi)
+        return replace(
+            self,
+            soft_margin_m=0.0,
+            clipping=False,
+            neighbour_part=0.0,
+            neighbour_angle_rad=math.pi,
+            coarse_neighbour_angle_rad=math.pi,
+        )
 
     @property
     def extensions(self) -> int:
@@ -230,6 +243,7 @@ class _Job:
 
     def _rules(self, mode: int, leg_m: float, directed: bool, backwards: bool) -> Rules:
         p = self.parameters
+        coarse = mode in (tree.TO_POINT, tree.NEAR_POINT)
         return Rules(
             mode=mode,
             directed=directed,
@@ -238,8 +252,10 @@ class _Job:
             min_leg_m=MIN_CLOSING_PART * leg_m,
             max_turn_rad=p.max_turn_rad,
             sectors=p.sectors,
-            neighbour_radius_m=p.neighbour_radius_m,
-            neighbour_angle_rad=p.neighbour_angle_rad,
+            neighbour_radius_m=max(p.neighbour_radius_m, p.neighbour_part * leg_m)
+            if coarse
+            else p.neighbour_radius_m,
+            neighbour_angle_rad=p.coarse_neighbour_angle_rad if coarse else p.neighbour_angle_rad,
             direct_m=self.direct_m,
             weight_length=max(float(self.weights[0]), LEAST_LENGTH_WEIGHT),
             weight_missile=float(self.weights[1]),

@@ -1,7 +1,7 @@
 """SSAS as a connector: search, make flyable, judge, and try again with other settings where it fails.
 
-The first try is the paper's. Each further one states what it changes; they are tried in a fixed order and
-the first line that enters nothing it could keep out of is taken.
+The first try is the paper's. Each further one states what it changes; they are tried in a fixed order until a
+line enters nothing it could keep out of and is short enough.
 """
 
 from __future__ import annotations
@@ -16,11 +16,12 @@ from shapely.geometry import MultiPoint
 
 from planner.dubins.path import Path
 from planner.dubins.smoothing import smooth
+from planner.dubins.words import candidates
 from planner.environment.threats import metres_inside, threat_arrays
 from planner.environment.zones import MITRE_LIMIT, KeepOut
 from planner.errors import InfeasibleError, OutOfBudgetError
 from planner.progress import Stop, never, raise_if
-from planner.route import Anchor
+from planner.route import Anchor, Pose
 from planner.scenario import Scenario, Threat
 from planner.transit.ssas import MIN_CLOSING_PART, SsasParameters, SsasResult, search
 from planner.transit.ssas_kernels import Space
@@ -33,6 +34,11 @@ SAMPLE_M = 5.0
 #: Directions this near to a straight line are on it.
 STRAIGHT_RAD = 1e-9
 
+#: Samples stand for each other only when their directions differ by less than half a sector: with the
+#: paper's comparison of places alone the last stage finds no route for most pairs of poses facing apart.
+NEIGHBOUR_ANGLE_RAD = math.radians(10.0)
+PLACES_ALONE_RAD = math.pi
+
 
 @dataclass(frozen=True, slots=True)
 class Attempt:
@@ -40,43 +46,50 @@ class Attempt:
 
     Parameters
     ----------
-    coarse_legs
-        As in ``SsasParameters``: more of them are shorter, down to the fine leg.
+    coarse_legs, neighbour_part, coarse_neighbour_angle_rad
+        As in ``SsasParameters``: more legs are shorter, down to the fine leg.
     threats
         Soft threats cost what eqs 12 and 14 say, or are closed unless they hold an anchor, or ignored.
     margins
         How many margins zones grow and the area shrinks by.
-    lead
-        Whether the first and the last leg begin straight on, with room for half a corner.
+    tight
+        Whether fine legs are as short as the arcs of their corners allow, for turns in little room.
     from_goal
         As in ``search``.
-    max_nodes
-        As in ``SsasParameters``: routes that are found seldom take more.
+    lead
+        Whether the first and the last leg begin straight on, with room for half a corner.
     """
 
     coarse_legs: float
-    threats: Literal["costly", "closed", "ignored"]
-    margins: float
-    lead: bool
-    from_goal: bool
-    max_nodes: int
+    neighbour_part: float = 0.5
+    coarse_neighbour_angle_rad: float = NEIGHBOUR_ANGLE_RAD
+    threats: Literal["costly", "closed", "ignored"] = "closed"
+    margins: float = 1.0
+    tight: bool = False
+    from_goal: bool = False
+    lead: bool = True
 
 
-#: The paper's setting first; then threats closed, shorter coarse legs, from either end; then any way.
+#: The paper's setting first; then threats closed and shorter legs, from either end; then any way at all.
 ATTEMPTS = (
-    Attempt(8.0, "costly", 0.0, True, False, 8_000),
-    Attempt(16.0, "closed", 1.0, True, False, 8_000),
-    Attempt(16.0, "closed", 1.0, True, True, 8_000),
-    Attempt(32.0, "closed", 1.0, True, False, 8_000),
-    Attempt(32.0, "closed", 1.0, True, True, 8_000),
-    Attempt(32.0, "closed", 1.0, False, False, 8_000),
-    Attempt(32.0, "ignored", 0.0, True, False, 8_000),
-    Attempt(math.inf, "ignored", 0.0, False, False, 8_000),
+    Attempt(8.0, 0.0, PLACES_ALONE_RAD, threats="costly", margins=0.0),
+    Attempt(32.0, tight=True),
+    Attempt(16.0),
+    Attempt(32.0, tight=True, from_goal=True),
+    Attempt(16.0, from_goal=True),
+    Attempt(16.0, 0.0, PLACES_ALONE_RAD),
+    Attempt(32.0),
+    Attempt(math.inf, tight=True, lead=False),
+    Attempt(32.0, threats="ignored", margins=0.0),
+    Attempt(32.0, threats="ignored", margins=0.0, tight=True, lead=False),
 )
 
-#: Samples stand for each other only when their directions differ by less than half a sector: with the
-#: paper's comparison of places alone most pairs of poses facing apart find no route.
-NEIGHBOUR_ANGLE_RAD = math.radians(10.0)
+#: A line no longer than this many times the shortest turning line without obstacles is taken at once;
+#: a longer one only when there is another to compare it with.
+SHORT_RATIO = 1.3
+
+#: Nodes one run of an attempt may reach; routes that are found seldom take more.
+MAX_NODES = 6_000
 
 
 def connect(
@@ -107,42 +120,48 @@ def connect(
     Returns
     -------
     Path, SsasResult
-        The line, and the legs it was made from.
+        The line, and the legs it was made from; their costs are those of the search, which runs between
+        the ends of the straight leads.
 
     Raises
     ------
     InfeasibleError
-        Where no attempt gives a line free of hard zones inside the area: the first attempt's reason.
+        Where no attempt gives a line free of hard zones inside the area.
     OutOfBudgetError
-        The same, where the first attempt ended for want of nodes.
+        The same, where every attempt ended for want of nodes.
     """
     job = _Job(start, goal, scenario, keep_out, radius_m)
-    failure: InfeasibleError | OutOfBudgetError | None = None
-    best: tuple[tuple[float, float], Path, SsasResult] | None = None
+    failures: list[tuple[bool, InfeasibleError | OutOfBudgetError]] = []
+    clear: list[tuple[Path, SsasResult]] = []
+    unclear: list[tuple[float, Path, SsasResult]] = []
     wanted = job.keep_out_wanted()
     hard = job.keep_out_hard()
     attempts = ATTEMPTS if not job.is_straight() else (replace(ATTEMPTS[0], lead=False), *ATTEMPTS)
     for attempt in attempts:
         raise_if(stop)
+        if len(clear) == 2 or (clear and attempt.threats == "ignored"):
+            break
         try:
             found = job.search(attempt, stop)
         except (InfeasibleError, OutOfBudgetError) as error:
-            failure = failure or error
+            failures.append((attempt.threats == "closed", error))
             continue
         path = smooth(found.waypoints, start.angle_rad, goal.angle_rad, radius_m, wanted.clear)
         if wanted.clear(path):
-            return path, found
-        if not hard.clear(path):
-            failure = failure or job.not_clear(hard, path)
-            continue
-        line = path.sample(SAMPLE_M)[:, :2]
-        rank = (metres_inside(line, job.threats, job.altitude_m), path.length_m)
-        if best is None or rank < best[0]:
-            best = (rank, path, found)
-    if best is not None:
-        return best[1], best[2]
-    assert failure is not None  # every attempt returned, failed or gave a line
-    raise failure
+            if path.length_m <= job.short_m():
+                return path, found
+            clear.append((path, found))
+        elif hard.clear(path):
+            inside_m = metres_inside(path.sample(SAMPLE_M)[:, :2], job.threats, job.altitude_m)
+            unclear.append((inside_m, path, found))
+        else:
+            failures.append((attempt.threats == "closed", job.not_clear(hard, path)))
+    if clear:
+        return min(clear, key=lambda line: line[0].length_m)
+    if unclear:
+        return min(unclear, key=lambda line: (line[0], line[1].length_m))[1:]
+    # what closed threats made impossible says least about the scenario, a spent budget less than a reason
+    raise min(failures, key=lambda f: (isinstance(f[1], OutOfBudgetError), f[0]))[1]
 
 
 @dataclass(frozen=True, slots=True)
@@ -162,18 +181,21 @@ class _Job:
         """Altitude over ground, the datum of threat heights; None where the scenario's is another."""
         return None if self.scenario.altitude_reference == "amsl" else self.scenario.altitude_m
 
-    @property
-    def parameters(self) -> SsasParameters:
+    def parameters(self, attempt: Attempt) -> SsasParameters:
         paper = SsasParameters()
-        # the shortest closing leg holds two half corners: 2 R tan(φmax / 2)
-        least_m = 2.0 * self.radius_m * math.tan(0.5 * paper.max_turn_rad) / MIN_CLOSING_PART
-        fine_m = max(paper.fine_leg_m, 1.01 * least_m)
+        # two half corners, 2 R tan(φmax / 2): what a leg between arcs is at least
+        least_m = 1.01 * 2.0 * self.radius_m * math.tan(0.5 * paper.max_turn_rad)
+        fine_m = least_m if attempt.tight else max(paper.fine_leg_m, least_m / MIN_CLOSING_PART)
         return replace(
             paper,
             fine_leg_m=fine_m,
+            coarse_legs=attempt.coarse_legs,
             neighbour_radius_m=paper.neighbour_radius_m * fine_m / paper.fine_leg_m,
+            neighbour_part=attempt.neighbour_part,
             neighbour_angle_rad=NEIGHBOUR_ANGLE_RAD,
+            coarse_neighbour_angle_rad=attempt.coarse_neighbour_angle_rad,
             soft_margin_m=self.margin_m,
+            max_nodes=MAX_NODES,
         )
 
     @property
@@ -185,6 +207,15 @@ class _Job:
     def lead_m(self) -> float:
         """Straight on before the first corner and after the last: half a corner's arc."""
         return 1.01 * self.radius_m * math.tan(0.5 * SsasParameters().max_turn_rad)
+
+    def short_m(self) -> float:
+        """Length of a line that leaves little to gain."""
+        bearing_rad = math.atan2(self.goal.north_m - self.start.north_m, self.goal.east_m - self.start.east_m)
+        begin, end = (
+            Pose(*anchor.position, bearing_rad if anchor.angle_rad is None else anchor.angle_rad)
+            for anchor in (self.start, self.goal)
+        )
+        return SHORT_RATIO * candidates(begin, end, self.radius_m)[0].length_m
 
     def is_straight(self) -> bool:
         """Whether the anchors lie on one straight line in their directions."""
@@ -199,19 +230,21 @@ class _Job:
     def search(self, attempt: Attempt, stop: Stop) -> SsasResult:
         lead_m = self.lead_m if attempt.lead else 0.0
         begin, end = _moved(self.start, lead_m), _moved(self.goal, -lead_m)
+        space = self._space(attempt, (self.start, begin, end, self.goal))
         objective = self.scenario.objective
         weights = (objective.length, objective.missile, objective.radar)
         if attempt.threats == "ignored":
             weights = (objective.length, 0.0, 0.0)
-        found = search(
-            begin,
-            end,
-            self._space(attempt, (self.start, begin, end, self.goal)),
-            weights,
-            replace(self.parameters, coarse_legs=attempt.coarse_legs, max_nodes=attempt.max_nodes),
-            stop,
-            from_goal=attempt.from_goal,
-        )
+        aimed, from_goal = (begin, end), attempt.from_goal
+        if attempt.from_goal and (begin.angle_rad is None) != (end.angle_rad is None):
+            # a direction lent to the free end lets the other be reached in three stages, the last ones fine
+            from_goal = end.angle_rad is None
+            bearing_rad = math.atan2(end.north_m - begin.north_m, end.east_m - begin.east_m)
+            aimed = (
+                replace(begin, angle_rad=bearing_rad if begin.angle_rad is None else begin.angle_rad),
+                replace(end, angle_rad=bearing_rad if end.angle_rad is None else end.angle_rad),
+            )
+        found = search(*aimed, space, weights, self.parameters(attempt), stop, from_goal=from_goal)
         points = [found.waypoints]
         if begin != self.start:
             points.insert(0, np.array([self.start.position]))

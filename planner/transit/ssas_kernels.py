@@ -40,6 +40,7 @@ _GOAL = 3
 EAST, NORTH, ANGLE, LENGTH, KILL, DETECTION = range(6)
 
 _SLACK_RAD = 1e-9
+_SLACK_M = 1e-6
 _COST_STEP = 1e-9
 
 
@@ -189,7 +190,7 @@ def _close(
     forbidden = 0
     # the root may stand nearer to the goal than the ring's inner margin; with no room there for two corners
     # it is joined only straight on
-    if rest_m < rules.leg_m and node > 0:
+    if rest_m < rules.leg_m - _SLACK_M and node > 0:
         return -1, outside, forbidden
     limit_rad = rules.max_turn_rad if rest_m >= rules.min_leg_m else 0.0
     turns_in = not directed or _turn_ok(angle, rest_rad, limit_rad)
@@ -312,7 +313,7 @@ def grow(root: Array, goal: Array, space: Space, rules: Rules) -> tuple[int, int
         e0, n0, angle = nodes[node, EAST], nodes[node, NORTH], nodes[node, ANGLE]
         directed = rules.directed or node > 0
         rest_m = math.hypot(goal[EAST] - e0, goal[NORTH] - n0)
-        near = rest_m <= 2.0 * rules.leg_m
+        near = rest_m <= 2.0 * rules.leg_m + _SLACK_M
         far_enough = node > 0 and (near or depths[node] >= rules.max_depth)
         if (rules.mode == NEAR_POINT and near) or (rules.mode == INVERSE and far_enough):
             return FOUND, count, outside, forbidden, _trace(nodes, parents, node)

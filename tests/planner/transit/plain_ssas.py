@@ -121,7 +121,7 @@ class Run:
         """The goal's node behind this one: by one leg, else by the cheapest two."""
         p, rest = self.p, math.dist(node.place, self.goal)
         directed = self.directed or node.parent is not None
-        if rest < self.leg and node.parent is not None:
+        if rest < self.leg - 1e-6 and node.parent is not None:
             return None
         bearing = math.atan2(self.goal[1] - node.place[1], self.goal[0] - node.place[0])
         limit = (p.max_turn_rad if rest >= 0.6 * self.leg else 0.0) + 1e-9
@@ -148,6 +148,9 @@ class Run:
 
     def grow(self):
         p = self.p
+        coarse = self.mode in ("point", "near")
+        within_m = max(p.neighbour_radius_m, p.neighbour_part * self.leg if coarse else 0.0)
+        within_rad = p.coarse_neighbour_angle_rad if coarse else p.neighbour_angle_rad
         queue = [(0.0, 0, self.root)]
         reached = [self.root]
         count = 1
@@ -161,7 +164,7 @@ class Run:
             node.state = "closed"
             if node.depth > deepest.depth:
                 deepest = node
-            near = math.dist(node.place, self.goal) <= 2.0 * self.leg
+            near = math.dist(node.place, self.goal) <= 2.0 * self.leg + 1e-6
             if self.mode == "near" and near:
                 return True, node
             if self.mode == "inverse" and node.parent and (near or node.depth >= p.extensions):
@@ -190,8 +193,7 @@ class Run:
                 neighbours = [
                     other
                     for other in reached
-                    if math.dist(other.place, place) < p.neighbour_radius_m
-                    and differ(other.angle, angle) <= p.neighbour_angle_rad
+                    if math.dist(other.place, place) < within_m and differ(other.angle, angle) <= within_rad
                 ]
                 if neighbours:
                     old = min(neighbours, key=lambda other: (square_mm(other.place, place), other.number))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import random
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -22,6 +23,7 @@ from .plain_ssas import Surroundings, plain_search
 
 #: What the connector compares neighbours by; the paper's comparison of places alone is ``faithful``.
 DIRECTED = SsasParameters(neighbour_angle_rad=math.radians(10.0))
+FREER = replace(DIRECTED, coarse_legs=16.0, neighbour_part=0.5, coarse_neighbour_angle_rad=math.radians(10.0))
 
 AREA = Polygon([(0.0, 0.0), (8000.0, 0.0), (8000.0, 6000.0), (0.0, 6000.0)])
 THREATS = (
@@ -102,11 +104,12 @@ def assert_lawful(start, goal, around, parameters, found):
 
 
 @pytest.mark.parametrize("around", [OPEN, MAP, ZONED], ids=["open", "map", "zoned"])
-@pytest.mark.parametrize("faithful", [True, False])
-def test_search_equals_its_plain_twin(around, faithful):
+@pytest.mark.parametrize(
+    "parameters", [DIRECTED.faithful(), DIRECTED, FREER], ids=["faithful", "directed", "freer"]
+)
+def test_search_equals_its_plain_twin(around, parameters):
     """The compiled search gives the plain one's waypoints and cost, or fails where it fails."""
     rng = random.Random(5)
-    parameters = DIRECTED.faithful() if faithful else DIRECTED
     solved = 0
     for start, goal in random_pairs(7, 20, around):
         # directions within a quarter turn of the way keep the plain search short
@@ -117,7 +120,7 @@ def test_search_equals_its_plain_twin(around, faithful):
         start = Anchor(*start.position) if kind in (1, 3) else start
         goal = Anchor(*goal.position) if kind in (2, 3) else goal
         try:
-            capped = SsasParameters(**{**fields(parameters), "max_nodes": 400})
+            capped = replace(parameters, max_nodes=400)
             found = search(start, goal, space_of(around), (1.0, 1.0, 1.0), capped)
         except (InfeasibleError, OutOfBudgetError):
             continue
@@ -126,10 +129,6 @@ def test_search_equals_its_plain_twin(around, faithful):
         assert found.waypoints == pytest.approx(np.array(line), abs=1e-6)
         solved += 1
     assert solved >= 10
-
-
-def fields(parameters):
-    return {name: getattr(parameters, name) for name in parameters.__dataclass_fields__}
 
 
 @pytest.mark.parametrize("close", [False, True], ids=["far", "close"])
