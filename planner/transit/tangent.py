@@ -13,6 +13,7 @@ circles of Dubins' words in the place of its end points.
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +25,7 @@ from planner.environment.zones import AREA, TOUCH_M, Conflict, Disc, KeepOut
 from planner.errors import InfeasibleError
 from planner.progress import Stop, never, raise_if
 from planner.route import Anchor, Pose
+from planner.transit.escape import Solve, shorten_crossings
 from planner.transit.tangent_kernels import search, turn_between
 from planner.transit.wheels import End, between, end_of, obstacles_of
 
@@ -35,7 +37,8 @@ def connect(start: Anchor, goal: Anchor, keep_out: KeepOut, radius_m: float, sto
 
     Never longer than any Dubins word that is clear. Soft zones are kept clear as far as possible:
 
-    - one that holds the start or the goal cannot be, and is left out;
+    - one that holds the start or the goal cannot be, and is left out; from a disc the line then takes a short
+      way out where that saves more inside than it costs outside (``escape.INSIDE_WEIGHT``);
     - where no line keeps clear of all the others, they are given up one at a time, each time the one entered
       least deeply by the line found so far, beginning with the line that minds hard zones only. What was
       given up in vain is taken up again in the end.
@@ -61,12 +64,24 @@ def connect(start: Anchor, goal: Anchor, keep_out: KeepOut, radius_m: float, sto
     """
     if not (radius_m > 0.0 and math.isfinite(radius_m)):
         raise ValueError(f"the turn radius must be positive and finite, not {radius_m}")
-    zones = _without_held_ends(start, goal, keep_out)
-    path = _solve(start, goal, zones, radius_m, stop)
+    zones, held = _without_held_ends(start, goal, keep_out)
+
+    def solve(a: Anchor, b: Anchor, kept: KeepOut) -> Path | None:
+        return _solve(a, b, kept, radius_m, stop)
+
+    path, given_up = _clear_as_can_be(start, goal, zones, radius_m, solve)
+    return shorten_crossings(path, start, goal, held, zones.without(given_up), radius_m, solve)
+
+
+def _clear_as_can_be(
+    start: Anchor, goal: Anchor, zones: KeepOut, radius_m: float, solve: Solve
+) -> tuple[Path, list[str]]:
+    """The shortest line, and the soft zones given up for it."""
+    path = solve(start, goal, zones)
     if path is not None:
-        return path
+        return path, []
     soft = {name for name, hard in _named(zones) if not hard}
-    path = _solve(start, goal, zones.without(soft), radius_m, stop) if soft else None
+    path = solve(start, goal, zones.without(soft)) if soft else None
     if path is None:
         raise _infeasible(start, goal, zones.without(soft), radius_m)
     given_up: list[str] = []
@@ -75,13 +90,13 @@ def connect(start: Anchor, goal: Anchor, keep_out: KeepOut, radius_m: float, sto
         if not conflicts:
             break
         given_up.append(min(conflicts, key=lambda conflict: (conflict.depth_m, conflict.zone)).zone)
-        path = _solve(start, goal, zones.without(given_up), radius_m, stop) or path
-    for name in given_up:
+        path = solve(start, goal, zones.without(given_up)) or path
+    for name in tuple(given_up):
         fewer = [other for other in given_up if other != name]
-        better = _solve(start, goal, zones.without(fewer), radius_m, stop)
+        better = solve(start, goal, zones.without(fewer))
         if better is not None:
             given_up, path = fewer, better
-    return path
+    return path, given_up
 
 
 def _solve(start: Anchor, goal: Anchor, zones: KeepOut, radius_m: float, stop: Stop) -> Path | None:
@@ -171,9 +186,10 @@ def _path(wheels: Array, visits: Array, start: Anchor, goal: Anchor) -> Path:
     return Path(tuple(segments))
 
 
-def _without_held_ends(start: Anchor, goal: Anchor, zones: KeepOut) -> KeepOut:
-    """The zones without the soft ones that hold an end; discs an end touches shrunk to pass through it.
+def _without_held_ends(start: Anchor, goal: Anchor, zones: KeepOut) -> tuple[KeepOut, list[Disc]]:
+    """The zones without the soft ones that hold an end, and the discs among those.
 
+    Discs that an end touches are shrunk to pass through it.
     Raises InfeasibleError where a hard zone holds an end or the area does not.
     """
     left_out: set[str] = set()
@@ -189,6 +205,7 @@ def _without_held_ends(start: Anchor, goal: Anchor, zones: KeepOut) -> KeepOut:
                     end.position,
                 )
             left_out.add(zone)
+    held = [disc for disc in zones.discs if disc.name in left_out]
     zones = zones.without(left_out)
     discs = tuple(
         Disc(
@@ -196,7 +213,7 @@ def _without_held_ends(start: Anchor, goal: Anchor, zones: KeepOut) -> KeepOut:
         )
         for d in zones.discs
     )
-    return zones if discs == zones.discs else KeepOut(discs, zones.polygons, zones.area)
+    return (zones if discs == zones.discs else replace(zones, discs=discs)), held
 
 
 def _from_disc_m(end: Anchor, disc: Disc) -> float:

@@ -249,6 +249,39 @@ def test_soft_disc_at_an_end_is_left_out_and_others_are_not() -> None:
     assert {conflict.zone for conflict in zones.conflicts(path)} == {"home"}
 
 
+def metres_inside(path: Path, disc: Disc) -> float:
+    """How much of the line lies in the disc, by shapely."""
+    line = LineString(path.sample(1.0)[:, :2])
+    return line.intersection(Point(disc.east_m, disc.north_m).buffer(disc.radius_m, quad_segs=256)).length
+
+
+@pytest.mark.parametrize("reverse", [False, True])
+def test_short_way_out_of_a_soft_disc(reverse: bool) -> None:
+    """An end just inside a soft disc, the other beyond it: out the near side and round, not across."""
+    disc = Disc("soft", 0.0, 0.0, 800.0, False)
+    inner, outer = Anchor(-700.0, 0.0, math.pi), Anchor(3000.0, 0.0, 0.0)
+    if reverse:
+        inner, outer = Anchor(-700.0, 0.0, 0.0), Anchor(3000.0, 0.0, math.pi)
+    start, goal = (outer, inner) if reverse else (inner, outer)
+    path = connect(start, goal, KeepOut((disc,)), RADIUS_M)
+    assert_connects(path, start, goal)
+    assert 99.0 < metres_inside(path, disc) < 120.0
+    assert path.length_m < 6000.0
+
+
+def test_ends_in_two_soft_discs() -> None:
+    """Both ends in soft discs of their own: both crossings are short, and a third disc is kept clear."""
+    first, last = Disc("a", 0.0, 0.0, 500.0, False), Disc("b", 4000.0, 0.0, 500.0, False)
+    between = Disc("c", 2000.0, 0.0, 600.0, False)
+    zones = KeepOut((first, between, last))
+    start, goal = Anchor(-300.0, 0.0, math.pi), Anchor(4300.0, 0.0, math.pi)
+    path = connect(start, goal, zones, RADIUS_M)
+    assert_connects(path, start, goal)
+    assert {conflict.zone for conflict in zones.conflicts(path)} == {"a", "b"}
+    for disc in (first, last):
+        assert metres_inside(path, disc) < 260.0
+
+
 def test_the_shallowest_soft_disc_is_given_up() -> None:
     """Between two hard walls a soft disc that closes the gate is crossed, one that does not is avoided."""
     walls = (
