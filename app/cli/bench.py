@@ -46,12 +46,9 @@ def _table(rows: list[dict[str, Any]]) -> str:
     def flush() -> None:
         if block:
             widths = [max(map(len, column)) for column in zip(columns, *block, strict=True)]
-            lines = [columns, *block]
-            parts.append(
-                "\n".join(
-                    "  ".join(cell.ljust(w) for cell, w in zip(line, widths, strict=True)) for line in lines
-                )
-            )
+            for line in (columns, *block):
+                parts.append("  ".join(c.ljust(w) for c, w in zip(line, widths, strict=True)).rstrip())
+            parts.append("")
             block.clear()
 
     for row in rows:

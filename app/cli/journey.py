@@ -11,11 +11,12 @@ import typer
 
 from app.cli.missions import run_async
 from app.cli.output import CommandError, Exit, Json, emit, emit_json, read_document, say
-from app.cli.planning import make
+from app.cli.planning import ScenarioFile, make
 
 if TYPE_CHECKING:
     from app.services.records import TrackSample
     from mavlink.client import VehicleClient
+    from mavlink.telemetry import VehicleState
 
 #: Without news from the vehicle for this long, in real time, the flight is given up.
 STALLED_S = 20.0
@@ -30,9 +31,7 @@ class Flight:
 
 
 def demo(
-    scenario: Annotated[
-        str, typer.Argument(help="Scenario GeoJSON; - is standard input.", metavar="SCENARIO")
-    ],
+    scenario: ScenarioFile,
     speedup: Annotated[float, typer.Option(min=1.0, help="Simulated seconds per second of flight.")] = 100.0,
     autopilot: Annotated[str, typer.Option(help="ardupilot or px4; the plan's when left out.")] = "",
     wind: Annotated[str, typer.Option(help="Wind of the simulation: m/s, direction it comes from.")] = "0,0",
@@ -138,7 +137,7 @@ async def _fly(
 
 
 async def _to_the_end(client: VehicleClient) -> Flight:
-    """Arm, start, and wait for the landing."""
+    """Arm, start, and wait for the landing, or for the return that ArduPilot ends in circles over home."""
     from app.services.vehicles.recorder import Thinner, is_flying
 
     recorder = client.start_recording()
@@ -148,7 +147,7 @@ async def _to_the_end(client: VehicleClient) -> Flight:
             raise CommandError(f"the aircraft refused {outcome}")
     await client.wait_for(is_flying, STALLED_S)
     news_s, last_seq = time.monotonic(), -1
-    while is_flying(client.state):
+    while is_flying(client.state) and not _returning(client.state):
         await asyncio.sleep(0.1)
         state = client.state
         if state.mission_current is not None and state.mission_current != last_seq:
@@ -160,6 +159,10 @@ async def _to_the_end(client: VehicleClient) -> Flight:
     client.stop_recording(recorder)
     samples = tuple(Thinner(0.0).more(recorder.track()))
     return Flight(samples, samples[-1].time_s - samples[0].time_s)
+
+
+def _returning(state: VehicleState) -> bool:
+    return state.mode.endswith("RTL") or state.mission_state == "complete"
 
 
 def register(cli: typer.Typer) -> None:

@@ -10,6 +10,7 @@ import httpx
 import pytest
 from fastapi import FastAPI
 
+from app.logging import configure
 from app.main import create_app
 from app.services.house import House, Limits
 from app.settings import Settings
@@ -29,6 +30,12 @@ async def serving(app: FastAPI) -> AsyncIterator[httpx.AsyncClient]:
         httpx.AsyncClient(transport=httpx.ASGITransport(app), base_url="http://localhost") as client,
     ):
         yield client
+
+
+@pytest.fixture(autouse=True, scope="session")
+def _quiet_logs() -> None:
+    """Log as the service does, errors alone."""
+    configure("error")
 
 
 @pytest.fixture

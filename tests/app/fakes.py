@@ -5,10 +5,12 @@ from __future__ import annotations
 import json
 import time
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
+from app.services.summary import summary_of
 from app.services.validation import Verdict
-from app.services.work import PipeProgress, WorkResult
+from app.services.work import PipeProgress, WorkResult, plan_scenario
 from planner.errors import Finding
 
 
@@ -26,8 +28,13 @@ def judge(document: Mapping[str, Any]) -> Verdict:
 
 
 def task(scenario_text: str, progress_path: str) -> WorkResult:
-    """Do what the scenario's ``fake`` member says: ``done``, ``failed``, ``slow``, ``die``, ``raise``."""
+    """Do what the ``fake`` member says: ``done``, ``failed``, ``slow``, ``die``, ``raise``; else plan."""
     scenario = json.loads(scenario_text)
+    if "fake_plan" in scenario:
+        plan = json.loads(Path(scenario["fake_plan"]).read_text())
+        return WorkResult(plan=json.dumps(plan | scenario["members"]), summary=summary_of(plan))
+    if "vehicles" in scenario:
+        return plan_scenario(scenario_text, progress_path)
     progress = PipeProgress(progress_path)
     progress("coverage", 0.25)
     match scenario.get("fake", "done"):

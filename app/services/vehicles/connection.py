@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import asyncio
+import contextlib
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from dataclasses import dataclass
@@ -67,23 +69,41 @@ async def connect(url: str, home: Home | None, timeout_s: float) -> Connection:
     except mavlink_errors.LinkError as error:
         raise LinkError(str(error)) from error
     client = VehicleClient(link)
-    simulator = None
-    if aircraft is not None:
-        standing = aircraft if aircraft.home is not None else aircraft.at(home)
-        simulator = await SimulatorProcess.start(standing, int(link.url.rpartition(":")[2]))
-    connection = Connection(client, simulator)
     try:
-        await client.connect(timeout_s)
-    except mavlink_errors.VehicleNotFoundError:
-        if simulator is not None:
-            await simulator.check()
-    except mavlink_errors.NotConnectedError as error:
-        await connection.close()
-        raise LinkError(str(error)) from error
+        simulator = None
+        if aircraft is not None:
+            standing = aircraft if aircraft.home is not None else aircraft.at(home)
+            simulator = await SimulatorProcess.start(standing, int(link.url.rpartition(":")[2]))
+        await _first_heartbeat(client, simulator, timeout_s)
     except BaseException:
-        await connection.close()
+        await client.close()
+        if simulator is not None:
+            await simulator.stop()
         raise
-    return connection
+    return Connection(client, simulator)
+
+
+async def _first_heartbeat(
+    client: VehicleClient, simulator: SimulatorProcess | None, timeout_s: float
+) -> None:
+    """Wait for a heartbeat, but not for one of a simulator that has ended."""
+    hearing = asyncio.create_task(client.connect(timeout_s))
+    ending = asyncio.create_task(simulator.wait()) if simulator is not None else None
+    try:
+        await asyncio.wait(
+            (hearing,) if ending is None else (hearing, ending), return_when=asyncio.FIRST_COMPLETED
+        )
+        if simulator is not None and not hearing.done():
+            await simulator.raise_last_words()
+        with contextlib.suppress(mavlink_errors.VehicleNotFoundError):
+            await hearing
+    except mavlink_errors.NotConnectedError as error:
+        raise LinkError(str(error)) from error
+    finally:
+        for task in (hearing, ending):
+            if task is not None:
+                task.cancel()
+                await asyncio.gather(task, return_exceptions=True)
 
 
 @asynccontextmanager

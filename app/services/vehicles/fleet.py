@@ -231,7 +231,7 @@ class Fleet:
         for record in await self._planning.newest(1, 0, None):
             scenario = json.loads(await self._planning.scenario_text(record.id))
             for feature in scenario["features"]:
-                if feature["properties"]["role"] == "start":
+                if (feature.get("properties") or {}).get("role") == "start":
                     lon_deg, lat_deg = feature["geometry"]["coordinates"][:2]
                     return float(lat_deg), float(lon_deg), 0.0
         return None

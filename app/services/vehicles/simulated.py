@@ -134,12 +134,15 @@ class SimulatorProcess:
         assert process.stderr is not None
         return cls(process, asyncio.create_task(_tail(process.stderr)))
 
-    async def check(self) -> None:
-        """Raise LinkError with its last words when it has ended by itself."""
-        if self._process.returncode is not None:
-            words = (await self._errors).decode(errors="replace").strip().splitlines()
-            reason = words[-1] if words else f"exit code {self._process.returncode}"
-            raise LinkError(f"the simulated aircraft ended: {reason}")
+    async def wait(self) -> None:
+        """Wait until it has ended."""
+        await self._process.wait()
+
+    async def raise_last_words(self) -> NoReturn:
+        """Raise LinkError with what it said at its end."""
+        words = (await self._errors).decode(errors="replace").strip().splitlines()
+        reason = words[-1] if words else f"exit code {self._process.returncode}"
+        raise LinkError(f"the simulated aircraft ended: {reason}")
 
     async def stop(self) -> None:
         """End it, by force when it does not listen."""

@@ -1,0 +1,255 @@
+"""Vehicles over HTTP: simulated aircraft, uploads with their outcomes, commands, flights."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from collections.abc import AsyncIterator, Callable
+from contextlib import asynccontextmanager
+from pathlib import Path
+from typing import Any
+
+import httpx
+import pytest
+
+from app.main import create_app
+from app.routers.bodies import EXAMPLE
+from app.services.work import plan_scenario
+from app.settings import Settings
+from mavlink.link import open_link
+from mavlink.sim.run import serve
+from mavlink.sim.settings import SimSettings
+from tests.app.conftest import fake_house, serving
+from tests.app.test_problems import check_problem
+
+VEHICLES = "/api/v1/vehicles"
+
+
+async def until(client: httpx.AsyncClient, path: str, ready: Callable[[Any], bool]) -> Any:
+    """What stands at a path once it is ready."""
+    async with asyncio.timeout(25):
+        while not ready(body := (await client.get(path)).json()):
+            await asyncio.sleep(0.05)
+    return body
+
+
+@pytest.fixture(scope="session")
+def plan_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A file with the plan of the example."""
+    result = plan_scenario(json.dumps(EXAMPLE), "/dev/null")
+    assert result.plan is not None
+    path = tmp_path_factory.mktemp("plan") / "plan.geojson"
+    path.write_text(result.plan)
+    return path
+
+
+@pytest.fixture
+async def plan_id(client: httpx.AsyncClient, plan_file: Path) -> str:
+    """The id of a plan of the example, made beforehand."""
+    return await stored(client, plan_file)
+
+
+async def stored(client: httpx.AsyncClient, plan_file: Path, **members: Any) -> str:
+    """The id of a plan that is taken from a file, with some members exchanged."""
+    scenario = {"features": [{}], "name": "x", "fake_plan": str(plan_file), "members": members}
+    record = (await client.post("/api/v1/plans", json=scenario, params={"wait": 20})).json()
+    assert record["state"] == "done", record
+    return str(record["id"])
+
+
+async def connected(client: httpx.AsyncClient, url: str = "sim:?speedup=100", name: str = "uav") -> str:
+    """The place of a connected vehicle."""
+    answer = await client.post(VEHICLES, json={"name": name, "url": url})
+    assert answer.status_code == 201, answer.text
+    assert answer.json()["connected"]
+    return answer.headers["location"]
+
+
+@asynccontextmanager
+async def faulty_vehicle(client: httpx.AsyncClient, settings: SimSettings) -> AsyncIterator[str]:
+    """The place of a vehicle that misbehaves on request."""
+    probe = await open_link("udpin:127.0.0.1:0")
+    port = probe.url.rpartition(":")[2]
+    await probe.close()
+    simulator = asyncio.create_task(serve(f"udpout:127.0.0.1:{port}", settings))
+    try:
+        yield await connected(client, f"udpin:127.0.0.1:{port}")
+    finally:
+        simulator.cancel()
+        await asyncio.gather(simulator, return_exceptions=True)
+
+
+async def test_whole_journey(client: httpx.AsyncClient) -> None:
+    """Plan, connect, upload, fly, and see as flown what was planned to be seen."""
+    record = (await client.post("/api/v1/plans", json=EXAMPLE, params={"wait": 60})).json()
+    assert record["state"] == "done", record
+    plan_id = record["id"]
+    vehicle = await connected(client)
+    answer = await client.post(
+        vehicle + "/mission", json={"plan_id": plan_id, "parts": ["mission", "fence", "rally"]}
+    )
+    report = answer.json()
+    assert answer.status_code == 200, report
+    assert (report["outcome"], report["verified"]) == ("accepted", True)
+    held = report["parts"]["mission"]["held"]
+    assert len(held) == report["parts"]["mission"]["meant"] > 10
+    assert (await client.get(vehicle)).json()["plan_id"] == plan_id
+    assert (await client.get(vehicle + "/mission")).json()["parts"]["mission"] == held
+    for command in ("arm", "start"):
+        ordered = await client.post(vehicle + "/commands", json={"command": command})
+        assert (ordered.status_code, ordered.json()["outcome"]) == (200, "accepted")
+    await until(client, vehicle, lambda body: body["flight_id"] is not None)
+    reload = {"plan_id": plan_id}
+    in_flight = await client.post(vehicle + "/mission", json=reload)
+    check_problem(in_flight, 409, "vehicle-flying")
+    flights = await until(client, "/api/v1/flights", lambda body: body["flights"][0]["state"] == "ended")
+    flight = flights["flights"][0]
+    assert (flight["plan_id"], flight["plan_vehicle"]) == (plan_id, "uav-1")
+    track = (await client.get(flight["links"]["track.geojson"])).json()
+    roles = [feature["properties"]["role"] for feature in track["features"]]
+    plan = (await client.get(f"/api/v1/plans/{plan_id}/plan.geojson")).json()
+    collects = [f for f in plan["features"] if f["properties"]["role"] == "collect"]
+    assert roles.count("track") == 1
+    assert roles.count("sensor_on") == len(collects)
+    line = track["features"][0]
+    assert len(line["geometry"]["coordinates"]) == flight["points"] == len(line["properties"]["times_s"])
+    seen = (await client.get(flight["links"]["coverage.geojson"])).json()
+    assert set(seen["coverage"]) == {"harbour", "depot"}
+    assert min(seen["coverage"].values()) > 0.99
+    assert max(collect["cross_track_max_m"] for collect in seen["collects"]) < 10.0
+    cleared = await client.delete(vehicle + "/mission")
+    assert cleared.json()["parts"] == {"mission": "accepted"}
+    assert (await client.get(vehicle)).json()["plan_id"] is None
+    assert (await client.delete(vehicle)).status_code == 204
+    check_problem(await client.get(vehicle), 404)
+
+
+async def test_hard_violations_need_an_override(client: httpx.AsyncClient, plan_file: Path) -> None:
+    """A plan that breaks a hard constraint goes up only with an override and its reason."""
+    violation = {"constraint": "turn-radius", "feature": "uav-1", "message": "too tight", "amount": 1.0}
+    violations = [violation | {"unit": "m", "where": None, "hard": True}]
+    plan_id = await stored(client, plan_file, violations=violations)
+    vehicle = await connected(client)
+    check_problem(await client.post(vehicle + "/mission", json={"plan_id": plan_id}), 409, "turn-radius")
+    unexplained = {"plan_id": plan_id, "override": True}
+    check_problem(await client.post(vehicle + "/mission", json=unexplained), 422)
+    explained = unexplained | {"reason": "the range is closed"}
+    report = (await client.post(vehicle + "/mission", json=explained)).json()
+    assert (report["outcome"], report["override_reason"]) == ("accepted", "the range is closed")
+    assert [finding["rule"] for finding in report["findings"]] == ["turn-radius"]
+
+
+async def test_second_upload_at_once_is_refused(client: httpx.AsyncClient, plan_id: str) -> None:
+    """Of two uploads at once the second is refused, and told of the first."""
+    vehicle = await connected(client)
+    first, second = await asyncio.gather(
+        *(client.post(vehicle + "/mission", json={"plan_id": plan_id}) for _ in range(2))
+    )
+    assert first.status_code == 200
+    check_problem(second, 409)
+    assert plan_id in second.json()["detail"]
+
+
+async def test_vanished_vehicle_leaves_unknown_until_read_back(
+    client: httpx.AsyncClient, plan_id: str
+) -> None:
+    """A vehicle that vanishes in mid-upload leaves the outcome unknown until it has been read back."""
+    settings = SimSettings(faults=("vanish_mid_upload",), vanish_for_s=6.0)
+    async with faulty_vehicle(client, settings) as vehicle:
+        answer = await client.post(vehicle + "/mission", json={"plan_id": plan_id})
+        assert (answer.status_code, answer.json()["outcome"]) == (202, "unknown")
+        record = (await client.get(vehicle)).json()
+        assert record["pending"]
+        assert record["plan_id"] is None
+        record = await until(client, vehicle, lambda body: not body["pending"])
+        assert record["upload"]["outcome"] == "different"
+        assert record["upload"]["parts"]["mission"]["differences"]
+
+
+@pytest.mark.parametrize(
+    ("fault", "outcome", "verified"),
+    [
+        ("error_ack_at_1", "refused", False),
+        ("altered_item", "accepted", False),
+        ("no_final_ack", "accepted", True),
+    ],
+)
+async def test_outcomes_are_told_as_they_are(
+    client: httpx.AsyncClient, plan_id: str, fault: str, outcome: str, verified: bool
+) -> None:
+    """Refusals, silent alterations and lost acknowledgements are told apart by reading back."""
+    async with faulty_vehicle(client, SimSettings(faults=(fault,))) as vehicle:
+        report = (await client.post(vehicle + "/mission", json={"plan_id": plan_id})).json()
+        assert (report["outcome"], report["verified"]) == (outcome, verified)
+        held = (await client.get(vehicle)).json()["plan_id"]
+        assert held == (plan_id if verified else None)
+
+
+async def test_commands_refused_by_the_vehicle_are_409(client: httpx.AsyncClient) -> None:
+    """The vehicle's no is handed on with its reason; a missing item number is a 422."""
+    async with faulty_vehicle(client, SimSettings(faults=("deny_arm",))) as vehicle:
+        check_problem(await client.post(vehicle + "/commands", json={"command": "arm"}), 409)
+        check_problem(
+            await client.post(vehicle + "/commands", json={"command": "goto_item"}), 422, "seq-missing"
+        )
+        check_problem(await client.post(vehicle + "/commands", json={"command": "explode"}), 422)
+        assert not (await client.get(vehicle)).json()["state"]["armed"]
+
+
+@pytest.mark.parametrize(
+    ("url", "status", "rule"),
+    [
+        ("nonsense", 422, "link-address"),
+        ("http://127.0.0.1:1", 422, "link-address"),
+        ("sim:?colour=red", 422, "sim-address"),
+        ("sim:?home=north", 422, "sim-address"),
+        ("sim:?speedup=nan", 422, "sim-address"),
+        ("sim:?autopilot=toy", 422, "sim-address"),
+        ("sim:?airspeed=-1", 502, None),
+        ("udpin:127.0.0.1:port", 502, None),
+        ("tcp:127.0.0.1:1", 502, None),
+        ("serial:/dev/none:57600", 502, None),
+    ],
+)
+async def test_bad_addresses(client: httpx.AsyncClient, url: str, status: int, rule: str | None) -> None:
+    """Addresses that cannot be are refused, those that do not answer are a bad gateway; none stays listed."""
+    check_problem(await client.post(VEHICLES, json={"name": "x", "url": url}), status, rule)
+    assert (await client.get(VEHICLES)).json() == {"vehicles": []}
+
+
+async def test_silent_vehicle_is_listed_and_takes_no_orders(client: httpx.AsyncClient, plan_id: str) -> None:
+    """A vehicle nobody has heard is known, not connected, and cannot be uploaded to."""
+    body = {"name": "quiet", "url": "udpin:127.0.0.1:0", "timeout_s": 0.1}
+    answer = await client.post(VEHICLES, json=body)
+    assert (answer.status_code, answer.json()["connected"]) == (201, False)
+    vehicle = answer.headers["location"]
+    check_problem(await client.post(vehicle + "/mission", json={"plan_id": plan_id}), 502)
+    check_problem(await client.get(vehicle + "/mission"), 502)
+    check_problem(await client.post(vehicle + "/commands", json={"command": "arm"}), 502)
+    check_problem(await client.post(VEHICLES, json=body | {"url": "sim:"}), 409)
+
+
+async def test_telemetry_streams_states_until_the_vehicle_is_let_go(client: httpx.AsyncClient) -> None:
+    """Telemetry is a stream of states that ends with the vehicle."""
+    vehicle = await connected(client)
+
+    async def let_go() -> None:
+        await asyncio.sleep(0.6)
+        await client.delete(vehicle)
+
+    streaming = asyncio.create_task(client.get(vehicle + "/telemetry"))
+    await let_go()
+    text = (await streaming).text
+    states = [json.loads(line[6:]) for line in text.splitlines() if line.startswith("data: ")]
+    assert len(states) > 1
+    assert states[0]["state"]["autopilot"] == "ardupilot"
+
+
+async def test_simulated_aircraft_ends_with_the_service(settings: Settings) -> None:
+    """No simulator outlives the service."""
+    app = create_app(settings, fake_house)
+    async with serving(app) as client:
+        await connected(client)
+        (vehicle,) = app.state.house.fleet.all()
+        simulator = vehicle._connection.simulator
+    assert simulator._process.returncode is not None
