@@ -39,6 +39,8 @@ const IDLE = "static";
 const SQUARE_SHARE = 0.12;
 const HANDLES = 24;
 const NEAR_PX = 4;
+// Small, so that a small shape can still be taken by its middle.
+const GRAB_PX = 11;
 
 function rounded(geometry: Geometry): Geometry {
   if (geometry.type === "Point") return { type: "Point", coordinates: geometry.coordinates.slice(0, 2).map(round7) };
@@ -85,6 +87,7 @@ export class Drawing {
         new TerraDrawCircleMode({ segments: 64 }),
         new TerraDrawPointMode(),
         new TerraDrawSelectMode({
+          pointerDistance: GRAB_PX,
           keyEvents: { deselect: "Escape", delete: null, rotate: null, scale: null },
           flags: {
             polygon: { feature: whole },

@@ -75,7 +75,7 @@ function layers(c: Palette): LayerSpecification[] {
     },
     {
       id: "path-arrow", type: "symbol", source: "plan", filter: roleIs("path"),
-      layout: { "symbol-placement": "line", "symbol-spacing": 90, "icon-image": "arrow", "icon-size": 0.75, "icon-allow-overlap": true },
+      layout: { "symbol-placement": "line", "symbol-spacing": 110, "icon-image": "arrow", "icon-size": 1.05, "icon-allow-overlap": true },
       paint: { "icon-color": c.path, "icon-halo-color": c.halo, "icon-halo-width": 1 },
     },
     {
@@ -89,7 +89,7 @@ function layers(c: Palette): LayerSpecification[] {
     {
       id: "track-off", type: "line", source: "track", filter: ["!", ["get", "sensor_on"]],
       layout: { "line-join": "round" },
-      paint: { "line-color": c.track, "line-width": 3 },
+      paint: { "line-color": c.track, "line-width": 2.6 },
     },
     {
       id: "track-on", type: "line", source: "track", filter: ["get", "sensor_on"],

@@ -45,7 +45,10 @@ async function start(): Promise<void> {
     { id: "fly", label: "Fly", content: vehiclePanel() },
   ]);
   byId("panel").append(panel.element, ...panel.panels);
-  acceptDrops(view.zoomToAll);
+  acceptDrops(() => {
+    panel.show("scenario");
+    view.zoomToAll();
+  });
   scenarios.document.watch((scenario) => setData(map, "scenario", scenarioFeatures(scenario)));
   open.watch((shown) => {
     setData(map, "plan", shown ? planFeatures(shown.plan) : []);

@@ -18,6 +18,8 @@ export const FONT = ["sans-serif"];
 const RASTER_KEY = "swathplan.raster";
 const NOTHING: FeatureCollection = { type: "FeatureCollection", features: [] };
 const FIT_PADDING_PX = 60;
+const LEGEND_PX = 215;
+const WIDE_PX = 900;
 
 function baseLayers(colours: Palette): LayerSpecification[] {
   return [
@@ -52,7 +54,10 @@ export function setData(map: MapLibreMap, source: string, features: FeatureColle
 
 export function fit(map: MapLibreMap, bounds: Bounds | null): void {
   if (!bounds) return;
-  map.fitBounds(bounds, { padding: FIT_PADDING_PX, maxZoom: 16, duration: 0 });
+  // Where there is room, what is shown keeps clear of the legend.
+  const right = map.getContainer().clientWidth > WIDE_PX ? LEGEND_PX : FIT_PADDING_PX;
+  const padding = { top: FIT_PADDING_PX, bottom: FIT_PADDING_PX, left: FIT_PADDING_PX, right };
+  map.fitBounds(bounds, { padding, maxZoom: 16, duration: 0 });
 }
 
 async function loadLand(map: MapLibreMap): Promise<void> {

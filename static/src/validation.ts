@@ -22,7 +22,6 @@ export async function judge(): Promise<void> {
     if (ticket === asked) judgement.set(result);
   };
   if (scenarios.document.value.features.length === 0) return tell({ state: "empty", findings: [] });
-  judgement.set({ ...judgement.value, state: "asking" });
   try {
     const answer = await post<{ findings?: unknown }>("/scenarios/validate", scenarios.document.value);
     tell({ state: "sound", findings: readFindings(answer?.findings) });
@@ -39,7 +38,11 @@ export async function judge(): Promise<void> {
 /** Check after every change, and again when the service is back. */
 export function keepJudging(): void {
   const soon = debounce(() => void judge(), QUIET_MS);
-  scenarios.document.watch(soon);
+  scenarios.document.watch(({ features }) => {
+    // What was said of the scenario before says nothing of it now.
+    judgement.set({ state: features.length > 0 ? "asking" : "empty", findings: features.length > 0 ? judgement.value.findings : [] });
+    soon();
+  });
   connection.watch((state) => {
     if (state === "up" && judgement.value.state === "unknown") soon();
   });

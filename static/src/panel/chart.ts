@@ -11,6 +11,7 @@ import type { Position } from "../types";
 const MOST_POINTS = 1500;
 const HEIGHT_PX = 150;
 const LEAST_WIDTH_PX = 200;
+const OFF_LIMIT_M = 30;
 
 type Column = (number | null)[];
 
@@ -24,7 +25,9 @@ function makeChart(box: HTMLElement): uPlot {
     {
       width: Math.max(LEAST_WIDTH_PX, box.clientWidth),
       height: HEIGHT_PX,
-      scales: { x: { time: false } },
+      // Beyond this the aircraft climbs or lands; the interest is in metres.
+      scales: { x: { time: false }, off: { range: [-OFF_LIMIT_M, OFF_LIMIT_M] } },
+      legend: { show: false },
       axes: [{ ...axis, size: 26 }, { ...axis, scale: "m" }, { ...axis, scale: "off", side: 1, grid: { show: false } }],
       series: [
         { label: "s" },
@@ -38,7 +41,14 @@ function makeChart(box: HTMLElement): uPlot {
 }
 
 export function flightChart(): HTMLElement {
-  const box = h("div", { class: "chart", "aria-label": "Height and distance from the planned line, live", role: "img" });
+  const box = h("div", { "aria-label": "Height and distance from the planned line, live", role: "img" });
+  const key = h(
+    "div",
+    { class: "key", hidden: true },
+    h("span", { style: "--k: var(--accent)" }, "height over home, m (left)"),
+    h("span", { style: "--k: var(--bad)" }, "right of the planned line, m (right)"),
+    h("span", { style: "--k: transparent" }, "across: seconds"),
+  );
   let chart: uPlot | null = null;
   let columns: [number[], Column, Column] = [[], [], []];
   let flight: string | null = null;
@@ -46,6 +56,7 @@ export function flightChart(): HTMLElement {
   const draw = (): void => {
     if (columns[0].length < 2 || box.clientWidth === 0) return;
     chart ??= makeChart(box);
+    key.hidden = false;
     if (Math.abs(chart.width - box.clientWidth) > 1) chart.setSize({ width: Math.max(LEAST_WIDTH_PX, box.clientWidth), height: HEIGHT_PX });
     chart.setData(columns);
   };
@@ -72,5 +83,5 @@ export function flightChart(): HTMLElement {
     chart = null;
     draw();
   });
-  return box;
+  return h("div", { class: "chart" }, box, key);
 }

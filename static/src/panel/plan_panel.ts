@@ -71,7 +71,7 @@ function coverage(fractions: Record<string, number>): HTMLElement {
       h("td", {}, percent(Math.floor(fraction * 1e4) / 1e4, 2)),
     ),
   );
-  return h("table", {}, h("tbody", {}, ...rows));
+  return h("table", { class: "coverage" }, h("tbody", {}, ...rows));
 }
 
 function result({ record, plan }: OpenPlan, view: PlanView): HTMLElement {

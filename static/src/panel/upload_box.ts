@@ -89,7 +89,7 @@ export function uploadBox(): HTMLElement {
     fill(why, !vehicle ? "No vehicle is chosen." : !vehicle.connected ? "The vehicle is not heard." : !open.value ? "No plan is on the map." : busy ? `At work: ${busy}` : "");
     fill(moving, vehicle?.transfer ? h("progress", { max: Math.max(1, vehicle.transfer.total), value: vehicle.transfer.done, "aria-label": "Upload progress" }) : null);
     const number = vehicle?.upload ? `${vehicle.id}/${vehicle.upload.number}/${vehicle.upload.outcome}/${vehicle.upload.verified}` : null;
-    if (number !== shownNumber) {
+    if (number !== shownNumber && busy === null) {
       shownNumber = number;
       fill(result, vehicle?.upload ? answer(vehicle.upload) : null);
     }

@@ -1,0 +1,121 @@
+"""The built page, served by the real service, in Debian's chromium."""
+
+from __future__ import annotations
+
+import json
+import os
+import select
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import httpx
+import pytest
+from playwright.sync_api import Browser, Page, sync_playwright
+
+ROOT = Path(__file__).resolve().parents[3]
+PAGE = ROOT / "static" / "dist" / "index.html"
+EXAMPLES = ROOT / "examples"
+CHROMIUM = shutil.which("chromium")
+CHROMIUM_FLAGS = [
+    "--no-sandbox",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+]
+START_LIMIT_S = 60.0
+SPEEDUP = 20
+
+
+@dataclass(frozen=True, slots=True)
+class Service:
+    """A running service and where it answers."""
+
+    address: str
+
+    def get(self, path: str) -> httpx.Response:
+        return httpx.get(self.address + path, timeout=20.0)
+
+
+def _first_line(process: subprocess.Popen[str]) -> str:
+    assert process.stdout is not None
+    ready, _, _ = select.select([process.stdout], [], [], START_LIMIT_S)
+    line = process.stdout.readline() if ready else ""
+    if not line:
+        raise RuntimeError("the service did not say where it listens")
+    return line
+
+
+@pytest.fixture(scope="session")
+def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
+    """A service of its own: fresh database, free port, one simulated aircraft in quick motion."""
+    if not PAGE.is_file():
+        pytest.skip("the map is not built: run npm ci and npm run build in static/")
+    folder = tmp_path_factory.mktemp("service")
+    command = [sys.executable, "-m", "app.cli", "serve", "--port", "0", "--json"]
+    command += ["--database", str(folder / "swathplan.db"), "--workers", "1"]
+    command += ["--sim", "--sim-url", f"sim:?speedup={SPEEDUP}"]
+    with (folder / "log").open("w") as log:
+        process = subprocess.Popen(
+            command,
+            cwd=ROOT,
+            stdout=subprocess.PIPE,
+            stderr=log,
+            text=True,
+            env=os.environ | {"PYTHONPATH": ""},
+        )
+        try:
+            address = json.loads(_first_line(process))["address"]
+            yield Service(address)
+        finally:
+            process.terminate()
+            try:
+                process.wait(15.0)
+            except subprocess.TimeoutExpired:
+                process.kill()
+                process.wait()
+            if process.stdout is not None:
+                process.stdout.close()
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Browser]:
+    """Chromium without a window; WebGL is drawn by the processor."""
+    if CHROMIUM is None:
+        pytest.skip("Debian's chromium is not installed")
+    with sync_playwright() as playwright:
+        opened = playwright.chromium.launch(executable_path=CHROMIUM, headless=True, args=CHROMIUM_FLAGS)
+        yield opened
+        opened.close()
+
+
+@pytest.fixture(scope="module")
+def page(browser: Browser, service: Service) -> Iterator[Page]:
+    """A page of its own for each test file, since opening one costs seconds where no GPU draws.
+
+    At the end no script may have failed, and nothing may have been asked of another host.
+    """
+    context = browser.new_context(viewport={"width": 1280, "height": 800}, color_scheme="light")
+    opened = context.new_page()
+    failures: list[str] = []
+    opened.on("pageerror", lambda error: failures.append(str(error)))
+    outside: list[str] = []
+    opened.on(
+        "request",
+        lambda request: (
+            outside.append(request.url)
+            if not request.url.startswith((service.address, "blob:", "data:"))
+            else None
+        ),
+    )
+    opened.goto(service.address)
+    opened.wait_for_function("window.swathplan !== undefined")
+    yield opened
+    context.close()
+    assert failures == []
+    assert outside == [], "the page asked for something that is not its own"

@@ -1,0 +1,160 @@
+"""Drawing, opening, changing and keeping a scenario on the page."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Page, expect
+from pyproj import Geod
+
+from tests.app.browser.conftest import EXAMPLES
+from tests.app.browser.helpers import ask, await_hook, click_place, feature, on_screen, open_scenario
+
+pytestmark = pytest.mark.browser
+
+WGS84 = Geod(ellps="WGS84")
+CASE_1 = json.loads((EXAMPLES / "sar-case-1.geojson").read_text(encoding="utf-8"))
+
+
+def test_an_opened_file_is_drawn_and_accepted(page: Page) -> None:
+    """A sample scenario opened by the file input is on the map, and the service finds nothing wrong."""
+    open_scenario(page)
+    expect(page.locator("#findings")).to_have_attribute("data-state", "sound")
+    await_hook(page, "rendered()['roi-fill'] >= 6")
+    drawn = ask(page, "rendered()")
+    assert {"roi-fill", "missile-fill", "radar-fill", "area-line", "terminal", "scenario-label"} <= set(drawn)
+
+
+def test_a_region_is_drawn_by_hand(page: Page) -> None:
+    """Three clicks and Enter make a region with the corners that were clicked."""
+    open_scenario(page)
+    corners = [(-117.70, 33.515), (-117.695, 33.515), (-117.695, 33.511)]
+    page.click("[data-tool=roi]")
+    for corner in corners:
+        click_place(page, *corner)
+    page.keyboard.press("Enter")
+    await_hook(page, "selected() === 'R7'")
+    drawn = feature(page, "R7")
+    assert drawn is not None
+    ring = drawn["geometry"]["coordinates"][0]
+    assert ring[0] == ring[-1]
+    assert len(ring) == 4
+    for lon, lat in corners:
+        assert min(WGS84.inv(lon, lat, x, y)[2] for x, y in ring) < 30.0
+
+
+def test_a_threat_circle_has_the_radius_drawn(page: Page) -> None:
+    """A radar circle drawn with two clicks has its centre and its radius where they were clicked."""
+    open_scenario(page)
+    centre, edge = (-117.72, 33.50), (-117.7115, 33.50)
+    page.click("[data-tool=radar]")
+    click_place(page, *centre)
+    page.mouse.move(*on_screen(page, -117.715, 33.50))
+    click_place(page, *edge)
+    await_hook(page, "selected() === 'D4'")
+    drawn = feature(page, "D4")
+    assert drawn is not None
+    assert drawn["properties"]["model"] == "radar"
+    lon, lat = drawn["geometry"]["coordinates"]
+    assert WGS84.inv(lon, lat, *centre)[2] < 30.0
+    assert drawn["properties"]["radius_m"] == pytest.approx(WGS84.inv(*centre, *edge)[2], rel=0.05)
+
+
+def test_a_feature_is_moved_and_brought_back(page: Page) -> None:
+    """A selected region follows the pointer that drags it; undo puts it back."""
+    open_scenario(page)
+    before = feature(page, "R4")
+    assert before is not None
+    page.get_by_role("button", name="R4", exact=True).click()
+    page.get_by_role("button", name="Show all").click()
+    ring = before["geometry"]["coordinates"][0]
+    middle = sum(p[0] for p in ring[:-1]) / (len(ring) - 1), sum(p[1] for p in ring[:-1]) / (len(ring) - 1)
+    x, y = on_screen(page, *middle)
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x + 20, y - 20, steps=5)
+    page.mouse.move(x + 60, y - 40, steps=5)
+    page.mouse.up()
+    page.wait_for_function(
+        "old => window.swathplan.scenario().features.find(f => f.id === 'R4').geometry.coordinates[0][0][0] !== old",
+        arg=ring[0][0],
+    )
+    moved = feature(page, "R4")
+    assert moved is not None
+    shifts = [WGS84.inv(*p, *q)[2] for p, q in zip(ring, moved["geometry"]["coordinates"][0], strict=True)]
+    assert min(shifts) == pytest.approx(max(shifts), rel=0.01)
+    page.keyboard.press("Control+z")
+    after = feature(page, "R4")
+    assert after is not None
+    assert after["geometry"] == before["geometry"]
+
+
+def test_deleting_needs_no_mouse(page: Page) -> None:
+    """The Delete key takes the selected feature away."""
+    open_scenario(page)
+    page.get_by_role("button", name="M2", exact=True).focus()
+    page.keyboard.press("Enter")
+    page.keyboard.press("Delete")
+    assert feature(page, "M2") is None
+
+
+def test_a_shape_can_be_placed_without_a_pointer(page: Page) -> None:
+    """Keys alone choose a tool, place a region in the middle of the view, and give it coordinates."""
+    open_scenario(page)
+    page.locator("[data-tool=no_fly]").focus()
+    page.keyboard.press("Enter")
+    page.get_by_role("button", name="Place in the middle").focus()
+    page.keyboard.press("Enter")
+    page.locator("#f-coordinates").fill("-117.70, 33.53\n-117.69, 33.53\n-117.69, 33.535")
+    page.keyboard.press("Tab")
+    drawn = feature(page, "N1")
+    assert drawn is not None
+    assert drawn["geometry"]["coordinates"] == [
+        [[-117.70, 33.53], [-117.69, 33.53], [-117.69, 33.535], [-117.70, 33.53]]
+    ]
+
+
+def test_a_refused_scenario_says_why_and_where(page: Page, tmp_path: Path) -> None:
+    """A ring that crosses itself is named with its rule; a click on the finding goes to the feature."""
+    broken = json.loads(json.dumps(CASE_1))
+    ring = next(f for f in broken["features"] if f["id"] == "R5")["geometry"]["coordinates"][0]
+    ring[1], ring[4] = ring[4], ring[1]
+    path = tmp_path / "broken.geojson"
+    path.write_text(json.dumps(broken), encoding="utf-8")
+    open_scenario(page, path)
+    expect(page.locator("#findings")).to_have_attribute("data-state", "refused")
+    finding = page.locator("#findings li", has_text="R5")
+    zoom = ask(page, "zoom()")
+    finding.get_by_role("button").first.click()
+    await_hook(page, f"zoom() > {zoom}")
+    assert ask(page, "selected()") == "R5"
+    lon, lat = ask(page, "centre()")
+    assert WGS84.inv(lon, lat, -117.6710, 33.4941)[2] < 500.0
+    page.get_by_role("tab", name="Plan").click()
+    expect(page.locator("#plan-start")).to_be_disabled()
+
+
+def test_a_file_that_is_no_scenario_is_refused_in_words(page: Page, tmp_path: Path) -> None:
+    """A file of another kind leaves the scenario as it is, and the page says what is wrong with it."""
+    open_scenario(page)
+    path = tmp_path / "other.json"
+    path.write_text('{"type": "Topology"}', encoding="utf-8")
+    page.set_input_files("#file", path)
+    expect(page.locator("#notices")).to_contain_text("not a GeoJSON FeatureCollection")
+    assert len(ask(page, "scenario()")["features"]) == len(CASE_1["features"])
+
+
+def test_edits_outlive_a_reload_and_the_download_holds_them(page: Page) -> None:
+    """What was changed is there after a reload, and the downloaded file is the scenario shown."""
+    open_scenario(page)
+    page.locator("#s-altitude_m").fill("620")
+    page.keyboard.press("Tab")
+    page.reload()
+    page.wait_for_function("window.swathplan !== undefined")
+    assert ask(page, "scenario()")["altitude_m"] == 620
+    with page.expect_download() as waiting:
+        page.get_by_role("button", name="Download").click()
+    saved = json.loads(Path(waiting.value.path()).read_text(encoding="utf-8"))
+    assert saved == CASE_1 | {"altitude_m": 620}
