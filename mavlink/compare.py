@@ -3,7 +3,8 @@
 Both lists are brought to the form in which the vehicle gives items back (``Dialect.expected_readback``), the
 home row is left out where the autopilot keeps one, and what remains is compared with these tolerances:
 
-- sequence number, command, frame, latitude and longitude: none;
+- sequence number, command, latitude and longitude: none;
+- frame: none, but that the integer frames 5, 6 and 11 are the same as 0, 3 and 10;
 - altitude: 11 mm, because ArduPilot truncates to centimetres after a conversion to 32-bit floats;
 - parameters: one part in a million plus 1e-4, the width of a 32-bit float and of PX4's yaw in radians;
 - NaN equals NaN;
@@ -17,13 +18,19 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from mavlink.dialects.base import Dialect, mission_type_of
-from mavlink.items import MissionItem, MissionType
+from mavlink.items import Frame, MissionItem, MissionType
 
 ALTITUDE_TOLERANCE_M = 0.011
 PARAMETER_TOLERANCE = 1e-4
 PARAMETER_RELATIVE_TOLERANCE = 1e-6
 
-_EXACT = ("command", "frame", "x", "y", "mission_type")
+_EXACT = ("command", "x", "y", "mission_type")
+#: MISSION_ITEM_INT means integers in either frame.
+_SAME_FRAME: dict[int, int] = {
+    Frame.GLOBAL_INT: Frame.GLOBAL,
+    Frame.GLOBAL_RELATIVE_ALT_INT: Frame.GLOBAL_RELATIVE_ALT,
+    Frame.GLOBAL_TERRAIN_ALT_INT: Frame.GLOBAL_TERRAIN_ALT,
+}
 _PARAMETERS = ("param1", "param2", "param3", "param4")
 
 
@@ -90,11 +97,17 @@ def _item_differences(meant: MissionItem, held: MissionItem) -> Iterator[Differe
     for name in _EXACT:
         if getattr(meant, name) != getattr(held, name):
             yield Difference(meant.seq, name, int(getattr(meant, name)), int(getattr(held, name)))
+    if _frame(meant) != _frame(held):
+        yield Difference(meant.seq, "frame", int(meant.frame), int(held.frame))
     if not _close(meant.z, held.z, ALTITUDE_TOLERANCE_M):
         yield Difference(meant.seq, "z", meant.z, held.z)
     for name in _PARAMETERS:
         if not _close(getattr(meant, name), getattr(held, name), PARAMETER_TOLERANCE):
             yield Difference(meant.seq, name, getattr(meant, name), getattr(held, name))
+
+
+def _frame(item: MissionItem) -> int:
+    return _SAME_FRAME.get(item.frame, item.frame)
 
 
 def _close(meant: float, held: float, tolerance: float) -> bool:

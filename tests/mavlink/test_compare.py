@@ -12,8 +12,11 @@ from hypothesis import strategies as st
 
 from mavlink.compare import differences
 from mavlink.dialects import Autopilot, VehicleType, dialect_for
-from mavlink.encode import encode
+from mavlink.encode import EncodeOptions, encode
 from mavlink.items import MissionItem
+from mavlink.sim.acceptance import as_stored, refusal
+from mavlink.sim.geodesy import Place
+from mavlink.sim.modes import Flavour
 from tests.mavlink.plans import make_plan
 
 KINDS: list[tuple[Autopilot, VehicleType]] = [
@@ -75,6 +78,31 @@ def test_every_other_change_is_a_difference(
     held[index] = replace(held[index], **{field: changed})
     found = differences(mission.mission, tuple(held), mission.dialect)
     assert [(difference.seq, difference.field) for difference in found] == [(held[index].seq, field)]
+
+
+@pytest.mark.parametrize(("autopilot", "kind"), KINDS)
+def test_the_simulated_vehicle_stores_what_the_dialect_expects(
+    autopilot: Autopilot, kind: VehicleType
+) -> None:
+    """The simulator's tables were written apart from the dialects: both agree on every list of a mission."""
+    options = EncodeOptions(rally_at_home=True)
+    mission = encode(make_plan(autopilot=autopilot, vehicle_type=kind, altitude_m=123.45), options=options)
+    flavour = Flavour.ARDUPILOT if autopilot == "ardupilot" else Flavour.PX4
+    home = Place(33.5, -117.7, 20.0)
+    for items in (mission.mission, mission.fence, mission.rally):
+        assert [item for item in items if refusal(flavour, item, len(items)) is not None] == []
+        held = tuple(as_stored(flavour, item, home) for item in items)
+        assert differences(items, held, mission.dialect) == ()
+
+
+@pytest.mark.parametrize(("frame", "same"), [(0, False), (3, True), (6, True), (10, False)])
+def test_integer_frames_mean_the_same(frame: int, same: bool) -> None:
+    """Frame 6 for 3 is no difference, a frame with another datum is."""
+    mission = encode(make_plan())
+    held = list(as_vehicle(mission.mission, "ardupilot", "fixed_wing"))
+    held[-1] = replace(held[-1], frame=frame)
+    found = differences(mission.mission, tuple(held), mission.dialect)
+    assert [difference.field for difference in found] == ([] if same else ["frame"])
 
 
 def test_nan_equals_nan_and_nothing_else() -> None:
