@@ -1,0 +1,131 @@
+"""The client against the simulated aircraft's named faults: what it says of each upload is so."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+from collections.abc import AsyncIterator
+from dataclasses import replace
+from functools import partial
+
+from mavlink.client import VehicleClient
+from mavlink.compare import differences
+from mavlink.dialects import dialect_for
+from mavlink.items import Command, MissionItem, MissionType
+from mavlink.link import memory_pair
+from mavlink.sim.faults import Fault
+from mavlink.sim.modes import Flavour
+from mavlink.sim.run import serve_link
+from mavlink.sim.settings import SimSettings
+from mavlink.transfer.machine import TransferSettings
+from mavlink.transfer.outcome import Refused, Unknown
+from mavlink.verify import Compare, VerifiedUpload
+
+# The count and questions are repeated early; the patience with a vehicle that asks again each second stays.
+QUICK = TransferSettings(timeout_s=0.2, retries=3, silence_s=2.5, acknowledgement_s=1.5)
+ITEMS = (
+    MissionItem(0, 0, Command.NAV_WAYPOINT, x=473_977_000, y=85_456_000, z=488.0),
+    MissionItem(1, 3, Command.NAV_TAKEOFF, 15.0, x=473_990_000, y=85_456_000, z=80.0),
+    *[
+        MissionItem(seq, 3, Command.NAV_WAYPOINT, x=473_990_000 + 9_000 * seq, y=85_456_000, z=100.0)
+        for seq in range(2, 12)
+    ],
+    MissionItem(12, 2, Command.NAV_RETURN_TO_LAUNCH),
+)
+
+
+def mission(flavour: Flavour) -> tuple[MissionItem, ...]:
+    """Home row, take-off, ten waypoints and the way home; PX4 has no home row, and frame 6 for 3."""
+    if flavour is Flavour.ARDUPILOT:
+        return ITEMS
+    return tuple(
+        replace(
+            item,
+            seq=item.seq - 1,
+            frame=6 if item.frame == 3 else item.frame,
+            param1=0.0,
+            current=item.seq == 1,
+        )
+        for item in ITEMS[1:]
+    )
+
+
+@contextlib.asynccontextmanager
+async def simulated(flavour: Flavour, *faults: Fault) -> AsyncIterator[VehicleClient]:
+    """A client connected to a simulated aircraft with faults."""
+    ground, air = memory_pair()
+    settings = SimSettings(autopilot=flavour, faults=faults, vanish_for_s=2.0)
+    stop = asyncio.Event()
+    flight = asyncio.create_task(serve_link(air, settings, stop=stop))
+    try:
+        async with VehicleClient(ground, settings=QUICK, lost_after_s=1.5) as client:
+            await client.connect(10)
+            yield client
+    finally:
+        stop.set()
+        await flight
+        await air.close()
+
+
+EXPECTED = {
+    Fault.NO_RESPONSE_TO_COUNT: ("different", Unknown),
+    Fault.WRONG_SEQUENCE_REQUEST: ("stored", None),
+    Fault.ERROR_ACK_AT_0: ("refused", Refused),
+    Fault.ERROR_ACK_AT_1: ("refused", Refused),
+    Fault.NO_FINAL_ACK: ("stored", None),
+    Fault.EARLY_ACK: ("different", Unknown),
+    Fault.LOST_ITEMS: ("stored", None),
+    Fault.LOST_REQUESTS: ("stored", None),
+    Fault.ALTERED_ITEM: ("different", None),
+    Fault.NO_RESPONSE_TO_LIST: ("unknown", Unknown),
+    Fault.LOST_DOWNLOAD_ITEMS: ("stored", None),
+}
+
+
+def comparison(flavour: Flavour) -> Compare:
+    return partial(differences, dialect=dialect_for(flavour.value, "fixed_wing"))
+
+
+async def test_every_fault_has_its_word() -> None:
+    """What is stored is called stored, and nothing else is; all faults of both autopilots at once."""
+
+    async def upload(flavour: Flavour, fault: Fault) -> VerifiedUpload:
+        async with simulated(flavour, fault) as client:
+            return await client.upload_verified(mission(flavour), MissionType.MISSION, comparison(flavour))
+
+    cases = [(flavour, fault) for flavour in Flavour for fault in EXPECTED]
+    results = await asyncio.gather(*[upload(flavour, fault) for flavour, fault in cases])
+    for (flavour, fault), result in zip(cases, results, strict=True):
+        status, outcome = EXPECTED[fault]
+        assert result.status == status, f"{flavour} {fault}: {result}"
+        assert outcome is None or isinstance(result.outcome, outcome), f"{flavour} {fault}: {result}"
+
+
+async def test_an_aircraft_that_vanishes_is_resolved_on_its_return() -> None:
+    """Unknown while it is away; when it is back the read-back shows that the upload did not take."""
+
+    async def vanish(flavour: Flavour) -> None:
+        async with simulated(flavour, Fault.VANISH_MID_UPLOAD) as client:
+            compare = comparison(flavour)
+            result = await client.upload_verified(mission(flavour), MissionType.MISSION, compare)
+            assert (result.status, result.held, client.pending) == ("unknown", None, True)
+            await client.wait_for(lambda state: state.connected, 10)
+            resolved = await client.resolve_pending()
+            assert resolved is not None
+            assert resolved.held is not None
+            assert resolved.status == "different"
+            result = await client.upload_verified(mission(flavour), MissionType.MISSION, compare)
+            assert result.status == "stored"
+
+    await asyncio.gather(*[vanish(flavour) for flavour in Flavour])
+
+
+async def test_commands_without_an_answer_and_denied() -> None:
+    """Silence is not success, and a denial is named."""
+    async with simulated(Flavour.ARDUPILOT, Fault.NO_COMMAND_ACK) as client:
+        outcome = await client.arm()
+        assert outcome.result is None
+    async with simulated(Flavour.ARDUPILOT, Fault.DENY_ARM) as client:
+        outcome = await client.arm()
+        assert outcome.result is not None
+        assert not outcome.accepted
