@@ -144,13 +144,18 @@ def _global_position(state: VehicleState, message: Message) -> VehicleState:
 
 
 def _attitude(state: VehicleState, message: Message) -> VehicleState:
-    roll, pitch, yaw = (math.degrees(message.number(name)) for name in ("roll", "pitch", "yaw"))
-    return replace(state, roll_deg=roll, pitch_deg=pitch, heading_deg=yaw % 360.0)
+    roll, pitch, yaw = (finite(message, name) for name in ("roll", "pitch", "yaw"))
+    return replace(
+        state,
+        roll_deg=None if roll is None else math.degrees(roll),
+        pitch_deg=None if pitch is None else math.degrees(pitch),
+        heading_deg=state.heading_deg if yaw is None else math.degrees(yaw) % 360.0,
+    )
 
 
 def _vfr_hud(state: VehicleState, message: Message) -> VehicleState:
     return replace(
-        state, airspeed_m_s=message.number("airspeed"), ground_speed_m_s=message.number("groundspeed")
+        state, airspeed_m_s=finite(message, "airspeed"), ground_speed_m_s=finite(message, "groundspeed")
     )
 
 
@@ -226,6 +231,12 @@ def _status_text(state: VehicleState, message: Message) -> VehicleState:
         return replace(state, texts=(*texts[:-1], replace(texts[-1], text=texts[-1].text + text)))
     entry = StatusText(heard_s, message.integer("severity"), text, identity)
     return replace(state, texts=(*texts[1 - _KEPT_TEXTS :], entry))
+
+
+def finite(message: Message, name: str) -> float | None:
+    """A float field; None for NaN and infinity, the wire's words for "not measured"."""
+    value = message.number(name)
+    return value if math.isfinite(value) else None
 
 
 def is_sensor_switch(message: Message) -> bool:

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Final, Literal
 
 from mavlink.messages import Message
-from mavlink.telemetry import VehicleState, is_sensor_switch
+from mavlink.telemetry import VehicleState, finite, is_sensor_switch
 
 # Older than this before the last point is a reboot, not a datagram that was overtaken.
 _REBOOT_S: Final = 5.0
@@ -145,7 +145,7 @@ class TrackRecorder:
     def _photo(self, message: Message, state: VehicleState) -> None:
         if message.name == "CAMERA_FEEDBACK":
             index, lon = message.integer("img_idx"), message.integer("lng")
-            relative_m, time_s = message.number("alt_rel"), state.time_s
+            relative_m, time_s = finite(message, "alt_rel"), state.time_s
         else:
             if message.integer("capture_result") != 1:
                 return
