@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from mavlink.items import MissionItem, MissionResult, MissionType
 from mavlink.messages import Message
-from mavlink.sim.commands import carry_out, change_mode, order_of
+from mavlink.sim.commands import CommandResult, carry_out, change_mode, order_of
 from mavlink.sim.dynamics import AircraftState
 from mavlink.sim.executor import Do, Landed, Reached, Said, place_of
 from mavlink.sim.faults import Fault, parse_faults
@@ -191,7 +191,12 @@ class SimulatedAircraft:
 
     def _command(self, message: Message) -> list[Message]:
         order = order_of(message)
-        result, said = carry_out(self, order)
+        try:
+            result, said = carry_out(self, order)
+        except (ValueError, OverflowError):
+            # A NaN or an infinity where a whole number is meant.
+            result = CommandResult.DENIED
+            said = [status_text(4, f"Command {order.command}: bad parameter")]
         if Fault.NO_COMMAND_ACK in self._faults:
             return said
         fields = {

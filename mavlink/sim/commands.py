@@ -137,10 +137,7 @@ def carry_out(aircraft: Aircraft, order: Order) -> Outcome:
             pilot.change_speed(order.item)
             return _OK
         case Command.DO_SET_HOME:
-            aircraft.move_home(
-                state.place if order.param1 == 1.0 else place_of(replace(order.item, frame=0), pilot.home)
-            )
-            return CommandResult.ACCEPTED, _now(aircraft, "HOME_POSITION")
+            return _set_home(aircraft, order)
         case Command.SET_MESSAGE_INTERVAL:
             name = NAMES.get(int(order.param1))
             if name is None:
@@ -200,12 +197,22 @@ def _start(aircraft: Aircraft) -> Outcome:
     return result, said + more
 
 
+def _set_home(aircraft: Aircraft, order: Order) -> Outcome:
+    home = aircraft.state.place
+    if order.param1 != 1.0:
+        home = place_of(replace(order.item, frame=Frame.GLOBAL), home)
+    if not (math.isfinite(home.altitude_m) and abs(home.lat_deg) <= 89.0 and abs(home.lon_deg) <= 180.0):
+        return _denied("Home denied: no such place")
+    aircraft.move_home(home)
+    return CommandResult.ACCEPTED, _now(aircraft, "HOME_POSITION")
+
+
 def _reposition(aircraft: Aircraft, order: Order) -> Outcome:
     state, pilot = aircraft.state, aircraft.pilot
     if state.on_ground:
         return _denied("Reposition denied: on the ground")
     place = place_of(order.item, pilot.home)
-    if math.isnan(place.altitude_m):
+    if not math.isfinite(place.altitude_m):
         place = replace(place, altitude_m=state.altitude_m)
     if order.x == 0 and order.y == 0:
         place = replace(place, lat_deg=state.lat_deg, lon_deg=state.lon_deg)

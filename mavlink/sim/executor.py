@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from mavlink.items import Command, Frame, MissionItem
 from mavlink.sim.dynamics import AircraftState, FlightCommand
-from mavlink.sim.geodesy import Place, offset_m
+from mavlink.sim.geodesy import Place
 from mavlink.sim.guidance import PolylineFollower, climb_towards_m_s
 from mavlink.sim.manoeuvres import GoTo, Landing, Loiter, Manoeuvre, Takeoff
 from mavlink.sim.modes import Flavour
@@ -28,6 +29,8 @@ NAVIGATION = frozenset(
 )
 _CONDITIONS = frozenset({Command.CONDITION_DELAY, Command.CONDITION_DISTANCE})
 _MOST_JUMPS_AT_ONCE = 100
+#: PX4 stores -1 repetitions as this.
+_FOR_EVER = 65535
 
 
 @dataclass(frozen=True, slots=True)
@@ -177,9 +180,11 @@ class MissionRun:
         self.finished = True
 
     def _jump(self, item: MissionItem) -> int | None:
-        repeat = int(item.param2)
-        used = self._jumps.get(item.seq, 0)
-        if 0 <= repeat < 65535 and used >= repeat:
+        # PX4 checks neither; a jump to nowhere is passed over.
+        if not (0.0 <= item.param1 < len(self._items) and math.isfinite(item.param2)):
+            return None
+        repeat, used = int(item.param2), self._jumps.get(item.seq, 0)
+        if 0 <= repeat < _FOR_EVER and used >= repeat:
             return None
         self._jumps[item.seq] = used + 1
         self._path = None
@@ -250,7 +255,8 @@ class MissionRun:
     def _loiter(self, item: MissionItem, place: Place) -> Loiter:
         ardupilot = self._settings.autopilot is Flavour.ARDUPILOT
         radius_m = item.param2 if item.command == Command.NAV_LOITER_TO_ALT else item.param3
-        if abs(radius_m) <= 1.0:
+        # Written so that NaN, which PX4 takes, means the default too.
+        if not abs(radius_m) > 1.0:
             radius_m = -self._settings.turn_radius_m if radius_m < 0.0 else self._settings.turn_radius_m
         aligned = item.param1 if item.command == Command.NAV_LOITER_TO_ALT else item.param2
         # ArduPlane leaves every loiter towards the next item; PX4 where the item says so.
@@ -283,8 +289,11 @@ class MissionRun:
         self._path = PolylineFollower(self._tuning, [state.place, *places])
 
     def _placed(self, item: MissionItem, state: AircraftState) -> Place:
-        """Where an item is; without coordinates it is where the aircraft is."""
+        """Where an item is; without coordinates it is where the aircraft is, without altitude as high."""
         place = place_of(item, self._home)
+        if not math.isfinite(place.altitude_m):
+            landing = item.command == Command.NAV_LAND
+            place = replace(place, altitude_m=self._home.altitude_m if landing else state.altitude_m)
         if item.x == 0 and item.y == 0:
             return Place(state.lat_deg, state.lon_deg, place.altitude_m)
         return place
@@ -296,12 +305,6 @@ class MissionRun:
             if item.command in NAVIGATION:
                 return place_of(item, self._home)
         return None
-
-    def distance_to_current_m(self, state: AircraftState) -> float:
-        """Distance to the place of the item being flown."""
-        place = self._placed(self._items[self.current], state)
-        north_m, east_m = offset_m(state.lat_deg, state.lon_deg, place.lat_deg, place.lon_deg)
-        return float((north_m**2 + east_m**2) ** 0.5)
 
 
 def return_home(state: AircraftState, settings: SimSettings, home: Place) -> Manoeuvre:

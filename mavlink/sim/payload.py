@@ -17,7 +17,8 @@ from mavlink.sim.modes import Flavour
 from mavlink.sim.settings import SimSettings
 
 _SERVO_ON_US = 1500.0
-_RELAYS_PRESENT = 0b1111
+_RELAYS = 16
+_RELAYS_PRESENT = (1 << _RELAYS) - 1
 SENSOR_NAME = "SAR_ON"
 
 Params = tuple[float, float, float, float]
@@ -45,7 +46,7 @@ class Payload:
         self._photos = 0
 
     def handle(self, command: int, params: Params, state: AircraftState) -> list[Message] | None:
-        """Carry out a payload command; None when it is none.
+        """Carry out a payload command; None when it is none, or names an output that is not there.
 
         Parameters
         ----------
@@ -57,6 +58,8 @@ class Payload:
         answers: list[Message] = []
         match command:
             case Command.DO_SET_RELAY:
+                if not 0.0 <= p1 < _RELAYS:
+                    return None
                 bit = 1 << int(p1)
                 self._relays = self._relays | bit if p2 else self._relays & ~bit
                 answers.append(self.relay_status(state))

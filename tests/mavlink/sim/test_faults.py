@@ -29,7 +29,7 @@ def station(flavour: Flavour, fault: Fault) -> Station:
     return Station(SimulatedAircraft(settings))
 
 
-def sample(flavour: Flavour) -> list:  # type: ignore[type-arg]
+def sample(flavour: Flavour) -> list:
     return landing_mission([waypoint(0.0, 1000.0)] * 3, home_row=flavour is Flavour.ARDUPILOT)
 
 

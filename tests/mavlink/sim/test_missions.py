@@ -32,7 +32,7 @@ FLAVOURS = list(Flavour)
 
 
 def station(flavour: Flavour, *faults: str, **options: float) -> Station:
-    return Station(SimulatedAircraft(SimSettings(home=HOME, autopilot=flavour, faults=faults, **options)))  # type: ignore[arg-type]
+    return Station(SimulatedAircraft(SimSettings(home=HOME, autopilot=flavour, faults=faults, **options)))
 
 
 def sample(flavour: Flavour, points: int = 5) -> list[MissionItem]:
