@@ -16,10 +16,11 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 from shapely.geometry import MultiPolygon, Polygon
+from shapely.geometry.base import BaseGeometry
 
 from planner.environment.zone_kernels import depths, is_clear
 from planner.route import Pose
-from planner.scenario import NoFlyZone, Obstacle, Point, Scenario, Threat
+from planner.scenario import Point, Scenario
 
 #: A line no deeper than this in a zone touches it and is clear.
 TOUCH_M = 1e-3
@@ -207,11 +208,16 @@ class KeepOut:
 
 @lru_cache(maxsize=1024)
 def _ground(polygons: tuple[Polygon, ...], area: Polygon | MultiPolygon | None) -> Ground:
-    solid = shapely.union_all(polygons)
-    shape, inward = (solid, -1.0) if area is None else (area.difference(solid), 1.0)
+    solid = _areal(shapely.union_all(polygons))
+    shape, inward = (solid, -1.0) if area is None else (_areal(area.difference(solid)), 1.0)
     # Closing what is forbidden is opening what is free.
     closed = shape.buffer(-inward * SEAM_M, join_style="mitre").buffer(inward * SEAM_M, join_style="mitre")
-    return Ground(shape, closed, ring_edges(closed), area is not None)
+    return Ground(shape, _areal(closed), ring_edges(_areal(closed)), area is not None)
+
+
+def _areal(geometry: BaseGeometry) -> Polygon | MultiPolygon:
+    """The geometry where it is polygons; none where there is nothing."""
+    return geometry if isinstance(geometry, Polygon | MultiPolygon) else Polygon()
 
 
 def ring_edges(area: Polygon | MultiPolygon) -> Array:
@@ -238,9 +244,7 @@ def pieces_of(path: Line) -> Array:
     return rows
 
 
-def keep_out(
-    scenario: Scenario, margin_m: float = 0.0, soft: bool = True, home_amsl_m: float | None = None
-) -> KeepOut:
+def keep_out(scenario: Scenario, margin_m: float = 0.0, soft: bool = True) -> KeepOut:
     """What a scenario forbids at its flight altitude.
 
     Parameters
@@ -252,53 +256,27 @@ def keep_out(
         Every zone grows and the area shrinks by this much, besides the clearance of obstacles.
     soft
         Whether soft threats are among the zones, with ``hard=False``.
-    home_amsl_m
-        Height of the ground, where known. Heights above ground and heights amsl cannot be compared without
-        it: then a zone of the other datum counts whatever its height.
     """
-    above_ground_m, amsl_m = _altitudes_m(scenario, home_amsl_m)
     clearance_m = scenario.clearance_m
     discs: list[Disc] = []
     polygons: list[PolygonZone] = []
     for threat in scenario.threats:
-        if (threat.hard or soft) and _threat_counts(threat, above_ground_m):
+        if (threat.hard or soft) and scenario.height_m <= threat.height_m:
             discs.append(Disc(threat.name, *threat.centre, threat.radius_m + margin_m, threat.hard))
     for zone in scenario.no_fly:
-        if not _no_fly_counts(zone, amsl_m):
+        if not zone.floor_m <= scenario.altitude_amsl_m <= zone.ceiling_m:
             continue
         if zone.centre is not None and zone.radius_m is not None:
             discs.append(Disc(zone.name, *zone.centre, zone.radius_m + margin_m, True))
         if zone.area is not None:
             polygons.extend(_inflated(zone.name, zone.area, margin_m))
     for obstacle in scenario.obstacles:
-        if _obstacle_counts(obstacle, above_ground_m, clearance_m):
+        if scenario.height_m <= obstacle.base_m + obstacle.height_m + clearance_m:
             polygons.extend(_inflated(obstacle.name, obstacle.area, margin_m + clearance_m))
     area = scenario.area
     if area is not None and margin_m > 0.0:
         area = area.buffer(-margin_m, join_style="mitre", mitre_limit=MITRE_LIMIT)
     return KeepOut(tuple(discs), tuple(polygons), area)
-
-
-def _altitudes_m(scenario: Scenario, home_amsl_m: float | None) -> tuple[float | None, float | None]:
-    """The flight altitude above ground and above sea level; None where it is not known."""
-    if scenario.altitude_reference == "amsl":
-        above_ground_m = None if home_amsl_m is None else scenario.altitude_m - home_amsl_m
-        return above_ground_m, scenario.altitude_m
-    return scenario.altitude_m, None if home_amsl_m is None else scenario.altitude_m + home_amsl_m
-
-
-def _threat_counts(threat: Threat, above_ground_m: float | None) -> bool:
-    return above_ground_m is None or above_ground_m <= threat.height_m
-
-
-def _no_fly_counts(zone: NoFlyZone, amsl_m: float | None) -> bool:
-    return amsl_m is None or zone.floor_m <= amsl_m <= zone.ceiling_m
-
-
-def _obstacle_counts(obstacle: Obstacle, above_ground_m: float | None, clearance_m: float) -> bool:
-    return above_ground_m is None or (
-        obstacle.base_m - clearance_m <= above_ground_m <= obstacle.height_m + clearance_m
-    )
 
 
 def _inflated(name: str, area: Polygon, margin_m: float) -> list[PolygonZone]:

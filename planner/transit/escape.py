@@ -84,7 +84,7 @@ def _leave(
     """The best way out of the discs that hold the start, the line from there on, and where it begins."""
     best: tuple[Path | None, Path, Anchor] = (None, path, start)
     best_cost = _cost(path, held)
-    exits = []
+    exits: list[tuple[float, int, Path, Anchor]] = []
     for disc in held:
         if not _holds(disc, start) or _holds(disc, goal):
             continue

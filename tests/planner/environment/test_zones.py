@@ -160,15 +160,16 @@ def scenario() -> Scenario:
 
 
 def test_keep_out_takes_what_counts_at_the_flight_altitude() -> None:
-    """Low threats and obstacles do not count; a band in another datum counts until the ground is known."""
-    zones = keep_out(scenario())
+    """Low threats, low obstacles and bands above or below the flight do not count, in either datum."""
+    asked = scenario()
+    zones = keep_out(asked)
     assert [disc.name for disc in zones.discs] == ["soft", "hard", "disc"]
-    assert [zone.name for zone in zones.polygons] == ["band", "mast"]
     assert [disc.hard for disc in zones.discs] == [False, True, True]
-    assert [zone.name for zone in keep_out(scenario(), home_amsl_m=50.0).polygons] == ["mast"]
-    assert [zone.name for zone in keep_out(scenario(), home_amsl_m=200.0).polygons] == ["band", "mast"]
-    assert [disc.name for disc in keep_out(scenario(), soft=False).discs] == ["hard", "disc"]
-    amsl = dataclasses.replace(scenario(), altitude_reference="amsl")
+    assert [zone.name for zone in zones.polygons] == ["mast"]
+    assert [disc.name for disc in keep_out(asked, soft=False).discs] == ["hard", "disc"]
+    high = dataclasses.replace(asked, home_amsl_m=200.0)
+    assert [zone.name for zone in keep_out(high).polygons] == ["band", "mast"]
+    amsl = dataclasses.replace(asked, altitude_reference="amsl", home_amsl_m=460.0)
     assert [zone.name for zone in keep_out(amsl).polygons] == ["mast", "shed"]
     assert "low" in [disc.name for disc in keep_out(amsl).discs]
 
@@ -176,6 +177,7 @@ def test_keep_out_takes_what_counts_at_the_flight_altitude() -> None:
 def test_margins_hold_the_buffered_shapes() -> None:
     """With a margin discs grow, polygons hold shapely's round buffer, the area shrinks into its inverse."""
     asked = scenario()
+    asked = dataclasses.replace(asked, home_amsl_m=200.0)
     zones = keep_out(asked, margin_m=15.0)
     assert zones.discs[0].radius_m == 115.0
     band, mast = (zone.polygon for zone in zones.polygons)
