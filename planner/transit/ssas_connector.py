@@ -46,8 +46,9 @@ class Attempt:
 
     Parameters
     ----------
-    coarse_legs, neighbour_part, coarse_neighbour_angle_rad
-        As in ``SsasParameters``: more legs are shorter, down to the fine leg.
+    coarse_legs, neighbour_part, coarse_neighbour_angle_rad, heuristic_length
+        As in ``SsasParameters``: more legs are shorter, down to the fine leg; a heuristic weight above 1
+        finds sooner, though not the best.
     threats
         Soft threats cost what eqs 12 and 14 say, or are closed unless they hold an anchor, or ignored.
     margins
@@ -63,6 +64,7 @@ class Attempt:
     coarse_legs: float
     neighbour_part: float = 0.5
     coarse_neighbour_angle_rad: float = NEIGHBOUR_ANGLE_RAD
+    heuristic_length: float = 1.0
     threats: Literal["costly", "closed", "ignored"] = "closed"
     margins: float = 1.0
     tight: bool = False
@@ -79,7 +81,8 @@ ATTEMPTS = (
     Attempt(16.0, from_goal=True),
     Attempt(16.0, 0.0, PLACES_ALONE_RAD),
     Attempt(32.0),
-    Attempt(math.inf, tight=True, lead=False),
+    Attempt(math.inf, tight=True, heuristic_length=2.0),
+    Attempt(math.inf, tight=True, heuristic_length=2.0, from_goal=True),
     Attempt(32.0, threats="ignored", margins=0.0),
     Attempt(32.0, threats="ignored", margins=0.0, tight=True, lead=False),
 )
@@ -126,12 +129,11 @@ def connect(
     Raises
     ------
     InfeasibleError
-        Where no attempt gives a line free of hard zones inside the area.
-    OutOfBudgetError
-        The same, where every attempt ended for want of nodes.
+        Where no attempt gives a line free of hard zones inside the area; constraint ``search`` where every
+        attempt ended for want of nodes, so that a way may exist.
     """
     job = _Job(start, goal, scenario, keep_out, radius_m)
-    failures: list[tuple[bool, InfeasibleError | OutOfBudgetError]] = []
+    failures: list[tuple[bool, InfeasibleError]] = []
     clear: list[tuple[Path, SsasResult]] = []
     unclear: list[tuple[float, Path, SsasResult]] = []
     wanted = job.keep_out_wanted()
@@ -143,7 +145,9 @@ def connect(
             break
         try:
             found = job.search(attempt, stop)
-        except (InfeasibleError, OutOfBudgetError) as error:
+        except OutOfBudgetError:
+            continue
+        except InfeasibleError as error:
             failures.append((attempt.threats == "closed", error))
             continue
         path = smooth(found.waypoints, start.angle_rad, goal.angle_rad, radius_m, wanted.clear)
@@ -160,8 +164,7 @@ def connect(
         return min(clear, key=lambda line: line[0].length_m)
     if unclear:
         return min(unclear, key=lambda line: (line[0], line[1].length_m))[1:]
-    # what closed threats made impossible says least about the scenario, a spent budget less than a reason
-    raise min(failures, key=lambda f: (isinstance(f[1], OutOfBudgetError), f[0]))[1]
+    raise job.worst(failures)
 
 
 @dataclass(frozen=True, slots=True)
@@ -190,6 +193,7 @@ class _Job:
             paper,
             fine_leg_m=fine_m,
             coarse_legs=attempt.coarse_legs,
+            heuristic_length=attempt.heuristic_length,
             neighbour_radius_m=paper.neighbour_radius_m * fine_m / paper.fine_leg_m,
             neighbour_part=attempt.neighbour_part,
             neighbour_angle_rad=NEIGHBOUR_ANGLE_RAD,
@@ -308,6 +312,18 @@ class _Job:
             and any(math.dist(place, (disc.east_m, disc.north_m)) < disc.radius_m for place in places)
         }
         return self.keep_out.without(names)
+
+    def worst(self, failures: list[tuple[bool, InfeasibleError]]) -> InfeasibleError:
+        """The first failure that closed threats have no part in, else the first; else the spent budgets."""
+        if failures:
+            return min(failures, key=lambda failure: failure[0])[1]
+        return InfeasibleError(
+            "search",
+            "transit",
+            f"none of {len(ATTEMPTS)} searches from {self.start.position} to {self.goal.position} found a "
+            f"way within {MAX_NODES} nodes",
+            "Connect by tangents, or open the way between the two.",
+        )
 
     def not_clear(self, zones: KeepOut, path: Path) -> InfeasibleError:
         conflict = zones.conflict(path)
