@@ -128,8 +128,7 @@ class KeepOut:
         object.__setattr__(self, "_discs", np.array(discs, dtype=np.float64).reshape(-1, 3))
         object.__setattr__(self, "_edges", (edges, offsets))
         object.__setattr__(self, "_area", np.empty((0, 4)) if self.area is None else ring_edges(self.area))
-        barrier = self._area if not self.polygons else self.ground().edges
-        object.__setattr__(self, "_barrier", barrier)
+        object.__setattr__(self, "_barrier", self.ground().edges)
 
     def disc_array(self) -> Array:
         """Discs, float64, shape (K, 3): east_m, north_m, radius_m. Not to be written to."""
@@ -190,11 +189,12 @@ class KeepOut:
         if depth_m <= TOUCH_M:
             return []
         where = shapely.Point(east_m, north_m)
-        return [
+        squeezed = [
             Conflict(zone.name, (east_m, north_m), depth_m, zone.hard)
             for zone in self.polygons
             if zone.polygon.distance(where) <= 4.0 * SEAM_M
         ]
+        return squeezed or [Conflict(AREA, (east_m, north_m), depth_m, True)]
 
     def without(self, names: Collection[str]) -> KeepOut:
         """The same without the zones of these names; ``"area"`` takes the area away."""

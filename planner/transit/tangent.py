@@ -64,6 +64,9 @@ def connect(start: Anchor, goal: Anchor, keep_out: KeepOut, radius_m: float, sto
     """
     if not (radius_m > 0.0 and math.isfinite(radius_m)):
         raise ValueError(f"the turn radius must be positive and finite, not {radius_m}")
+    for end in (start, goal):
+        if not all(map(math.isfinite, (end.east_m, end.north_m, end.angle_rad or 0.0))):
+            raise ValueError(f"an end of a transit must be finite, not {end}")
     zones, held = _without_held_ends(start, goal, keep_out)
 
     def solve(a: Anchor, b: Anchor, kept: KeepOut) -> Path | None:

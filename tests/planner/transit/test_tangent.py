@@ -332,10 +332,20 @@ def test_enclosed_goal_is_refused() -> None:
 
 
 def test_stops_when_told() -> None:
-    """A search ends with CancelledError once asked to stop, and a bad radius is refused."""
+    """A search ends with CancelledError once asked to stop; a bad radius or a bad end is refused."""
     zones = KeepOut((Disc("d", 0.0, 0.0, 500.0, True),))
     with pytest.raises(CancelledError):
         connect(Anchor(-1000.0, 0.0), Anchor(1000.0, 0.0), zones, RADIUS_M, stop=lambda: True)
     for radius_m in (0.0, -1.0, math.nan, math.inf):
         with pytest.raises(ValueError, match="radius"):
             connect(Anchor(-1000.0, 0.0), Anchor(1000.0, 0.0), zones, radius_m)
+    with pytest.raises(ValueError, match="finite"):
+        connect(Anchor(math.nan, 0.0), Anchor(1000.0, 0.0), zones, RADIUS_M)
+
+
+def test_narrow_neck_of_the_area_is_closed() -> None:
+    """Two rooms of the area joined by a neck of a millimetre are not joined."""
+    area = box(-1000, -500, 0, 500).union(box(0, -0.0005, 50, 0.0005)).union(box(50, -500, 1000, 500))
+    with pytest.raises(InfeasibleError) as caught:
+        connect(Anchor(-500.0, 0.0), Anchor(500.0, 0.0), KeepOut(area=area), RADIUS_M)
+    assert caught.value.constraint == "area"
