@@ -60,6 +60,8 @@ def encode(
     task = task_of(plan, vehicle, autopilot, options)
     payload, payload_notes = _payload(task)
     on, off = _switches(task, payload)
+    unlisted = sorted({item.command for item in (on, off) if not task.dialect.knows(item.command)})
+    payload_notes += tuple(f"it is not known whether {task.dialect.name} takes command {n}" for n in unlisted)
     first, last = beginning(task), ending(task)
     stops = stops_along(task.path, task.collects, task.local, options.chord_error_m, options.off_delay_m)
     home = [home_item(plan.home, options.home_altitude_m)] if task.dialect.home_row else []

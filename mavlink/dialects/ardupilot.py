@@ -21,6 +21,7 @@ from mavlink.dialects.base import (
     list_findings,
     mission_type_of,
     place_findings,
+    unlisted_finding,
 )
 from mavlink.items import Command, Frame, MissionItem, MissionResult, MissionType
 
@@ -113,6 +114,17 @@ _COPTER: Mapping[int, _Row] = MappingProxyType(
     }
 )
 
+#: Drew UNSUPPORTED, on both vehicles; Plane refuses splines too.
+_REFUSED = frozenset(
+    {
+        Command.DO_SET_ACTUATOR,
+        Command.DO_SET_ROI_LOCATION,
+        Command.DO_SET_ROI_NONE,
+        Command.DO_SET_CAM_TRIGG_INTERVAL,
+        Command.DO_TRIGGER_CONTROL,
+    }
+)
+
 #: Commands stored with a place; all others come back in frame 0 without one.
 _PLACED = frozenset(
     {
@@ -171,15 +183,20 @@ class ArduPilotDialect:
     mav_type: int
     limits: Mapping[MissionType, int]
     table: Mapping[int, _Row] = field(repr=False)
+    refused: frozenset[int] = field(repr=False)
     autopilot: Autopilot = "ardupilot"
     firmware_type: int = 3
     home_row: bool = True
 
+    def knows(self, command: int) -> bool:
+        """Whether a table says if the command is taken in missions."""
+        return command in self.table or command in self.refused
+
     def answer(self, item: MissionItem) -> MissionResult:
-        """What the autopilot answers to one item, looked at by itself."""
+        """What the autopilot answers to one item, looked at by itself; ACCEPTED to commands in no table."""
         if item.mission_type != MissionType.MISSION or item.seq == 0:
             return MissionResult.ACCEPTED
-        if item.command not in self.table:
+        if item.command in self.refused:
             return MissionResult.UNSUPPORTED
         taken = _NAN_TAKEN.get(item.command, frozenset())
         for name in PARAMETERS:
@@ -218,6 +235,8 @@ class ArduPilotDialect:
             )
         for item in items[1:]:
             result = self.answer(item)
+            if not self.knows(item.command):
+                yield unlisted_finding(self.name, item)
             if result == MissionResult.UNSUPPORTED:
                 yield DialectFinding(
                     "unsupported-command", f"{self.name} has no command {item.command}", item.seq
@@ -327,6 +346,7 @@ def ardupilot_dialect(
 ) -> ArduPilotDialect:
     """ArduPlane for fixed wings and VTOL, ArduCopter for multirotors."""
     if vehicle_type == "multirotor":
-        return ArduPilotDialect("ArduCopter", vehicle_type, 2, {MissionType.MISSION: 650}, _COPTER)
+        return ArduPilotDialect("ArduCopter", vehicle_type, 2, {MissionType.MISSION: 650}, _COPTER, _REFUSED)
     mav_type = 1 if vehicle_type == "fixed_wing" else 20
-    return ArduPilotDialect("ArduPlane", vehicle_type, mav_type, {MissionType.MISSION: 655}, _PLANE)
+    refused = _REFUSED | {Command.NAV_SPLINE_WAYPOINT}
+    return ArduPilotDialect("ArduPlane", vehicle_type, mav_type, {MissionType.MISSION: 655}, _PLANE, refused)

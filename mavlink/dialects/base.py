@@ -86,8 +86,11 @@ class Dialect(Protocol):
     def limits(self) -> Mapping[MissionType, int]:
         """Most items of a list, home row included; a type that is absent has no known limit."""
 
+    def knows(self, command: int) -> bool:
+        """Whether a table says if the command is taken in missions."""
+
     def answer(self, item: MissionItem) -> MissionResult:
-        """What the autopilot answers to one item, looked at by itself."""
+        """What the autopilot answers to one item, looked at by itself; ACCEPTED to commands in no table."""
 
     def check(self, items: tuple[MissionItem, ...]) -> tuple[DialectFinding, ...]:
         """Everything wrong with a list; empty when it may be uploaded. No items mean "clear"."""
@@ -143,6 +146,16 @@ def list_findings(
             yield DialectFinding(
                 "mixed-types", f"of type {item.mission_type.name} in a {kind.name} list", item.seq
             )
+
+
+def unlisted_finding(name: str, item: MissionItem) -> DialectFinding:
+    """A command in no table: somebody's own firmware may take it."""
+    return DialectFinding(
+        "unlisted-command",
+        f"it is not known whether {name} takes command {item.command}: its answer will tell",
+        item.seq,
+        severity="warning",
+    )
 
 
 def place_findings(item: MissionItem, zero_means_here: bool) -> Iterator[DialectFinding]:

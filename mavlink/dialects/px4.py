@@ -16,6 +16,7 @@ from mavlink.dialects.base import (
     list_findings,
     mission_type_of,
     place_findings,
+    unlisted_finding,
 )
 from mavlink.dialects.px4_feasibility import feasibility_findings
 from mavlink.items import Command, Frame, MissionItem, MissionResult, MissionType
@@ -81,6 +82,20 @@ _PLACELESS = frozenset(
         Command.DO_GIMBAL_MANAGER_PITCHYAW,
     }
 )
+#: Drew UNSUPPORTED in every frame.
+_REFUSED = frozenset(
+    {
+        Command.NAV_LOITER_TURNS,
+        Command.NAV_SPLINE_WAYPOINT,
+        Command.CONDITION_YAW,
+        Command.DO_SET_RELAY,
+        Command.DO_SET_SERVO,
+        Command.DO_FENCE_ENABLE,
+        Command.DO_PARACHUTE,
+        Command.SET_CAMERA_ZOOM,
+        Command.JUMP_TAG,
+    }
+)
 #: Accepted by the protocol; the mission is then invalid.
 _ACCEPTED_YET_INVALID = frozenset({Command.CONDITION_DELAY, Command.CONDITION_DISTANCE})
 #: With a place (param 1 is 3) in a global frame, without one in frame 2.
@@ -111,7 +126,7 @@ class Px4Dialect:
     Parameters
     ----------
     limits
-        Items by type; ``replace`` it for a board that holds more missions items.
+        Items by type; ``replace`` it for a board that holds more items.
     landing_required
         MIS_TKO_LAND_REQ of 2 and more: missions must end in a landing, and RTL does not count.
     max_landing_slope_deg
@@ -131,8 +146,14 @@ class Px4Dialect:
     firmware_type: int = 12
     home_row: bool = False
 
+    def knows(self, command: int) -> bool:
+        """Whether a table says if the command is taken in missions."""
+        return any(
+            command in commands for commands in (_PLACED, _PLACELESS, _REFUSED, _ACCEPTED_YET_INVALID, _ROI)
+        )
+
     def answer(self, item: MissionItem) -> MissionResult:
-        """What the autopilot answers to one item, looked at by itself."""
+        """What the autopilot answers to one item, looked at by itself; ACCEPTED to commands in no table."""
         if item.mission_type != MissionType.MISSION:
             return MissionResult.ACCEPTED if item.frame in _FRAMES else MissionResult.UNSUPPORTED_FRAME
         if item.frame not in _FRAMES and item.frame != Frame.MISSION:
@@ -145,6 +166,8 @@ class Px4Dialect:
                 else item.param1 in _ROI_WITHOUT_PLACE
             )
             return MissionResult.ACCEPTED if taken else MissionResult.INVALID_PARAM1
+        if not self.knows(item.command):
+            return MissionResult.ACCEPTED
         if placed:
             known = item.command in _PLACED
         else:
@@ -175,6 +198,8 @@ class Px4Dialect:
             yield DialectFinding("current-not-first", "item 0 must be marked current", 0)
         for item in items:
             result = self.answer(item)
+            if not self.knows(item.command):
+                yield unlisted_finding(self.name, item)
             if result == MissionResult.UNSUPPORTED:
                 where = "frame 2" if item.frame == Frame.MISSION else "a global frame"
                 yield DialectFinding(

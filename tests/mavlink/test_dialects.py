@@ -99,7 +99,7 @@ def test_ardupilot_refuses_local_frames(frame: int) -> None:
     assert PLANE.answer(item(Command.NAV_WAYPOINT, frame=frame)) == MissionResult.UNSUPPORTED_FRAME
 
 
-@pytest.mark.parametrize("command", [195, 197, 214, 2003])
+@pytest.mark.parametrize("command", [195, 197, 214, 2003, 187])
 def test_ardupilot_refuses_commands(command: int) -> None:
     """ROI by location, ROI none, trigger by interval and trigger control are unknown."""
     assert PLANE.answer(order(command)) == MissionResult.UNSUPPORTED
@@ -206,6 +206,16 @@ def test_px4_accepts_conditions_and_then_has_no_valid_mission(command: int) -> N
     """CONDITION_DELAY and CONDITION_DISTANCE are accepted, and the mission is invalid."""
     assert PX4_ROTOR.answer(order(command)) == MissionResult.ACCEPTED
     assert "invalidates-mission" in rules(PX4_ROTOR, item(Command.NAV_TAKEOFF), order(command))
+
+
+@pytest.mark.parametrize("dialect", ALL)
+def test_commands_in_no_table_are_let_through_with_a_warning(dialect: Dialect) -> None:
+    """A command of somebody's own firmware is for the vehicle to refuse."""
+    own = order(31010, 1.0)
+    first = home_item(HERE, 0.0) if dialect.home_row else item(Command.NAV_TAKEOFF)
+    assert dialect.answer(own) == MissionResult.ACCEPTED
+    found = [finding for finding in dialect.check(numbered([first, own])) if finding.seq == 1]
+    assert [(finding.rule, finding.severity) for finding in found] == [("unlisted-command", "warning")]
 
 
 def test_px4_alters_parameters_as_measured() -> None:

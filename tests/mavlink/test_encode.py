@@ -416,6 +416,15 @@ def test_payloads_become_items(payload: object, on: tuple[float, ...], off: tupl
     assert switches == [on, off, on, off]
 
 
+def test_a_command_of_ones_own_firmware_is_sent_with_a_note() -> None:
+    """Nothing is known of it, so the vehicle's answer decides."""
+    own = CommandPayload(31010, (1, 0, 0, 0, 0, 0, 0), 31010, (0, 0, 0, 0, 0, 0, 0))
+    for autopilot in ("ardupilot", "px4"):
+        mission = encode(make_plan(), autopilot=autopilot, options=EncodeOptions(payload=own))
+        assert any("31010" in note for note in mission.notes)
+        assert {f.severity for f in mission.dialect.check(mission.mission)} == {"warning"}
+
+
 def test_px4_is_given_an_actuator_for_a_relay_and_told_so() -> None:
     """PX4 refuses relays: relay 2 becomes actuator 3, the others unchanged, with a note."""
     mission = encode(make_plan(), autopilot="px4", options=EncodeOptions(payload=RelayPayload(2)))
