@@ -52,7 +52,8 @@ def messages(draw: st.DrawFn) -> Message:
     name = draw(st.one_of(st.sampled_from(KNOWN), st.sampled_from(sorted(IDS))))
     definition = dialect.mavlink_map[IDS[name]]
     size = definition.unpacker.size
-    payload = draw(st.binary(min_size=size, max_size=size))
+    not_a_number = (b"\x00\x00\xc0\x7f" * size)[:size]
+    payload = draw(st.one_of(st.binary(min_size=size, max_size=size), st.just(not_a_number)))
     head = struct.pack("<BBBBBBHB", size, 0, 0, 0, 1, 1, IDS[name] & 0xFFFF, IDS[name] >> 16)
     crc = dialect.x25crc(head + payload + bytes([definition.crc_extra])).crc
     (message,) = Codec().feed(b"\xfd" + head + payload + struct.pack("<H", crc))

@@ -117,6 +117,18 @@ def test_what_is_not_known_stays_none_or_as_it_was() -> None:
     assert (state.gps_fix, state.landed) == ("3d", None)
 
 
+def test_non_numbers_are_not_measurements() -> None:
+    """NaN attitude and speed are None; the heading known before stays."""
+    nan = math.nan
+    state = after(
+        POSITION,
+        received("ATTITUDE", roll=nan, pitch=nan, yaw=nan),
+        received("VFR_HUD", airspeed=nan, groundspeed=math.inf),
+    )
+    assert (state.roll_deg, state.pitch_deg, state.heading_deg) == (None, None, 270.5)
+    assert (state.airspeed_m_s, state.ground_speed_m_s) == (None, None)
+
+
 def test_everything_else_a_state_is_made_of() -> None:
     """Attitude, speeds, battery, home, mission, landing state and the sensor's switch."""
     state = after(
