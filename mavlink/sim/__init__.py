@@ -1,1 +1,17 @@
-"""A simulated aircraft: its own dynamics, guidance and vehicle side of the protocol."""
+"""A simulated aircraft: its own dynamics, guidance and vehicle side of the protocol.
+
+It shares no geometry, guidance or dialect with the planner or the encoder, so that it can disagree with them. One
+fixed wing is simulated, behind the manners of ArduPlane or PX4::
+
+    run ── autopilot ─┬─ missions (acceptance, faults)      what it is told to fly
+                      ├─ commands, parameters, telemetry    what it is told and tells
+                      ├─ pilot ── executor ── manoeuvres    what it does now
+                      │                └───── guidance      how it steers
+                      ├─ payload                            what the sensor does
+                      └─ dynamics: kinematic or jsbsim_model, over geodesy
+
+What it is not: it follows the polyline of its waypoints more tightly than either autopilot with default tuning, so a
+mission that it flies well may still be flown wide by a real aircraft (``l1_period_s`` 15 and ``acceptance_m`` 50
+come closer to ArduPlane's defaults). Fences and rally points are stored, not obeyed; the ground is flat; wind does
+not depend on height; PX4's reasons for refusing a mission come as STATUSTEXT, not as EVENT. Multirotors are refused.
+"""

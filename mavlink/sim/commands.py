@@ -138,6 +138,8 @@ def carry_out(aircraft: Aircraft, order: Order) -> Outcome:
             return _OK
         case Command.DO_SET_HOME:
             return _set_home(aircraft, order)
+        case Command.DO_FENCE_ENABLE if aircraft.settings.autopilot is Flavour.ARDUPILOT:
+            return CommandResult.ACCEPTED, [status_text(_WARNING, "Fence is stored, not enforced, here")]
         case Command.SET_MESSAGE_INTERVAL:
             name = NAMES.get(int(order.param1))
             if name is None:

@@ -268,6 +268,14 @@ def test_an_infeasible_upload_drops_px4_to_hold() -> None:
     assert s.aircraft.mode is Mode.LOITER
 
 
+def test_switching_the_fence_on_says_what_it_is_worth() -> None:
+    """ArduPilot takes the order and says that nothing enforces it; PX4 has no such command."""
+    s = station(Flavour.ARDUPILOT)
+    assert s.command(Command.DO_FENCE_ENABLE, 1.0) == 0
+    assert any("not enforced" in text for text in s.texts())
+    assert station(Flavour.PX4).command(Command.DO_FENCE_ENABLE, 1.0) == 3
+
+
 def test_set_mode_is_understood() -> None:
     """SET_MODE changes the mode by its number; a number not simulated changes nothing and says so."""
     s = loaded(Flavour.PX4)
