@@ -410,10 +410,11 @@ async def test_a_process_that_stood_still_has_not_lost_its_vehicle() -> None:
 
     async with aircraft, VehicleClient(ground, clock=lambda: loop.time() + jump_s) as client:
         await client.connect(5)
+        while beats() == 0:
+            await asyncio.sleep(0.01)
         aircraft.vanish()
         jump_s = 60.0
-        before = beats()
-        # Our next heartbeat shows that the client has looked at its clock.
-        while beats() == before:
+        # Our second heartbeat shows that the client has looked at its clock.
+        while beats() == 1:
             await asyncio.sleep(0.01)
         assert client.state.connected
