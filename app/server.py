@@ -16,7 +16,7 @@ from app.logging import configure
 from app.main import create_app
 from app.services.documents import write_json
 from app.services.errors import ServiceError
-from app.services.house import House
+from app.services.house import House, Limits
 from app.settings import Settings
 
 log = structlog.get_logger(__name__)
@@ -65,10 +65,15 @@ class _Server(uvicorn.Server):
             self._listening()
 
 
-def run_server(settings: Settings, welcome: Welcome, announce: Callable[[str], None]) -> None:
+def run_server(
+    settings: Settings,
+    welcome: Welcome,
+    announce: Callable[[str], None],
+    build_house: Callable[[Limits], House] = House,
+) -> None:
     """Serve until a signal; ``announce`` gets the address once requests are answered."""
     configure(settings.log_level)
-    app = create_app(settings)
+    app = create_app(settings, build_house)
     config = uvicorn.Config(
         app,
         host=settings.host,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import AsyncIterator
+from collections.abc import AsyncGenerator
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Header, Query, Request, Response
@@ -11,6 +11,7 @@ from sse_starlette import EventSourceResponse, ServerSentEvent
 from app.deps import PlanningDep, SettingsDep
 from app.problems import responses
 from app.routers.bodies import SCENARIO_BODY
+from app.routers.streams import event_stream
 from app.schemas import PlanList, PlanOut, PlanStateName
 from app.services.documents import read_object
 
@@ -87,12 +88,12 @@ async def plan_events(plan_id: str, planning: PlanningDep) -> EventSourceRespons
     """Server-sent events from now to the plan's end; of a plan that has ended, its end state."""
     await planning.get(plan_id)
 
-    async def stream() -> AsyncIterator[ServerSentEvent]:
+    async def stream() -> AsyncGenerator[ServerSentEvent, None]:
         async for record in planning.events(plan_id):
             name = record.state if record.ended else "progress"
             yield ServerSentEvent(PlanOut.of(record).model_dump_json(), event=name)
 
-    return EventSourceResponse(stream(), ping=15)
+    return event_stream(stream())
 
 
 @router.delete(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import AsyncIterator
+from collections.abc import AsyncGenerator
 from typing import Annotated
 
 from fastapi import APIRouter, Query, Response
@@ -10,6 +10,7 @@ from sse_starlette import EventSourceResponse, ServerSentEvent
 
 from app.deps import FleetDep
 from app.problems import responses
+from app.routers.streams import event_stream
 from app.schemas_vehicles import (
     ClearedOut,
     CommandIn,
@@ -75,11 +76,11 @@ async def telemetry(vehicle_id: str, fleet: FleetDep) -> EventSourceResponse:
     """Server-sent events until the vehicle is let go."""
     fleet.get(vehicle_id)
 
-    async def stream() -> AsyncIterator[ServerSentEvent]:
+    async def stream() -> AsyncGenerator[ServerSentEvent, None]:
         async for vehicle in fleet.telemetry(vehicle_id):
             yield ServerSentEvent(VehicleOut.of(vehicle).model_dump_json(), event="state")
 
-    return EventSourceResponse(stream(), ping=15)
+    return event_stream(stream())
 
 
 @router.post(

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from pathlib import Path
+from typing import Any
 
 import httpx
 import pytest
@@ -12,7 +14,9 @@ from fastapi import FastAPI
 
 from app.logging import configure
 from app.main import create_app
+from app.routers.bodies import EXAMPLE
 from app.services.house import House, Limits
+from app.services.work import plan_scenario
 from app.settings import Settings
 from tests.app import fakes
 
@@ -49,3 +53,32 @@ async def client(settings: Settings) -> AsyncIterator[httpx.AsyncClient]:
     """A client of a service with a stand-in for the planner."""
     async with serving(create_app(settings, fake_house)) as client:
         yield client
+
+
+@pytest.fixture(scope="session")
+def plan_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A file with the plan of the example."""
+    result = plan_scenario(json.dumps(EXAMPLE), "/dev/null")
+    assert result.plan is not None
+    path = tmp_path_factory.mktemp("plan") / "plan.geojson"
+    path.write_text(result.plan)
+    return path
+
+
+@pytest.fixture
+async def plan_id(client: httpx.AsyncClient, plan_file: Path) -> str:
+    """The id of a plan of the example, made beforehand."""
+    return await stored(client, plan_file)
+
+
+async def stored(
+    client: httpx.AsyncClient, plan_file: Path, scenario: dict[str, Any] | None = None, **members: Any
+) -> str:
+    """The id of a plan that is taken from a file, with some members exchanged."""
+    scenario = (scenario or {"features": [{}], "name": "x"}) | {
+        "fake_plan": str(plan_file),
+        "members": members,
+    }
+    record = (await client.post("/api/v1/plans", json=scenario, params={"wait": 20})).json()
+    assert record["state"] == "done", record
+    return str(record["id"])

@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from app.services import validation
 from app.services.summary import summary_of
 from app.services.validation import Verdict
 from app.services.work import PipeProgress, WorkResult, plan_scenario
@@ -19,7 +20,9 @@ def no_warm_up() -> None:
 
 
 def judge(document: Mapping[str, Any]) -> Verdict:
-    """Refuse documents without features; warn of unnamed ones."""
+    """Refuse documents without features; warn of unnamed ones; judge real scenarios for real."""
+    if "vehicles" in document and "fake_plan" not in document:
+        return validation.judge(document)
     errors = () if document.get("features") else (Finding("scenario", "no-features", "empty", "draw some"),)
     warnings = (
         () if document.get("name") else (Finding("scenario", "no-name", "unnamed", "name it", "warning"),)

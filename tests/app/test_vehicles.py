@@ -14,12 +14,11 @@ import pytest
 
 from app.main import create_app
 from app.routers.bodies import EXAMPLE
-from app.services.work import plan_scenario
 from app.settings import Settings
 from mavlink.link import open_link
 from mavlink.sim.run import serve
 from mavlink.sim.settings import SimSettings
-from tests.app.conftest import fake_house, serving
+from tests.app.conftest import fake_house, serving, stored
 from tests.app.test_problems import check_problem
 
 VEHICLES = "/api/v1/vehicles"
@@ -31,30 +30,6 @@ async def until(client: httpx.AsyncClient, path: str, ready: Callable[[Any], boo
         while not ready(body := (await client.get(path)).json()):
             await asyncio.sleep(0.05)
     return body
-
-
-@pytest.fixture(scope="session")
-def plan_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A file with the plan of the example."""
-    result = plan_scenario(json.dumps(EXAMPLE), "/dev/null")
-    assert result.plan is not None
-    path = tmp_path_factory.mktemp("plan") / "plan.geojson"
-    path.write_text(result.plan)
-    return path
-
-
-@pytest.fixture
-async def plan_id(client: httpx.AsyncClient, plan_file: Path) -> str:
-    """The id of a plan of the example, made beforehand."""
-    return await stored(client, plan_file)
-
-
-async def stored(client: httpx.AsyncClient, plan_file: Path, **members: Any) -> str:
-    """The id of a plan that is taken from a file, with some members exchanged."""
-    scenario = {"features": [{}], "name": "x", "fake_plan": str(plan_file), "members": members}
-    record = (await client.post("/api/v1/plans", json=scenario, params={"wait": 20})).json()
-    assert record["state"] == "done", record
-    return str(record["id"])
 
 
 async def connected(client: httpx.AsyncClient, url: str = "sim:?speedup=100", name: str = "uav") -> str:

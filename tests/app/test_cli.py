@@ -1,0 +1,200 @@
+"""The command line: results, messages, exit codes."""
+
+from __future__ import annotations
+
+import io
+import json
+import subprocess
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from app.cli.root import run
+from app.routers.bodies import EXAMPLE
+from mavlink.formats import qgc_plan, waypoints
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+@dataclass(frozen=True, slots=True)
+class Ended:
+    """How a command ended."""
+
+    code: int
+    out: str
+    err: str
+
+
+Command = Callable[..., Ended]
+
+
+@pytest.fixture
+def swathplan(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) -> Command:
+    """Runs the command line in this process."""
+
+    def command(*arguments: str, stdin: str = "") -> Ended:
+        monkeypatch.setattr(sys, "argv", ["swathplan", *arguments])
+        monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(stdin.encode())))
+        capfd.readouterr()
+        with pytest.raises(SystemExit) as end:
+            run()
+        written = capfd.readouterr()
+        code = end.value.code
+        return Ended(code if isinstance(code, int) else 0, written.out, written.err)
+
+    return command
+
+
+@pytest.fixture
+def scenario_file(tmp_path: Path) -> Path:
+    """The example in a file."""
+    path = tmp_path / "scenario.geojson"
+    path.write_text(json.dumps(EXAMPLE))
+    return path
+
+
+def broken() -> dict[str, Any]:
+    """The example with a ring that crosses itself and a wrong altitude."""
+    scenario: dict[str, Any] = json.loads(json.dumps(EXAMPLE))
+    ring = scenario["features"][0]["geometry"]["coordinates"][0]
+    ring[1], ring[2] = ring[2], ring[1]
+    return scenario | {"altitude_m": -1}
+
+
+def test_help_lists_every_command() -> None:
+    """A process of its own answers --help with all commands and exit code 0."""
+    command = [sys.executable, "-m", "app.cli", "--help"]
+    ended = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=30, check=True)
+    commands = ("serve", "plan", "validate", "export", "upload", "download", "sim", "bench", "demo")
+    assert all(f" {name} " in ended.stdout for name in commands)
+
+
+def test_plan_from_file_to_file(swathplan: Command, scenario_file: Path, tmp_path: Path) -> None:
+    """The plan goes to the file, its figures to standard output, messages to standard error."""
+    output = tmp_path / "plan.geojson"
+    ended = swathplan("plan", str(scenario_file), "-o", str(output), "--json")
+    plan = json.loads(output.read_text())
+    summary = json.loads(ended.out)
+    assert ended.code == 0
+    assert summary["metrics"] == plan["metrics"]
+    assert min(plan["metrics"]["coverage"].values()) >= 0.9999
+    assert "2 of 2 regions covered" in ended.err
+    assert [path.name for path in tmp_path.iterdir() if "partial" in path.name] == []
+
+
+def test_plan_through_pipes_is_repeatable(swathplan: Command) -> None:
+    """``-`` is standard input, the plan comes on standard output; times aside it is the same each time."""
+    first, second = (swathplan("plan", "-", "--seed", "3", stdin=json.dumps(EXAMPLE)) for _ in range(2))
+    plans = [json.loads(ended.out) for ended in (first, second)]
+    for plan in plans:
+        plan["metrics"].pop("planning_time_s")
+    assert plans[0] == plans[1]
+    assert plans[0]["seed"] == 3
+
+
+@pytest.mark.parametrize("command", ["plan", "validate"])
+def test_refused_scenario_exits_2_with_every_finding(swathplan: Command, command: str) -> None:
+    """A refused scenario is told rule by rule, as text and as JSON, never as a traceback."""
+    text = swathplan(command, "-", stdin=json.dumps(broken()))
+    as_json = swathplan(command, "-", "--json", stdin=json.dumps(broken()))
+    assert (text.code, as_json.code) == (2, 2)
+    told = text.out + text.err
+    assert "harbour" in told
+    assert "altitude_m" in told
+    assert "Traceback" not in told
+    body = json.loads(as_json.out or as_json.err)
+    findings = body.get("errors") or body["findings"]
+    assert {"harbour", "scenario"} <= {finding["feature"] for finding in findings}
+
+
+@pytest.mark.parametrize(
+    ("arguments", "stdin"),
+    [
+        (("plan", "-"), "{"),
+        (("plan", "-"), '{"altitude_m": NaN}'),
+        (("plan", "-"), "[]"),
+        (("plan", "no-such-file"), ""),
+        (("plan", "-", "--method", "transit"), "{}"),
+        (("plan",), ""),
+        (("plan", "-", "--no-such-option"), ""),
+        (("export", "-"), json.dumps(EXAMPLE)),
+        (("upload", "-", "--to", "sim:"), "{}"),
+        (("download", "--from", "nonsense"), ""),
+        (("bench", "no-such"), ""),
+        (("serve", "--host", "0.0.0.0"), ""),
+    ],
+)
+def test_bad_usage_and_input_exit_2(swathplan: Command, arguments: tuple[str, ...], stdin: str) -> None:
+    """Bad usage and bad input exit with 2, a message on standard error and nothing on standard output."""
+    ended = swathplan(*arguments, stdin=stdin)
+    assert ended.code == 2
+    assert ended.out == ""
+    assert ended.err
+    assert "Traceback" not in ended.err
+
+
+def test_what_fails_exits_1(swathplan: Command, scenario_file: Path, tmp_path: Path) -> None:
+    """A result that cannot be written and a vehicle that is not there exit with 1."""
+    assert swathplan("plan", str(scenario_file), "-o", str(tmp_path / "no" / "plan")).code == 1
+    silent = swathplan("download", "--from", "udpin:127.0.0.1:0", "--timeout-s", "0.2")
+    assert silent.code == 1
+    assert "no autopilot" in silent.err
+
+
+def test_export_writes_what_readers_read(swathplan: Command, plan_file: Path) -> None:
+    """Each format can be exported; .plan and .waypoints hold the same items."""
+    plan = qgc_plan.read_plan(swathplan("export", str(plan_file)).out)
+    rows = waypoints.read_waypoints(swathplan("export", str(plan_file), "--format", "waypoints").out)
+    assert [item.command for item in plan.mission] == [item.command for item in rows.mission]
+    assert "<kml" in swathplan("export", str(plan_file), "--format", "kml").out
+    assert swathplan("export", str(plan_file), "--payload", "laser").code == 2
+    assert swathplan("export", str(plan_file), "--vehicle", "nobody").code == 2
+
+
+def test_upload_reads_back_and_tells(swathplan: Command, plan_file: Path) -> None:
+    """An upload ends with the comparison; one the aircraft alters exits with 1."""
+    ended = swathplan(
+        "upload", str(plan_file), "--to", "sim:", "--part", "mission", "--part", "fence", "--json"
+    )
+    report = json.loads(ended.out)
+    assert (ended.code, report["outcome"], report["verified"]) == (0, "accepted", True)
+    assert "read back equal" in ended.err
+    altered = swathplan("upload", str(plan_file), "--to", "sim:?fault=altered_item")
+    assert altered.code == 1
+    assert "1 differences" in altered.err
+
+
+def test_upload_of_a_violating_plan_needs_a_reason(
+    swathplan: Command, plan_file: Path, tmp_path: Path
+) -> None:
+    """Hard violations stop an upload unless a reason is given."""
+    plan = json.loads(plan_file.read_text())
+    violation = {"constraint": "hard-zone", "feature": "site", "message": "flown through", "amount": 1.0}
+    plan["violations"] = [violation | {"unit": "m", "where": None, "hard": True}]
+    path = tmp_path / "violating.geojson"
+    path.write_text(json.dumps(plan))
+    refused = swathplan("upload", str(path), "--to", "sim:")
+    assert refused.code == 1
+    assert "flown through" in refused.err
+    assert swathplan("upload", str(path), "--to", "sim:", "--override", "zone is cold").code == 0
+
+
+def test_download_from_an_empty_vehicle(swathplan: Command) -> None:
+    """What a fresh aircraft holds can be saved in each form."""
+    held = json.loads(swathplan("download", "--from", "sim:", "--json").out)
+    assert set(held) == {"mission", "fence", "rally"}
+    assert held["fence"] == held["rally"] == []
+
+
+def test_demo_flies_what_it_planned(swathplan: Command, scenario_file: Path) -> None:
+    """The whole journey, told as JSON: planned, uploaded, read back, flown, seen."""
+    ended = swathplan("demo", str(scenario_file), "--speedup", "200", "--json")
+    told = json.loads(ended.out)
+    assert ended.code == 0, ended.err
+    assert told["read_back_equal"]
+    assert told["cross_track_max_m"] < 10.0
+    assert min(told["seen"].values()) > 0.99

@@ -1,0 +1,143 @@
+"""The service as a process: live events, killed workers, crashes, orderly ends."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import httpx
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+PLANS = "/api/v1/plans"
+
+
+class Service:
+    """A running service process and a client of it."""
+
+    def __init__(self, process: subprocess.Popen[str], client: httpx.Client) -> None:
+        self.process = process
+        self.client = client
+
+    def post(self, fake: str, wait_s: float = 0) -> dict[str, Any]:
+        """Post a scenario for the stand-in."""
+        body = {"features": [{}], "name": fake, "fake": fake}
+        answer: dict[str, Any] = self.client.post(PLANS, json=body, params={"wait": wait_s}).json()
+        return answer
+
+    def until(self, plan_id: str, *states: str) -> dict[str, Any]:
+        """A plan's record once it is in one of some states."""
+        end_s = time.monotonic() + 20
+        while time.monotonic() < end_s:
+            record: dict[str, Any] = self.client.get(f"{PLANS}/{plan_id}").json()
+            if record["state"] in states:
+                return record
+            time.sleep(0.02)
+        raise AssertionError(f"{plan_id} is {record}")
+
+    def workers(self) -> list[int]:
+        """Process ids of the planning processes."""
+        children = []
+        for task in Path(f"/proc/{self.process.pid}/task").iterdir():
+            children += [int(pid) for pid in (task / "children").read_text().split()]
+        return [pid for pid in children if b"spawn_main" in Path(f"/proc/{pid}/cmdline").read_bytes()]
+
+
+@contextmanager
+def service(database: Path) -> Iterator[Service]:
+    """A service process on a database, ended by SIGTERM."""
+    command = [sys.executable, "-m", "tests.app.fake_server", str(database)]
+    with subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        address = process.stdout.readline().strip()
+        try:
+            with httpx.Client(base_url=address, timeout=30) as client:
+                yield Service(process, client)
+        finally:
+            if process.poll() is None:
+                process.terminate()
+            process.wait(20)
+
+
+def events(lines: Iterator[str]) -> Iterator[tuple[str, dict[str, Any]]]:
+    """Server-sent events as they come."""
+    name = ""
+    for line in lines:
+        if line.startswith("event: "):
+            name = line[7:]
+        elif line.startswith("data: "):
+            yield name, json.loads(line[6:])
+
+
+@pytest.mark.skipif(not Path("/proc/self/task").is_dir(), reason="looks for workers in /proc")
+def test_killed_worker_fails_its_plan_and_the_next_one_runs(tmp_path: Path) -> None:
+    """SIGKILL to a worker in mid-plan: events told progress, then failed; the next plan is made."""
+    with service(tmp_path / "plans.db") as running:
+        plan = running.post("slow")
+        with running.client.stream("GET", f"{PLANS}/{plan['id']}/events") as stream:
+            for name, record in events(stream.iter_lines()):
+                if name == "progress" and record["progress"] > 0.25:
+                    for pid in running.workers():
+                        os.kill(pid, signal.SIGKILL)
+        assert name == "failed"
+        assert record["error"]["type"] == "worker-died"
+        assert "signal 9" in record["error"]["detail"]
+        assert running.post("done", wait_s=20)["state"] == "done"
+
+
+@pytest.mark.skipif(not Path("/proc/self/task").is_dir(), reason="looks for workers in /proc")
+def test_worker_killed_while_idle_does_no_harm(tmp_path: Path) -> None:
+    """SIGKILL to an idle worker: the next plan is made all the same."""
+    with service(tmp_path / "plans.db") as running:
+        assert running.post("done", wait_s=20)["state"] == "done"
+        for pid in running.workers():
+            os.kill(pid, signal.SIGKILL)
+        assert running.post("done", wait_s=20)["state"] == "done"
+
+
+def test_crash_fails_the_running_and_keeps_the_rest(tmp_path: Path) -> None:
+    """After SIGKILL to the service: done plans are there, the running one failed, the waiting one is made."""
+    with service(tmp_path / "plans.db") as first:
+        done = first.post("done", wait_s=20)
+        running = first.post("slow")
+        waiting = first.post("done")
+        first.until(running["id"], "running")
+        first.process.kill()
+    with service(tmp_path / "plans.db") as second:
+        assert second.client.get(f"{PLANS}/{done['id']}").json() == done
+        assert second.until(running["id"], "failed")["error"]["type"] == "service-restarted"
+        assert second.until(waiting["id"], "done")["state"] == "done"
+
+
+def test_second_service_on_a_database_is_refused(tmp_path: Path) -> None:
+    """Two services never share a database file."""
+    with service(tmp_path / "plans.db") as running:
+        command = [sys.executable, "-m", "tests.app.fake_server", str(tmp_path / "plans.db")]
+        second = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=30, check=False)
+        assert second.returncode != 0
+        assert "another service" in second.stderr
+        assert running.client.get("/health/live").status_code == 200
+
+
+def test_sigterm_ends_open_streams_and_leaves_the_plan_for_the_next_service(tmp_path: Path) -> None:
+    """An orderly end closes event streams, exits cleanly, and requeues the plan being made."""
+    with service(tmp_path / "plans.db") as running:
+        plan = running.post("slow")
+        running.until(plan["id"], "running")
+        with running.client.stream("GET", f"{PLANS}/{plan['id']}/events") as stream:
+            for name, _ in events(stream.iter_lines()):
+                assert name == "progress"
+                if running.process.poll() is None:
+                    running.process.terminate()
+        assert running.process.wait(20) in (0, -signal.SIGTERM)
+    with service(tmp_path / "plans.db") as again:
+        again.until(plan["id"], "running")
+        again.client.delete(f"{PLANS}/{plan['id']}")
