@@ -11,8 +11,8 @@ One fixed wing is simulated, behind the manners of ArduPlane or PX4::
                       └─ dynamics: kinematic or jsbsim_model, over geodesy
 
 What it is not: it follows the polyline of its waypoints more tightly than either autopilot with default
-tuning. On passes of 500 m that begin at the end of a half-turn of 100 m radius at 22.4 m/s it is off by 0.6 m
-(95 %), where ArduPlane's defaults were measured at 11 m; ``l1_period_s`` 20 with ``acceptance_m`` 50 gives 10 m.
-Fences and rally points are stored, not obeyed; the ground is flat; wind does not depend on height; PX4's reasons
-for refusing a mission come as STATUSTEXT, not as EVENT. Multirotors are refused.
+tuning. On passes of 500 m that begin at the end of a half-turn of 100 m radius at 22.4 m/s it is off by
+0.6 m (95 %), where ArduPlane's defaults were measured at 11 m; ``l1_period_s`` 20 with ``acceptance_m`` 50
+gives 10 m. Fences and rally points are stored, not obeyed; the ground is flat; wind does not depend on
+height; PX4's reasons for refusing a mission come as STATUSTEXT, not as EVENT. Multirotors are refused.
 """
