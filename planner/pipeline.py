@@ -157,9 +157,7 @@ def _connect(
     for k, (start, goal) in enumerate(zip(starts, goals, strict=True)):
         raise_if(stop)
         progress("transit", k / len(starts))
-        path, method = _leg(
-            scenario, aircraft, methods["transit"], zones, start, goal, stop, notes, names[k : k + 2]
-        )
+        path, method = _leg(scenario, aircraft, methods, zones, start, goal, stop, notes, names[k : k + 2])
         if k < len(route.passes) and aircraft.settle_m > 0.0:
             path = _extended(path, route.passes[k])
         legs.append(Leg(names[k], names[k + 1], path, method))
@@ -169,7 +167,7 @@ def _connect(
 def _leg(
     scenario: Scenario,
     aircraft: Aircraft,
-    method: str,
+    methods: dict[str, str],
     zones: KeepOut,
     start: Anchor,
     goal: Anchor,
@@ -179,10 +177,16 @@ def _leg(
 ) -> tuple[Path, str]:
     """One connection; where SSAS finds none, the tangent connector does, and the plan says so."""
     radius_m = aircraft.planned_turn_radius_m
-    if method == "ssas":
+    if methods["transit"] == "ssas":
         try:
             path, _ = ssas_connector.connect(
-                start, goal, scenario=scenario, keep_out=zones, radius_m=radius_m, stop=stop
+                start,
+                goal,
+                scenario=scenario,
+                keep_out=zones,
+                radius_m=radius_m,
+                smoothing="shortcut" if methods["smoothing"] == "shortcut" else "fillet",
+                stop=stop,
             )
         except InfeasibleError as error:
             notes.append(f"SSAS connects {names[0]} and {names[1]} in no way ({error.message}): tangent used")

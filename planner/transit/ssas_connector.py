@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from shapely.geometry import MultiPoint
 
 from planner.dubins.path import Path
-from planner.dubins.smoothing import smooth
+from planner.dubins.smoothing import SmoothingMethod, smooth
 from planner.dubins.words import candidates
 from planner.environment.threats import metres_inside, threat_arrays
 from planner.environment.zones import MITRE_LIMIT, KeepOut
@@ -102,6 +102,7 @@ def connect(
     scenario: Scenario,
     keep_out: KeepOut,
     radius_m: float,
+    smoothing: SmoothingMethod = "fillet",
     stop: Stop = never,
 ) -> tuple[Path, SsasResult]:
     """A flyable line from one anchor to another by SSAS.
@@ -117,6 +118,8 @@ def connect(
         anchor, or where no attempt finds a way round.
     radius_m
         Turn radius of the arcs.
+    smoothing
+        How legs become arcs, see ``planner.dubins.smoothing.smooth``.
     stop
         Asked before each attempt and each run of the search.
 
@@ -150,7 +153,7 @@ def connect(
         except InfeasibleError as error:
             failures.append((attempt.threats == "closed", error))
             continue
-        path = smooth(found.waypoints, start.angle_rad, goal.angle_rad, radius_m, wanted.clear)
+        path = smooth(found.waypoints, start.angle_rad, goal.angle_rad, radius_m, wanted.clear, smoothing)
         if wanted.clear(path):
             if path.length_m <= job.short_m():
                 return path, found

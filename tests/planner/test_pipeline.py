@@ -44,6 +44,19 @@ def test_the_paper_s_stages_keep_the_hard_constraints(number: int) -> None:
     assert not plan.warnings
 
 
+def test_smoothing_by_shortcuts_is_shorter_than_by_fillets() -> None:
+    """Both lines made of the same SSAS legs are sound; cutting across legs is shorter and turns less."""
+    lengths_m, turns = [], []
+    for smoothing in ("fillet", "shortcut"):
+        method = {"routing": "li2018", "transit": "ssas", "smoothing": smoothing}
+        plan = make_plan(read_scenario(case(2) | {"method": method}))
+        assert plan.hard_violations == ()
+        lengths_m.append(plan.metrics.length_m)
+        turns.append(plan.metrics.turns)
+    assert lengths_m[1] < lengths_m[0]
+    assert turns[1] < turns[0]
+
+
 def test_same_scenario_same_plan() -> None:
     """Planning twice gives the same bytes but for the times."""
     first, second = (write_plan(make_plan(read_scenario(case(1)))) for _ in range(2))
