@@ -1,6 +1,6 @@
 /** The service's HTTP interface: JSON in, JSON out, problem documents as `ApiError`, server-sent events. */
 import { Signal } from "./signal";
-import type { Finding, Problem } from "./types";
+import type { Finding, Position, Problem } from "./types";
 
 /** Whether the service answers; kept up to date by every call and by a heartbeat. */
 export const connection = new Signal<"unknown" | "up" | "down">("unknown");
@@ -44,6 +44,7 @@ export function readFindings(value: unknown): Finding[] {
     message: String(entry["message"] ?? entry["msg"] ?? entry["detail"] ?? ""),
     fix: String(entry["fix"] ?? ""),
     severity: entry["severity"] === "warning" ? "warning" : "error",
+    ...(Array.isArray(entry["where"]) ? { where: entry["where"] as Position } : {}),
   }));
 }
 

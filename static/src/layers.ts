@@ -19,6 +19,8 @@ export const GROUPS: Group[] = [
   { id: "missile", label: "Missile threat", swatch: "area", colour: "missile", layers: ["missile-fill", "missile-line"] },
   { id: "radar", label: "Radar threat", swatch: "dashed", colour: "radar", layers: ["radar-fill", "radar-line"] },
   { id: "no_fly", label: "No-fly zone", swatch: "area", colour: "noFly", layers: ["no_fly-fill", "no_fly-line"] },
+  { id: "obstacle", label: "Obstacle", swatch: "area", colour: "obstacle", layers: ["obstacle-fill", "obstacle-line"] },
+  { id: "importance", label: "Importance", swatch: "dashed", colour: "importance", layers: ["importance-fill", "importance-line"] },
   { id: "area", label: "Operating area", swatch: "dashed", colour: "area", layers: ["area-line"] },
   { id: "terminal", label: "Start, end, base", swatch: "dot", colour: "terminal", layers: ["terminal"] },
   { id: "footprint", label: "Ground to be seen", swatch: "area", colour: "footprint", layers: ["footprint-fill", "footprint-line"] },

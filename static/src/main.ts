@@ -81,7 +81,7 @@ function keepListing(hasEdits: boolean, shown: () => void): void {
       const newest = recent.value.find((record) => record.state === "done");
       if (settled || !newest) return;
       settled = true;
-      await openPlan(newest.id, true);
+      await openPlan(newest.id);
       shown();
     });
   });

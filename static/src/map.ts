@@ -19,7 +19,6 @@ const RASTER_KEY = "swathplan.raster";
 const NOTHING: FeatureCollection = { type: "FeatureCollection", features: [] };
 const FIT_PADDING_PX = 60;
 const LEGEND_PX = 215;
-const WIDE_PX = 900;
 
 function baseLayers(colours: Palette): LayerSpecification[] {
   return [
@@ -54,8 +53,7 @@ export function setData(map: MapLibreMap, source: string, features: FeatureColle
 
 export function fit(map: MapLibreMap, bounds: Bounds | null): void {
   if (!bounds) return;
-  // Where there is room, what is shown keeps clear of the legend.
-  const right = map.getContainer().clientWidth > WIDE_PX ? LEGEND_PX : FIT_PADDING_PX;
+  const right = document.querySelector("#legend details[open]") ? LEGEND_PX : FIT_PADDING_PX;
   const padding = { top: FIT_PADDING_PX, bottom: FIT_PADDING_PX, left: FIT_PADDING_PX, right };
   map.fitBounds(bounds, { padding, maxZoom: 16, duration: 0 });
 }

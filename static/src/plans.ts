@@ -10,6 +10,8 @@ export interface OpenPlan {
   record: PlanRecord;
   plan: PlanCollection;
   waypoints: Position[];
+  /** The scenario's text when the plan was asked for or opened; null when it is not the one on the page. */
+  madeFrom: string | null;
 }
 
 /** The plan being made, if any; the plan on the map, if any; those the service knows, newest first. */
@@ -47,33 +49,36 @@ export function waypointsOf(document: unknown): Position[] {
     .filter(([lon, lat]) => Number.isFinite(lon) && Number.isFinite(lat) && (lon !== 0 || lat !== 0));
 }
 
-/** Bring a plan onto the map, with the scenario it was made from unless the operator keeps their own. */
-export async function openPlan(id: string, withScenario: boolean): Promise<void> {
+/** Bring a plan onto the map; its scenario too, unless `madeFrom` tells that of the page. */
+export async function openPlan(id: string, madeFrom: string | null = null): Promise<void> {
   const path = `/plans/${encodeURIComponent(id)}`;
   const record = await get<PlanRecord>(path);
-  if (withScenario) scenarios.load(await get<Scenario>(`${path}/scenario`), false);
+  if (madeFrom === null) scenarios.load(await get<Scenario>(`${path}/scenario`), false);
+  const text = madeFrom ?? scenarios.text();
   if (record.state !== "done") {
     open.set(null);
     running.set(record);
-    if (!ENDED.has(record.state)) watchPlan(record);
+    if (!ENDED.has(record.state)) watchPlan(record, text);
     return;
   }
   const plan = await get<PlanCollection>(`${path}/plan.geojson`);
   const mission = await attempt("The mission's waypoints cannot be shown", () => get<unknown>(`${path}/mission.plan`));
   running.set(null);
-  open.set({ record, plan, waypoints: waypointsOf(mission) });
+  open.set({ record, plan, waypoints: waypointsOf(mission), madeFrom: text });
 }
 
 let unwatch: (() => void) | null = null;
 
-function ended(id: string): void {
+function ended(id: string, madeFrom: string): void {
   unwatch?.();
   unwatch = null;
   void attempt("The plan's outcome could not be read", async () => {
     const record = await get<PlanRecord>(`/plans/${encodeURIComponent(id)}`);
     running.set(record);
-    if (record.state === "done") await openPlan(id, false);
-    else if (record.state === "failed") {
+    if (record.state === "done") {
+      await openPlan(id, madeFrom);
+      if (scenarios.text() === madeFrom) scenarios.handedOver();
+    } else if (record.state === "failed") {
       const problem = problemOf(record) ?? { title: "Planning failed" };
       report("Planning failed", new ApiError(problem.status ?? 0, problem));
     }
@@ -81,7 +86,7 @@ function ended(id: string): void {
   });
 }
 
-function watchPlan(record: PlanRecord): void {
+function watchPlan(record: PlanRecord, madeFrom: string): void {
   unwatch?.();
   let over = false;
   unwatch = follow(
@@ -94,7 +99,7 @@ function watchPlan(record: PlanRecord): void {
       running.set(merged);
       if (ENDED.has(merged.state)) {
         over = true;
-        ended(record.id);
+        ended(record.id, madeFrom);
       }
     },
     () => undefined,
@@ -103,10 +108,10 @@ function watchPlan(record: PlanRecord): void {
 }
 
 export async function startPlan(): Promise<void> {
-  const scenario = scenarios.document.value;
-  const record = await post<PlanRecord>("/plans", scenario);
+  const madeFrom = scenarios.text();
+  const record = await post<PlanRecord>("/plans", scenarios.document.value);
   running.set(record);
-  watchPlan(record);
+  watchPlan(record, madeFrom);
   await refresh();
 }
 

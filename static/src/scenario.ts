@@ -171,6 +171,11 @@ export class ScenarioStore {
     return boundsOf(features.map((feature) => ({ geometry: feature.geometry, radius_m: radiusOf(feature) })));
   }
 
+  /** The service has the document as it is now: there is nothing left to keep here. */
+  handedOver(): void {
+    this.#keep(false);
+  }
+
   text(): string {
     return `${JSON.stringify(this.document.value, null, 1)}\n`;
   }

@@ -43,6 +43,8 @@ export interface Finding {
   message: string;
   fix: string;
   severity?: "error" | "warning";
+  /** The place, where there is one. */
+  where?: Position;
 }
 
 export interface Problem {

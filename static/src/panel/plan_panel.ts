@@ -1,10 +1,11 @@
 /** The planning side of the panel: start, progress, results, violations, files, earlier plans. */
+import { ask } from "../dialog";
 import { button, fill, h, section } from "../dom";
 import { attempt, findingText } from "../notices";
 import { cancelPlan, open, openPlan, planUrl, problemOf, recent, refresh, running, startPlan, type OpenPlan } from "../plans";
 import { scenarios } from "../scenario";
 import { readFindings } from "../api";
-import type { PlanRecord, Position, Violation } from "../types";
+import type { PlanRecord, Position, Problem, Violation } from "../types";
 import { metres, number, percent, seconds } from "../units";
 import { judgement } from "../validation";
 import { operatingStrip } from "./strip";
@@ -24,7 +25,20 @@ const MOVING = new Set(["queued", "running"]);
 const RECENT_SHOWN = 12;
 const COVERED = 0.9999;
 
-function progress(): HTMLElement {
+function failure(problem: Problem, view: PlanView): HTMLElement {
+  return h(
+    "ul",
+    { class: "findings", id: "failure" },
+    h("li", { class: "error" }, [problem.title, problem.detail].filter(Boolean).join(": ")),
+    ...readFindings(problem.errors).map((finding) => {
+      const { where } = finding;
+      const text = findingText(finding);
+      return h("li", { class: "error" }, where ? button(text, () => view.zoomToPlace(where), { class: "link", title: "Show on the map" }) : text);
+    }),
+  );
+}
+
+function progress(view: PlanView): HTMLElement {
   const box = h("div", { id: "progress", "aria-live": "polite" });
   running.watch((record) => {
     if (!record) return fill(box);
@@ -35,9 +49,7 @@ function progress(): HTMLElement {
       box,
       moving ? h("progress", { max: 1, value: fraction, "aria-label": "Planning progress" }) : null,
       h("p", {}, moving ? `${record.stage ?? record.state} – ${percent(fraction, 0)}` : `Plan ${record.state}`),
-      problem && record.state === "failed"
-        ? h("ul", { class: "findings" }, h("li", { class: "error" }, [problem.title, problem.detail].filter(Boolean).join(": ")), ...readFindings(problem.errors).map((f) => h("li", { class: "error" }, findingText(f))))
-        : null,
+      problem && record.state === "failed" ? failure(problem, view) : null,
       moving ? button("Cancel planning", () => void attempt("The plan was not cancelled", cancelPlan), { class: "danger" }) : null,
     );
   });
@@ -112,13 +124,14 @@ function result({ record, plan }: OpenPlan, view: PlanView): HTMLElement {
 function line(record: PlanRecord): HTMLElement {
   const time = record.created_at ? new Date(record.created_at).toLocaleString() : "";
   const length = record.metrics ? ` · ${metres(record.metrics.length_m)}` : "";
-  const show = (): void => {
-    const keep = scenarios.edited.value && scenarios.document.value.features.length > 0;
-    if (keep && !confirm("Show this plan with its own scenario? Undo brings your edits back.")) return;
-    void attempt("The plan was not opened", () => openPlan(record.id, true));
+  const show = async (): Promise<void> => {
+    const edits = scenarios.edited.value && scenarios.document.value.features.length > 0;
+    const lines = ["The scenario on the page is replaced; Undo brings it back."];
+    if (edits && (await ask({ title: "Show this plan with its own scenario?", lines, go: "Show" })) === null) return;
+    await attempt("The plan was not opened", () => openPlan(record.id));
   };
   const label = `${record.name ?? record.id} · ${record.state}${length}`;
-  return h("li", {}, button(label, show, { class: "link", "aria-current": open.value?.record.id === record.id }), h("span", { class: "quiet" }, ` ${time}`));
+  return h("li", {}, button(label, () => void show(), { class: "link", "aria-current": open.value?.record.id === record.id }), h("span", { class: "quiet" }, ` ${time}`));
 }
 
 function earlier(): HTMLElement {
@@ -141,14 +154,13 @@ export function planPanel(view: PlanView): HTMLElement {
   judgement.watch(update);
   const box = h("div", {});
   const stale = h("p", { class: "warning", hidden: true }, "The scenario was changed after this plan was made.");
-  let planned: string | null = null;
+  const compare = (): void => {
+    stale.hidden = !open.value || open.value.madeFrom === scenarios.text();
+  };
   open.watch((plan) => {
-    planned = plan ? scenarios.text() : null;
-    stale.hidden = true;
+    compare();
     fill(box, plan ? result(plan, view) : null);
   });
-  scenarios.document.watch(() => {
-    stale.hidden = planned === null || planned === scenarios.text();
-  });
-  return h("div", {}, h("div", { class: "row" }, go), progress(), stale, box, earlier());
+  scenarios.document.watch(compare);
+  return h("div", {}, h("div", { class: "row" }, go), progress(view), stale, box, earlier());
 }

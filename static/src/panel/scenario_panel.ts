@@ -1,4 +1,5 @@
 /** The scenario side of the panel: files, findings, features and settings. */
+import { ask } from "../dialog";
 import { button, fill, h, section } from "../dom";
 import { download } from "../download";
 import { openScenario } from "../drop";
@@ -30,8 +31,10 @@ function files(view: View): HTMLElement {
     input.value = "";
     if (file) void openScenario(file).then((opened) => opened && view.zoomToAll());
   });
-  const start = (): void => {
-    if (scenarios.edited.value && scenarios.document.value.features.length > 0 && !confirm("Begin a new scenario? Undo brings the present one back.")) return;
+  const start = async (): Promise<void> => {
+    const edits = scenarios.edited.value && scenarios.document.value.features.length > 0;
+    const lines = ["The scenario on the page is replaced; Undo brings it back."];
+    if (edits && (await ask({ title: "Begin a new scenario?", lines, go: "New scenario" })) === null) return;
     scenarios.load(emptyScenario(), true);
   };
   const save = (): void => download(`${scenarios.document.value.name ?? "scenario"}.geojson`, scenarios.text(), "application/geo+json");
@@ -41,7 +44,7 @@ function files(view: View): HTMLElement {
     button("Open file …", () => input.click(), { title: "A scenario as GeoJSON; it can also be dropped on the page" }),
     input,
     button("Download", save),
-    button("New", start),
+    button("New", () => void start()),
     button("Show all", () => view.zoomToAll()),
   );
 }

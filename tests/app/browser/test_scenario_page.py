@@ -68,7 +68,6 @@ def test_a_feature_is_moved_and_brought_back(page: Page) -> None:
     before = feature(page, "R4")
     assert before is not None
     page.get_by_role("button", name="R4", exact=True).click()
-    page.get_by_role("button", name="Show all").click()
     ring = before["geometry"]["coordinates"][0]
     middle = sum(p[0] for p in ring[:-1]) / (len(ring) - 1), sum(p[1] for p in ring[:-1]) / (len(ring) - 1)
     x, y = on_screen(page, *middle)
@@ -77,9 +76,8 @@ def test_a_feature_is_moved_and_brought_back(page: Page) -> None:
     page.mouse.move(x + 20, y - 20, steps=5)
     page.mouse.move(x + 60, y - 40, steps=5)
     page.mouse.up()
-    page.wait_for_function(
-        "old => window.swathplan.scenario().features.find(f => f.id === 'R4').geometry.coordinates[0][0][0] !== old",
-        arg=ring[0][0],
+    await_hook(
+        page, f"scenario().features.find(f => f.id === 'R4').geometry.coordinates[0][0][0] !== {ring[0][0]}"
     )
     moved = feature(page, "R4")
     assert moved is not None

@@ -1,0 +1,146 @@
+"""The main journey on the page: plan, upload, fly, see what was seen; in this order on one page."""
+
+from __future__ import annotations
+
+import json
+import os
+from pathlib import Path
+
+import httpx
+import pytest
+from playwright.sync_api import Page, expect
+
+from tests.app.browser.conftest import EXAMPLES, Service
+from tests.app.browser.helpers import ask, await_hook, open_scenario
+
+pytestmark = pytest.mark.browser
+
+CASE_1 = json.loads((EXAMPLES / "sar-case-1.geojson").read_text(encoding="utf-8"))
+SHORT_RANGE_M = 20_000.0
+PLANNING_LIMIT_S = 60.0
+FLIGHT_LIMIT_S = 90.0
+
+
+def start_planning(page: Page, path: Path) -> None:
+    """Open a scenario and ask for a plan by the button."""
+    open_scenario(page, path)
+    page.get_by_role("tab", name="Plan").click()
+    page.click("#plan-start")
+
+
+def give(page: Page, command: str) -> None:
+    """Press a command's button and confirm it."""
+    page.click(f"[data-command={command}]")
+    page.click("#dialog-go")
+
+
+@pytest.fixture(scope="module")
+def planned(page: Page) -> str:
+    """The id of a plan of the first sample scenario, shown on the page."""
+    start_planning(page, EXAMPLES / "sar-case-1.geojson")
+    await_hook(page, "plan() !== null", PLANNING_LIMIT_S)
+    return str(ask(page, "plan()")["id"])
+
+
+def test_a_plan_is_shown_with_its_figures(page: Page, planned: str, service: Service) -> None:
+    """After planning the map holds the plan's parts, and the table says what the service says."""
+    record = service.get(f"/api/v1/plans/{planned}").json()
+    metrics = page.locator("#metrics")
+    expect(metrics).to_contain_text(f"{record['metrics']['length_m'] / 1000:.2f} km")
+    expect(metrics).to_contain_text(f"{record['metrics']['duty_cycle'] * 100:.1f} %")
+    assert page.locator(".coverage tr").count() == len(record["metrics"]["coverage"])
+    expect(page.locator("#result")).to_contain_text("no violation")
+    await_hook(page, "rendered()['footprint-fill'] > 0")
+    drawn = ask(page, "rendered()")
+    assert {"path-line", "collect-line", "collect-label", "footprint-fill", "waypoint"} <= set(drawn)
+    plan = service.get(f"/api/v1/plans/{planned}/plan.geojson").json()
+    assert ask(page, "plan()")["features"] == len(plan["features"])
+
+
+def test_every_file_offered_can_be_fetched(page: Page, planned: str) -> None:
+    """The links beside the figures lead to the plan's files and its report."""
+    links = [link.evaluate("a => a.href") for link in page.locator(".files a").all()]
+    assert {link.rsplit("/", 1)[1] for link in links} == {
+        "plan.geojson", "mission.plan", "mission.waypoints", "mission.kml", "report.html",
+    }  # fmt: skip
+    for link in links:
+        assert httpx.get(link, timeout=20.0).status_code == 200
+        assert planned in link
+
+
+def test_the_plan_is_uploaded_and_flown(page: Page, planned: str, service: Service) -> None:
+    """Upload reads back equal; the aircraft moves once told to; after landing the ground seen is shown."""
+    page.get_by_role("tab", name="Fly").click()
+    page.click("#upload")
+    page.wait_for_selector("#upload-result [data-outcome=accepted][data-verified=true]")
+    assert ask(page, "vehicle()")["armed"] is False
+    give(page, "arm")
+    await_hook(page, "vehicle().armed")
+    marker = page.locator(".aircraft")
+    before = marker.bounding_box()
+    give(page, "start")
+    assert before is not None
+    page.wait_for_function(
+        """([x, y]) => {
+            const now = document.querySelector('.aircraft').getBoundingClientRect();
+            return Math.hypot(now.x - x, now.y - y) > 40;
+        }""",
+        arg=[before["x"], before["y"]],
+        timeout=FLIGHT_LIMIT_S * 1000,
+    )
+    page.wait_for_function("window.swathplan.rendered()['track-on'] > 0", timeout=FLIGHT_LIMIT_S * 1000)
+    if target := os.environ.get("SWATHPLAN_SCREENSHOT"):
+        await_hook(page, "rendered()['track-on'] >= 6", FLIGHT_LIMIT_S)
+        page.screenshot(path=target)
+    await_hook(page, "flown() !== null", FLIGHT_LIMIT_S)
+    flight = ask(page, "flown()")
+    seen = service.get(f"/api/v1/flights/{flight}/coverage.geojson").json()
+    assert seen["plan"] == planned
+    for region, fraction in seen["coverage"].items():
+        row = page.locator("#flown tr", has_text=region)
+        expect(row).to_contain_text(f"{fraction * 100:.2f} %")
+    await_hook(page, "rendered()['seen-fill'] > 0")
+
+
+def test_an_unsafe_plan_needs_a_reason(page: Page, planned: str, tmp_path: Path) -> None:
+    """The violation is shown; the upload is refused until the operator overrides it with a reason."""
+    short = json.loads(json.dumps(CASE_1))
+    short["vehicles"][0]["max_range_m"] = SHORT_RANGE_M
+    path = tmp_path / "short.geojson"
+    path.write_text(json.dumps(short), encoding="utf-8")
+    start_planning(page, path)
+    await_hook(page, f"plan() !== null && window.swathplan.plan().id !== '{planned}'", PLANNING_LIMIT_S)
+    expect(page.locator("#violations")).to_contain_text("range")
+    page.get_by_role("tab", name="Fly").click()
+    page.click("#upload")
+    dialog = page.get_by_role("dialog")
+    expect(dialog).to_contain_text("override")
+    expect(page.locator("#dialog-go")).to_be_disabled()
+    page.fill("#reason", "bench test, propeller off")
+    page.click("#dialog-go")
+    result = page.locator("#upload-result [data-outcome=accepted]")
+    expect(result).to_contain_text("bench test, propeller off", timeout=20_000)
+
+
+def test_a_failed_plan_says_why(page: Page, planned: str, tmp_path: Path) -> None:
+    """A region inside a hard threat cannot be seen: the page names the region and the way out."""
+    closed = json.loads(json.dumps(CASE_1))
+    threat = {"role": "threat", "name": "H", "model": "missile", "radius_m": 1500, "hard": True}
+    place = {"type": "Point", "coordinates": [-117.7474, 33.5145]}
+    closed["features"].append({"type": "Feature", "id": "H", "properties": threat, "geometry": place})
+    path = tmp_path / "closed.geojson"
+    path.write_text(json.dumps(closed), encoding="utf-8")
+    start_planning(page, path)
+    page.wait_for_selector("#failure", timeout=PLANNING_LIMIT_S * 1000)
+    expect(page.locator("#failure")).to_contain_text("R1")
+    expect(page.locator("#notices")).to_contain_text("No plan can satisfy the scenario")
+
+
+def test_a_lost_service_is_said_and_found_again(page: Page, planned: str) -> None:
+    """Without the service the header says so; when it is back, the page goes on by itself."""
+    status = page.locator("#service")
+    expect(status).to_have_attribute("data-state", "up")
+    page.context.set_offline(True)
+    expect(status).to_have_attribute("data-state", "down", timeout=15_000)
+    page.context.set_offline(False)
+    expect(status).to_have_attribute("data-state", "up", timeout=15_000)
