@@ -34,6 +34,7 @@ _INTERVALS_HZ: Final = {
     24: 1.0,  # GPS_RAW_INT
     242: 0.2,  # HOME_POSITION
     245: 1.0,  # EXTENDED_SYS_STATE
+    376: 4.0,  # RELAY_STATUS: in no stream of ArduPilot's, sent only when asked for
 }
 _MICROSECONDS: Final = 1e6
 
