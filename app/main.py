@@ -10,6 +10,8 @@ from fastapi import FastAPI
 from fastapi.openapi.utils import get_openapi
 from fastapi.responses import HTMLResponse
 from fastapi.staticfiles import StaticFiles
+from starlette.routing import Match, Mount
+from starlette.types import Scope
 
 from app import middleware, problems
 from app.routers import artefacts, flights, health, plans, scenarios, vehicles
@@ -79,10 +81,21 @@ def create_app(settings: Settings | None = None, build_house: Callable[[Limits],
     return app
 
 
+class _MapMount(Mount):
+    """The map under every path but the interface's, where a wrong method is a 405 and not a missing file."""
+
+    _OTHERS = ("/api/", "/health/", "/metrics", "/openapi.json", "/docs", "/redoc")
+
+    def matches(self, scope: Scope) -> tuple[Match, Scope]:
+        if scope["path"].startswith(self._OTHERS):
+            return Match.NONE, {}
+        return super().matches(scope)
+
+
 def _add_map(app: FastAPI, settings: Settings) -> None:
     folder = settings.web_map
     if folder is not None:
-        app.mount("/", StaticFiles(directory=folder, html=True), name="map")
+        app.router.routes.append(_MapMount("/", StaticFiles(directory=folder, html=True), name="map"))
         return
 
     @app.get("/", include_in_schema=False)

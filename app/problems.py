@@ -28,8 +28,9 @@ TABLE: tuple[tuple[type[errors.ServiceError], int, str, str], ...] = (
     (errors.ConflictError, 409, "conflict", "Not possible in the present state"),
     (errors.UnsafeError, 409, "unsafe", "Not to be flown without an explicit override"),
     (errors.RefusedError, 422, "refused", "The input is refused"),
-    (errors.OverloadedError, 503, "overloaded", "No room for more work now"),
-    (errors.LinkError, 502, "vehicle-unreachable", "The vehicle cannot be reached"),
+    (errors.OverloadedError, 429, "overloaded", "No room for more work now"),
+    # no 502: a 5xx means that the service is broken, and it is not
+    (errors.LinkError, 409, "vehicle-unreachable", "The vehicle cannot be reached"),
     (errors.CommandRefusedError, 409, "command-refused", "The vehicle said no"),
 )
 

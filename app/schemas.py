@@ -15,7 +15,7 @@ PlanStateName = Literal["queued", "running", "done", "failed", "cancelled"]
 class Strict(BaseModel):
     """A request body: unknown members, NaN and infinities are refused."""
 
-    model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
+    model_config = ConfigDict(extra="forbid", allow_inf_nan=False, strict=True)
 
 
 class FindingOut(BaseModel):

@@ -45,7 +45,7 @@ class Settings(BaseSettings):
     database: Path = Field(default=Path("var/swathplan.db"), description="Database file.")
     workers: int = Field(default_factory=_spare_cores, ge=1, le=256, description="Planning processes.")
     plan_time_limit_s: float = Field(default=600.0, gt=0, description="Longest time one plan may take.")
-    max_queued_plans: int = Field(default=200, ge=1, description="Plans waiting; more are refused with 503.")
+    max_queued_plans: int = Field(default=200, ge=1, description="Plans waiting; more are refused with 429.")
     max_wait_s: float = Field(default=300.0, ge=0, description="Longest ``?wait=``.")
     max_body_bytes: int = Field(default=5_000_000, ge=1024, description="Largest request body.")
     static_dir: Path | None = Field(default=None, description="The built web map; found when unset.")

@@ -55,13 +55,13 @@ PayloadQuery = Annotated[
 ]
 
 
-def _mission_route(form: str, name: str, media_type: str, summary: str) -> None:
+def _mission_route(form: str, name: str, media_type: str, summary: str, kind: str = "string") -> None:
     @router.get(
         f"/{name}",
         summary=summary,
         operation_id=f"mission_{form}",
         response_class=Response,
-        responses=responses(404, 409, 422) | {200: {"content": {media_type: {"schema": {"type": "string"}}}}},
+        responses=responses(404, 409, 422) | {200: {"content": {media_type: {"schema": {"type": kind}}}}},
     )
     async def mission(
         plan_id: str,
@@ -81,7 +81,7 @@ def _mission_route(form: str, name: str, media_type: str, summary: str) -> None:
         )
 
 
-_mission_route("plan", "mission.plan", "application/json", "QGroundControl plan")
+_mission_route("plan", "mission.plan", "application/json", "QGroundControl plan", "object")
 _mission_route("waypoints", "mission.waypoints", "text/plain", "Waypoint file (QGC WPL 110)")
 _mission_route("kml", "mission.kml", "application/vnd.google-earth.kml+xml", "KML")
 

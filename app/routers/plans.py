@@ -30,7 +30,7 @@ EVENT_STREAM: dict[int | str, dict[str, Any]] = {
     "",
     status_code=202,
     summary="Plan a scenario",
-    responses=responses(409, 422, 503),
+    responses=responses(409, 422, 429),
     openapi_extra={"requestBody": SCENARIO_BODY},
 )
 async def post_plan(

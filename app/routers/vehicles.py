@@ -31,7 +31,7 @@ router = APIRouter(prefix="/api/v1/vehicles", tags=["vehicles"])
 Parts = Annotated[list[Part], Query(description="Repeat for several.")]
 
 
-@router.post("", status_code=201, summary="Connect a vehicle", responses=responses(409, 422, 502))
+@router.post("", status_code=201, summary="Connect a vehicle", responses=responses(409, 422))
 async def connect(body: VehicleIn, fleet: FleetDep, response: Response) -> VehicleOut:
     """Open the link and wait for a heartbeat.
 
@@ -86,7 +86,7 @@ async def telemetry(vehicle_id: str, fleet: FleetDep) -> EventSourceResponse:
 @router.post(
     "/{vehicle_id}/mission",
     summary="Upload a plan",
-    responses=responses(404, 409, 422, 502)
+    responses=responses(404, 409, 422)
     | {202: {"model": UploadOut, "description": "The outcome is unknown until the vehicle comes back."}},
 )
 async def upload(vehicle_id: str, body: MissionIn, fleet: FleetDep, response: Response) -> UploadOut:
@@ -105,20 +105,20 @@ async def upload(vehicle_id: str, body: MissionIn, fleet: FleetDep, response: Re
     return UploadOut.of(report)
 
 
-@router.get("/{vehicle_id}/mission", summary="Download", responses=responses(404, 409, 422, 502))
+@router.get("/{vehicle_id}/mission", summary="Download", responses=responses(404, 409, 422))
 async def download(vehicle_id: str, fleet: FleetDep, part: Parts = ["mission"]) -> HeldOut:  # noqa: B006
     """What the vehicle holds."""
     return HeldOut(vehicle_id=vehicle_id, parts=await fleet.download(vehicle_id, list(dict.fromkeys(part))))
 
 
-@router.delete("/{vehicle_id}/mission", summary="Clear", responses=responses(404, 409, 422, 502))
+@router.delete("/{vehicle_id}/mission", summary="Clear", responses=responses(404, 409, 422))
 async def clear(vehicle_id: str, fleet: FleetDep, part: Parts = ["mission"]) -> ClearedOut:  # noqa: B006
     """Empty the vehicle's lists."""
     outcomes = await fleet.clear(vehicle_id, list(dict.fromkeys(part)))
     return ClearedOut(vehicle_id=vehicle_id, parts={name: o.kind for name, o in outcomes.items()})
 
 
-@router.post("/{vehicle_id}/commands", summary="Command", responses=responses(404, 409, 422, 502))
+@router.post("/{vehicle_id}/commands", summary="Command", responses=responses(404, 409, 422))
 async def command(vehicle_id: str, body: CommandIn, fleet: FleetDep) -> CommandOut:
     """An explicit flight command; nothing else arms or moves a vehicle. 409 when the vehicle says no."""
     outcome = await fleet.command(vehicle_id, body.command, body.seq)

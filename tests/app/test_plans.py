@@ -132,12 +132,12 @@ async def test_idempotency_key(client: httpx.AsyncClient) -> None:
     assert (await client.get(PLANS)).json()["total"] == 1
 
 
-async def test_full_queue_is_a_503(settings: Settings) -> None:
+async def test_full_queue_is_a_429(settings: Settings) -> None:
     """When too many plans wait, the next is refused and told when to come back."""
     async with serving(create_app(settings.model_copy(update={"max_queued_plans": 1}), fake_house)) as client:
         slow = (await client.post(PLANS, json=scenario("slow"))).headers["location"]
         await state_of(client, slow, "running")
         assert (await client.post(PLANS, json=scenario())).status_code == 202
         refused = await client.post(PLANS, json=scenario())
-        assert refused.status_code == 503
+        assert refused.status_code == 429
         assert int(refused.headers["retry-after"]) > 0

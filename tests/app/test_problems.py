@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
 import httpx
 import pytest
 
+from app.main import create_app
 from app.settings import Settings
+from tests.app.conftest import fake_house, serving
 
 PLANS = "/api/v1/plans"
 
@@ -126,3 +129,15 @@ def test_listening_beyond_this_machine_needs_a_word() -> None:
     with pytest.raises(ValueError, match="no users"):
         Settings(host="0.0.0.0")
     assert Settings(host="0.0.0.0", allow_remote=True).host == "0.0.0.0"
+
+
+async def test_map_does_not_hide_the_interface(settings: Settings, tmp_path: Path) -> None:
+    """With a built map at the root, paths and methods of the interface are refused as they are without."""
+    (tmp_path / "index.html").write_text("<title>map</title>")
+    async with serving(create_app(settings, fake_house)) as client:
+        assert "<title>map</title>" in (await client.get("/")).text
+        check_problem(await client.get("/no-such-file"), 404)
+        check_problem(await client.get("/api/v1/nothing"), 404)
+        check_problem(await client.get("/api/v1/scenarios/validate"), 405)
+        check_problem(await client.patch(PLANS), 405)
+        check_problem(await client.post("/health/live"), 405)

@@ -180,14 +180,14 @@ async def test_commands_refused_by_the_vehicle_are_409(client: httpx.AsyncClient
         ("sim:?home=north", 422, "sim-address"),
         ("sim:?speedup=nan", 422, "sim-address"),
         ("sim:?autopilot=toy", 422, "sim-address"),
-        ("sim:?airspeed=-1", 502, None),
-        ("udpin:127.0.0.1:port", 502, None),
-        ("tcp:127.0.0.1:1", 502, None),
-        ("serial:/dev/none:57600", 502, None),
+        ("sim:?airspeed=-1", 409, None),
+        ("udpin:127.0.0.1:port", 409, None),
+        ("tcp:127.0.0.1:1", 409, None),
+        ("serial:/dev/none:57600", 409, None),
     ],
 )
 async def test_bad_addresses(client: httpx.AsyncClient, url: str, status: int, rule: str | None) -> None:
-    """Addresses that cannot be are refused, those that do not answer are a bad gateway; none stays listed."""
+    """Addresses that cannot be are refused, those that cannot be opened are a conflict; none stays listed."""
     check_problem(await client.post(VEHICLES, json={"name": "x", "url": url}), status, rule)
     assert (await client.get(VEHICLES)).json() == {"vehicles": []}
 
@@ -198,9 +198,9 @@ async def test_silent_vehicle_is_listed_and_takes_no_orders(client: httpx.AsyncC
     answer = await client.post(VEHICLES, json=body)
     assert (answer.status_code, answer.json()["connected"]) == (201, False)
     vehicle = answer.headers["location"]
-    check_problem(await client.post(vehicle + "/mission", json={"plan_id": plan_id}), 502)
-    check_problem(await client.get(vehicle + "/mission"), 502)
-    check_problem(await client.post(vehicle + "/commands", json={"command": "arm"}), 502)
+    check_problem(await client.post(vehicle + "/mission", json={"plan_id": plan_id}), 409)
+    check_problem(await client.get(vehicle + "/mission"), 409)
+    check_problem(await client.post(vehicle + "/commands", json={"command": "arm"}), 409)
     check_problem(await client.post(VEHICLES, json=body | {"url": "sim:"}), 409)
 
 
