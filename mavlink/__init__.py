@@ -1,1 +1,1 @@
-"""Carries a plan to an ArduPilot or PX4 vehicle and back: items, dialects, files, transfers, links, a simulated aircraft."""
+"""Carries a plan to an ArduPilot or PX4 vehicle and back, and simulates such a vehicle."""
