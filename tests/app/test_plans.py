@@ -10,6 +10,7 @@ import httpx
 import pytest
 
 from app.main import create_app
+from app.services.store.database import Database, DatabaseInUseError
 from app.settings import Settings
 from tests.app.conftest import fake_house, serving
 
@@ -119,6 +120,13 @@ async def test_plans_survive_a_restart(settings: Settings) -> None:
         await state_of(client, cut, "running")
         await client.delete(cut)
         await state_of(client, waiting, "done")
+
+
+async def test_second_service_on_a_database_is_refused(client: httpx.AsyncClient, settings: Settings) -> None:
+    """Two services never share a database file: each would take the other's running plans for dead."""
+    assert (await client.get("/health/ready")).json()["checks"]["database"]
+    with pytest.raises(DatabaseInUseError):
+        await Database(settings.database).open()
 
 
 async def test_idempotency_key(client: httpx.AsyncClient) -> None:

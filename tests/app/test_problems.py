@@ -3,16 +3,29 @@
 from __future__ import annotations
 
 import json
+from collections.abc import AsyncIterator
 from pathlib import Path
 
 import httpx
 import pytest
+import pytest_asyncio
 
 from app.main import create_app
 from app.settings import Settings
 from tests.app.conftest import fake_house, serving
 
 PLANS = "/api/v1/plans"
+
+pytestmark = pytest.mark.asyncio(loop_scope="module")
+
+
+@pytest_asyncio.fixture(scope="module", loop_scope="module")
+async def client(tmp_path_factory: pytest.TempPathFactory) -> AsyncIterator[httpx.AsyncClient]:
+    """A client of one service for all of this module: no refusal may harm it."""
+    folder = tmp_path_factory.mktemp("problems")
+    settings = Settings(database=folder / "plans.db", workers=1, static_dir=folder, log_level="error")
+    async with serving(create_app(settings, fake_house)) as client:
+        yield client
 
 
 def check_problem(answer: httpx.Response, status: int, rule: str | None = None) -> None:
@@ -124,7 +137,7 @@ async def test_unforeseen_error_is_a_bare_500(
     assert answer.headers["x-request-id"] == "abc"
 
 
-def test_listening_beyond_this_machine_needs_a_word() -> None:
+async def test_listening_beyond_this_machine_needs_a_word() -> None:
     """An address others can reach is refused unless it is allowed in so many words."""
     with pytest.raises(ValueError, match="no users"):
         Settings(host="0.0.0.0")

@@ -78,8 +78,8 @@ def events(lines: Iterator[str]) -> Iterator[tuple[str, dict[str, Any]]]:
 
 
 @pytest.mark.skipif(not Path("/proc/self/task").is_dir(), reason="looks for workers in /proc")
-def test_killed_worker_fails_its_plan_and_the_next_one_runs(tmp_path: Path) -> None:
-    """SIGKILL to a worker in mid-plan: events told progress, then failed; the next plan is made."""
+def test_killed_workers_fail_their_plan_at_most(tmp_path: Path) -> None:
+    """SIGKILL in mid-plan: events tell progress, then failed; the next is made, also after one while idle."""
     with service(tmp_path / "plans.db") as running:
         plan = running.post("slow")
         with running.client.stream("GET", f"{PLANS}/{plan['id']}/events") as stream:
@@ -90,13 +90,6 @@ def test_killed_worker_fails_its_plan_and_the_next_one_runs(tmp_path: Path) -> N
         assert name == "failed"
         assert record["error"]["type"] == "worker-died"
         assert "signal 9" in record["error"]["detail"]
-        assert running.post("done", wait_s=20)["state"] == "done"
-
-
-@pytest.mark.skipif(not Path("/proc/self/task").is_dir(), reason="looks for workers in /proc")
-def test_worker_killed_while_idle_does_no_harm(tmp_path: Path) -> None:
-    """SIGKILL to an idle worker: the next plan is made all the same."""
-    with service(tmp_path / "plans.db") as running:
         assert running.post("done", wait_s=20)["state"] == "done"
         for pid in running.workers():
             os.kill(pid, signal.SIGKILL)
@@ -117,18 +110,8 @@ def test_crash_fails_the_running_and_keeps_the_rest(tmp_path: Path) -> None:
         assert second.until(waiting["id"], "done")["state"] == "done"
 
 
-def test_second_service_on_a_database_is_refused(tmp_path: Path) -> None:
-    """Two services never share a database file."""
-    with service(tmp_path / "plans.db") as running:
-        command = [sys.executable, "-m", "tests.app.fake_server", str(tmp_path / "plans.db")]
-        second = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=30, check=False)
-        assert second.returncode != 0
-        assert "another service" in second.stderr
-        assert running.client.get("/health/live").status_code == 200
-
-
-def test_sigterm_ends_open_streams_and_leaves_the_plan_for_the_next_service(tmp_path: Path) -> None:
-    """An orderly end closes event streams, exits cleanly, and requeues the plan being made."""
+def test_sigterm_ends_open_streams(tmp_path: Path) -> None:
+    """An orderly end closes event streams and exits cleanly."""
     with service(tmp_path / "plans.db") as running:
         plan = running.post("slow")
         running.until(plan["id"], "running")
@@ -138,6 +121,3 @@ def test_sigterm_ends_open_streams_and_leaves_the_plan_for_the_next_service(tmp_
                 if running.process.poll() is None:
                     running.process.terminate()
         assert running.process.wait(20) in (0, -signal.SIGTERM)
-    with service(tmp_path / "plans.db") as again:
-        again.until(plan["id"], "running")
-        again.client.delete(f"{PLANS}/{plan['id']}")

@@ -59,7 +59,7 @@ async def test_whole_journey(client: httpx.AsyncClient) -> None:
     record = (await client.post("/api/v1/plans", json=EXAMPLE, params={"wait": 60})).json()
     assert record["state"] == "done", record
     plan_id = record["id"]
-    vehicle = await connected(client)
+    vehicle = await connected(client, "sim:?speedup=300")
     answer = await client.post(
         vehicle + "/mission", json={"plan_id": plan_id, "parts": ["mission", "fence", "rally"]}
     )
