@@ -72,7 +72,7 @@ async def test_no_vehicle_is_said() -> None:
 
 
 async def test_our_heartbeats_and_wishes_go_out() -> None:
-    """The vehicle hears a ground station's heartbeat and is asked for positions and relays four times a second."""
+    """The vehicle hears a heartbeat, and is asked for positions and relays four times a second."""
     async with flying() as (client, aircraft):
         await client.command(Command.SET_MESSAGE_INTERVAL, (33.0, -1.0))
         beats = [message for message in aircraft.heard if message.name == "HEARTBEAT"]
