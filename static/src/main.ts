@@ -61,7 +61,7 @@ async function start(): Promise<void> {
   heartbeat();
   keepJudging();
   keepListing(scenarios.restore(), () => {
-    panel.show("plan");
+    panel.suggest("plan");
     view.zoomToAll();
   });
   view.zoomToAll();
@@ -78,11 +78,10 @@ function keepListing(hasEdits: boolean, shown: () => void): void {
     if (!cameUp) return;
     void attempt("The plans and flights were not listed", async () => {
       await Promise.all([refresh(), refreshFlights()]);
-      const newest = recent.value.find((record) => record.state === "done");
-      if (settled || !newest) return;
+      const newest = recent.value.find(({ state }) => state === "done") ?? recent.value.find(({ state }) => state === "queued" || state === "running");
+      if (settled || scenarios.edited.value || !newest) return;
       settled = true;
-      await openPlan(newest.id);
-      shown();
+      if (await openPlan(newest.id, null, () => !scenarios.edited.value)) shown();
     });
   });
 }

@@ -49,22 +49,24 @@ export function waypointsOf(document: unknown): Position[] {
     .filter(([lon, lat]) => Number.isFinite(lon) && Number.isFinite(lat) && (lon !== 0 || lat !== 0));
 }
 
-/** Bring a plan onto the map; its scenario too, unless `madeFrom` tells that of the page. */
-export async function openPlan(id: string, madeFrom: string | null = null): Promise<void> {
+/**
+ * Bring a plan onto the map; its scenario too, unless `madeFrom` tells that of the page. False when `wanted`
+ * says, once the answers are there, that the operator has gone on with something else.
+ */
+export async function openPlan(id: string, madeFrom: string | null = null, wanted = (): boolean => true): Promise<boolean> {
   const path = `/plans/${encodeURIComponent(id)}`;
   const record = await get<PlanRecord>(path);
-  if (madeFrom === null) scenarios.load(await get<Scenario>(`${path}/scenario`), false);
+  const done = record.state === "done";
+  const scenario = madeFrom === null ? await get<Scenario>(`${path}/scenario`) : null;
+  const plan = done ? await get<PlanCollection>(`${path}/plan.geojson`) : null;
+  const mission = done ? await attempt("The mission's waypoints cannot be shown", () => get<unknown>(`${path}/mission.plan`)) : null;
+  if (!wanted()) return false;
+  if (scenario) scenarios.load(scenario, false);
   const text = madeFrom ?? scenarios.text();
-  if (record.state !== "done") {
-    open.set(null);
-    running.set(record);
-    if (!ENDED.has(record.state)) watchPlan(record, text);
-    return;
-  }
-  const plan = await get<PlanCollection>(`${path}/plan.geojson`);
-  const mission = await attempt("The mission's waypoints cannot be shown", () => get<unknown>(`${path}/mission.plan`));
-  running.set(null);
-  open.set({ record, plan, waypoints: waypointsOf(mission), madeFrom: text });
+  running.set(done ? null : record);
+  open.set(plan ? { record, plan, waypoints: waypointsOf(mission), madeFrom: text } : null);
+  if (!ENDED.has(record.state)) watchPlan(record, text);
+  return true;
 }
 
 let unwatch: (() => void) | null = null;

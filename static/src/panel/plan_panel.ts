@@ -38,20 +38,25 @@ function failure(problem: Problem, view: PlanView): HTMLElement {
   );
 }
 
+/** Bar, stage and cancel button; they stay the same elements, so that a click or the focus is never lost. */
 function progress(view: PlanView): HTMLElement {
-  const box = h("div", { id: "progress", "aria-live": "polite" });
+  const bar = h("progress", { max: 1, "aria-label": "Planning progress" });
+  const words = h("p", { role: "status" });
+  const cancel = button("Cancel planning", () => void attempt("The plan was not cancelled", cancelPlan), { class: "danger", id: "plan-cancel" });
+  const reasons = h("div", {});
+  const box = h("div", { id: "progress" }, bar, words, reasons, cancel);
   running.watch((record) => {
-    if (!record) return fill(box);
+    box.hidden = record === null;
+    if (!record) return;
     const fraction = Math.min(1, Math.max(0, record.progress ?? 0));
     const problem = problemOf(record);
     const moving = MOVING.has(record.state);
-    fill(
-      box,
-      moving ? h("progress", { max: 1, value: fraction, "aria-label": "Planning progress" }) : null,
-      h("p", {}, moving ? `${record.stage ?? record.state} – ${percent(fraction, 0)}` : `Plan ${record.state}`),
-      problem && record.state === "failed" ? failure(problem, view) : null,
-      moving ? button("Cancel planning", () => void attempt("The plan was not cancelled", cancelPlan), { class: "danger" }) : null,
-    );
+    bar.hidden = !moving;
+    cancel.hidden = !moving;
+    bar.value = fraction;
+    const text = moving ? `${record.stage ?? record.state} – ${percent(fraction, 0)}` : `Plan ${record.state}`;
+    if (words.textContent !== text) words.textContent = text;
+    fill(reasons, problem && record.state === "failed" ? failure(problem, view) : null);
   });
   return box;
 }

@@ -88,20 +88,29 @@ const ORDER = ["roi", "threat", "no_fly", "obstacle", "importance", "area", "sta
 
 function features(view: View): HTMLElement {
   const box = h("div", { class: "chips" });
+  let shown = "";
   const draw = (): void => {
     const sorted = [...scenarios.document.value.features].sort((a, b) => ORDER.indexOf(a.properties.role) - ORDER.indexOf(b.properties.role));
-    fill(
-      box,
-      ...sorted.map((feature) => {
-        const name = nameOf(feature);
-        const select = (): void => {
-          scenarios.selection.set(name);
-          view.zoomTo([name]);
-        };
-        return button(name, select, { class: `chip ${feature.properties.role}`, title: feature.properties.role, "aria-pressed": scenarios.selection.value === name });
-      }),
-      sorted.length === 0 ? h("p", { class: "quiet" }, "No features. Use the tools over the map, or open a file.") : null,
-    );
+    const key = JSON.stringify(sorted.map((feature) => [nameOf(feature), feature.properties.role]));
+    // Built anew only when the list itself changes: the focus stays where it is.
+    if (key !== shown) {
+      shown = key;
+      fill(
+        box,
+        ...sorted.map((feature) => {
+          const name = nameOf(feature);
+          const select = (): void => {
+            scenarios.selection.set(name);
+            view.zoomTo([name]);
+          };
+          return button(name, select, { class: `chip ${feature.properties.role}`, title: feature.properties.role });
+        }),
+        sorted.length === 0 ? h("p", { class: "quiet" }, "No features. Use the tools over the map, or open a file.") : null,
+      );
+    }
+    for (const chip of box.querySelectorAll("button")) {
+      chip.setAttribute("aria-pressed", String(chip.textContent === scenarios.selection.value));
+    }
   };
   scenarios.document.watch(draw);
   scenarios.selection.watch(draw);

@@ -8,7 +8,7 @@ type List = "vehicles" | "sensors";
 
 const METHODS: Record<string, readonly string[]> = {
   coverage: ["auto", "li2018"],
-  routing: ["auto", "li2018"],
+  routing: ["auto", "joint", "li2018", "li2018-threat-aware"],
   transit: ["auto", "ssas", "tangent"],
   smoothing: ["auto", "fillet", "shortcut"],
 };

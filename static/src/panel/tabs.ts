@@ -11,20 +11,27 @@ export interface Tabs {
   element: HTMLElement;
   panels: HTMLElement[];
   show(id: string): void;
+  /** Show a tab unless the operator has chosen one. */
+  suggest(id: string): void;
 }
 
 export function tabs(all: Tab[]): Tabs {
   const heads = all.map((tab) =>
-    h("button", { type: "button", role: "tab", id: `tab-${tab.id}`, "aria-controls": `panel-${tab.id}`, onclick: () => show(tab.id) }, tab.label),
+    h("button", { type: "button", role: "tab", id: `tab-${tab.id}`, "aria-controls": `panel-${tab.id}`, onclick: () => choose(tab.id) }, tab.label),
   );
   const panels = all.map((tab) => h("div", { role: "tabpanel", id: `panel-${tab.id}`, "aria-labelledby": `tab-${tab.id}`, tabindex: 0 }, tab.content));
+  let chosen = false;
+  const choose = (id: string): void => {
+    chosen = true;
+    show(id);
+  };
   const show = (id: string): void => {
     all.forEach((tab, index) => {
-      const chosen = tab.id === id;
-      heads[index]?.setAttribute("aria-selected", String(chosen));
-      heads[index]?.setAttribute("tabindex", chosen ? "0" : "-1");
+      const shown = tab.id === id;
+      heads[index]?.setAttribute("aria-selected", String(shown));
+      heads[index]?.setAttribute("tabindex", shown ? "0" : "-1");
       const panel = panels[index];
-      if (panel) panel.hidden = !chosen;
+      if (panel) panel.hidden = !shown;
     });
   };
   const element = h("div", { class: "tabs", role: "tablist", "aria-label": "Scenario, plan, flight" }, ...heads);
@@ -34,8 +41,8 @@ export function tabs(all: Tab[]): Tabs {
     if (!step || at < 0) return;
     const next = (at + step + all.length) % all.length;
     heads[next]?.focus();
-    show((all[next] as Tab).id);
+    choose((all[next] as Tab).id);
   });
   show((all[0] as Tab).id);
-  return { element, panels, show };
+  return { element, panels, show, suggest: (id) => (chosen ? undefined : show(id)) };
 }

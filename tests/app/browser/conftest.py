@@ -30,7 +30,7 @@ CHROMIUM_FLAGS = [
 ]
 START_LIMIT_S = 60.0
 #: Slower for a good picture: see docs/map.md.
-SPEEDUP = int(os.environ.get("SWATHPLAN_TEST_SPEEDUP", "100"))
+SPEEDUP = int(os.environ.get("SWATHPLAN_TEST_SPEEDUP", "200"))
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,6 +16,7 @@ from tests.app.browser.helpers import ask, await_hook, open_scenario
 pytestmark = pytest.mark.browser
 
 CASE_1 = json.loads((EXAMPLES / "sar-case-1.geojson").read_text(encoding="utf-8"))
+QUEUED_BEFORE = 25
 SHORT_RANGE_M = 20_000.0
 PLANNING_LIMIT_S = 60.0
 FLIGHT_LIMIT_S = 90.0
@@ -134,6 +135,19 @@ def test_a_failed_plan_says_why(page: Page, planned: str, tmp_path: Path) -> Non
     page.wait_for_selector("#failure", timeout=PLANNING_LIMIT_S * 1000)
     expect(page.locator("#failure")).to_contain_text("R1")
     expect(page.locator("#notices")).to_contain_text("No plan can satisfy the scenario")
+
+
+def test_planning_can_be_cancelled(page: Page, planned: str, service: Service) -> None:
+    """A plan that waits behind others is cancelled by its button, and the page says so."""
+    for seed in range(1, QUEUED_BEFORE + 1):
+        answer = httpx.post(f"{service.address}/api/v1/plans", json=CASE_1 | {"seed": seed}, timeout=20.0)
+        assert answer.status_code == 202
+    start_planning(page, EXAMPLES / "sar-case-1.geojson")
+    page.click("#plan-cancel")
+    await_hook(page, "planState() === 'cancelled'")
+    expect(page.locator("#progress")).to_contain_text("Plan cancelled")
+    newest = service.get("/api/v1/plans?limit=1").json()["plans"][0]
+    assert newest["state"] == "cancelled"
 
 
 def test_a_lost_service_is_said_and_found_again(page: Page, planned: str) -> None:

@@ -9,6 +9,7 @@ import pytest
 from playwright.sync_api import Page, expect
 from pyproj import Geod
 
+from planner.geojson.equipment import METHODS
 from tests.app.browser.conftest import EXAMPLES
 from tests.app.browser.helpers import ask, await_hook, click_place, feature, on_screen, open_scenario
 
@@ -156,3 +157,12 @@ def test_edits_outlive_a_reload_and_the_download_holds_them(page: Page) -> None:
         page.get_by_role("button", name="Download").click()
     saved = json.loads(Path(waiting.value.path()).read_text(encoding="utf-8"))
     assert saved == CASE_1 | {"altitude_m": 620}
+
+
+def test_the_methods_offered_are_those_the_planner_knows(page: Page) -> None:
+    """Each stage's list on the page names the planner's methods, all of them and no others."""
+    open_scenario(page)
+    page.get_by_text("Methods", exact=True).click()
+    for stage, names in METHODS.items():
+        if stage != "search":
+            assert page.locator(f"#m-{stage} option").evaluate_all("o => o.map(e => e.value)") == list(names)
