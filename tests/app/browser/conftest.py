@@ -52,7 +52,7 @@ def _first_line(process: subprocess.Popen[str]) -> str:
     return line
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
     """A service of its own: fresh database, free port, one simulated aircraft in quick motion."""
     if not PAGE.is_file():
@@ -84,7 +84,7 @@ def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
                 process.stdout.close()
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def browser() -> Iterator[Browser]:
     """Chromium without a window; WebGL is drawn by the processor."""
     if CHROMIUM is None:
