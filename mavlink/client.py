@@ -56,6 +56,8 @@ class VehicleClient(FlightCommands):
         The system id to talk to; 0 takes the first autopilot heard.
     lost_after_s
         A vehicle silent this long counts as lost: what is under way ends as unknown.
+    tap
+        Called with every frame of the link, both ways, e.g. ``TlogWriter.write``.
 
     Notes
     -----
@@ -72,8 +74,10 @@ class VehicleClient(FlightCommands):
         settings: TransferSettings = DEFAULT_SETTINGS,
         vehicle_system: int = 0,
         lost_after_s: float = 5.0,
+        tap: Callable[[bytes], None] | None = None,
     ) -> None:
         codec = Codec(system_id)
+        codec.tap = tap
         self._driver = Driver(link, codec, clock, self._ask_for_telemetry, vehicle_system, lost_after_s)
         self._settings = settings
         self._pending: Pending | None = None
@@ -90,6 +94,11 @@ class VehicleClient(FlightCommands):
     def state(self) -> VehicleState:
         """All that is known of the vehicle now."""
         return self._driver.state
+
+    @property
+    def failure(self) -> str | None:
+        """Why the client has ended: its link failed, its recording is over, it was closed; None before."""
+        return self._driver.failure
 
     async def connect(self, timeout_s: float = 10.0) -> VehicleState:
         """Send heartbeats, and wait for an autopilot's; may be called again after a failure.
@@ -229,6 +238,8 @@ class VehicleClient(FlightCommands):
 
     def _ask_for_telemetry(self) -> None:
         """Ask for what the state is made of; a vehicle that knows no intervals just says so."""
+        if self._driver.read_only:
+            return
         for message_id, rate_hz in _INTERVALS_HZ.items():
             parameters = (float(message_id), _MICROSECONDS / rate_hz)
             self._driver.post(

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import re
 import struct
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -20,7 +21,8 @@ from mavlink.messages import Message, Value
 
 _MAGIC_V1: Final = 0xFE
 _MAGIC_V2: Final = 0xFD
-_MAGIC: Final = re.compile(rb"[\xfd\xfe]")
+#: The first byte of a frame.
+MAGIC: Final = re.compile(rb"[\xfd\xfe]")
 _HEADER_V1: Final = struct.Struct("<BBBBBB")
 _HEADER_V2: Final = struct.Struct("<BBBBBBBHB")
 _SIGNED: Final = 0x01
@@ -95,6 +97,8 @@ class Codec:
         Frame starts given up: checksum wrong, or flags nobody here understands.
     unknown_frames
         Whole frames skipped because the dialect does not define their message.
+    tap
+        Called with every whole frame taken in or packed, as it is on the wire; None to do without.
     """
 
     def __init__(self, system_id: int = 255, component_id: int = 190) -> None:
@@ -105,6 +109,7 @@ class Codec:
         self.component_id = component_id
         self.bad_frames = 0
         self.unknown_frames = 0
+        self.tap: Callable[[bytes], None] | None = None
         self._sequence = 0
         self._buffer = bytearray()
 
@@ -149,7 +154,10 @@ class Codec:
         )
         self._sequence = (self._sequence + 1) & 0xFF
         body = header + payload
-        return body + _crc(body[1:] + layout.crc_extra)
+        frame = body + _crc(body[1:] + layout.crc_extra)
+        if self.tap is not None:
+            self.tap(frame)
+        return frame
 
     def feed(self, data: bytes) -> list[Message]:
         """Decode what is complete; keep the rest for the next call. Never raises, whatever the bytes.
@@ -161,13 +169,15 @@ class Codec:
         buffer += data
         messages: list[Message] = []
         position = 0
-        while (start := _MAGIC.search(buffer, position)) is not None:
+        while (start := MAGIC.search(buffer, position)) is not None:
             position = start.start()
-            end = _frame_end(buffer, position)
+            end = frame_end(buffer, position)
             if end is None:
                 break
             taken = self._decode(buffer, position, end, messages) if end > position else False
             if taken:
+                if self.tap is not None:
+                    self.tap(bytes(buffer[position:end]))
                 position = end
             else:
                 self.bad_frames += 1
@@ -212,8 +222,11 @@ def _crc(data: bytes) -> bytes:
     return int(dialect.x25crc(data).crc).to_bytes(_CRC_BYTES, "little")
 
 
-def _frame_end(buffer: bytearray, start: int) -> int | None:
-    """One past the frame's last byte; None while it is incomplete; ``start`` when it can be no frame."""
+def frame_end(buffer: bytes | bytearray, start: int) -> int | None:
+    """One past the frame's last byte; None while it is incomplete; ``start`` when it can be no frame.
+
+    ``buffer[start]`` must be the first byte of a frame.
+    """
     available = len(buffer) - start
     if buffer[start] == _MAGIC_V1:
         if available < _HEADER_V1.size:

@@ -14,8 +14,8 @@ from dataclasses import replace
 from typing import Any, Final, Generic, TypeVar
 
 from mavlink.codec import Codec
-from mavlink.errors import BusyError, CodecError, LinkError, NotConnectedError
-from mavlink.link import DirectLink, Link
+from mavlink.errors import BusyError, CodecError, LinkError, NotConnectedError, ReadOnlyError
+from mavlink.link import DirectLink, Link, ReplayLink
 from mavlink.messages import Message
 from mavlink.modes import GROUND_STATION_TYPE, NO_AUTOPILOT
 from mavlink.telemetry import VehicleState, updated
@@ -82,6 +82,7 @@ class Driver:
     ) -> None:
         self.state = VehicleState()
         self._link = link
+        self.read_only = isinstance(link, ReplayLink)
         self._direct = link if isinstance(link, DirectLink) else None
         self._due_s = math.inf
         self._error: Exception | None = None
@@ -164,7 +165,9 @@ class Driver:
         return job
 
     def require_connected(self) -> None:
-        """Raise NotConnectedError unless the vehicle is there."""
+        """Raise NotConnectedError unless the vehicle is there, ReadOnlyError when it is a recording."""
+        if self.read_only:
+            raise ReadOnlyError(f"{self._link.url} is a recording: it takes no transfers and no commands")
         if self._failure is not None:
             raise NotConnectedError(self._failure)
         if not self.state.connected:

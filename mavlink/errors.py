@@ -7,6 +7,7 @@
     ├── LinkError            an address is malformed, or a port or device cannot be opened or has failed
     ├── VehicleNotFoundError no autopilot's heartbeat arrived in time
     ├── NotConnectedError    asked of a vehicle that is not connected, or whose client is closed
+    │   └── ReadOnlyError    a transfer or command asked of a recording that is being replayed
     ├── BusyError            another transfer with this vehicle is under way
     └── TransferFailedError  a download ended without all items; carries the outcome
 
@@ -39,6 +40,10 @@ class VehicleNotFoundError(MavlinkError):
 
 class NotConnectedError(MavlinkError):
     """The vehicle is not connected, or the client is closed."""
+
+
+class ReadOnlyError(NotConnectedError):
+    """The vehicle is a recording that is being replayed: nobody is there to answer."""
 
 
 class BusyError(MavlinkError):

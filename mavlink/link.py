@@ -1,7 +1,8 @@
 """Byte links to a vehicle. ``mavlink.links`` holds the only sockets of the package.
 
 Addresses: ``udpin:host:port`` listens, ``udpout:host:port`` sends first, ``tcp:host:port`` connects,
-``tcpin:host:port`` accepts one peer at a time, ``serial:device:baud`` opens a serial port.
+``tcpin:host:port`` accepts one peer at a time, ``serial:device:baud`` opens a serial port,
+``replay:path?speedup=10`` plays a recording, to listen to alone.
 """
 
 from __future__ import annotations
@@ -11,13 +12,25 @@ from typing import Final, Protocol, runtime_checkable
 
 from mavlink.errors import LinkError
 from mavlink.links.memory import LinkFaults, MemoryLink, memory_pair
+from mavlink.links.replay import ReplayLink, open_replay
 from mavlink.links.serial_port import open_serial
 from mavlink.links.tcp import open_tcp_client, open_tcp_server
 from mavlink.links.udp import open_udp
 
-__all__ = ["FORMS", "DirectLink", "Link", "LinkFaults", "MemoryLink", "memory_pair", "open_link"]
+__all__ = [
+    "FORMS",
+    "DirectLink",
+    "Link",
+    "LinkFaults",
+    "MemoryLink",
+    "ReplayLink",
+    "memory_pair",
+    "open_link",
+]
 
-FORMS: Final = "udpin:host:port, udpout:host:port, tcp:host:port, tcpin:host:port or serial:device:baud"
+FORMS: Final = (
+    "udpin:host:port, udpout:host:port, tcp:host:port, tcpin:host:port, serial:device:baud or replay:path"
+)
 
 
 class Link(Protocol):
@@ -57,6 +70,8 @@ async def open_link(url: str) -> Link:
         The address has none of the known forms, or the port or device cannot be opened.
     """
     form, _, rest = url.partition(":")
+    if form == "replay":
+        return open_replay(url)
     address, _, last = rest.rpartition(":")
     if form not in {"udpin", "udpout", "tcp", "tcpin", "serial"} or not address or not last:
         raise LinkError(f"{url!r} is no link address; the forms are {FORMS}")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import time
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Callable
 from typing import Self
 
 from mavlink.client import VehicleClient
@@ -115,12 +115,13 @@ async def flying(
     seed: int = 0,
     settings: TransferSettings = HASTY,
     lost_after_s: float = 5.0,
+    tap: Callable[[bytes], None] | None = None,
 ) -> AsyncIterator[tuple[VehicleClient, Aircraft]]:
     """A client and an aircraft joined in memory, connected."""
     ground, air = memory_pair(faults, seed)
     autopilot = {"ardupilot": 3, "px4": 12, "generic": 0}[manner]
     stub = StubVehicle("px4" if manner == "px4" else "ardupilot")
-    client = VehicleClient(ground, settings=settings, lost_after_s=lost_after_s)
+    client = VehicleClient(ground, settings=settings, lost_after_s=lost_after_s, tap=tap)
     async with Aircraft(air, stub, autopilot, kind) as aircraft, client:
         await client.connect(5)
         yield client, aircraft
