@@ -17,6 +17,8 @@ class Benchmark(StrEnum):
 
     SAR = "sar"
     LINK = "link"
+    TRANSIT = "transit"
+    KERNELS = "kernels"
 
 
 def _options(pairs: list[str]) -> dict[str, Any]:

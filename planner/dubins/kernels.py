@@ -1,7 +1,8 @@
 """Compiled lengths of Dubins lines; ``words.py`` is the plain twin and cites the equations.
 
-A line from many poses to many needs one sine and one cosine a pose, then one square root and one arctangent a
-word; words whose middle part alone is longer than the best line so far are not finished.
+A line from many poses to many needs one sine and one cosine a pose, then a square root a word. Angles cost
+most: LSL and RSR are decided by signs without one, and a word is given up as soon as what is known of it,
+its middle part and the quadrants of its arcs, is longer than the best line so far.
 """
 
 from __future__ import annotations
@@ -13,6 +14,8 @@ from numba import njit
 from numpy.typing import NDArray
 
 FULL_TURN_SNAP = 1e-9
+#: Arcs nearer to a full turn than this, in radians, may be arcs of no length: the angles themselves decide.
+NEAR = 1e-6
 TWO_PI = 2.0 * math.pi
 HALF_PI = 0.5 * math.pi
 
@@ -27,34 +30,51 @@ def _arc(turn_rad: float, straight_radii: float) -> float:
     return turn_rad
 
 
+@njit(cache=True, inline="always")
+def _quarters_rad(cosine: float, sine: float, noise: float) -> float:
+    """The multiple of π/2 at or below an angle in [0, 2π) given by its cosine and sine, of any scale.
+
+    A sine within ``noise`` of 0 may belong to an arc of no length.
+    """
+    if sine >= -noise:
+        return 0.0 if cosine >= 0.0 else HALF_PI
+    return math.pi if cosine < 0.0 else 1.5 * math.pi
+
+
 @njit(cache=True)
 def _length_radii(
     de: float, dn: float, alpha: float, sa: float, ca: float, beta: float, sb: float, cb: float
 ) -> float:
     """Length in radii of the shortest word for an offset (de, dn) in radii."""
     best = np.inf
+    turned = beta - alpha
+    turned -= TWO_PI * math.floor(turned / TWO_PI)
+    least = min(turned, TWO_PI - turned)
+    nearest = np.inf
     for k in range(2):
+        # LSL, RSR: t + q is the turn w from pose to pose, or, where the straight's direction does not lie
+        # on that turn, a full turn more; which of them, signs tell but where an arc may be of no length.
         s = 1.0 - 2.0 * k
         ce = de - s * sb + s * sa
         cn = dn + s * cb - s * ca
-        square = ce * ce + cn * cn
-        p = math.sqrt(square)
+        p = math.sqrt(ce * ce + cn * cn)
+        nearest = min(nearest, p)
         if p < FULL_TURN_SNAP:
             best = min(best, _arc(s * (beta - alpha), 0.0))
             continue
-        if p >= best and p > 4.0:
+        w = turned if k == 0 else TWO_PI - turned
+        if p + w - NEAR >= best and least > NEAR:
             continue
-        phi = math.atan2(cn, ce)
-        if p < best:
+        sine_t = s * (ca * cn - sa * ce)
+        sine_q = s * (sb * ce - cb * cn)
+        if least < NEAR or abs(sine_t) < NEAR * p or abs(sine_q) < NEAR * p:
+            phi = math.atan2(cn, ce)
             best = min(best, _arc(s * (phi - alpha), p) + p + _arc(s * (beta - phi), p))
-        if p <= 4.0:
-            lean = math.acos(p / 4.0) + HALF_PI
-            if 2.0 * lean < best:
-                best = min(
-                    best,
-                    _arc(s * (phi - alpha) + lean, 0.0) + 2.0 * lean + _arc(s * (beta - phi) + lean, 0.0),
-                )
+            continue
+        between = sine_q > 0.0 if (sine_t > 0.0) == (w < math.pi) else sine_t > 0.0
+        best = min(best, w + p if between else w + TWO_PI + p)
     for k in range(2):
+        # LSR, RSL: t and q differ by the turn from pose to pose, or by what is left of a full turn.
         s = 1.0 - 2.0 * k
         ce = de + s * sb + s * sa
         cn = dn - s * cb - s * ca
@@ -62,10 +82,38 @@ def _length_radii(
         if square < -FULL_TURN_SNAP:
             continue
         p = math.sqrt(max(square, 0.0))
-        if p >= best:
+        if p + (least if least > NEAR else 0.0) - NEAR >= best:
             continue
-        phi = math.atan2(2.0 * s * ce + p * cn, p * ce - 2.0 * s * cn)
+        ue = p * ce - 2.0 * s * cn
+        un = 2.0 * s * ce + p * cn
+        noise = NEAR * (square + 4.0)
+        quarters = _quarters_rad(ca * ue + sa * un, s * (ca * un - sa * ue), noise)
+        quarters += _quarters_rad(cb * ue + sb * un, s * (cb * un - sb * ue), noise)
+        if p + quarters - NEAR >= best:
+            continue
+        phi = math.atan2(un, ue)
         best = min(best, _arc(s * (phi - alpha), p) + p + _arc(s * (phi - beta), p))
+    if nearest > 4.0 or best <= math.pi:
+        # The middle arc of LRL and RLR is more than half a turn.
+        return best
+    for k in range(2):
+        s = 1.0 - 2.0 * k
+        ce = de - s * sb + s * sa
+        cn = dn + s * cb - s * ca
+        p = math.sqrt(ce * ce + cn * cn)
+        # acos x >= (1 - x) π/2
+        if p < FULL_TURN_SNAP or p > 4.0 or TWO_PI - 0.25 * math.pi * p >= best:
+            continue
+        middle = 2.0 * math.acos(p / 4.0) + math.pi
+        if middle >= best:
+            continue
+        w = s * (beta - alpha) + middle
+        w -= TWO_PI * math.floor(w / TWO_PI)
+        if NEAR < w < TWO_PI - NEAR and middle + w - NEAR >= best:
+            continue
+        phi = math.atan2(cn, ce)
+        lean = 0.5 * middle
+        best = min(best, _arc(s * (phi - alpha) + lean, 0.0) + middle + _arc(s * (beta - phi) + lean, 0.0))
     return best
 
 
