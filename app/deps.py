@@ -13,23 +13,23 @@ from app.services.vehicles.fleet import Fleet
 from app.settings import Settings
 
 
-def _house(request: Request) -> House:
+async def _house(request: Request) -> House:
     return cast(House, request.app.state.house)
 
 
-def _settings(request: Request) -> Settings:
+async def _settings(request: Request) -> Settings:
     return cast(Settings, request.app.state.settings)
 
 
-def _planning(house: Annotated[House, Depends(_house)]) -> PlanningService:
+async def _planning(house: Annotated[House, Depends(_house)]) -> PlanningService:
     return house.planning
 
 
-def _fleet(house: Annotated[House, Depends(_house)]) -> Fleet:
+async def _fleet(house: Annotated[House, Depends(_house)]) -> Fleet:
     return house.fleet
 
 
-def _flights(house: Annotated[House, Depends(_house)]) -> FlightService:
+async def _flights(house: Annotated[House, Depends(_house)]) -> FlightService:
     return house.flights
 
 

@@ -105,7 +105,7 @@ async def _fly(
         findings = judge_upload(plan, mission, ["mission", "fence"], client.state, None)
         report = new_report(0, plan.scenario_hash, mission, ["mission", "fence"], None, findings)
         began_s = time.perf_counter()
-        await send_parts(client, mission, report, lambda *_: None)
+        await send_parts(client, report, lambda *_: None)
         took_s = time.perf_counter() - began_s
         items = sum(part.meant for part in report.parts.values())
         told.tell(

@@ -172,7 +172,7 @@ async def _upload(
         for finding in findings:
             say(f"{'overridden' if finding.severity == 'error' else 'note'}: {finding}")
         report = new_report(0, plan.scenario_hash, mission, parts, override, findings)
-        await send_parts(client, mission, report, lambda *_: None)
+        await send_parts(client, report, lambda *_: None)
         return report_json(report)
 
 

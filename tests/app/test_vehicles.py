@@ -117,12 +117,13 @@ async def test_hard_violations_need_an_override(client: httpx.AsyncClient, plan_
 async def test_second_upload_at_once_is_refused(client: httpx.AsyncClient, plan_id: str) -> None:
     """Of two uploads at once the second is refused, and told of the first."""
     vehicle = await connected(client)
-    first, second = await asyncio.gather(
+    answers = await asyncio.gather(
         *(client.post(vehicle + "/mission", json={"plan_id": plan_id}) for _ in range(2))
     )
-    assert first.status_code == 200
-    check_problem(second, 409)
-    assert plan_id in second.json()["detail"]
+    done, refused = sorted(answers, key=lambda answer: answer.status_code)
+    assert done.status_code == 200, done.text
+    check_problem(refused, 409)
+    assert plan_id in refused.json()["detail"]
 
 
 async def test_vanished_vehicle_leaves_unknown_until_read_back(
@@ -228,3 +229,21 @@ async def test_simulated_aircraft_ends_with_the_service(settings: Settings) -> N
         (vehicle,) = app.state.house.fleet.all()
         simulator = vehicle._connection.simulator
     assert simulator._process.returncode is not None
+
+
+async def test_failed_link_is_opened_anew(client: httpx.AsyncClient) -> None:
+    """A vehicle whose TCP side goes away and comes back is connected again without anyone's help."""
+    probe = await open_link("udpin:127.0.0.1:0")
+    port = probe.url.rpartition(":")[2]
+    await probe.close()
+    url = f"tcpin:127.0.0.1:{port}"
+    simulator = asyncio.create_task(serve(url, SimSettings()))
+    await asyncio.sleep(0.2)
+    vehicle = await connected(client, f"tcp:127.0.0.1:{port}")
+    simulator.cancel()
+    await asyncio.gather(simulator, return_exceptions=True)
+    await until(client, vehicle, lambda body: not body["connected"])
+    simulator = asyncio.create_task(serve(url, SimSettings()))
+    await until(client, vehicle, lambda body: body["connected"])
+    simulator.cancel()
+    await asyncio.gather(simulator, return_exceptions=True)

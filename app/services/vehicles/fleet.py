@@ -160,7 +160,7 @@ class Fleet:
             if "mission" in parts:
                 vehicle.held = None
             try:
-                await send_parts(vehicle.client, mission, report, tell)
+                await send_parts(vehicle.client, report, tell)
             finally:
                 await self._record_upload(vehicle)
         return report

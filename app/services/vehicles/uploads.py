@@ -18,7 +18,8 @@ from mavlink.items import MissionItem
 from mavlink.mission import Mission
 from mavlink.telemetry import VehicleState
 from mavlink.transfer.machine import Progress
-from mavlink.verify import VerifiedUpload
+from mavlink.transfer.outcome import Unknown
+from mavlink.verify import Pending, VerifiedUpload, resolve
 from planner.errors import Finding
 from planner.plan import Plan
 
@@ -75,6 +76,7 @@ class UploadReport:
     override_reason: str | None
     notes: tuple[str, ...]
     findings: tuple[Finding, ...]
+    mission: Mission
     parts: dict[PartName, PartResult] = field(default_factory=dict)
 
     @property
@@ -104,6 +106,7 @@ def new_report(
         override,
         mission.notes,
         findings,
+        mission,
         {name: PartResult(len(mission.items_of(PARTS[name]))) for name in parts},
     )
 
@@ -172,13 +175,21 @@ def comparing(
     return lambda meant, held: differences(meant, held, dialect)
 
 
+async def read_back(client: VehicleClient, report: UploadReport) -> None:
+    """Find out what the parts whose outcome is unknown have left in the vehicle."""
+    compare = comparing(report.mission.dialect)
+    for name, part in report.parts.items():
+        if part.outcome == "unknown":
+            kind = PARTS[name]
+            meant = report.mission.items_of(kind)
+            part.take(await resolve(client, Pending(meant, kind, compare, Unknown("link-lost"))))
+
+
 async def send_parts(
-    client: VehicleClient,
-    mission: Mission,
-    report: UploadReport,
-    progress: Callable[[PartName, Progress], None],
+    client: VehicleClient, report: UploadReport, progress: Callable[[PartName, Progress], None]
 ) -> None:
     """Upload the parts of a report in turn, up to the first that is not accepted."""
+    mission = report.mission
     compare = comparing(mission.dialect)
     for name, part in report.parts.items():
         kind = PARTS[name]

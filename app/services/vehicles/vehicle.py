@@ -16,7 +16,7 @@ from app.services.store.flights import FlightStore
 from app.services.vehicles.connection import Connection, Home, connect, simulated_of
 from app.services.vehicles.recorder import FlightRecorder, HeldPlan
 from app.services.vehicles.simulated import SimulatedAircraft
-from app.services.vehicles.uploads import UploadReport
+from app.services.vehicles.uploads import UploadReport, read_back
 from mavlink import errors as mavlink_errors
 from mavlink.client import VehicleClient
 from mavlink.telemetry import VehicleState
@@ -27,6 +27,10 @@ log = structlog.get_logger(__name__)
 TELEMETRY_S = 0.2
 #: How often flights are looked at.
 LOOK_S = 0.5
+#: How long after a link has failed it is opened anew, again and again.
+REOPEN_S = 2.0
+#: An upload's unknown outcome is read back so often each time the vehicle comes back.
+RESOLVE_TRIES = 3
 
 
 class Vehicle:
@@ -80,7 +84,7 @@ class Vehicle:
     @property
     def pending(self) -> bool:
         """Whether an upload's outcome is unknown and waits for the vehicle to come back."""
-        return self._connection is not None and self._connection.client.pending
+        return self.upload is not None and any(p.outcome == "unknown" for p in self.upload.parts.values())
 
     @property
     def flight_id(self) -> str | None:
@@ -100,11 +104,7 @@ class Vehicle:
             The link cannot be opened, or the simulator ended.
         """
         self._connection = await connect(self.url, home, timeout_s)
-        client = self._connection.client
-        self._tasks = [
-            asyncio.create_task(self._watch(client)),
-            asyncio.create_task(self._record(client)),
-        ]
+        self._tasks = [asyncio.create_task(self._watch()), asyncio.create_task(self._record())]
 
     async def close(self) -> None:
         """Close the link, end the simulator, close the flight."""
@@ -112,6 +112,9 @@ class Vehicle:
             task.cancel()
         await asyncio.gather(*self._tasks, return_exceptions=True)
         self._tasks = []
+        await self._drop()
+
+    async def _drop(self) -> None:
         connection, self._connection = self._connection, None
         await self._recorder.end(connection.client if connection else None, "interrupted")
         if connection is not None:
@@ -138,27 +141,48 @@ class Vehicle:
             self.operation = None
             self.progress = None
 
-    async def _watch(self, client: VehicleClient) -> None:
+    async def _watch(self) -> None:
+        """Follow the vehicle; open the link anew when it fails, as a TCP peer that restarts makes it do."""
+        while True:
+            await self._follow(self.client)
+            self._publish(self)
+            if self.simulated is not None:
+                return
+            log.warning("link lost", vehicle=self.name, url=self.url)
+            await self._drop()
+            while self._connection is None:
+                await asyncio.sleep(REOPEN_S)
+                with contextlib.suppress(LinkError):
+                    self._connection = await connect(self.url, None, REOPEN_S)
+
+    async def _follow(self, client: VehicleClient) -> None:
+        tries = RESOLVE_TRIES
         async for state in client.states():
             self._publish(self)
-            if state.connected and client.pending and self.operation is None:
+            if not state.connected:
+                tries = RESOLVE_TRIES
+            elif self.pending and self.operation is None and tries:
+                tries -= 1
                 await self._resolve(client)
             await asyncio.sleep(TELEMETRY_S)
-        self._publish(self)
 
     async def _resolve(self, client: VehicleClient) -> None:
+        """Read back what an upload left whose outcome is unknown."""
+        report = self.upload
+        assert report is not None
         with contextlib.suppress(LinkError, BusyError):
             async with self.busy("reading back an upload whose outcome is unknown"):
-                result = await client.resolve_pending()
-            if result is None or result.held is None or self.upload is None:
-                return
-            part = next((p for p in self.upload.parts.values() if p.outcome == "unknown"), None)
-            if part is not None:
-                part.take(result)
-                log.info("unknown upload resolved", vehicle=self.name, outcome=part.outcome)
+                await read_back(client, report)
+        if not self.pending:
+            log.info("unknown upload resolved", vehicle=self.name, outcome=report.outcome)
             await self._resolved(self)
 
-    async def _record(self, client: VehicleClient) -> None:
+    async def _record(self) -> None:
         while True:
-            await self._recorder.look(client, self.held)
+            try:
+                if self._connection is not None:
+                    await self._recorder.look(self._connection.client, self.held)
+            except Exception as error:
+                # A track with a gap is better than none.
+                log.error("track not recorded", vehicle=self.name, exc_info=error)
             await asyncio.sleep(LOOK_S)
