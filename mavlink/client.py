@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import time
 from collections.abc import AsyncGenerator, Callable, Sequence
+from dataclasses import replace
 from types import TracebackType
 from typing import Final, Self
 
@@ -21,6 +22,7 @@ from mavlink.transfer.command import CommandMachine, CommandOutcome
 from mavlink.transfer.download import DownloadMachine
 from mavlink.transfer.machine import DEFAULT_SETTINGS, Progress, TransferSettings
 from mavlink.transfer.outcome import Outcome
+from mavlink.transfer.parameters import Parameter, ParameterListMachine, ParametersMachine
 from mavlink.transfer.upload import UploadMachine
 from mavlink.verify import Compare, Pending, VerifiedUpload, resolve, upload_and_verify
 
@@ -37,6 +39,7 @@ _INTERVALS_HZ: Final = {
     376: 4.0,  # RELAY_STATUS: in no stream of ArduPilot's, sent only when asked for
 }
 _MICROSECONDS: Final = 1e6
+_PARAMETER_RETRIES: Final = 2
 
 
 class VehicleClient(FlightCommands):
@@ -228,9 +231,43 @@ class VehicleClient(FlightCommands):
             CommandMachine(command, parameters, *self._target(), self._settings)
         )
 
+    async def read_parameters(self, names: Sequence[str]) -> dict[str, Parameter]:
+        """Read parameters by name; names the vehicle does not answer to are left out.
+
+        Raises
+        ------
+        TransferFailedError
+            None was answered.
+        BusyError, NotConnectedError, ValueError
+            Nothing was asked.
+        """
+        machine = ParametersMachine(names, *self._target(), self._bytewise, self._parameter_settings())
+        outcome = await self._driver.transfer(machine)
+        if outcome.kind != "accepted":
+            raise TransferFailedError("reading parameters", outcome)
+        return {name: machine.values[name] for name in machine.names if name in machine.values}
+
+    async def list_parameters(
+        self, progress: Callable[[Progress], None] | None = None
+    ) -> dict[str, Parameter]:
+        """Read all parameters. Raises TransferFailedError, BusyError, NotConnectedError."""
+        machine = ParameterListMachine(*self._target(), self._bytewise, self._settings)
+        outcome = await self._driver.transfer(machine, progress)
+        if outcome.kind != "accepted":
+            raise TransferFailedError("reading all parameters", outcome)
+        return machine.values
+
     async def close(self) -> None:
         """End the task, fail whoever waits, close the link; closing twice is harmless."""
         await self._driver.close()
+
+    @property
+    def _bytewise(self) -> bool:
+        return self.state.autopilot == "px4"
+
+    def _parameter_settings(self) -> TransferSettings:
+        """Fewer retries than for missions: a name the vehicle does not know stays silent every time."""
+        return replace(self._settings, retries=min(self._settings.retries, _PARAMETER_RETRIES))
 
     def _target(self) -> tuple[int, int]:
         self._driver.require_connected()
