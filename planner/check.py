@@ -85,6 +85,7 @@ def judge(scenario: Scenario, plan: Plan) -> Verdict:
             )
         line = LineString(line_m)
         violations += _place_violations(scenario, path, line)
+        violations += _clearance_violations(scenario, plan, path, line_m)
         violations += _terminal_violations(scenario, path, line_m)
         violations += _limit_violations(aircraft, path, lengths_m[-1])
         violations += _collect_violations(scenario, plan, path, line)
@@ -154,6 +155,44 @@ def _place_violations(scenario: Scenario, path: FlownPath, line: LineString) -> 
                 _middle(scenario, inside),
                 hard=hard,
             )
+
+
+def _clearance_violations(
+    scenario: Scenario, plan: Plan, path: FlownPath, line_m: NDArray[np.float64]
+) -> Iterator[Violation]:
+    """Height over the ground all along the line, no farther apart than half the ground's posts."""
+    ground = scenario.terrain
+    if ground is None:
+        return
+    altitude_m = np.array([place[2] for place in path.line])
+    if plan.altitude_reference != "amsl":
+        altitude_m = altitude_m + (scenario.home_amsl_m or 0.0)
+    reached_m = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(line_m, axis=0).T))])
+    count = max(2, math.ceil(reached_m[-1] / (ground.step_m / 2.0)) + 1)
+    at_m = np.union1d(np.linspace(0.0, reached_m[-1], count), reached_m)
+    places = np.stack([np.interp(at_m, reached_m, line_m[:, k]) for k in (0, 1)], axis=1)
+    clear_m = np.interp(at_m, reached_m, altitude_m) - ground.at(places)
+    unknown = np.isnan(clear_m)
+    if unknown.any():
+        length_m = float(unknown.mean() * reached_m[-1])
+        yield Violation(
+            "terrain-clearance",
+            path.vehicle,
+            f"about {length_m:.0f} m are flown where the raster {ground.name} has no heights",
+            length_m,
+            "m",
+            _lonlat(scenario, places[int(np.argmax(unknown))]),
+        )
+    worst = int(np.argmin(np.where(unknown, np.inf, clear_m)))
+    if clear_m[worst] < scenario.clearance_m:
+        yield Violation(
+            "terrain-clearance",
+            path.vehicle,
+            f"{clear_m[worst]:.1f} m over the ground, {scenario.clearance_m:g} m are to be kept",
+            float(scenario.clearance_m - clear_m[worst]),
+            "m",
+            _lonlat(scenario, places[worst]),
+        )
 
 
 def _terminal_violations(

@@ -11,6 +11,7 @@ from typing import Literal
 
 from shapely.geometry import MultiPolygon, Polygon
 
+from planner.environment.terrain import Ground
 from planner.errors import Finding
 from planner.frames import LocalFrame
 from planner.sensors.sar import SarSensor
@@ -116,7 +117,11 @@ class Method:
 
 @dataclass(frozen=True, slots=True)
 class Scenario:
-    """A whole request, validated; see ``planner.geojson.read_scenario``."""
+    """A whole request, validated; see ``planner.geojson.read_scenario``.
+
+    Where there is terrain the flight is level and ``altitude_reference`` is ``amsl``; see
+    ``planner.geojson.relief``.
+    """
 
     name: str
     frame: LocalFrame
@@ -140,6 +145,7 @@ class Scenario:
     scenario_hash: str = ""
     home_amsl_m: float | None = None
     warnings: tuple[Finding, ...] = ()
+    terrain: Ground | None = None
 
     @property
     def height_m(self) -> float:

@@ -5,24 +5,25 @@ from __future__ import annotations
 from typing import Any
 
 from planner.coverage.neighbourhood import can_be_seen
+from planner.environment.terrain import Terrains
 from planner.errors import Finding, InfeasibleError, ScenarioError
 from planner.geojson import read_scenario
 from planner.scenario import Scenario
 
 
-def findings(document: Any) -> tuple[Finding, ...]:
+def findings(document: Any, terrains: Terrains | None = None) -> tuple[Finding, ...]:
     """Every finding about a scenario document, errors and warnings; plans nothing.
 
     Besides the rules of reading, each region must be seen by some pass that stays in the operating area.
     """
     try:
-        scenario = read_scenario(document)
+        scenario = read_scenario(document, terrains)
     except ScenarioError as error:
         return error.findings
     return scenario.warnings + unseeable(scenario)
 
 
-def read_valid(document: Any) -> Scenario:
+def read_valid(document: Any, terrains: Terrains | None = None) -> Scenario:
     """Read a scenario and refuse it when a required region cannot be seen.
 
     Raises
@@ -30,7 +31,7 @@ def read_valid(document: Any) -> Scenario:
     ScenarioError
         With every finding.
     """
-    scenario = read_scenario(document)
+    scenario = read_scenario(document, terrains)
     found = unseeable(scenario)
     if any(finding.severity == "error" for finding in found):
         raise ScenarioError(scenario.warnings + found)

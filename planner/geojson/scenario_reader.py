@@ -11,11 +11,13 @@ from typing import Any
 
 from shapely.geometry import Polygon
 
+from planner.environment.terrain import Terrains, find_terrain
 from planner.errors import ScenarioError
 from planner.frames import MAX_EXTENT_M, WGS84, LocalFrame
 from planner.geojson import equipment, features
 from planner.geojson.fields import Fields, Findings
 from planner.geojson.geometry import positions_of
+from planner.geojson.relief import set_on_terrain
 from planner.geojson.rules import check_together
 from planner.scenario import Scenario, Terminal
 
@@ -39,13 +41,16 @@ def scenario_hash(document: Mapping[str, Any]) -> str:
     return hashlib.sha256(canonical.encode()).hexdigest()
 
 
-def read_scenario(document: Any) -> Scenario:
+def read_scenario(document: Any, terrains: Terrains | None = None) -> Scenario:
     """Read and validate a scenario.
 
     Parameters
     ----------
     document
         The parsed JSON of a GeoJSON FeatureCollection with the roles and members of the contract.
+    terrains
+        Elevation rasters by the id that the member ``terrain`` names: a mapping, or a function that answers
+        None for an unknown id.
 
     Raises
     ------
@@ -53,13 +58,13 @@ def read_scenario(document: Any) -> Scenario:
         With every finding, when anything is wrong.
     """
     findings = Findings()
-    scenario = _read(document, findings)
+    scenario = _read(document, findings, terrains)
     if findings.errors or scenario is None:
         raise ScenarioError(findings.all())
     return scenario
 
 
-def _read(document: Any, findings: Findings) -> Scenario | None:
+def _read(document: Any, findings: Findings, terrains: Terrains | None) -> Scenario | None:
     if not isinstance(document, dict) or document.get("type") != "FeatureCollection":
         findings.error(
             "scenario", "not-a-feature-collection", "is not a GeoJSON FeatureCollection",
@@ -119,10 +124,13 @@ def _read(document: Any, findings: Findings) -> Scenario | None:
         findings.error(
             "scenario", "not-supported", "task search is not planned by this version", "Use collect."
         )
-    if top.raw("terrain") is not None:
+    terrain_name = top.text("terrain", None)
+    terrain = None if terrain_name is None else find_terrain(terrains, terrain_name)
+    if terrain_name is not None and terrain is None:
         findings.error(
-            "scenario", "not-supported", "terrain rasters are not used by this version",
-            "Leave terrain out: the ground is then flat at the height of home.",
+            "scenario", "unknown-terrain", f"names the terrain {terrain_name!r}, which is not here",
+            "Send the raster first and name it by its id; without terrain the ground is flat at the height "
+            "of home.",
         )  # fmt: skip
     clearance_m = top.number("clearance_m", 0.0, minimum=0.0)
     budget_s = top.number("time_budget_s", None, above=0.0)
@@ -157,8 +165,10 @@ def _read(document: Any, findings: Findings) -> Scenario | None:
         seed=seed,
         time_budget_s=budget_s,
         scenario_hash=scenario_hash(document),
-        home_amsl_m=_home_amsl_m(raws, reference, findings),
+        home_amsl_m=None if terrain is not None else _home_amsl_m(raws, reference, findings),
     )
+    if terrain is not None:
+        scenario = set_on_terrain(scenario, terrain, "clearance_m" in top, findings)
     check_together(scenario, findings)
     return replace(scenario, warnings=findings.warnings)
 
