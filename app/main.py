@@ -48,6 +48,7 @@ def limits_of(settings: Settings) -> Limits:
         plan_time_limit_s=settings.plan_time_limit_s,
         max_queued_plans=settings.max_queued_plans,
         track_interval_s=settings.track_interval_s,
+        recordings=settings.recordings,
     )
 
 

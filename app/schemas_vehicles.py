@@ -28,7 +28,8 @@ class VehicleIn(Strict):
         max_length=300,
         description="udpin:host:port, udpout:host:port, tcp:host:port, serial:device:baud, or sim: for a "
         "simulated aircraft, e.g. sim:?speedup=20&home=33.48,-117.75&autopilot=px4&airspeed=20"
-        "&turn_radius=100&wind=8,270. Without a home it stands where the plan it gets begins.",
+        "&turn_radius=100&wind=8,270. Without a home it stands where the plan it gets begins. A recording "
+        "(.tlog) is watched with replay:path?speedup=10&plan=<id of the plan flown>.",
         examples=["sim:", "udpin:127.0.0.1:14550"],
     )
     timeout_s: float = Field(
@@ -127,6 +128,7 @@ class VehicleOut(BaseModel):
     url: str
     connected: bool
     simulated: bool
+    replay: bool = Field(description="It is a recording: it takes no transfers and no commands.")
     created_at: datetime
     operation: str | None = Field(description="What is at work on it now.")
     transfer: dict[str, Any] | None = Field(description="Of an upload at work: part, done, total.")
@@ -145,6 +147,7 @@ class VehicleOut(BaseModel):
             url=vehicle.url,
             connected=vehicle.state.connected,
             simulated=vehicle.simulated is not None,
+            replay=vehicle.replay,
             created_at=vehicle.created_at,
             operation=vehicle.operation,
             transfer=vehicle.progress,
@@ -160,6 +163,23 @@ class VehicleList(BaseModel):
     """Vehicles, oldest first."""
 
     vehicles: list[VehicleOut]
+
+
+class LogOut(BaseModel):
+    """One recording of a vehicle's link."""
+
+    name: str
+    size_bytes: int
+    ended_at: datetime = Field(description="When it was last written to.")
+    url: str = Field(description="Where to download it; play it with the vehicle address replay:<file>.")
+
+
+class LogList(BaseModel):
+    """Recordings of a vehicle's link, oldest first."""
+
+    vehicle_id: str
+    failure: str | None = Field(description="Why the link is no longer recorded, e.g. a full disk.")
+    logs: list[LogOut]
 
 
 class HeldOut(BaseModel):

@@ -10,6 +10,9 @@ from typing import Literal, Self
 from pydantic import Field, model_validator
 from pydantic_settings import BaseSettings, SettingsConfigDict
 
+from app.services.vehicles.recordings import Recordings
+from mavlink.recording import TlogLimits
+
 PACKAGE = Path(__file__).resolve().parent
 
 
@@ -54,6 +57,15 @@ class Settings(BaseSettings):
         default=0.2, gt=0, description="Vehicle time between two recorded points of a track."
     )
 
+    record_links: bool = Field(default=True, description="Record every vehicle's link as .tlog files.")
+    log_dir: Path | None = Field(
+        default=None, description="Folder of the recordings; `logs` beside the database when unset."
+    )
+    log_file_bytes: int = Field(default=64_000_000, ge=100_000, description="Size at which a file is closed.")
+    log_total_bytes: int = Field(
+        default=2_000_000_000, ge=1_000_000, description="Size of all recordings; the oldest go first."
+    )
+
     @model_validator(mode="after")
     def _refuse_unsafe(self) -> Self:
         if not is_loopback(self.host) and not self.allow_remote:
@@ -63,6 +75,16 @@ class Settings(BaseSettings):
                 "comes, then set SWATHPLAN_ALLOW_REMOTE=true"
             )
         return self
+
+    @property
+    def recordings(self) -> Recordings | None:
+        """Where links are recorded, None when they are not."""
+        if not self.record_links:
+            return None
+        folder = self.log_dir or self.database.parent / "logs"
+        return Recordings(
+            folder, TlogLimits(min(self.log_file_bytes, self.log_total_bytes), self.log_total_bytes)
+        )
 
     @property
     def web_map(self) -> Path | None:

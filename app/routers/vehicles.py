@@ -6,6 +6,7 @@ from collections.abc import AsyncGenerator
 from typing import Annotated
 
 from fastapi import APIRouter, Query, Response
+from fastapi.responses import FileResponse
 from sse_starlette import EventSourceResponse, ServerSentEvent
 
 from app.deps import FleetDep
@@ -16,6 +17,8 @@ from app.schemas_vehicles import (
     CommandIn,
     CommandOut,
     HeldOut,
+    LogList,
+    LogOut,
     MissionIn,
     Part,
     UploadOut,
@@ -27,6 +30,8 @@ from app.services.missions import MissionChoice
 from mavlink.transfer.command import CommandOutcome
 
 router = APIRouter(prefix="/api/v1/vehicles", tags=["vehicles"])
+
+TLOG = "application/octet-stream"
 
 Parts = Annotated[list[Part], Query(description="Repeat for several.")]
 
@@ -116,6 +121,32 @@ async def clear(vehicle_id: str, fleet: FleetDep, part: Parts = ["mission"]) -> 
     """Empty the vehicle's lists."""
     outcomes = await fleet.clear(vehicle_id, list(dict.fromkeys(part)))
     return ClearedOut(vehicle_id=vehicle_id, parts={name: o.kind for name, o in outcomes.items()})
+
+
+@router.get("/{vehicle_id}/logs", summary="List recordings", responses=responses(404))
+async def list_logs(vehicle_id: str, fleet: FleetDep) -> LogList:
+    """Recordings of the vehicle's link (.tlog), also of a vehicle that was let go."""
+    files = fleet.recordings(vehicle_id)
+    base = f"/api/v1/vehicles/{vehicle_id}/logs"
+    logs = [
+        LogOut(name=f.name, size_bytes=f.size_bytes, ended_at=f.ended_at, url=f"{base}/{f.name}")
+        for f in files
+    ]
+    known = {vehicle.id: vehicle for vehicle in fleet.all()}
+    failure = known[vehicle_id].recording_failure if vehicle_id in known else None
+    return LogList(vehicle_id=vehicle_id, failure=failure, logs=logs)
+
+
+@router.get(
+    "/{vehicle_id}/logs/{name}",
+    summary="Download a recording",
+    response_class=FileResponse,
+    responses=responses(404)
+    | {200: {"content": {TLOG: {"schema": {"type": "string", "format": "binary"}}}, "description": "OK"}},
+)
+async def get_log(vehicle_id: str, name: str, fleet: FleetDep) -> FileResponse:
+    """A .tlog, as MAVProxy, Mission Planner, QGroundControl and pymavlink read it."""
+    return FileResponse(fleet.recording(vehicle_id, name), media_type=TLOG, filename=name)
 
 
 @router.post("/{vehicle_id}/commands", summary="Command", responses=responses(404, 409, 422))

@@ -19,6 +19,7 @@ from app.services.store.plans import PlanStore
 from app.services.store.uploads import UploadStore
 from app.services.validation import Verdict, judge
 from app.services.vehicles.fleet import Fleet
+from app.services.vehicles.recordings import Recordings
 
 log = structlog.get_logger(__name__)
 
@@ -32,6 +33,7 @@ class Limits:
     plan_time_limit_s: float
     max_queued_plans: int
     track_interval_s: float
+    recordings: Recordings | None = None
 
 
 class House:
@@ -58,7 +60,9 @@ class House:
         )
         flights = FlightStore(self.database)
         self.flights = FlightService(flights, self.planning)
-        self.fleet = Fleet(self.planning, UploadStore(self.database), flights, limits.track_interval_s)
+        self.fleet = Fleet(
+            self.planning, UploadStore(self.database), flights, limits.track_interval_s, limits.recordings
+        )
 
     async def open(self) -> None:
         """Open the database, start the workers, take up waiting plans."""

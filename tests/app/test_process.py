@@ -43,12 +43,16 @@ class Service:
             time.sleep(0.02)
         raise AssertionError(f"{plan_id} is {record}")
 
-    def workers(self) -> list[int]:
-        """Process ids of the planning processes."""
+    def children(self, word: bytes) -> list[int]:
+        """Process ids of the child processes with a word in their command line."""
         children = []
         for task in Path(f"/proc/{self.process.pid}/task").iterdir():
             children += [int(pid) for pid in (task / "children").read_text().split()]
-        return [pid for pid in children if b"spawn_main" in Path(f"/proc/{pid}/cmdline").read_bytes()]
+        return [pid for pid in children if word in Path(f"/proc/{pid}/cmdline").read_bytes()]
+
+    def workers(self) -> list[int]:
+        """Process ids of the planning processes."""
+        return self.children(b"spawn_main")
 
 
 @contextmanager
@@ -96,14 +100,25 @@ def test_killed_workers_fail_their_plan_at_most(tmp_path: Path) -> None:
         assert running.post("done", wait_s=20)["state"] == "done"
 
 
+@pytest.mark.skipif(not Path("/proc/self/task").is_dir(), reason="looks for processes in /proc")
 def test_crash_fails_the_running_and_keeps_the_rest(tmp_path: Path) -> None:
-    """After SIGKILL to the service: done plans are there, the running one failed, the waiting one is made."""
+    """After SIGKILL to the service: done plans stay, the running one failed, the waiting one is made.
+
+    The simulated aircraft does not outlive the service.
+    """
     with service(tmp_path / "plans.db") as first:
         done = first.post("done", wait_s=20)
         running = first.post("slow")
         waiting = first.post("done")
         first.until(running["id"], "running")
+        first.client.post("/api/v1/vehicles", json={"name": "uav", "url": "sim:"}).raise_for_status()
+        (simulator,) = first.children(b"simulator")
         first.process.kill()
+        first.process.wait()
+        end_s = time.monotonic() + 10
+        while Path(f"/proc/{simulator}/cmdline").exists() and time.monotonic() < end_s:
+            time.sleep(0.05)
+        assert not Path(f"/proc/{simulator}/cmdline").exists()
     with service(tmp_path / "plans.db") as second:
         assert second.client.get(f"{PLANS}/{done['id']}").json() == done
         assert second.until(running["id"], "failed")["error"]["type"] == "service-restarted"

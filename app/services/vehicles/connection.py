@@ -4,21 +4,44 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 from dataclasses import dataclass
+from urllib.parse import urlencode
 
 from app.services.errors import LinkError, RefusedError
 from app.services.vehicles.simulated import SimulatedAircraft, SimulatorProcess, parse_simulated
 from mavlink import errors as mavlink_errors
 from mavlink.client import VehicleClient
 from mavlink.link import FORMS, open_link
+from mavlink.links.replay import parse_replay
 from planner.errors import Finding
 
 #: Latitude, longitude in degrees, metres above sea level.
 Home = tuple[float, float, float]
 
-_FORMS = ("udpin", "udpout", "tcp", "tcpin", "serial")
+_FORMS = ("udpin", "udpout", "tcp", "tcpin", "serial", "replay")
+
+
+def is_replay(url: str) -> bool:
+    """Whether an address names a recording."""
+    return url.partition(":")[0] == "replay"
+
+
+def replayed_plan(url: str) -> tuple[str, str | None]:
+    """A ``replay:`` address without its option ``plan``, and the id of the plan that was flown.
+
+    Raises
+    ------
+    LinkError
+        The address is malformed.
+    """
+    try:
+        path, options = parse_replay(url)
+    except mavlink_errors.LinkError as error:
+        raise LinkError(str(error)) from error
+    plan_id = options.pop("plan", None)
+    return f"replay:{path}" + (f"?{urlencode(options)}" if options else ""), plan_id
 
 
 def simulated_of(url: str) -> SimulatedAircraft | None:
@@ -46,7 +69,9 @@ class Connection:
             await self.simulator.stop()
 
 
-async def connect(url: str, home: Home | None, timeout_s: float) -> Connection:
+async def connect(
+    url: str, home: Home | None, timeout_s: float, tap: Callable[[bytes], None] | None = None
+) -> Connection:
     """Open the link, start the simulator where one is asked for, wait for a heartbeat.
 
     A vehicle that stays silent is not an error: the client goes on listening.
@@ -55,6 +80,8 @@ async def connect(url: str, home: Home | None, timeout_s: float) -> Connection:
     ----------
     home
         Where a simulated aircraft stands whose address does not say.
+    tap
+        Called with every frame of the link.
 
     Raises
     ------
@@ -64,11 +91,13 @@ async def connect(url: str, home: Home | None, timeout_s: float) -> Connection:
         The link cannot be opened, or the simulator ended.
     """
     aircraft = simulated_of(url)
+    if is_replay(url):
+        url, _ = replayed_plan(url)
     try:
         link = await open_link(url if aircraft is None else "udpin:127.0.0.1:0")
     except mavlink_errors.LinkError as error:
         raise LinkError(str(error)) from error
-    client = VehicleClient(link)
+    client = VehicleClient(link, tap=tap)
     try:
         simulator = None
         if aircraft is not None:

@@ -6,6 +6,7 @@ import asyncio
 import json
 import uuid
 from collections.abc import AsyncIterator, Sequence
+from pathlib import Path
 from typing import Any
 
 import structlog
@@ -17,9 +18,10 @@ from app.services.missions import PARTS, MissionChoice, PartName, encode_plan, p
 from app.services.planning import PlanningService
 from app.services.store.flights import FlightStore
 from app.services.store.uploads import UploadStore
-from app.services.vehicles.connection import Home
+from app.services.vehicles.connection import Home, replayed_plan
 from app.services.vehicles.items import item_json
 from app.services.vehicles.recorder import HeldPlan, is_flying
+from app.services.vehicles.recordings import RecordingFile, Recordings
 from app.services.vehicles.uploads import UploadReport, judge_upload, new_report, report_json, send_parts
 from app.services.vehicles.vehicle import Vehicle
 from mavlink import errors as mavlink_errors
@@ -48,11 +50,13 @@ class Fleet:
         uploads: UploadStore,
         flights: FlightStore,
         track_interval_s: float,
+        recordings: Recordings | None = None,
     ) -> None:
         self._planning = planning
         self._uploads = uploads
         self._flights = flights
         self._track_interval_s = track_interval_s
+        self._recordings = recordings
         self._vehicles: dict[str, Vehicle] = {}
         self._hub: Hub[Vehicle] = Hub()
 
@@ -94,8 +98,17 @@ class Fleet:
             if other.url == url and other.simulated is None:
                 raise ConflictError(f"{url} is in use by {other.name}")
         vehicle = Vehicle(
-            str(uuid.uuid4()), name, url, self._flights, self._track_interval_s, self._publish, self._resolved
+            str(uuid.uuid4()),
+            name,
+            url,
+            self._flights,
+            self._track_interval_s,
+            self._publish,
+            self._resolved,
+            self._recordings,
         )
+        if vehicle.replay:
+            vehicle.held = await self._flown_plan(url)
         self._vehicles[vehicle.id] = vehicle
         try:
             await vehicle.open(await self._default_home(), timeout_s)
@@ -191,6 +204,7 @@ class Fleet:
     async def command(self, vehicle_id: str, command: str, seq: int | None) -> CommandOutcome | Outcome:
         """An explicit flight command; raises CommandRefusedError when the vehicle says no."""
         vehicle = self.get(vehicle_id)
+        vehicle.require_orders(command)
         log.info("flight command", vehicle=vehicle.name, command=command, seq=seq)
         try:
             outcome = await self._order(vehicle, command, seq)
@@ -225,6 +239,30 @@ class Fleet:
                 return await client.goto_item(seq)
         message = f"{command} needs the number of an item in seq"
         raise RefusedError(message, (Finding("seq", "seq-missing", message, "send seq"),))
+
+    def recordings(self, vehicle_id: str) -> tuple[RecordingFile, ...]:
+        """Recordings of a vehicle's link, also of one let go; raises NotFoundError when there is neither."""
+        vehicle = self._vehicles.get(vehicle_id)
+        if vehicle is not None:
+            vehicle.show_recording()
+        files = () if self._recordings is None else self._recordings.files(vehicle_id)
+        if vehicle is None and not files:
+            raise NotFoundError("vehicle", vehicle_id)
+        return files
+
+    def recording(self, vehicle_id: str, name: str) -> Path:
+        """Where one recording lies; raises NotFoundError."""
+        if name not in {file.name for file in self.recordings(vehicle_id)} or self._recordings is None:
+            raise NotFoundError("recording", name)
+        return self._recordings.path(vehicle_id, name)
+
+    async def _flown_plan(self, url: str) -> HeldPlan | None:
+        """The plan that a recording's address says was flown."""
+        _, plan_id = replayed_plan(url)
+        if plan_id is None:
+            return None
+        plan = plan_of(await self._planning.plan_text(plan_id))
+        return HeldPlan(plan_id, plan.vehicles[0].name)
 
     async def _default_home(self) -> Home | None:
         """Where a simulated aircraft stands at first: the start of the newest scenario."""

@@ -62,7 +62,9 @@ class FlightRecorder:
                 await self._begin(client, plan)
             return
         await self._save()
-        if state.connected and not flying:
+        if client.failure is not None:
+            await self.end(client, "interrupted")
+        elif state.connected and not flying:
             await self.end(client, "ended")
 
     async def _begin(self, client: VehicleClient, plan: HeldPlan | None) -> None:

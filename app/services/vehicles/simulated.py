@@ -17,7 +17,7 @@ from planner.errors import Finding
 #: How long a simulated aircraft may take to end by itself.
 END_S = 3.0
 
-#: Options of a ``sim:`` address and the flags of ``python -m mavlink.sim`` they become.
+#: Options of a ``sim:`` address and the flags of ``mavlink.sim`` they become.
 _NUMBERS = {
     "speedup": "--speedup",
     "airspeed": "--airspeed",
@@ -49,7 +49,7 @@ class SimulatedAircraft:
         Latitude, longitude in degrees and altitude above sea level in metres; None where the address does
         not say, then the aircraft stands wherever the plan it gets begins.
     arguments
-        For ``python -m mavlink.sim``, beside link and home.
+        For ``mavlink.sim``, beside link and home.
     """
 
     home: tuple[float, float, float] | None = None
@@ -125,9 +125,9 @@ class SimulatorProcess:
         process = await asyncio.create_subprocess_exec(
             sys.executable,
             "-m",
-            "mavlink.sim",
+            "app.services.vehicles.simulator",
             *arguments,
-            stdin=asyncio.subprocess.DEVNULL,
+            stdin=asyncio.subprocess.PIPE,
             stdout=asyncio.subprocess.DEVNULL,
             stderr=asyncio.subprocess.PIPE,
         )

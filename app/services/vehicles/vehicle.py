@@ -11,14 +11,16 @@ from typing import Any
 
 import structlog
 
-from app.services.errors import BusyError, LinkError
+from app.services.errors import BusyError, ConflictError, LinkError
 from app.services.store.flights import FlightStore
-from app.services.vehicles.connection import Connection, Home, connect, simulated_of
+from app.services.vehicles.connection import Connection, Home, connect, is_replay, simulated_of
 from app.services.vehicles.recorder import FlightRecorder, HeldPlan
+from app.services.vehicles.recordings import Recordings
 from app.services.vehicles.simulated import SimulatedAircraft
 from app.services.vehicles.uploads import UploadReport, read_back
 from mavlink import errors as mavlink_errors
 from mavlink.client import VehicleClient
+from mavlink.recording import TlogWriter
 from mavlink.telemetry import VehicleState
 
 log = structlog.get_logger(__name__)
@@ -27,6 +29,8 @@ log = structlog.get_logger(__name__)
 TELEMETRY_S = 0.2
 #: How often flights are looked at.
 LOOK_S = 0.5
+#: The same for recordings, which may run fast.
+REPLAY_LOOK_S = 0.05
 #: How long after a link has failed it is opened anew, again and again.
 REOPEN_S = 2.0
 #: An upload's unknown outcome is read back so often each time the vehicle comes back.
@@ -42,6 +46,8 @@ class Vehicle:
         Called when its state has changed, no more often than ``TELEMETRY_S``.
     resolved
         Called when an upload whose outcome was unknown has been resolved by reading back.
+    recordings
+        Where the link is recorded; None not to. A recording is not recorded again.
     """
 
     def __init__(
@@ -53,6 +59,7 @@ class Vehicle:
         track_interval_s: float,
         publish: Callable[[Vehicle], None],
         resolved: Callable[[Vehicle], Any],
+        recordings: Recordings | None = None,
     ) -> None:
         self.id = vehicle_id
         self.name = name
@@ -63,6 +70,9 @@ class Vehicle:
         self.progress: dict[str, Any] | None = None
         self.operation: str | None = None
         self.simulated: SimulatedAircraft | None = simulated_of(url)
+        self.replay = is_replay(url)
+        self._recordings = None if self.replay else recordings
+        self._writer: TlogWriter | None = None
         self._recorder = FlightRecorder(flights, vehicle_id, name, track_interval_s)
         self._publish = publish
         self._resolved = resolved
@@ -103,7 +113,9 @@ class Vehicle:
         LinkError
             The link cannot be opened, or the simulator ended.
         """
-        self._connection = await connect(self.url, home, timeout_s)
+        if self._recordings is not None:
+            self._writer = self._recordings.writer(self.id)
+        self._connection = await connect(self.url, home, timeout_s, self._tap)
         self._tasks = [asyncio.create_task(self._watch()), asyncio.create_task(self._record())]
 
     async def close(self) -> None:
@@ -113,6 +125,27 @@ class Vehicle:
         await asyncio.gather(*self._tasks, return_exceptions=True)
         self._tasks = []
         await self._drop()
+        if self._writer is not None:
+            self._writer.close()
+
+    @property
+    def _tap(self) -> Callable[[bytes], None] | None:
+        return None if self._writer is None else self._writer.write
+
+    @property
+    def recording_failure(self) -> str | None:
+        """Why the link is no longer recorded; None while it is, or was never to be."""
+        return None if self._writer is None else self._writer.failure
+
+    def show_recording(self) -> None:
+        """Put everything recorded so far where readers see it."""
+        if self._writer is not None:
+            self._writer.flush()
+
+    def require_orders(self, what: str) -> None:
+        """Raise ConflictError for a recording, which takes none."""
+        if self.replay:
+            raise ConflictError(f"{self.name} is a recording: it takes no transfers and no commands ({what})")
 
     async def _drop(self) -> None:
         connection, self._connection = self._connection, None
@@ -128,6 +161,7 @@ class Vehicle:
     @asynccontextmanager
     async def busy(self, operation: str) -> AsyncIterator[None]:
         """One operation at a time; raises BusyError naming the one at work."""
+        self.require_orders(operation)
         if self.operation is not None:
             raise BusyError(f"{self.name} is busy: {self.operation}")
         self.operation = operation
@@ -146,14 +180,14 @@ class Vehicle:
         while True:
             await self._follow(self.client)
             self._publish(self)
-            if self.simulated is not None:
+            if self.simulated is not None or self.replay:
                 return
             log.warning("link lost", vehicle=self.name, url=self.url)
             await self._drop()
             while self._connection is None:
                 await asyncio.sleep(REOPEN_S)
                 with contextlib.suppress(LinkError):
-                    self._connection = await connect(self.url, None, REOPEN_S)
+                    self._connection = await connect(self.url, None, REOPEN_S, self._tap)
 
     async def _follow(self, client: VehicleClient) -> None:
         tries = RESOLVE_TRIES
@@ -185,4 +219,4 @@ class Vehicle:
             except Exception as error:
                 # A track with a gap is better than none.
                 log.error("track not recorded", vehicle=self.name, exc_info=error)
-            await asyncio.sleep(LOOK_S)
+            await asyncio.sleep(REPLAY_LOOK_S if self.replay else LOOK_S)

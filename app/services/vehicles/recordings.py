@@ -1,0 +1,57 @@
+"""Recordings of the vehicles' links: one folder a vehicle, .tlog files in it."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Final
+
+from app.services.errors import NotFoundError
+from mavlink.recording import SUFFIX, TlogLimits, TlogWriter
+
+#: Names this service gives; anything else asked for is not there.
+_FOLDER: Final = re.compile(r"[0-9a-f-]{36}")
+_FILE: Final = re.compile(r"[0-9A-Za-z-]{1,60}" + re.escape(SUFFIX))
+
+
+@dataclass(frozen=True, slots=True)
+class RecordingFile:
+    """One file; ``ended_at`` is when it was last written to."""
+
+    name: str
+    size_bytes: int
+    ended_at: datetime
+
+
+class Recordings:
+    """The folder of all recordings; they outlive the service and the vehicles."""
+
+    def __init__(self, folder: Path, limits: TlogLimits) -> None:
+        self.folder = folder
+        self._limits = limits
+
+    def writer(self, vehicle_id: str) -> TlogWriter:
+        """A writer for a vehicle's link."""
+        return TlogWriter(self.folder / vehicle_id, self._limits)
+
+    def files(self, vehicle_id: str) -> tuple[RecordingFile, ...]:
+        """A vehicle's recordings, oldest first; none for a vehicle never heard of."""
+        folder = self.folder / vehicle_id
+        if not _FOLDER.fullmatch(vehicle_id) or not folder.is_dir():
+            return ()
+        found = []
+        for path in sorted(folder.glob(f"*{SUFFIX}")):
+            status = path.stat()
+            found.append(
+                RecordingFile(path.name, status.st_size, datetime.fromtimestamp(status.st_mtime, UTC))
+            )
+        return tuple(found)
+
+    def path(self, vehicle_id: str, name: str) -> Path:
+        """Where a recording lies; raises NotFoundError."""
+        path = self.folder / vehicle_id / name
+        if not _FOLDER.fullmatch(vehicle_id) or not _FILE.fullmatch(name) or not path.is_file():
+            raise NotFoundError("recording", name)
+        return path
