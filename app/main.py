@@ -14,10 +14,12 @@ from starlette.routing import Match, Mount
 from starlette.types import Scope
 
 from app import middleware, problems
-from app.routers import artefacts, flights, health, plans, scenarios, vehicles
+from app.routers import artefacts, flights, health, plans, scenarios, terrain, vehicles
 from app.services.house import House, Limits
+from app.services.vehicles.recordings import Recordings
 from app.settings import Settings
 from app.version import VERSION
+from mavlink.recording import TlogLimits
 
 DESCRIPTION = """Plans how an aircraft sees regions of interest with a side-looking sensor, among threats, and
 puts the mission into an ArduPilot or PX4 vehicle.
@@ -28,6 +30,7 @@ TAGS = [
     {"name": "plans", "description": "Scenarios become plans."},
     {"name": "artefacts", "description": "What a plan gives: GeoJSON, missions, a report."},
     {"name": "scenarios", "description": "Scenarios judged without planning them."},
+    {"name": "terrain", "description": "Elevation rasters for scenarios to lie on."},
     {"name": "vehicles", "description": "Connected vehicles: state, missions, commands."},
     {"name": "flights", "description": "What was flown, and what was seen."},
     {"name": "health", "description": "Probes and figures."},
@@ -48,8 +51,16 @@ def limits_of(settings: Settings) -> Limits:
         plan_time_limit_s=settings.plan_time_limit_s,
         max_queued_plans=settings.max_queued_plans,
         track_interval_s=settings.track_interval_s,
-        recordings=settings.recordings,
+        recordings=_recordings_of(settings),
     )
+
+
+def _recordings_of(settings: Settings) -> Recordings | None:
+    if not settings.record_links:
+        return None
+    total_bytes = settings.log_total_bytes
+    limits = TlogLimits(min(settings.log_file_bytes, total_bytes), total_bytes)
+    return Recordings(settings.log_dir or settings.database.parent / "logs", limits)
 
 
 def create_app(settings: Settings | None = None, build_house: Callable[[Limits], House] = House) -> FastAPI:
@@ -71,11 +82,15 @@ def create_app(settings: Settings | None = None, build_house: Callable[[Limits],
     )
     app.state.settings = settings
     problems.install(app)
-    for module in (plans, artefacts, scenarios, vehicles, flights, health):
+    for module in (plans, artefacts, scenarios, terrain, vehicles, flights, health):
         app.include_router(module.router)
     _add_map(app, settings)
     # The last added stands outermost.
-    app.add_middleware(middleware.BodyCap, max_bytes=settings.max_body_bytes)
+    app.add_middleware(
+        middleware.BodyCap,
+        max_bytes=settings.max_body_bytes,
+        larger={"/api/v1/terrain": settings.max_terrain_bytes},
+    )
     app.add_middleware(middleware.Guard, allowed_hosts=settings.allowed_hosts)
     app.add_middleware(middleware.RequestLog)
     app.openapi = lambda: _openapi(app)  # type: ignore[method-assign]

@@ -10,9 +10,6 @@ from typing import Literal, Self
 from pydantic import Field, model_validator
 from pydantic_settings import BaseSettings, SettingsConfigDict
 
-from app.services.vehicles.recordings import Recordings
-from mavlink.recording import TlogLimits
-
 PACKAGE = Path(__file__).resolve().parent
 
 
@@ -51,6 +48,7 @@ class Settings(BaseSettings):
     max_queued_plans: int = Field(default=200, ge=1, description="Plans waiting; more are refused with 429.")
     max_wait_s: float = Field(default=300.0, ge=0, description="Longest ``?wait=``.")
     max_body_bytes: int = Field(default=5_000_000, ge=1024, description="Largest request body.")
+    max_terrain_bytes: int = Field(default=100_000_000, ge=1024, description="Largest elevation file.")
     static_dir: Path | None = Field(default=None, description="The built web map; found when unset.")
     log_level: Literal["debug", "info", "warning", "error"] = "info"
     track_interval_s: float = Field(
@@ -75,16 +73,6 @@ class Settings(BaseSettings):
                 "comes, then set SWATHPLAN_ALLOW_REMOTE=true"
             )
         return self
-
-    @property
-    def recordings(self) -> Recordings | None:
-        """Where links are recorded, None when they are not."""
-        if not self.record_links:
-            return None
-        folder = self.log_dir or self.database.parent / "logs"
-        return Recordings(
-            folder, TlogLimits(min(self.log_file_bytes, self.log_total_bytes), self.log_total_bytes)
-        )
 
     @property
     def web_map(self) -> Path | None:

@@ -1,16 +1,36 @@
-"""Server-sent events that end in good order when the service does."""
+"""Server-sent events that end in good order when the service does, and files that may still grow."""
 
 from __future__ import annotations
 
 import asyncio
-from collections.abc import AsyncGenerator, AsyncIterator
+import os
+from collections.abc import AsyncGenerator, AsyncIterator, Iterator
+from pathlib import Path
 
 import anyio
+from fastapi.responses import StreamingResponse
 from sse_starlette import EventSourceResponse, ServerSentEvent
 
 PING_S = 15
 #: Streams get this long to end by themselves once the service is told to stop.
 GRACE_S = 2.0
+CHUNK_BYTES = 1 << 16
+
+
+def file_stream(path: Path, media_type: str) -> StreamingResponse:
+    """A file as long as it is now, to be saved under its name; what is added meanwhile is left out."""
+    file = path.open("rb")
+    size = os.fstat(file.fileno()).st_size
+
+    def chunks() -> Iterator[bytes]:
+        with file:
+            left = size
+            while left and (chunk := file.read(min(left, CHUNK_BYTES))):
+                left -= len(chunk)
+                yield chunk
+
+    headers = {"Content-Length": str(size), "Content-Disposition": f'attachment; filename="{path.name}"'}
+    return StreamingResponse(chunks(), media_type=media_type, headers=headers)
 
 
 def event_stream(events: AsyncGenerator[ServerSentEvent, None]) -> EventSourceResponse:

@@ -6,12 +6,12 @@ from collections.abc import AsyncGenerator
 from typing import Annotated
 
 from fastapi import APIRouter, Query, Response
-from fastapi.responses import FileResponse
+from fastapi.responses import StreamingResponse
 from sse_starlette import EventSourceResponse, ServerSentEvent
 
 from app.deps import FleetDep
 from app.problems import responses
-from app.routers.streams import event_stream
+from app.routers.streams import event_stream, file_stream
 from app.schemas_vehicles import (
     ClearedOut,
     CommandIn,
@@ -140,13 +140,13 @@ async def list_logs(vehicle_id: str, fleet: FleetDep) -> LogList:
 @router.get(
     "/{vehicle_id}/logs/{name}",
     summary="Download a recording",
-    response_class=FileResponse,
+    response_class=StreamingResponse,
     responses=responses(404)
     | {200: {"content": {TLOG: {"schema": {"type": "string", "format": "binary"}}}, "description": "OK"}},
 )
-async def get_log(vehicle_id: str, name: str, fleet: FleetDep) -> FileResponse:
+async def get_log(vehicle_id: str, name: str, fleet: FleetDep) -> StreamingResponse:
     """A .tlog, as MAVProxy, Mission Planner, QGroundControl and pymavlink read it."""
-    return FileResponse(fleet.recording(vehicle_id, name), media_type=TLOG, filename=name)
+    return file_stream(fleet.recording(vehicle_id, name), TLOG)
 
 
 @router.post("/{vehicle_id}/commands", summary="Command", responses=responses(404, 409, 422))

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import structlog
 
@@ -16,7 +15,9 @@ from app.services.pool import WorkerPool
 from app.services.store.database import Database
 from app.services.store.flights import FlightStore
 from app.services.store.plans import PlanStore
+from app.services.store.terrain import TerrainStore
 from app.services.store.uploads import UploadStore
+from app.services.terrain import TerrainService
 from app.services.validation import Verdict, judge
 from app.services.vehicles.fleet import Fleet
 from app.services.vehicles.recordings import Recordings
@@ -44,11 +45,14 @@ class House:
         limits: Limits,
         *,
         task: Task = work.plan_scenario,
-        judge_scenario: Callable[[Mapping[str, Any]], Verdict] = judge,
+        judge_scenario: Callable[..., Verdict] = judge,
         initialiser: Callable[[], None] = work.initialise,
     ) -> None:
         self.database = Database(limits.database)
         self.pool = WorkerPool(limits.workers, initialiser)
+        # Posts of rasters lie beside the database, each in a file of its own.
+        folder = limits.database.resolve().with_name(limits.database.stem + "-terrain")
+        self.terrain = TerrainService(TerrainStore(self.database), folder)
         self.planning = PlanningService(
             PlanStore(self.database),
             self.pool,
@@ -57,6 +61,7 @@ class House:
             max_queued=limits.max_queued_plans,
             task=task,
             judge_scenario=judge_scenario,
+            terrain_folder=folder,
         )
         flights = FlightStore(self.database)
         self.flights = FlightService(flights, self.planning)

@@ -1,0 +1,95 @@
+"""Recordings over HTTP: links recorded, listed, downloaded, and played back as vehicles."""
+
+from __future__ import annotations
+
+import asyncio
+from pathlib import Path
+
+import httpx
+from pymavlink import mavutil
+
+from app.main import create_app
+from app.settings import Settings
+from tests.app.conftest import fake_house, serving
+from tests.app.test_problems import check_problem
+from tests.app.test_vehicles import VEHICLES, connected, until
+
+
+async def fly(client: httpx.AsyncClient, plan_id: str) -> str:
+    """The place of a simulated vehicle that has flown a plan."""
+    vehicle = await connected(client, "sim:?speedup=300")
+    uploaded = await client.post(vehicle + "/mission", json={"plan_id": plan_id})
+    assert uploaded.json()["verified"]
+    for command in ("arm", "start"):
+        await client.post(vehicle + "/commands", json={"command": command})
+    await until(client, vehicle, lambda body: body["flight_id"] is not None)
+    await until(client, "/api/v1/flights", lambda body: body["flights"][0]["state"] == "ended")
+    return vehicle
+
+
+async def test_a_flight_is_recorded_and_flown_again_from_its_recording(
+    client: httpx.AsyncClient, tmp_path: Path, plan_id: str
+) -> None:
+    """The recording of a flight, played as a vehicle, gives the same track; pymavlink reads it too."""
+    vehicle = await fly(client, plan_id)
+    logs = (await client.get(vehicle + "/logs")).json()["logs"]
+    data = b"".join([(await client.get(log["url"])).content for log in logs])
+    assert len(data) == sum(log["size_bytes"] for log in logs) > 10_000
+    path = tmp_path / "downloaded.tlog"
+    path.write_bytes(data)
+    log = mavutil.mavlogfile(str(path))
+    reached = {m.seq for m in iter(lambda: log.recv_match(type="MISSION_ITEM_REACHED"), None)}
+    log.f.close()
+    assert len(reached) > 5
+    (flown,) = (await client.get("/api/v1/flights")).json()["flights"]
+    body = {"name": "again", "url": f"replay:{path}?speedup=2&plan={plan_id}"}
+    again = await client.post(VEHICLES, json=body)
+    assert again.status_code == 201, again.text
+    assert (again.json()["replay"], again.json()["simulated"]) == (True, False)
+    place = again.headers["location"]
+    await until(client, "/api/v1/flights", lambda body: len(body["flights"]) == 2)
+    for answer in (
+        await client.post(place + "/mission", json={"plan_id": plan_id}),
+        await client.get(place + "/mission"),
+        await client.delete(place + "/mission"),
+        await client.post(place + "/commands", json={"command": "arm"}),
+    ):
+        check_problem(answer, 409)
+        assert "again is a recording" in answer.json()["detail"]
+    flights = await until(client, "/api/v1/flights", lambda body: body["flights"][0]["state"] != "flying")
+    replayed = flights["flights"][0]
+    assert (replayed["vehicle_name"], replayed["plan_id"]) == ("again", plan_id)
+    assert replayed["points"] > 0.8 * flown["points"]
+    track = (await client.get(replayed["links"]["track.geojson"])).json()
+    assert track["features"][0]["properties"]["times_s"] == sorted(
+        track["features"][0]["properties"]["times_s"]
+    )
+    assert (await client.get(place + "/logs")).json()["logs"] == []
+    await client.delete(vehicle)
+    assert (await client.get(vehicle + "/logs")).json()["logs"]
+
+
+async def test_recordings_that_are_not_there(client: httpx.AsyncClient, tmp_path: Path) -> None:
+    """Unknown vehicles, names and ways out of the folder are a 404; unknown files to play a 409."""
+    vehicle = await connected(client)
+    check_problem(await client.get(VEHICLES + "/nobody/logs"), 404)
+    check_problem(await client.get(vehicle + "/logs/none.tlog"), 404)
+    check_problem(await client.get(vehicle + "/logs/..%2F..%2Fplans.db"), 404)
+    check_problem(await client.post(VEHICLES, json={"name": "x", "url": "replay:/no.tlog"}), 409)
+    check_problem(await client.post(VEHICLES, json={"name": "x", "url": "replay:"}), 409)
+
+
+async def test_recording_can_be_switched_off(tmp_path: Path) -> None:
+    """With record_links false nothing is written."""
+    settings = Settings(
+        database=tmp_path / "plans.db", workers=1, static_dir=tmp_path, log_level="error", record_links=False
+    )
+    async with serving(create_app(settings, fake_house)) as client:
+        vehicle = await connected(client)
+        await asyncio.sleep(0.2)
+        assert (await client.get(vehicle + "/logs")).json() == {
+            "vehicle_id": vehicle.rpartition("/")[2],
+            "failure": None,
+            "logs": [],
+        }
+    assert list(tmp_path.rglob("*.tlog")) == []
