@@ -58,9 +58,14 @@ def _turns(value: float) -> float:
 
 
 def _radius_byte(value: float) -> float:
+    if math.isnan(value):
+        return value  # refused, so nothing is read back; the comparison must still be possible
     size = min(abs(value), 2550.0)
     return math.copysign(math.trunc(size) if size <= 255.0 else math.trunc(size / 10.0) * 10.0, value)
 
+
+#: Altitudes from here on draw INVALID_PARAM7.
+_HIGHEST_M = 83_000.0
 
 _Row = tuple[Keep, Keep, Keep, Keep]
 _NOTHING: _Row = (_zero, _zero, _zero, _zero)
@@ -77,14 +82,13 @@ _COMMON: Mapping[int, _Row] = {
     Command.NAV_TAKEOFF: (_whole, _zero, _zero, _zero),
     Command.NAV_LOITER_TO_ALT: (_zero, _whole, _zero, _flag),
     Command.NAV_VTOL_TAKEOFF: _NOTHING,
-    Command.NAV_VTOL_LAND: _NOTHING,
-    Command.NAV_DELAY: _ALL,
+    Command.NAV_VTOL_LAND: (_whole, _zero, _zero, _zero),
+    Command.NAV_DELAY: (_same, _whole, _whole, _whole),
     Command.CONDITION_DELAY: _FIRST,
     Command.CONDITION_DISTANCE: _FIRST,
-    Command.CONDITION_YAW: _ALL,
-    Command.DO_SET_MODE: (_whole, _zero, _zero, _zero),
+    Command.CONDITION_YAW: (_same, _same, _whole, _whole),
     Command.DO_JUMP: (_whole, _whole, _zero, _zero),
-    Command.DO_CHANGE_SPEED: (_same, _same, _same, _zero),
+    Command.DO_CHANGE_SPEED: (_whole, _same, _same, _zero),
     Command.DO_SET_HOME: (_whole, _zero, _zero, _zero),
     Command.DO_SET_RELAY: (_whole, _whole, _zero, _zero),
     Command.DO_SET_SERVO: (_whole, _whole, _zero, _zero),
@@ -92,17 +96,20 @@ _COMMON: Mapping[int, _Row] = {
     Command.DO_SET_ROI: (_whole, _zero, _zero, _zero),
     Command.DO_DIGICAM_CONTROL: (_whole, _whole, _whole, _whole),
     Command.DO_MOUNT_CONTROL: (_same, _same, _same, _zero),
-    Command.DO_SET_CAM_TRIGG_DIST: (_same, _zero, _same, _zero),
+    Command.DO_SET_CAM_TRIGG_DIST: (_same, _zero, _whole, _zero),
     Command.DO_FENCE_ENABLE: (_whole, _zero, _zero, _zero),
     Command.DO_PARACHUTE: (_whole, _zero, _zero, _zero),
     Command.DO_GRIPPER: (_whole, _whole, _zero, _zero),
-    Command.DO_WINCH: _ALL,
+    Command.DO_WINCH: (_whole, _whole, _same, _same),
+    Command.DO_PAUSE_CONTINUE: (_whole, _zero, _zero, _zero),
     Command.JUMP_TAG: (_whole, _zero, _zero, _zero),
-    Command.DO_GIMBAL_MANAGER_PITCHYAW: (_whole, _whole, _same, _same),
-    Command.IMAGE_START_CAPTURE: _ALL,
-    Command.IMAGE_STOP_CAPTURE: _FIRST,
-    Command.VIDEO_START_CAPTURE: _ALL,
-    Command.VIDEO_STOP_CAPTURE: _ALL,
+    Command.DO_GIMBAL_MANAGER_PITCHYAW: (_whole, _whole, _whole, _whole),
+    Command.IMAGE_START_CAPTURE: (_whole, _same, _whole, _whole),
+    Command.IMAGE_STOP_CAPTURE: (_whole, _zero, _zero, _zero),
+    Command.SET_CAMERA_ZOOM: (_whole, _same, _zero, _zero),
+    Command.SET_CAMERA_FOCUS: (_whole, _same, _zero, _zero),
+    Command.VIDEO_START_CAPTURE: (_whole, _zero, _zero, _zero),
+    Command.VIDEO_STOP_CAPTURE: (_whole, _zero, _zero, _zero),
 }
 #: Passing a waypoint: Plane stores acceptance radius and pass-by distance, Copter the delay.
 _PLANE: Mapping[int, _Row] = MappingProxyType({**_COMMON, Command.NAV_WAYPOINT: (_zero, _byte, _byte, _zero)})
@@ -117,9 +124,15 @@ _COPTER: Mapping[int, _Row] = MappingProxyType(
 #: Drew UNSUPPORTED, on both vehicles; Plane refuses splines too.
 _REFUSED = frozenset(
     {
+        Command.NAV_ROI,
+        Command.CONDITION_GATE,
+        Command.DO_SET_MODE,
         Command.DO_SET_ACTUATOR,
+        Command.DO_REPOSITION,
         Command.DO_SET_ROI_LOCATION,
+        Command.DO_SET_ROI_WPNEXT_OFFSET,
         Command.DO_SET_ROI_NONE,
+        Command.SET_CAMERA_MODE,
         Command.DO_SET_CAM_TRIGG_INTERVAL,
         Command.DO_TRIGGER_CONTROL,
     }
@@ -207,7 +220,7 @@ class ArduPilotDialect:
                 return MissionResult.INVALID_PARAM5_X
             if abs(item.y) > 1_800_000_000:
                 return MissionResult.INVALID_PARAM6_Y
-            if not math.isfinite(item.z):
+            if not abs(item.z) < _HIGHEST_M:
                 return MissionResult.INVALID_PARAM7
             if item.frame not in _FRAMES:
                 return MissionResult.UNSUPPORTED_FRAME
