@@ -12,6 +12,7 @@ import math
 import statistics
 import time
 from collections.abc import Callable, Iterator
+from importlib import import_module
 from typing import Any
 
 import numpy as np
@@ -161,7 +162,7 @@ def _row(contestant: str, count: int, rate: float) -> dict[str, Any]:
 def _ompl(starts: Array, goals: Array, repeats: int) -> tuple[Array, float, float] | None:
     """Lengths, time, and time less that of as many trivial calls; None where OMPL is not installed."""
     try:
-        from ompl import base
+        base = import_module("ompl.base")
     except ModuleNotFoundError:
         return None
     space = base.DubinsStateSpace(RADIUS_M)

@@ -1,4 +1,4 @@
-"""Transits among 30 random circles: ours beside OMPL's sampling-based planner on the same problems, in one run.
+"""Transits among 30 random circles: ours beside OMPL on the same problems, in one run.
 
 Problems are seeded: a square of 10 km with 30 hard discs of 150 m to 700 m, and a pose at either end. In the
 set ``open`` the ends leave room for a full turn, in the set ``tight`` they are anywhere outside the discs.
@@ -14,6 +14,7 @@ import math
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from importlib import import_module
 from typing import Any
 
 import numpy as np
@@ -70,7 +71,9 @@ def problem(seed: int, tight: bool = False) -> Problem:
 
 def keep_out_of(given: Problem) -> KeepOut:
     """The discs as the connector takes them."""
-    return KeepOut(tuple(Disc(f"d{k}", *map(float, row), True) for k, row in enumerate(given.discs)))
+    return KeepOut(
+        tuple(Disc(f"d{k}", float(e), float(n), float(r), True) for k, (e, n, r) in enumerate(given.discs))
+    )
 
 
 def run(
@@ -145,7 +148,7 @@ def _outside(east_m: float, north_m: float, discs: Array) -> bool:
 def _ompl(planner: str) -> Callable[[Problem, float], tuple[float, float]] | None:
     """The same by OMPL: length and time; None where it is not installed."""
     try:
-        from ompl import base, geometric, util
+        base, geometric, util = (import_module(f"ompl.{part}") for part in ("base", "geometric", "util"))
     except ModuleNotFoundError:
         return None
     util.setLogLevel(util.LogLevel.LOG_ERROR)

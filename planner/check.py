@@ -20,7 +20,7 @@ from shapely.ops import substring
 
 from planner.environment.shapes import hard_shapes, soft_shapes
 from planner.plan import Collect, FlownPath, LonLat, Plan, Violation
-from planner.scenario import Region, Scenario
+from planner.scenario import Region, Scenario, Wind
 from planner.vehicle.aircraft import Aircraft
 
 #: Arcs have vertices at most this far apart, so a longer edge is straight.
@@ -67,18 +67,21 @@ def judge(scenario: Scenario, plan: Plan) -> Verdict:
     lengths_m: list[float] = []
     tightest_m = math.inf
     for path in plan.paths:
-        aircraft = next(a for a in scenario.aircraft if a.name == path.vehicle)
+        aircraft = next(a for a in scenario.aircraft if a.name == path.vehicle).in_wind(
+            scenario.wind.speed_m_s
+        )
         line_m = scenario.frame.to_local([place[:2] for place in path.line])
         lengths_m.append(float(np.hypot(*np.diff(line_m, axis=0).T).sum()))
         radius_m, where = turn_radius_m(line_m)
         tightest_m = min(tightest_m, radius_m)
-        if radius_m < aircraft.min_turn_radius_m * (1.0 - RADIUS_TOLERANCE):
+        limit_m = aircraft.ground_turn_radius_m
+        if radius_m < limit_m * (1.0 - RADIUS_TOLERANCE):
             violations.append(
                 Violation(
                     "turn-radius",
                     path.vehicle,
-                    f"a turn of {radius_m:.2f} m radius, the limit is {aircraft.min_turn_radius_m:g} m",
-                    aircraft.min_turn_radius_m - radius_m,
+                    f"a turn of {radius_m:.2f} m radius, the limit is {limit_m:g} m",
+                    limit_m - radius_m,
                     "m",
                     _lonlat(scenario, where),
                 )
@@ -87,7 +90,18 @@ def judge(scenario: Scenario, plan: Plan) -> Verdict:
         violations += _place_violations(scenario, path, line)
         violations += _clearance_violations(scenario, plan, path, line_m)
         violations += _terminal_violations(scenario, path, line_m)
-        violations += _limit_violations(aircraft, path, lengths_m[-1])
+        time_s = flown_s(line_m, aircraft.airspeed_m_s, scenario.wind)
+        if abs(time_s - path.duration_s) > LENGTH_TOLERANCE * max(time_s, 1.0):
+            violations.append(
+                Violation(
+                    "duration",
+                    path.vehicle,
+                    f"the path says {path.duration_s:.1f} s, its line takes {time_s:.1f} s",
+                    abs(time_s - path.duration_s),
+                    "s",
+                )
+            )
+        violations += _limit_violations(aircraft, path, lengths_m[-1], time_s)
         violations += _collect_violations(scenario, plan, path, line)
     coverage, unseen, missed = _coverage(scenario, plan)
     violations += missed
@@ -227,8 +241,26 @@ def _terminal_violations(
                 )
 
 
-def _limit_violations(aircraft: Aircraft, path: FlownPath, length_m: float) -> Iterator[Violation]:
-    time_s = length_m / aircraft.airspeed_m_s
+def flown_s(line_m: NDArray[np.float64], airspeed_m_s: float, wind: Wind) -> float:
+    """Time to fly a polyline in a steady wind, edge by edge.
+
+    The velocity over the ground is v along the edge; less the wind it must be as long as the airspeed, so
+    v² - 2 v w + W² = V² with w the wind's component along the edge.
+    """
+    if wind.speed_m_s >= airspeed_m_s:
+        return math.inf
+    edges = np.diff(line_m, axis=0)
+    lengths_m = np.hypot(edges[:, 0], edges[:, 1])
+    edges, lengths_m = edges[lengths_m > 0.0], lengths_m[lengths_m > 0.0]
+    toward = np.array([math.cos(wind.toward_rad), math.sin(wind.toward_rad)])
+    along_m_s = wind.speed_m_s * (edges @ toward) / lengths_m
+    speeds_m_s = along_m_s + np.sqrt(along_m_s**2 + airspeed_m_s**2 - wind.speed_m_s**2)
+    return float((lengths_m / speeds_m_s).sum())
+
+
+def _limit_violations(
+    aircraft: Aircraft, path: FlownPath, length_m: float, time_s: float
+) -> Iterator[Violation]:
     energy_wh = None if aircraft.cruise_power_w is None else aircraft.cruise_power_w * time_s / 3600.0
     for constraint, used, limit, unit in (
         ("range", length_m, aircraft.max_range_m, "m"),

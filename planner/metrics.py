@@ -10,6 +10,7 @@ from planner.plan import Metrics
 from planner.route import CollectPass
 from planner.scenario import Scenario
 from planner.vehicle.aircraft import Aircraft
+from planner.vehicle.wind import duration_s
 
 #: Distance between dividing points when risk is summed along the line (section 5.2, Li et al. 2018).
 DIVIDING_M = 100.0
@@ -28,13 +29,14 @@ def measure(
     """Measure the path of one aircraft.
 
     The path length ratio is eq 10, the risks are eqs 12 and 14 of Li et al. (2018) with dividing points every
-    100 m along the flown line, the duty cycle is the fraction of the line with the sensor on.
+    100 m along the flown line, the duty cycle is the fraction of the line with the sensor on. The duration
+    and the energy are those in the scenario's wind.
     """
     length_m = path.length_m
     collection_m = math.fsum(collect.length_m for collect in passes)
     direct_m = math.dist(scenario.start.position, scenario.end.position)
     missile, radar = curve_risk(path.sample(5.0)[:, :2], scenario.threats, DIVIDING_M, scenario.height_m)
-    duration_s = length_m / aircraft.airspeed_m_s
+    flown_s = duration_s(path, aircraft.airspeed_m_s, scenario.wind)
     return Metrics(
         length_m=length_m,
         collection_length_m=collection_m,
@@ -43,8 +45,8 @@ def measure(
         risk_missile=missile,
         risk_radar=radar,
         turns=turns(path),
-        duration_s=duration_s,
-        energy_wh=energy_wh(aircraft, duration_s),
+        duration_s=flown_s,
+        energy_wh=energy_wh(aircraft, flown_s),
         coverage=coverage,
         planning_time_s=planning_time_s,
     )

@@ -21,6 +21,7 @@ from planner.routing.joint import joint_route
 from planner.scenario import Method, Scenario
 from planner.transit import ssas_connector, tangent
 from planner.vehicle.aircraft import Aircraft
+from planner.vehicle.wind import drift, in_wind
 from planner.version import __version__
 
 Clock = Callable[[], float]
@@ -77,6 +78,7 @@ def make_plan(
     InfeasibleError
         With the constraint, the feature and the nearest relaxation.
     """
+    scenario = in_wind(scenario)
     aircraft = scenario.aircraft[0]
     methods = chosen_methods(scenario.method)
     watch = _Stopwatch(clock)
@@ -84,6 +86,7 @@ def make_plan(
         route, dropped = _route(scenario, aircraft, methods, _part(progress, 0.0, 0.5), stop)
     with watch.stage("transit"):
         legs, notes = _connect(scenario, aircraft, methods, route, _part(progress, 0.5, 0.9), stop)
+    crab_findings = drift(scenario, aircraft, route.passes)
     with watch.stage("publish"):
         path = whole_path(legs, route.passes)
         draft = assemble(
@@ -94,7 +97,7 @@ def make_plan(
             metrics=measure(scenario, aircraft, path, route.passes, {}, {}),
             methods=methods,
             planner_version=__version__,
-            warnings=tuple(str(f) for f in (*scenario.warnings, *dropped)) + notes,
+            warnings=tuple(str(f) for f in (*scenario.warnings, *dropped, *crab_findings)) + notes,
         )
     progress("check", 0.95)
     with watch.stage("check"):

@@ -31,6 +31,7 @@ from planner.plan import (
 from planner.route import CollectPass
 from planner.scenario import Scenario
 from planner.vehicle.aircraft import Aircraft
+from planner.vehicle.wind import duration_s
 
 #: Vertices of the published line: on arcs (the contract asks for at most 10 m) and on straights, where the
 #: chord in longitude and latitude must not leave the straight by more than a centimetre or so.
@@ -72,14 +73,14 @@ def vehicle_value(aircraft: Aircraft) -> PlanVehicle:
 def flown_path(scenario: Scenario, aircraft: Aircraft, path: Path) -> FlownPath:
     """The whole line of one aircraft."""
     radii = [segment.radius_m for segment in path.segments if segment.kind != "straight"]
-    duration_s = path.length_m / aircraft.airspeed_m_s
+    flown_s = duration_s(path, aircraft.airspeed_m_s, scenario.wind)
     return FlownPath(
         vehicle=aircraft.name,
         line=_line(scenario, path),
         segments=_segments(scenario, path),
         length_m=path.length_m,
-        duration_s=duration_s,
-        energy_wh=energy_wh(aircraft, duration_s),
+        duration_s=flown_s,
+        energy_wh=energy_wh(aircraft, flown_s),
         min_turn_radius_m=min(radii) if radii else None,
     )
 
@@ -89,7 +90,7 @@ def collects_and_transits(
 ) -> tuple[tuple[Collect, ...], tuple[Transit, ...], tuple[Footprint, ...]]:
     """The features along the line, numbered from 1 in flight order."""
     collects, transits, footprints = [], [], []
-    along_m = 0.0
+    along_m = along_s = 0.0
     for seq, leg in enumerate(legs, start=1):
         missile, radar = curve_risk(
             leg.path.sample(5.0)[:, :2], scenario.threats, DIVIDING_M, scenario.height_m
@@ -101,6 +102,7 @@ def collects_and_transits(
             )
         )  # fmt: skip
         along_m += leg.path.length_m
+        along_s += duration_s(leg.path, aircraft.airspeed_m_s, scenario.wind)
         if seq > len(passes):
             break
         collect = passes[seq - 1]
@@ -108,18 +110,20 @@ def collects_and_transits(
         (lon0, lat0), (lon1, lat1) = _lonlats(scenario, [collect.start, collect.end])
         middle = ((collect.start[0] + collect.end[0]) / 2.0, (collect.start[1] + collect.end[1]) / 2.0)
         end_m = along_m + collect.length_m
+        flown = Path((Segment("straight", collect.entry, collect.length_m),))
+        end_s = along_s + duration_s(flown, aircraft.airspeed_m_s, scenario.wind)
         collects.append(
             Collect(
                 aircraft.name, seq, name, collect.regions, collect.sensor, collect.look,
                 ((lon0, lat0, scenario.altitude_m), (lon1, lat1, scenario.altitude_m)),
                 scenario.frame.true_heading_deg(*middle, collect.angle_rad),
-                along_m, end_m, along_m / aircraft.airspeed_m_s, end_m / aircraft.airspeed_m_s,
+                along_m, end_m, along_s, end_s,
             )
         )  # fmt: skip
         sensor = next(s for s in scenario.sensors if s.name == collect.sensor)
         ring = _lonlats(scenario, np.asarray(collect.footprint.exterior.coords)[:, :2])
         footprints.append(Footprint(aircraft.name, seq, name, collect.sensor, ring, sensor.resolution_m))
-        along_m = end_m
+        along_m, along_s = end_m, end_s
     return tuple(collects), tuple(transits), tuple(footprints)
 
 

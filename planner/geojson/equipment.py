@@ -166,13 +166,6 @@ def read_wind(raw: Any, findings: Findings) -> Wind:
         "from_deg", 0.0 if not speed_m_s else fields.raw("from_deg"), minimum=0.0, maximum=360.0
     )
     fields.refuse_unknown()
-    if speed_m_s > 0.0:
-        findings.warning(
-            "wind",
-            "wind-not-planned",
-            f"of {speed_m_s:g} m/s is not yet taken into account: times and turns are those of still air",
-            "Give min_turn_radius_m a margin for the wind.",
-        )
     return Wind(speed_m_s, angle_from_heading((from_deg or 0.0) + 180.0))
 
 

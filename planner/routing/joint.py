@@ -32,6 +32,7 @@ from planner.routing import tour
 from planner.routing.options import Options, Surroundings, collect_passes, make_options
 from planner.scenario import Scenario, Terminal
 from planner.vehicle.aircraft import Aircraft
+from planner.vehicle.wind import still_air_costs
 
 Floats = NDArray[np.float64]
 
@@ -82,6 +83,8 @@ def surroundings(scenario: Scenario, aircraft: Aircraft) -> Surroundings:
         hard_polygons=tuple(shape.area for shape in hard if not isinstance(shape, DiscShape)),
         radius_m=radius_m,
         settle_m=aircraft.settle_m,
+        airspeed_m_s=aircraft.airspeed_m_s,
+        wind=scenario.wind,
     )
 
 
@@ -279,17 +282,21 @@ def _costs(
     exits = np.concatenate([o.exits for o in options])
     inner_m = np.concatenate([o.inner_m for o in options])
     discs = np.concatenate([around.hard, around.soft])
-    first = _terminal_costs(scenario.start, entries, around, discs) + inner_m
+    first = _terminal_costs(scenario.start, entries, around, discs)
+    first = _in_wind(first, np.array(scenario.start.position), entries, around) + inner_m
     turned = exits + np.array([0.0, 0.0, math.pi])
     last = _terminal_costs(_reversed(scenario.end), turned, around, discs)
+    last = _in_wind(last, exits, np.array(scenario.end.position), around)
     if not chain:
-        between = kernels.transit_costs(exits, entries, around.radius_m, discs) + inner_m[None, :]
+        costs = kernels.transit_costs(exits, entries, around.radius_m, discs)
+        between = _in_wind(costs, exits[:, None], entries[None], around) + inner_m[None, :]
         return first, between, last
     between = np.full((len(entries), len(entries)), np.inf)
     at = np.concatenate([[0], np.cumsum([len(o.inner_m) for o in options])])
     for k in range(len(options) - 1):
         here, there = slice(at[k], at[k + 1]), slice(at[k + 1], at[k + 2])
         costs = kernels.transit_costs(exits[here], entries[there], around.radius_m, discs)
+        costs = _in_wind(costs, exits[here, None], entries[None, there], around)
         between[here, there] = costs + inner_m[None, there]
     return first, between, last
 
@@ -302,6 +309,11 @@ def _terminal_costs(terminal: Terminal, entries: Floats, around: Surroundings, d
     pose = np.array([[east_m, north_m, terminal.angle_rad]])
     from_pose: Floats = kernels.transit_costs(pose, entries, around.radius_m, discs)[0]
     return from_pose
+
+
+def _in_wind(costs_m: Floats, begins: Floats, ends: Floats, around: Surroundings) -> Floats:
+    """Costs in metres through the air."""
+    return still_air_costs(costs_m, begins, ends, around.airspeed_m_s, around.wind)
 
 
 def _reversed(terminal: Terminal) -> Terminal:

@@ -16,6 +16,8 @@ from planner.coverage.segments import Neighbourhood
 from planner.dubins.kernels import dubins_lengths
 from planner.environment.kernels import length_in_discs
 from planner.route import CollectPass
+from planner.scenario import Wind
+from planner.vehicle.wind import STILL_AIR, still_air_factor
 
 Floats = NDArray[np.float64]
 
@@ -39,6 +41,8 @@ class Surroundings:
         Polygons that may not be entered.
     radius_m, settle_m
         Turn radius, and straight flight before each collect.
+    airspeed_m_s, wind
+        In a wind, metres over the ground count as metres through the air: time by airspeed.
     """
 
     area: Polygon | None
@@ -48,6 +52,8 @@ class Surroundings:
     hard_polygons: tuple[Polygon, ...]
     radius_m: float
     settle_m: float
+    airspeed_m_s: float = 1.0
+    wind: Wind = STILL_AIR
 
 
 @dataclass(frozen=True, slots=True)
@@ -162,6 +168,9 @@ def _judge(lines: Floats, around: Surroundings) -> tuple[NDArray[np.bool_], Floa
         good &= ~shapely.intersects(polygon, geometry)
     delta = lines[:, :, 1] - lines[:, :, 0]
     cost_m = np.hypot(delta[..., 0], delta[..., 1]) + around.settle_m
+    if around.wind.speed_m_s > 0.0:
+        courses_rad = np.arctan2(delta[..., 1], delta[..., 0])
+        cost_m = cost_m * still_air_factor(courses_rad, around.airspeed_m_s, around.wind)
     for m, k in np.ndindex(*shape):
         if not good[m, k]:
             continue

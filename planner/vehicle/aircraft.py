@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 STANDARD_GRAVITY_M_S2 = 9.80665
@@ -37,6 +37,8 @@ class Aircraft:
         Steepest climb or descent.
     base
         Name of the base it starts from; None for the scenario's start.
+    wind_m_s
+        Steady wind it flies in, from any direction, slower than ``airspeed_m_s``.
     """
 
     name: str
@@ -51,11 +53,25 @@ class Aircraft:
     max_flight_time_s: float | None = None
     settle_m: float = 0.0
     base: str | None = None
+    wind_m_s: float = 0.0
+
+    def in_wind(self, wind_m_s: float) -> Aircraft:
+        """The same aircraft in a steady wind of this speed: its turns over the ground are wider."""
+        return replace(self, wind_m_s=wind_m_s)
+
+    @property
+    def ground_turn_radius_m(self) -> float:
+        """Tightest arc over the ground that it flies in its wind, whatever the directions.
+
+        Downwind, at airspeed and wind together, the bank of ``min_turn_radius_m`` allows no tighter one; see
+        ``planner.vehicle.wind``.
+        """
+        return self.min_turn_radius_m * ((self.airspeed_m_s + self.wind_m_s) / self.airspeed_m_s) ** 2
 
     @property
     def planned_turn_radius_m(self) -> float:
         """Radius of planned arcs."""
-        return self.min_turn_radius_m * TURN_RADIUS_MARGIN
+        return self.ground_turn_radius_m * TURN_RADIUS_MARGIN
 
 
 def turn_radius_from_bank_m(airspeed_m_s: float, bank_deg: float) -> float:

@@ -17,7 +17,8 @@ def test_problems_are_those_of_their_seed(tight: bool) -> None:
     for seed in range(5):
         given, again = transit.problem(seed, tight), transit.problem(seed, tight)
         assert (given.start, given.goal) == (again.start, again.goal)
-        assert np.array_equal(given.discs, again.discs) and len(given.discs) == 30
+        assert np.array_equal(given.discs, again.discs)
+        assert len(given.discs) == 30
         for end in (given.start, given.goal):
             gaps_m = np.hypot(*(given.discs[:, :2] - end.position).T) - given.discs[:, 2]
             assert gaps_m.min() > (0.0 if tight else transit.OPEN_M)
@@ -26,8 +27,10 @@ def test_problems_are_those_of_their_seed(tight: bool) -> None:
 def test_without_the_peer_the_row_says_so() -> None:
     """With no time for OMPL ours is measured by itself, and OMPL's row names its absence."""
     rows = list(transit.run(problems=3, seconds=0.0, repeats=1, sets=("open",)))
-    assert rows[0]["planner"] == "tangent" and rows[0]["solved"] == 3
-    assert "absent" in rows[1] and len(rows) == 2
+    assert rows[0]["planner"] == "tangent"
+    assert rows[0]["solved"] == 3
+    assert "absent" in rows[1]
+    assert len(rows) == 2
 
 
 def test_against_the_peer() -> None:

@@ -1,0 +1,148 @@
+"""Flying over the ground in a steady wind.
+
+The course is kept and the nose points into the wind by the crab angle (the wind triangle). Where δ is the
+angle from the direction the air moves to, to the course, V the airspeed and W the wind::
+
+    crab = -asin(W sin δ / V)          ground speed = W cos δ + √(V² - W² sin² δ)
+
+A turn that is an arc over the ground is none in the air: at ground speed v the aircraft needs the sideways
+acceleration v² / (r cos crab), most of it downwind, where v = V + W. An arc is flyable in any wind direction
+where its radius is at least ((V + W) / V)² times the tightest turn in still air.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from planner.dubins.path import Path, Segment
+from planner.errors import Finding, InfeasibleError
+from planner.route import CollectPass
+from planner.scenario import Scenario, Wind
+from planner.vehicle.aircraft import Aircraft
+
+Array = NDArray[np.float64]
+
+#: Times on arcs are Gauss-Legendre sums over pieces of at most this turn.
+PIECE_RAD = math.radians(30.0)
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(8)
+
+STILL_AIR = Wind()
+
+#: Directions over which the slowness of a full turn is averaged.
+CIRCLE_RAD = np.linspace(0.0, 2.0 * math.pi, 360, endpoint=False)
+
+
+def in_wind(scenario: Scenario) -> Scenario:
+    """The scenario with aircraft that plan their turns for its wind.
+
+    Raises
+    ------
+    InfeasibleError
+        ``"wind"``: an aircraft is not faster than the wind, so some courses cannot be flown.
+    """
+    speed_m_s = scenario.wind.speed_m_s
+    if speed_m_s == 0.0:
+        return scenario
+    for aircraft in scenario.aircraft:
+        if speed_m_s >= aircraft.airspeed_m_s:
+            raise InfeasibleError(
+                "wind",
+                aircraft.name,
+                f"the wind of {speed_m_s:g} m/s is not slower than its airspeed of "
+                f"{aircraft.airspeed_m_s:g} m/s: against it no ground is gained",
+                f"Wait for a wind under {aircraft.airspeed_m_s:g} m/s or fly faster.",
+            )
+    return replace(scenario, aircraft=tuple(a.in_wind(speed_m_s) for a in scenario.aircraft))
+
+
+def crab_rad(course_rad: ArrayLike, airspeed_m_s: float, wind: Wind) -> Array:
+    """Heading less course, positive to the left, of the courses given."""
+    delta = np.asarray(course_rad, dtype=np.float64) - wind.toward_rad
+    return np.asarray(np.arcsin(np.sin(delta) * (wind.speed_m_s / airspeed_m_s)), dtype=np.float64)
+
+
+def ground_speed_m_s(course_rad: ArrayLike, airspeed_m_s: float, wind: Wind) -> Array:
+    """Speed over the ground on the courses given; the wind must be slower than the airspeed."""
+    delta = np.asarray(course_rad, dtype=np.float64) - wind.toward_rad
+    across_m_s = wind.speed_m_s * np.sin(delta)
+    return np.asarray(
+        wind.speed_m_s * np.cos(delta) + np.sqrt(airspeed_m_s**2 - across_m_s**2), dtype=np.float64
+    )
+
+
+def duration_s(path: Path, airspeed_m_s: float, wind: Wind) -> float:
+    """Time to fly a line."""
+    if wind.speed_m_s == 0.0:
+        return path.length_m / airspeed_m_s
+    return math.fsum(_segment_s(segment, airspeed_m_s, wind) for segment in path.segments)
+
+
+def _segment_s(segment: Segment, airspeed_m_s: float, wind: Wind) -> float:
+    course_rad, turn_rad = segment.start.angle_rad, segment.turn_rad
+    pieces = max(1, math.ceil(abs(turn_rad) / PIECE_RAD))
+    if turn_rad == 0.0:
+        return segment.length_m / float(ground_speed_m_s(course_rad, airspeed_m_s, wind))
+    middles = (np.arange(pieces) + 0.5) / pieces
+    shares = middles[:, None] + 0.5 * NODES / pieces
+    speeds = ground_speed_m_s(course_rad + turn_rad * shares, airspeed_m_s, wind)
+    return segment.length_m * float((WEIGHTS / speeds).sum()) / (2.0 * pieces)
+
+
+def still_air_factor(course_rad: ArrayLike, airspeed_m_s: float, wind: Wind) -> Array:
+    """Metres through the air for one over the ground, on the courses given: time by airspeed."""
+    return airspeed_m_s / ground_speed_m_s(course_rad, airspeed_m_s, wind)
+
+
+def still_air_costs(lengths_m: Array, begins: Array, ends: Array, airspeed_m_s: float, wind: Wind) -> Array:
+    """Lengths of transits as metres through the air, about.
+
+    What is flown from place to place counts by its course; what is flown besides, turning, by the mean over
+    all courses.
+
+    Parameters
+    ----------
+    lengths_m
+        Over the ground, shape (N, M) or one that ``begins`` and ``ends`` give.
+    begins, ends
+        east_m, north_m in the first two columns, broadcast against each other: (N, 1, …) and (1, M, …).
+    """
+    if wind.speed_m_s == 0.0:
+        return lengths_m
+    offset = ends[..., :2] - begins[..., :2]
+    direct_m = np.hypot(offset[..., 0], offset[..., 1])
+    along = still_air_factor(np.arctan2(offset[..., 1], offset[..., 0]), airspeed_m_s, wind)
+    turning = float(still_air_factor(CIRCLE_RAD, airspeed_m_s, wind).mean())
+    return np.asarray(direct_m * along + (lengths_m - direct_m) * turning, dtype=np.float64)
+
+
+def drift(scenario: Scenario, aircraft: Aircraft, passes: Iterable[CollectPass]) -> tuple[Finding, ...]:
+    """Passes on which the nose is so far off the course that an antenna fixed to it looks past abeam.
+
+    Abeam is within the beam up to a crab of half the azimuth beamwidth; beyond, the strip seen is shifted
+    along the track and drawn nearer to it.
+    """
+    findings = []
+    for collect in passes:
+        crab = abs(float(crab_rad(collect.angle_rad, aircraft.airspeed_m_s, scenario.wind)))
+        sensor = next(s for s in scenario.sensors if s.name == collect.sensor)
+        if crab <= 0.5 * sensor.azimuth_beamwidth_rad:
+            continue
+        far_m = sensor.far_m(scenario.height_m)
+        findings.append(
+            Finding(
+                "+".join(collect.regions),
+                "crab",
+                f"is seen with a crab of {math.degrees(crab):.1f}°, more than half the azimuth beam of "
+                f"{math.degrees(0.5 * sensor.azimuth_beamwidth_rad):.1f}°: an antenna fixed to the aircraft "
+                f"sees {far_m * math.sin(crab):.0f} m ahead or behind and "
+                f"{far_m * (1.0 - math.cos(crab)):.0f} m less far",
+                "Steer the antenna abeam of the course, or allow headings along the wind.",
+                "warning",
+            )
+        )
+    return tuple(findings)

@@ -1,0 +1,179 @@
+"""Times, turns and choices in a wind, against the wind triangle solved step by step."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.optimize import brentq
+from shapely.geometry import LineString
+from shapely.ops import substring
+
+from planner.check import flown_s, judge
+from planner.dubins.words import shortest
+from planner.errors import InfeasibleError
+from planner.geojson import read_scenario
+from planner.pipeline import make_plan
+from planner.plan import Plan
+from planner.route import CollectPass, Pose
+from planner.scenario import Scenario, Wind
+from planner.vehicle.aircraft import Aircraft
+from planner.vehicle.wind import crab_rad, drift, duration_s, ground_speed_m_s, in_wind, still_air_costs
+from tests.planner.scenarios import case, small
+
+coordinates = st.floats(-2000.0, 2000.0)
+directions = st.floats(-math.pi, math.pi)
+poses = st.builds(Pose, coordinates, coordinates, directions)
+airspeeds = st.floats(12.0, 40.0)
+winds = st.builds(Wind, st.floats(0.0, 10.0), directions)
+
+
+def stepwise_s(points: np.ndarray[Any, np.dtype[np.float64]], airspeed_m_s: float, wind: Wind) -> float:
+    """Time along a polyline: for each chord the time, found as a root, that takes the airspeed in the air."""
+    drift_m_s = np.array([math.cos(wind.toward_rad), math.sin(wind.toward_rad)]) * wind.speed_m_s
+    total_s = 0.0
+    for chord in np.diff(points, axis=0):
+        length_m = float(np.hypot(*chord))
+        if length_m < 1e-9:
+            continue
+
+        def too_far(time_s: float, chord: Any = chord) -> float:
+            return float(np.hypot(*(chord - drift_m_s * time_s))) - airspeed_m_s * time_s
+
+        slowest_s = length_m / (airspeed_m_s - wind.speed_m_s)
+        total_s += brentq(too_far, 0.0, 1.01 * slowest_s, xtol=1e-13)
+    return total_s
+
+
+@settings(deadline=None, max_examples=25)
+@given(poses, poses, airspeeds, winds)
+def test_duration_is_that_of_small_steps(start: Pose, goal: Pose, airspeed_m_s: float, wind: Wind) -> None:
+    """A Dubins line takes as long as its chords of 2 m, flown one by one; the judge's time agrees, too."""
+    line = shortest(start, goal, 150.0)
+    points = line.sample(2.0, 50.0)[:, :2]
+    expected_s = stepwise_s(points, airspeed_m_s, wind)
+    assert duration_s(line, airspeed_m_s, wind) == pytest.approx(expected_s, rel=1e-4, abs=1e-6)
+    assert flown_s(points, airspeed_m_s, wind) == pytest.approx(expected_s, rel=1e-9, abs=1e-9)
+
+
+@given(directions, airspeeds, winds)
+def test_wind_triangle(course_rad: float, airspeed_m_s: float, wind: Wind) -> None:
+    """Air velocity on the crabbed heading and wind add up to the ground speed along the course."""
+    heading_rad = course_rad + float(crab_rad(course_rad, airspeed_m_s, wind))
+    velocity = airspeed_m_s * np.exp(1j * heading_rad) + wind.speed_m_s * np.exp(1j * wind.toward_rad)
+    expected = float(ground_speed_m_s(course_rad, airspeed_m_s, wind)) * np.exp(1j * course_rad)
+    assert abs(velocity - expected) < 1e-9
+
+
+@pytest.mark.parametrize("wind_m_s", [0.0, 3.0, 9.0, 17.0])
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_ground_arcs_need_no_more_than_the_bank(wind_m_s: float, side: float) -> None:
+    """Flown step by step, an arc of the radius for the wind turns in the air no tighter, just so downwind."""
+    still = Aircraft("a", "fixed_wing", "ardupilot", 18.0, 90.0)
+    aircraft, wind = still.in_wind(wind_m_s), Wind(wind_m_s, 0.7)
+    courses = np.linspace(0.0, 2.0 * math.pi, 40_001) * side
+    headings = courses + crab_rad(courses, 18.0, wind)
+    step_m = aircraft.ground_turn_radius_m * abs(courses[1] - courses[0])
+    speeds = ground_speed_m_s(0.5 * (courses[1:] + courses[:-1]), 18.0, wind)
+    air_radii_m = 18.0 * (step_m / speeds) / np.abs(np.diff(headings))
+    assert air_radii_m.min() == pytest.approx(90.0, rel=1e-4)
+
+
+def windy(speed_m_s: float, from_deg: float, **members: Any) -> Scenario:
+    """The small scenario in a wind."""
+    return read_scenario(small(wind={"speed_m_s": speed_m_s, "from_deg": from_deg}, **members))
+
+
+@pytest.mark.parametrize(("speed_m_s", "from_deg"), [(6.0, 270.0), (12.0, 20.0)])
+def test_plan_times_are_those_of_its_line(speed_m_s: float, from_deg: float) -> None:
+    """Duration, energy and times of collects agree within 0.1 % with steps along the published line."""
+    document = case(1) | {"wind": {"speed_m_s": speed_m_s, "from_deg": from_deg}}
+    document["vehicles"] = [document["vehicles"][0] | {"cruise_power_w": 150.0}]
+    scenario = read_scenario(document)
+    plan = make_plan(scenario)
+    assert not plan.hard_violations
+    assert not any("wind-not-planned" in warning for warning in plan.warnings)
+    (path,) = plan.paths
+    points = scenario.frame.to_local([place[:2] for place in path.line])
+    airspeed_m_s = scenario.aircraft[0].airspeed_m_s
+    whole_s = stepwise_s(points, airspeed_m_s, scenario.wind)
+    assert path.duration_s == plan.metrics.duration_s == pytest.approx(whole_s, rel=1e-3)
+    assert plan.metrics.energy_wh == pytest.approx(150.0 * whole_s / 3600.0, rel=1e-3)
+    line = LineString(points)
+    for collect in plan.collects:
+        for at_m, at_s in ((collect.start_m, collect.start_s), (collect.end_m, collect.end_s)):
+            flown = np.asarray(substring(line, 0.0, at_m * line.length / path.length_m).coords)
+            assert stepwise_s(flown, airspeed_m_s, scenario.wind) == pytest.approx(at_s, rel=1e-3, abs=0.01)
+
+
+def time_of(plan: Plan, scenario: Scenario, wind: Wind) -> float:
+    """Time the plan's line takes in a wind, by the judge's formula."""
+    points = scenario.frame.to_local([place[:2] for place in plan.paths[0].line])
+    return flown_s(points, scenario.aircraft[0].airspeed_m_s, wind)
+
+
+@pytest.mark.parametrize("from_deg", [0.0, 60.0, 270.0])
+def test_wind_in_the_choice_saves_time(from_deg: float) -> None:
+    """With turns as wide, the line chosen for the wind takes no longer in it than one for still air."""
+    scenario = windy(12.0, from_deg)
+    aware = make_plan(scenario)
+    wide = scenario.aircraft[0].in_wind(12.0).ground_turn_radius_m
+    aircraft = replace(scenario.aircraft[0], min_turn_radius_m=wide)
+    blind = make_plan(replace(scenario, wind=Wind(), aircraft=(aircraft,)))
+    assert aware.paths[0].duration_s <= time_of(blind, scenario, scenario.wind) * 1.001
+
+
+def test_wind_as_fast_as_the_aircraft_is_infeasible() -> None:
+    """The refusal names the constraint, the aircraft and what would help."""
+    with pytest.raises(InfeasibleError) as caught:
+        make_plan(windy(20.0, 90.0))
+    assert (caught.value.constraint, caught.value.feature) == ("wind", "uav")
+    assert "20" in caught.value.message
+
+
+def test_still_air_changes_nothing() -> None:
+    """Without wind the scenario, the lengths and the times are what they were."""
+    scenario = read_scenario(small())
+    assert in_wind(scenario) is scenario
+    lengths_m = np.array([[120.0]])
+    places = np.zeros((1, 1, 3))
+    assert still_air_costs(lengths_m, places, places + 100.0, 20.0, Wind()) is lengths_m
+    line = shortest(Pose(0.0, 0.0, 0.0), Pose(900.0, 100.0, 1.0), 100.0)
+    assert duration_s(line, 20.0, Wind()) == line.length_m / 20.0
+
+
+def test_judge_minds_the_wind() -> None:
+    """A plan made for still air turns too tightly for the wind, and takes another time."""
+    still = read_scenario(small())
+    plan = make_plan(still)
+    verdict = judge(replace(still, wind=Wind(8.0, 0.0)), plan)
+    assert {"turn-radius", "duration"} <= {violation.constraint for violation in verdict.violations}
+
+
+def test_crab_beyond_the_beam_is_said() -> None:
+    """Across a strong wind the antenna looks past abeam; along it, or in a light wind, nothing is said."""
+    scenario = windy(8.0, 0.0)
+    route = read_scenario(small()).regions[0].area
+
+    def collect(angle_rad: float) -> CollectPass:
+        end = (1000.0 * math.cos(angle_rad), 1000.0 * math.sin(angle_rad))
+        return CollectPass(("A",), "sar", "right", (0.0, 0.0), end, 0.0, route)
+
+    across, along = collect(0.0), collect(0.5 * math.pi)
+    (finding,) = drift(scenario, scenario.aircraft[0], [across, along])
+    crab_deg = math.degrees(math.asin(8.0 / 20.0))
+    assert (finding.feature, finding.rule) == ("A", "crab")
+    assert f"{crab_deg:.1f}°" in finding.message
+    assert not drift(windy(1.5, 0.0), scenario.aircraft[0], [across, along])
+
+
+def test_straights_count_by_their_course() -> None:
+    """A kilometre against the wind costs what a slower aircraft would take; downwind it costs less."""
+    begins, ends = np.array([[[0.0, 0.0]]]), np.array([[[1000.0, 0.0]], [[-1000.0, 0.0]]])
+    costs = still_air_costs(np.full((2, 1), 1000.0), begins, ends, 20.0, Wind(5.0, 0.0))
+    np.testing.assert_allclose(costs[:, 0], [1000.0 * 20.0 / 25.0, 1000.0 * 20.0 / 15.0])
