@@ -5,6 +5,7 @@ The importers belong to a connected system, so MAVSDK's own autopilot side plays
 
 from __future__ import annotations
 
+import json
 import socket
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
@@ -13,9 +14,10 @@ import pytest
 
 from mavlink.dialects import Autopilot
 from mavlink.encode import EncodeOptions, encode
-from mavlink.formats import write_plan, write_waypoints
+from mavlink.formats import read_plan, write_plan, write_waypoints
 from mavlink.items import MissionItem
 from mavlink.mission import Mission
+from tests.mavlink.formats.test_qgc_complex import CORRIDOR, SURVEY, TRANSECTS, plan_of, simple
 from tests.mavlink.plans import make_plan
 
 pytest.importorskip("mavsdk")
@@ -71,3 +73,22 @@ async def test_mavsdk_reads_our_files_item_by_item() -> None:
             file = await mission_raw.import_mission_planner_mission_from_string(write_waypoints(mission))
             ahead = 0 if autopilot == "ardupilot" else 1
             assert values(file.mission_items[ahead:]) == ours(mission.mission)
+
+
+async def test_mavsdk_lays_surveys_out_like_us() -> None:
+    """A survey among simple items, with fence and rally points, gives MAVSDK the items that we read.
+
+    MAVSDK 4.1 takes no other complex item: a corridor scan is compared with its items in the list themselves.
+    """
+    take_off = simple(22, 47.3977, 8.5456, 50, 1)
+    land = simple(21, 47.3977, 8.5456, 0, 10)
+    with_survey, with_corridor, flat = (
+        json.dumps(plan_of(take_off, *middle, land)) for middle in ([SURVEY], [CORRIDOR], TRANSECTS)
+    )
+    async with importer() as mission_raw:
+        for text, theirs in ((with_survey, with_survey), (with_corridor, flat)):
+            plan = await mission_raw.import_qgroundcontrol_mission_from_string(theirs)
+            mission = read_plan(text)
+            assert values(plan.mission_items) == ours(mission.mission)
+            assert values(plan.geofence_items) == ours(mission.fence)
+            assert values(plan.rally_items) == ours(mission.rally)
