@@ -9,6 +9,7 @@ from fastapi import Depends, Request
 from app.services.flights import FlightService
 from app.services.house import House
 from app.services.planning import PlanningService
+from app.services.terrain import TerrainService
 from app.services.vehicles.fleet import Fleet
 from app.settings import Settings
 
@@ -33,8 +34,13 @@ async def _flights(house: Annotated[House, Depends(_house)]) -> FlightService:
     return house.flights
 
 
+def _terrain(house: Annotated[House, Depends(_house)]) -> TerrainService:
+    return house.terrain
+
+
 HouseDep = Annotated[House, Depends(_house)]
 SettingsDep = Annotated[Settings, Depends(_settings)]
 PlanningDep = Annotated[PlanningService, Depends(_planning)]
 FleetDep = Annotated[Fleet, Depends(_fleet)]
 FlightsDep = Annotated[FlightService, Depends(_flights)]
+TerrainDep = Annotated[TerrainService, Depends(_terrain)]

@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 import time
 import uuid
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from urllib.parse import urlsplit
 
 import structlog
@@ -128,30 +128,32 @@ def _hostname(url: str) -> str | None:
 class BodyCap:
     """Reads each body up to a cap before the application sees it; more is a 422."""
 
-    def __init__(self, app: ASGIApp, max_bytes: int) -> None:
+    def __init__(self, app: ASGIApp, max_bytes: int, larger: Mapping[str, int] | None = None) -> None:
         self._app = app
         self._max_bytes = max_bytes
+        self._larger = larger or {}
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Serve one request."""
         if scope["type"] != "http" or scope["method"] in ("GET", "HEAD", "OPTIONS"):
             await self._app(scope, receive, send)
             return
+        max_bytes = self._larger.get(scope["path"], self._max_bytes)
         chunks: list[bytes] = []
         size = 0
         more = True
-        while more and size <= self._max_bytes * DRAIN_FACTOR:
+        while more and size <= max_bytes * DRAIN_FACTOR:
             message = await receive()
             if message["type"] == "http.disconnect":
                 return
             chunk = message.get("body", b"")
             size += len(chunk)
-            if size <= self._max_bytes:
+            if size <= max_bytes:
                 chunks.append(chunk)
             more = message.get("more_body", False)
-        if size > self._max_bytes:
-            detail = f"the body is larger than {self._max_bytes} bytes"
-            fix = "send less: fewer vertices, fewer decimals, or several scenarios"
+        if size > max_bytes:
+            detail = f"the body is larger than {max_bytes} bytes"
+            fix = "send less: fewer vertices, fewer decimals, or several scenarios; cut a raster to the area"
             entry = {"feature": "body", "rule": "body-too-large", "message": detail, "fix": fix}
             await _answer(scope, send, 422, "refused", "The input is refused", detail, [entry])
             return

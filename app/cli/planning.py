@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import sys
 import time
-from typing import Annotated, Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from app.cli.output import CommandError, Exit, Json, Output, emit, emit_json, read_document, say
+
+if TYPE_CHECKING:
+    from planner.environment.terrain import Terrain
 
 ScenarioFile = Annotated[
     str, typer.Argument(help="Scenario GeoJSON; - is standard input.", metavar="SCENARIO")
@@ -64,7 +68,23 @@ def with_choices(document: dict[str, Any], seed: int | None, methods: list[str])
     return chosen
 
 
-def make(document: dict[str, Any], time_limit_s: float | None = None) -> dict[str, Any]:
+def with_terrain(document: dict[str, Any], path: str) -> tuple[dict[str, Any], Terrain]:
+    """A scenario that lies on the raster in a file, and the raster; the file's name is the terrain's."""
+    from app.cli.output import read_bytes
+    from app.services.errors import RefusedError
+    from app.services.rasters import read_raster
+
+    name = document.get("terrain") or Path(path).stem
+    try:
+        terrain = read_raster(read_bytes(path), Path(path).name, str(name))
+    except RefusedError as error:
+        raise CommandError(str(error), Exit.BAD_INPUT, error.findings) from error
+    return document | {"terrain": str(name)}, terrain
+
+
+def make(
+    document: dict[str, Any], time_limit_s: float | None = None, terrain: Terrain | None = None
+) -> dict[str, Any]:
     """Plan a scenario in this process; returns the plan document."""
     from planner import errors
     from planner.geojson import write_plan
@@ -74,7 +94,7 @@ def make(document: dict[str, Any], time_limit_s: float | None = None) -> dict[st
     narrator = Narrator()
     try:
         plan = make_plan(
-            read_valid(document),
+            read_valid(document, None if terrain is None else {terrain.name: terrain}),
             progress=narrator,
             stop=Deadline(time_limit_s),
             clock=time.perf_counter,
@@ -114,13 +134,21 @@ def plan(
         list[str] | None, typer.Option(help="Algorithm of a stage, e.g. transit=ssas.", metavar="STAGE=NAME")
     ] = None,
     time_limit_s: Annotated[float | None, typer.Option(min=0.0, help="Give up after this long.")] = None,
+    terrain: Annotated[
+        str | None,
+        typer.Option(help="Elevation raster to plan on: GeoTIFF, DTED or SRTM HGT.", metavar="FILE"),
+    ] = None,
     as_json: Json = False,
 ) -> None:
     """Plan a scenario; the result is plan GeoJSON.
 
     With --json and -o FILE the plan's metrics and violations go to standard output.
     """
-    document = make(with_choices(read_document(scenario), seed, method or []), time_limit_s)
+    asked = with_choices(read_document(scenario), seed, method or [])
+    ground = None
+    if terrain is not None:
+        asked, ground = with_terrain(asked, terrain)
+    document = make(asked, time_limit_s, ground)
     emit_json(document, output)
     tell_plan(document)
     if as_json and output != "-":

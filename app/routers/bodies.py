@@ -55,6 +55,7 @@ SCENARIO_SCHEMA: dict[str, Any] = {
         "sensors": {"type": "array", "items": {"type": "object"}, "minItems": 1},
         "altitude_m": {"type": "number", "exclusiveMinimum": 0},
         "altitude_reference": {"enum": ["amsl", "home", "terrain"], "default": "terrain"},
+        "terrain": {"type": "string", "description": "Id of an uploaded elevation raster."},
         "wind": {"type": "object"},
         "clearance_m": {"type": "number", "minimum": 0},
         "objective": {"type": "object"},

@@ -18,6 +18,7 @@ from app.services.planning import PlanningService
 from app.services.records import FlightRecord, TrackSample
 from app.services.store.flights import FlightStore
 from planner.coverage import flown
+from planner.environment.terrain import Terrains
 from planner.frames import LocalFrame
 from planner.geojson import read_scenario
 from planner.plan import Plan
@@ -61,7 +62,9 @@ class FlightService:
         except NotFoundError as error:
             raise ConflictError("the flight's plan has been deleted") from error
         samples = await self._store.track(flight_id)
-        return await asyncio.to_thread(coverage_geojson, record, plan_text, scenario_text, samples)
+        return await asyncio.to_thread(
+            coverage_geojson, record, plan_text, scenario_text, samples, self._planning.terrain
+        )
 
 
 def _feature(geometry: dict[str, Any], **properties: Any) -> dict[str, Any]:
@@ -125,14 +128,18 @@ def seen_by(scenario: Scenario, plan: Plan, samples: tuple[TrackSample, ...]) ->
 
 
 def coverage_geojson(
-    record: FlightRecord, plan_text: str, scenario_text: str, samples: tuple[TrackSample, ...]
+    record: FlightRecord,
+    plan_text: str,
+    scenario_text: str,
+    samples: tuple[TrackSample, ...],
+    terrains: Terrains | None = None,
 ) -> dict[str, Any]:
     """What a flight saw: roles ``seen`` and ``unseen`` by region, and figures as foreign members.
 
     Members: ``coverage`` {region: fraction as flown}, ``planned_coverage``, and ``collects`` with the
     distance of the track from each planned line while the sensor was on.
     """
-    scenario = read_scenario(read_object(scenario_text))
+    scenario = read_scenario(read_object(scenario_text), terrains)
     plan = plan_of(plan_text)
     result = seen_by(scenario, plan, samples)
     to_wgs84 = partial(_to_wgs84, scenario.frame)

@@ -5,8 +5,10 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import hashlib
+import json
 from collections.abc import AsyncIterator, Callable, Mapping
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import structlog
@@ -18,13 +20,15 @@ from app.services.hub import Hub
 from app.services.metrics import PLANNING_SECONDS, PLANS_ENDED, PLANS_RUNNING
 from app.services.pool import WorkerDiedError, WorkerPool
 from app.services.progress_pipe import progress_pipe
+from app.services.rasters import stored_terrain
 from app.services.records import PlanRecord
 from app.services.store.plans import PlanStore
 from app.services.validation import Verdict, judge
+from planner.environment.terrain import Terrain
 
 log = structlog.get_logger(__name__)
 
-Task = Callable[[str, str], work.WorkResult]
+Task = Callable[..., work.WorkResult]
 
 
 def failure(kind: str, title: str, detail: str) -> dict[str, Any]:
@@ -48,7 +52,10 @@ class PlanningService:
     max_queued
         More waiting than this are refused.
     task
-        The function run in a worker: scenario text and progress pipe in, WorkResult out.
+        The function run in a worker: scenario text and progress pipe in, WorkResult out. For a scenario
+        that names a terrain the folder of the rasters is a third argument, and the judge's second.
+    terrain_folder
+        Where uploaded rasters are.
     """
 
     def __init__(
@@ -60,7 +67,8 @@ class PlanningService:
         time_limit_s: float,
         max_queued: int,
         task: Task = work.plan_scenario,
-        judge_scenario: Callable[[Mapping[str, Any]], Verdict] = judge,
+        judge_scenario: Callable[..., Verdict] = judge,
+        terrain_folder: Path | None = None,
     ) -> None:
         self._store = store
         self._pool = pool
@@ -69,6 +77,7 @@ class PlanningService:
         self._max_queued = max_queued
         self._task = task
         self._judge = judge_scenario
+        self._terrain_folder = terrain_folder
         self._queue: asyncio.Queue[str] = asyncio.Queue()
         self._running: dict[str, asyncio.Task[None]] = {}
         self._live: dict[str, tuple[str | None, float]] = {}
@@ -96,7 +105,17 @@ class PlanningService:
 
     async def validate(self, document: Mapping[str, Any]) -> Verdict:
         """Judge a scenario without planning it."""
-        return await asyncio.to_thread(self._judge, document)
+        return await asyncio.to_thread(self._judge, document, *self._terrain_of(document))
+
+    def terrain(self, terrain_id: str) -> Terrain | None:
+        """An uploaded raster by its id; None where there is none."""
+        return None if self._terrain_folder is None else stored_terrain(self._terrain_folder, terrain_id)
+
+    def _terrain_of(self, document: Mapping[str, Any]) -> tuple[str, ...]:
+        """The folder of the rasters, for a scenario that names one."""
+        if document.get("terrain") is None or self._terrain_folder is None:
+            return ()
+        return (str(self._terrain_folder),)
 
     async def submit(self, document: Mapping[str, Any], key: str | None = None) -> PlanRecord:
         """Queue a scenario.
@@ -247,8 +266,11 @@ class PlanningService:
             self._live.pop(plan_id, None)
 
     async def _attempt(self, scenario: str, pipe: str) -> work.WorkResult:
+        # A text without the word needs no second parsing.
+        document = json.loads(scenario) if '"terrain"' in scenario else {}
+        arguments = (scenario, pipe, *self._terrain_of(document))
         try:
-            result = await self._pool.run(self._task, (scenario, pipe), self._time_limit_s)
+            result = await self._pool.run(self._task, arguments, self._time_limit_s)
         except TimeoutError:
             detail = f"planning took longer than {self._time_limit_s:g} s and was stopped"
             return work.WorkResult(error=failure("time-limit", "The time limit passed", detail))

@@ -30,6 +30,24 @@ class TrackSample:
 
 
 @dataclass(frozen=True, slots=True)
+class TerrainRecord:
+    """One uploaded elevation raster; ``bounds_deg`` is west, south, east, north."""
+
+    id: str
+    name: str
+    bounds_deg: tuple[float, float, float, float]
+    resolution_m: float
+    rows: int
+    columns: int
+    min_m: float
+    max_m: float
+    known_fraction: float
+    datum: str
+    sha256: str
+    created_at: datetime
+
+
+@dataclass(frozen=True, slots=True)
 class FlightRecord:
     """One flight, from the first movement of an armed vehicle to its landing or disarming.
 

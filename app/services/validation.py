@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 from planner.errors import Finding
@@ -17,11 +18,15 @@ class Verdict:
     warnings: tuple[Finding, ...]
 
 
-def judge(document: Mapping[str, Any]) -> Verdict:
-    """Every finding of the planner about a scenario document; plans nothing."""
+def judge(document: Mapping[str, Any], terrain_folder: str | None = None) -> Verdict:
+    """Every finding of the planner about a scenario document; plans nothing.
+
+    ``terrain_folder`` is where uploaded rasters are.
+    """
+    from app.services.rasters import stored_terrain
     from planner.validate import findings
 
-    found = findings(document)
+    found = findings(document, None if terrain_folder is None else partial(stored_terrain, terrain_folder))
     return Verdict(
         errors=tuple(finding for finding in found if finding.severity == "error"),
         warnings=tuple(finding for finding in found if finding.severity == "warning"),

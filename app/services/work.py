@@ -11,6 +11,7 @@ import json
 import os
 import time
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 #: Reports closer together than this are dropped unless the stage changes.
@@ -83,8 +84,9 @@ def finding_json(finding: Any) -> dict[str, str]:
     }
 
 
-def plan_scenario(scenario_text: str, progress_path: str) -> WorkResult:
-    """Plan one scenario, reporting into the pipe at ``progress_path``."""
+def plan_scenario(scenario_text: str, progress_path: str, terrain_folder: str | None = None) -> WorkResult:
+    """Plan one scenario, reporting into the pipe at ``progress_path``; rasters are in ``terrain_folder``."""
+    from app.services.rasters import stored_terrain
     from app.services.summary import summary_of
     from planner import errors
     from planner.geojson import read_scenario, write_plan
@@ -94,7 +96,8 @@ def plan_scenario(scenario_text: str, progress_path: str) -> WorkResult:
     frame = None
     try:
         progress("reading", 0.0)
-        scenario = read_scenario(json.loads(scenario_text))
+        terrains = None if terrain_folder is None else partial(stored_terrain, terrain_folder)
+        scenario = read_scenario(json.loads(scenario_text), terrains)
         frame = scenario.frame
         plan = make_plan(scenario, progress=progress, clock=time.perf_counter)
         document = write_plan(plan)

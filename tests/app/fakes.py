@@ -19,10 +19,10 @@ def no_warm_up() -> None:
     """Compile nothing."""
 
 
-def judge(document: Mapping[str, Any]) -> Verdict:
+def judge(document: Mapping[str, Any], *folders: str) -> Verdict:
     """Refuse documents without features; warn of unnamed ones; judge real scenarios for real."""
     if "vehicles" in document and "fake_plan" not in document:
-        return validation.judge(document)
+        return validation.judge(document, *folders)
     errors = () if document.get("features") else (Finding("scenario", "no-features", "empty", "draw some"),)
     warnings = (
         () if document.get("name") else (Finding("scenario", "no-name", "unnamed", "name it", "warning"),)
@@ -30,14 +30,14 @@ def judge(document: Mapping[str, Any]) -> Verdict:
     return Verdict(errors, warnings)
 
 
-def task(scenario_text: str, progress_path: str) -> WorkResult:
+def task(scenario_text: str, progress_path: str, *folders: str) -> WorkResult:
     """Do what the ``fake`` member says: ``done``, ``failed``, ``slow``, ``die``, ``raise``; else plan."""
     scenario = json.loads(scenario_text)
     if "fake_plan" in scenario:
         plan = json.loads(Path(scenario["fake_plan"]).read_text())
         return WorkResult(plan=json.dumps(plan | scenario["members"]), summary=summary_of(plan))
     if "vehicles" in scenario:
-        return plan_scenario(scenario_text, progress_path)
+        return plan_scenario(scenario_text, progress_path, *folders)
     progress = PipeProgress(progress_path)
     progress("coverage", 0.25)
     match scenario.get("fake", "done"):

@@ -114,3 +114,26 @@ class TrackPointRow(Base):
     ground_speed_m_s: Mapped[float | None] = mapped_column(Float)
     mission_seq: Mapped[int | None] = mapped_column(Integer)
     sensor_on: Mapped[bool] = mapped_column(Boolean)
+
+
+class TerrainRow(Base):
+    """One uploaded elevation raster; its posts are in a file."""
+
+    __tablename__ = "terrains"
+
+    number: Mapped[int] = mapped_column(Integer, primary_key=True, autoincrement=True)
+    id: Mapped[str] = mapped_column(String(36), unique=True)
+    name: Mapped[str] = mapped_column(String(200))
+    west_deg: Mapped[float] = mapped_column(Float)
+    south_deg: Mapped[float] = mapped_column(Float)
+    east_deg: Mapped[float] = mapped_column(Float)
+    north_deg: Mapped[float] = mapped_column(Float)
+    resolution_m: Mapped[float] = mapped_column(Float)
+    rows: Mapped[int] = mapped_column(Integer)
+    columns: Mapped[int] = mapped_column(Integer)
+    min_m: Mapped[float] = mapped_column(Float)
+    max_m: Mapped[float] = mapped_column(Float)
+    known_fraction: Mapped[float] = mapped_column(Float)
+    datum: Mapped[str] = mapped_column(String(100))
+    sha256: Mapped[str] = mapped_column(String(64), index=True)
+    created_at: Mapped[datetime] = mapped_column(UtcTime)

@@ -1,0 +1,105 @@
+"""Elevation rasters: taken in, checked, kept, found again."""
+
+from __future__ import annotations
+
+import asyncio
+import hashlib
+import uuid
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from app.services.errors import RefusedError
+from app.services.rasters import VerticalDatum, known_fraction, pack, read_raster, stored_terrain
+from app.services.records import TerrainRecord
+from app.services.store.plans import now
+from app.services.store.terrain import TerrainStore
+from planner.environment.terrain import Terrain
+from planner.errors import Finding
+
+
+class TerrainService:
+    """The rasters of one service.
+
+    Parameters
+    ----------
+    store
+        Where their records are.
+    folder
+        Where their posts are, a file each; made when the first comes.
+    """
+
+    def __init__(self, store: TerrainStore, folder: Path) -> None:
+        self._store = store
+        self.folder = folder
+
+    async def add(
+        self, content: bytes, filename: str, name: str | None, datum: VerticalDatum | None
+    ) -> tuple[TerrainRecord, bool]:
+        """Take in a file; returns its record and whether it is new.
+
+        The same file with the same datum is kept once.
+
+        Raises
+        ------
+        RefusedError
+            The file is no elevation raster that can be used; see ``read_raster``.
+        """
+        if not content:
+            finding = Finding("terrain", "raster-format", "the body is empty", "Send the file as the body.")
+            raise RefusedError("the raster is refused: the body is empty", (finding,))
+        sha256 = hashlib.sha256(content).hexdigest()
+        known = await self._store.by_sha256(sha256)
+        if known is not None and (datum is None or datum == known.datum):
+            return known, False
+        title = (name or Path(filename).stem or "terrain")[:200]
+        record = await asyncio.to_thread(self._take_in, content, filename, title, sha256, datum)
+        await self._store.add(record)
+        return record, True
+
+    async def get(self, terrain_id: str) -> TerrainRecord:
+        """One raster's record; raises NotFoundError."""
+        return await self._store.get(terrain_id)
+
+    async def newest(self, limit: int, offset: int) -> tuple[TerrainRecord, ...]:
+        """Records, newest first."""
+        return await self._store.newest(limit, offset)
+
+    async def count(self) -> int:
+        """How many there are."""
+        return await self._store.count()
+
+    async def remove(self, terrain_id: str) -> None:
+        """Forget a raster; plans made on it stay. Raises NotFoundError."""
+        await self._store.delete(terrain_id)
+        (self.folder / f"{terrain_id}.npz").unlink(missing_ok=True)
+
+    def load(self, terrain_id: str) -> Terrain | None:
+        """The raster itself; None where there is none of this id."""
+        return stored_terrain(self.folder, terrain_id)
+
+    def _take_in(
+        self, content: bytes, filename: str, name: str, sha256: str, datum: VerticalDatum | None
+    ) -> TerrainRecord:
+        terrain_id = str(uuid.uuid4())
+        terrain = replace(read_raster(content, filename, name, datum), name=terrain_id)
+        self.folder.mkdir(parents=True, exist_ok=True)
+        partial = self.folder / f".{terrain_id}.partial"
+        partial.write_bytes(pack(terrain))
+        partial.replace(self.folder / f"{terrain_id}.npz")
+        rows, columns = terrain.heights_m.shape
+        return TerrainRecord(
+            id=terrain_id,
+            name=name,
+            bounds_deg=terrain.bounds_deg,
+            resolution_m=terrain.resolution_m,
+            rows=rows,
+            columns=columns,
+            min_m=float(np.nanmin(terrain.heights_m)),
+            max_m=float(np.nanmax(terrain.heights_m)),
+            known_fraction=known_fraction(terrain),
+            datum=terrain.datum,
+            sha256=sha256,
+            created_at=now(),
+        )
