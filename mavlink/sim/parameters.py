@@ -29,7 +29,12 @@ class Parameters:
                 "RTL_AUTOLAND": 0.0,
                 "WP_LOITER_RAD": settings.turn_radius_m,
                 "WP_RADIUS": settings.acceptance_m,
-            }
+                "FENCE_ENABLE": 1.0,
+                "FENCE_TYPE": 7.0,
+                "FENCE_ACTION": 1.0,
+                "CAM1_TYPE": 1.0,
+                "SERVO9_FUNCTION": 10.0,
+            } | {f"RELAY{number}_FUNCTION": 1.0 for number in range(1, 7)}
         else:
             self._values = {
                 "MAV_SYS_ID": float(settings.system_id),
@@ -40,7 +45,12 @@ class Parameters:
                 "NAV_ACC_RAD": settings.acceptance_m,
                 "NAV_LOITER_RAD": settings.turn_radius_m,
                 "RTL_RETURN_ALT": settings.rtl_altitude_m,
-            }
+                "FW_LND_ANG": 5.0,
+                "GF_ACTION": 3.0,
+                "TRIG_MODE": 4.0,
+                "COM_DISARM_PRFLT": 10.0,
+                "COM_DISARM_LAND": 2.0,
+            } | {f"PWM_MAIN_FUNC{output}": 396.0 + output for output in range(5, 9)}
 
     def receive(self, message: Message) -> list[Message]:
         """Answers to one message of the parameter protocol; none for others, and none for unknown names."""

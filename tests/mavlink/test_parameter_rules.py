@@ -1,0 +1,166 @@
+"""Parameters judged by what a mission needs: each rule speaks when it must and is silent when all is well."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import pytest
+
+from mavlink.dialects import Autopilot
+from mavlink.encode import encode
+from mavlink.items import Command
+from mavlink.parameter_rules import RULES, Needs, judge_parameters, names_to_read, needs_of
+from mavlink.payload import (
+    ActuatorPayload,
+    CameraPayload,
+    RelayPayload,
+    ServoPayload,
+)
+from tests.mavlink.plans import make_plan
+
+PLANE = Needs(22.4, 100.0, None, CameraPayload(25.0), frozenset({22, 16, 21, 189}), True)
+SERVO9 = {"SERVO9_FUNCTION": 10.0}
+GOOD: dict[Autopilot, dict[str, float]] = {
+    "ardupilot": {
+        "WP_RADIUS": 50.0,
+        "NAVL1_PERIOD": 10.0,
+        "AIRSPEED_CRUISE": 22.0,
+        "ROLL_LIMIT_DEG": 45.0,
+        "RTL_AUTOLAND": 2.0,
+        "FENCE_ENABLE": 1.0,
+        "FENCE_TYPE": 7.0,
+        "FENCE_ACTION": 1.0,
+        "CAM1_TYPE": 1.0,
+        "SERVO1_FUNCTION": 4.0,
+        "SERVO9_FUNCTION": 10.0,
+    },
+    "px4": {
+        "NAV_ACC_RAD": 30.0,
+        "NPFG_PERIOD": 10.0,
+        "FW_AIRSPD_TRIM": 22.4,
+        "FW_R_LIM": 50.0,
+        "FW_LND_ANG": 5.0,
+        "MIS_TKO_LAND_REQ": 2.0,
+        "GF_ACTION": 3.0,
+        "TRIG_MODE": 4.0,
+        "COM_DISARM_PRFLT": 10.0,
+        "COM_DISARM_LAND": 2.0,
+    },
+}
+
+
+@pytest.mark.parametrize("autopilot", ["ardupilot", "px4"])
+def test_all_well_is_no_finding(autopilot: Autopilot) -> None:
+    """Values as advised draw nothing, and every one of them is read."""
+    values = GOOD[autopilot]
+    assert judge_parameters(autopilot, "fixed_wing", PLANE, values) == ()
+    assert set(values) <= set(names_to_read(autopilot, "fixed_wing", PLANE))
+
+
+@pytest.mark.parametrize(
+    ("autopilot", "name", "value", "severity"),
+    [
+        ("ardupilot", "WP_RADIUS", 90.0, "warning"),
+        ("ardupilot", "NAVL1_PERIOD", 20.0, "warning"),
+        ("ardupilot", "AIRSPEED_CRUISE", 15.0, "warning"),
+        ("ardupilot", "ROLL_LIMIT_DEG", 20.0, "error"),
+        ("ardupilot", "RTL_AUTOLAND", 0.0, "error"),
+        ("ardupilot", "FENCE_ENABLE", 0.0, "warning"),
+        ("ardupilot", "FENCE_TYPE", 3.0, "warning"),
+        ("ardupilot", "FENCE_ACTION", 0.0, "warning"),
+        ("ardupilot", "CAM1_TYPE", 0.0, "error"),
+        ("px4", "NAV_ACC_RAD", 80.0, "warning"),
+        ("px4", "NPFG_PERIOD", 20.0, "warning"),
+        ("px4", "FW_AIRSPD_TRIM", 14.0, "warning"),
+        ("px4", "FW_R_LIM", 20.0, "error"),
+        ("px4", "FW_LND_ANG", 2.0, "error"),
+        ("px4", "GF_ACTION", 0.0, "warning"),
+        ("px4", "TRIG_MODE", 0.0, "error"),
+        ("px4", "COM_DISARM_PRFLT", 2.0, "warning"),
+        ("px4", "COM_DISARM_LAND", -1.0, "warning"),
+    ],
+)
+def test_each_wrong_value_is_named(autopilot: Autopilot, name: str, value: float, severity: str) -> None:
+    """One value off draws one finding: that parameter, that value, and advice that would be accepted."""
+    values = GOOD[autopilot] | {name: value}
+    (finding,) = judge_parameters(autopilot, "fixed_wing", PLANE, values)
+    assert (finding.name, finding.value, finding.severity) == (name, value, severity)
+    assert finding.advised is not None
+    assert name in str(finding)
+    better = values | {name: finding.advised}
+    assert judge_parameters(autopilot, "fixed_wing", PLANE, better) == ()
+
+
+def test_what_was_not_read_is_not_judged() -> None:
+    """No value, no finding."""
+    for autopilot, kind in RULES:
+        assert judge_parameters(autopilot, kind, PLANE, {}) == ()
+
+
+@pytest.mark.parametrize(
+    ("needs", "values", "wrong"),
+    [
+        (PLANE, {"SERVO1_FUNCTION": 4.0, "SERVO9_FUNCTION": 0.0}, "SERVO1_FUNCTION"),
+        (replace(PLANE, payload=ServoPayload(9)), {"SERVO9_FUNCTION": 10.0}, "SERVO9_FUNCTION"),
+        (replace(PLANE, payload=ServoPayload(9)), {"SERVO9_FUNCTION": 0.0}, None),
+        (replace(PLANE, payload=RelayPayload(2)), {"RELAY3_FUNCTION": 0.0}, "RELAY3_FUNCTION"),
+        (replace(PLANE, payload=RelayPayload(2)), {"RELAY3_FUNCTION": 1.0}, None),
+        (replace(PLANE, payload=RelayPayload(2)), {"CAM1_TYPE": 0.0}, None),
+    ],
+)
+def test_ardupilots_outputs_follow_the_payload(
+    needs: Needs, values: dict[str, float], wrong: str | None
+) -> None:
+    """The output that switches the chosen payload is looked at, and only that."""
+    found = judge_parameters("ardupilot", "fixed_wing", needs, values)
+    assert [finding.name for finding in found] == ([] if wrong is None else [wrong])
+
+
+@pytest.mark.parametrize(("function", "wrong"), [(402.0, False), (401.0, True)])
+def test_px4s_actuator_needs_an_output(function: float, wrong: bool) -> None:
+    """One output must carry the function of the actuator that switches the sensor."""
+    needs = replace(PLANE, payload=ActuatorPayload(2))
+    found = judge_parameters("px4", "fixed_wing", needs, {"PWM_MAIN_FUNC1": 101.0, "PWM_AUX_FUNC1": function})
+    assert bool(found) is wrong
+
+
+@pytest.mark.parametrize(
+    ("required", "commands", "flies"),
+    [
+        (2, {22, 16, 20}, False),  # RTL is no landing
+        (2, {22, 16, 21}, True),
+        (1, {16, 21}, False),
+        (3, {22, 16}, False),
+        (4, {16}, True),
+        (4, {22, 16}, False),
+        (0, {16}, True),
+    ],
+)
+def test_px4s_required_items(required: int, commands: set[int], flies: bool) -> None:
+    """MIS_TKO_LAND_REQ is compared with the items the mission has."""
+    needs = replace(PLANE, commands=frozenset(commands))
+    found = judge_parameters("px4", "fixed_wing", needs, {"MIS_TKO_LAND_REQ": float(required)})
+    assert (found == ()) is flies
+
+
+def test_the_period_follows_the_straight_left_for_settling() -> None:
+    """Little straight before the passes asks for a shorter period, at no more than the turns allow."""
+    wide = replace(PLANE, turn_radius_m=200.0)
+    near = replace(wide, settle_m=100.0)
+    (far_finding,) = judge_parameters("ardupilot", "fixed_wing", wide, {"NAVL1_PERIOD": 40.0})
+    (near_finding,) = judge_parameters("ardupilot", "fixed_wing", near, {"NAVL1_PERIOD": 40.0})
+    assert far_finding.advised == 20.0
+    assert near_finding.advised == pytest.approx(math.floor(15.0 * 100.0 / 130.0))
+    assert "100 m of straight" in near_finding.reason
+
+
+def test_needs_come_from_plan_and_mission() -> None:
+    """Speed and radius are the plan's, commands the mission's; a relay on PX4 is the actuator it becomes."""
+    plan = make_plan(autopilot="px4")
+    mission = encode(plan)
+    needs = needs_of(plan, mission, RelayPayload(0), 150.0)
+    assert (needs.airspeed_m_s, needs.settle_m) == (plan.vehicles[0].airspeed_m_s, 150.0)
+    assert needs.payload == ActuatorPayload(1)
+    assert Command.NAV_WAYPOINT in needs.commands
+    assert needs.fence == bool(mission.fence)
