@@ -13,11 +13,13 @@ from dataclasses import replace
 
 from mavlink.dialects import Autopilot, VehicleType
 from mavlink.formats.errors import FormatError
+from mavlink.formats.places import check_place
 from mavlink.items import Command, Frame, MissionItem, MissionType
 from mavlink.mission import Mission, home_item
 
 HEADER = "QGC WPL 110"
 
+_DECIMAL_COMMA = re.compile(r"[+-]?\d+,\d+")
 _LINE_END = re.compile(r"\r\n|\n|\r")
 
 _COLUMNS = (
@@ -67,20 +69,18 @@ def read_waypoints(
     Raises
     ------
     FormatError
-        With the number of the line.
+        With the number of the line, and the name of the column where one is wrong.
     """
     lines = _LINE_END.split(text.removeprefix("\ufeff"))
     while lines and not lines[-1].strip():
         lines.pop()
-    if not lines or lines[0].split() != HEADER.split():
-        found = lines[0].strip()[:40] if lines else ""
-        raise FormatError(f"the file must begin with {HEADER!r}, it begins with {found!r}", 1)
+    _check_header(lines[0] if lines else "")
     items = [_read_row(line, number, number - 2) for number, line in enumerate(lines[1:], start=2)]
     if not items:
         raise FormatError("the home row is missing", 2)
     home = items[0]
     if home.command != Command.NAV_WAYPOINT or home.frame == Frame.MISSION:
-        raise FormatError(f"line 0 must be the home position, it holds command {home.command}", 2)
+        raise FormatError(f"row 0 must be the home position, it holds command {home.command}", 2, "command")
     if autopilot == "px4":
         items = [_shifted(item, -1) for item in items[1:]]
     return Mission(
@@ -93,6 +93,16 @@ def read_waypoints(
         home=(home.y / 1e7, home.x / 1e7),
         home_altitude_m=home.z,
     )
+
+
+def _check_header(line: str) -> None:
+    words = line.split()
+    if words == HEADER.split():
+        return
+    if words[:2] == HEADER.split()[:2]:
+        found = " ".join(words[2:])[:20]
+        raise FormatError(f"the version is {found!r}, {HEADER!r} is meant", 1, "version")
+    raise FormatError(f"the file must begin with {HEADER!r}, it begins with {line.strip()[:40]!r}", 1)
 
 
 def _shifted(item: MissionItem, by: int) -> MissionItem:
@@ -134,17 +144,16 @@ def _degrees(value_e7: int) -> str:
 def _read_row(line: str, number: int, seq: int) -> MissionItem:
     # Some programs write spaces for tabs.
     fields = line.split("\t") if "\t" in line else line.split()
-    if len(fields) != len(_COLUMNS):
-        raise FormatError(f"{len(_COLUMNS)} columns are meant, here are {len(fields)}", number)
+    _check_count(fields, number)
     index = _integer(fields, 0, number)
     if index != seq:
-        raise FormatError(f"item {index} stands where item {seq} belongs", number)
+        raise FormatError(f"item {index} stands where item {seq} belongs", number, "index")
     frame = _integer(fields, 2, number)
     command = _integer(fields, 3, number)
     if not 0 <= command <= 65535:
-        raise FormatError(f"command {command} is none", number)
+        raise FormatError(f"command {command} is none", number, "command")
     param1, param2, param3, param4 = (_float(fields, column, number) for column in range(4, 8))
-    x, y = _place(fields, frame, number)
+    x, y = _place(fields, command, frame, number)
     altitude_m = _float(fields, 10, number)
     return MissionItem(
         seq,
@@ -163,24 +172,45 @@ def _read_row(line: str, number: int, seq: int) -> MissionItem:
     )
 
 
-def _place(fields: list[str], frame: int, number: int) -> tuple[int, int]:
+def _check_count(fields: list[str], number: int) -> None:
+    meant, found = len(_COLUMNS), len(fields)
+    if found < meant:
+        missing = _COLUMNS[found] if found else _COLUMNS[0]
+        raise FormatError(
+            f"{meant} columns are meant, here are {found}: {missing} is missing", number, missing
+        )
+    if found > meant:
+        junk = " ".join(fields[meant:])[:40]
+        raise FormatError(f"{meant} columns are meant, here are {found}: {junk!r} is too much", number)
+
+
+def _place(fields: list[str], command: int, frame: int, number: int) -> tuple[int, int]:
     values = [_float(fields, column, number) for column in (8, 9)]
     scale = 1.0 if frame == Frame.MISSION else 1e7
+    problem = check_place(command, frame, *values)
+    if problem and all(math.isfinite(value) for value in values):
+        raise FormatError(problem, number, "longitude" if problem.startswith("longitude") else "latitude")
     for value, column in zip(values, (8, 9), strict=True):
         if not math.isfinite(value) or abs(value * scale) > 2**31 - 1:
-            raise FormatError(f"{_COLUMNS[column]} {fields[column].strip()!r} is out of range", number)
+            raise FormatError(
+                f"{_COLUMNS[column]} {fields[column].strip()!r} is out of range", number, _COLUMNS[column]
+            )
     return round(values[0] * scale), round(values[1] * scale)
 
 
 def _integer(fields: list[str], column: int, number: int) -> int:
     value = _float(fields, column, number)
     if not (math.isfinite(value) and value == round(value)):
-        raise FormatError(f"{_COLUMNS[column]} {fields[column].strip()!r} is no whole number", number)
+        found = fields[column].strip()
+        raise FormatError(f"{_COLUMNS[column]} {found!r} is no whole number", number, _COLUMNS[column])
     return round(value)
 
 
 def _float(fields: list[str], column: int, number: int) -> float:
+    found = fields[column].strip()
     try:
-        return float(fields[column])
+        return float(found)
     except ValueError:
-        raise FormatError(f"{_COLUMNS[column]} {fields[column].strip()!r} is no number", number) from None
+        comma = ": write a point for the comma" if _DECIMAL_COMMA.fullmatch(found) else ""
+        message = f"{_COLUMNS[column]} {found[:40]!r} is no number{comma}"
+        raise FormatError(message, number, _COLUMNS[column]) from None

@@ -83,30 +83,64 @@ def changed(line: int, column: int, value: str) -> str:
     return "\n".join(lines)
 
 
+def swapped() -> str:
+    lines = GOOD.splitlines()
+    rows = [line.split("\t") for line in lines[1:]]
+    for fields in rows:
+        fields[8], fields[9] = fields[9], fields[8]
+    return "\n".join([lines[0], *("\t".join(fields) for fields in rows)])
+
+
 @pytest.mark.parametrize(
-    ("text", "line", "says"),
+    ("text", "line", "column", "says"),
     [
-        ("", 1, "QGC WPL 110"),
-        ("QGC WPL 120\n", 1, "QGC WPL 110"),
-        ("QGC WPL 110\n", 2, "home row"),
-        (GOOD.replace("\n4\t", "\n\n4\t"), 6, "12 columns"),
-        ("\n".join([*GOOD.splitlines()[:5], "4\t0\t3"]), 6, "12 columns are meant, here are 3"),
-        (changed(4, 0, "7"), 4, "item 7 stands where item 2 belongs"),
-        (changed(4, 3, "way"), 4, "command 'way' is no number"),
-        (changed(4, 3, "16.5"), 4, "no whole number"),
-        (changed(4, 3, "70000"), 4, "command 70000"),
-        (changed(4, 5, ""), 4, "param 2"),
-        (changed(4, 8, "999"), 4, "latitude '999' is out of range"),
-        (changed(4, 9, "nan"), 4, "longitude"),
-        (changed(2, 3, "22"), 2, "home position"),
+        ("", 1, None, "QGC WPL 110"),
+        ("QGC WPL 120\n", 1, "version", "the version is '120'"),
+        ("QGC WPL\n", 1, "version", "the version is ''"),
+        ("{}", 1, None, "it begins with '{}'"),
+        ("QGC WPL 110\n", 2, None, "home row"),
+        (GOOD.replace("\n4\t", "\n\n4\t"), 6, "index", "12 columns"),
+        ("\n".join([*GOOD.splitlines()[:5], "4\t0\t3"]), 6, "command", "here are 3: command is missing"),
+        (changed(4, 11, "1\tjunk\tmore"), 4, None, "here are 14: 'junk more' is too much"),
+        (GOOD + "end of file\n", len(GOOD.splitlines()) + 1, "command", "here are 3"),
+        (changed(4, 0, "7"), 4, "index", "item 7 stands where item 2 belongs"),
+        (changed(4, 3, "way"), 4, "command", "command 'way' is no number"),
+        (changed(4, 3, "16.5"), 4, "command", "no whole number"),
+        (changed(4, 3, "70000"), 4, "command", "command 70000"),
+        (changed(4, 5, ""), 4, "param 2", "param 2 ''"),
+        (changed(4, 10, "500,5"), 4, "altitude", "write a point for the comma"),
+        (changed(4, 8, "999"), 4, "latitude", "latitude 999 is out of range"),
+        (changed(4, 9, "181"), 4, "longitude", "longitude 181 is out of range$"),
+        (changed(4, 9, "nan"), 4, "longitude", "longitude 'nan'"),
+        (changed(4, 8, "inf"), 4, "latitude", "latitude 'inf'"),
+        (changed(2, 3, "22"), 2, "command", "home position"),
+        (swapped(), 2, "latitude", "latitude -117.75 is out of range: .* seem to be swapped"),
     ],
 )
-def test_errors_name_the_line(text: str, line: int, says: str) -> None:
-    """Each fault is told with its line and what is wrong there."""
+def test_errors_name_the_line_and_the_column(text: str, line: int, column: str | None, says: str) -> None:
+    """Each fault is told with its line, its column and what is wrong there."""
     with pytest.raises(FormatError, match=says) as caught:
         read_waypoints(text)
-    assert caught.value.line == line
+    assert (caught.value.line, caught.value.column) == (line, column)
     assert str(caught.value).startswith(f"line {line}: ")
+
+
+def test_a_file_of_mission_planner_is_read() -> None:
+    """Its home row has frame 0, its lines end in CR LF, its numbers have a fixed count of digits."""
+    rows = [
+        "QGC WPL 110",
+        "0\t1\t0\t16\t0\t0\t0\t0\t-35.3632622\t149.1652374\t583.990000\t1",
+        "1\t0\t3\t22\t15.00000000\t0.00000000\t0.00000000\t0.00000000\t0.00000000\t0.00000000\t50.000000\t1",
+        "2\t0\t3\t16\t0.00000000\t0.00000000\t0.00000000\t0.00000000\t-35.36300000\t149.16600000\t100.000000\t1",
+        "3\t0\t3\t183\t9.00000000\t1900.00000000\t0.00000000\t0.00000000\t0.00000000\t0.00000000\t0.000000\t1",
+        "4\t0\t0\t177\t2.00000000\t3.00000000\t0.00000000\t0.00000000\t0.00000000\t0.00000000\t0.000000\t1",
+    ]
+    mission = read_waypoints("\r\n".join(rows) + "\r\n")
+    assert mission.home == (149.1652374, -35.3632622)
+    assert mission.home_altitude_m == 583.99
+    assert [int(item.command) for item in mission.mission] == [16, 22, 16, 183, 177]
+    assert mission.mission[4].param1 == 2.0
+    assert read_waypoints("\r\n".join(rows), "px4").mission[3].param1 == 1.0
 
 
 @given(st.text(max_size=200))
@@ -114,6 +148,24 @@ def test_any_text_is_read_or_refused(text: str) -> None:
     """Rubbish raises FormatError and nothing else."""
     with pytest.raises(FormatError):
         read_waypoints("QGC WPL 110\n" + text)
+
+
+@given(st.integers(0, 40), st.integers(0, 13), st.text(max_size=12) | st.floats().map(str))
+def test_any_field_may_be_anything(line: int, column: int, value: str) -> None:
+    """A field of a good file replaced by rubbish gives a mission or FormatError."""
+    lines = GOOD.splitlines()
+    line %= len(lines)
+    fields = lines[line].split("\t")
+    fields[column % len(fields)] = value
+    lines[line] = "\t".join(fields)
+    try:
+        mission = read_waypoints("\n".join(lines))
+    except FormatError as error:
+        found = error
+    else:
+        assert len(mission.mission) >= 1
+        return
+    assert found.line is not None
 
 
 def test_open_yaws_stay_open() -> None:
