@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-from shapely.geometry import MultiPolygon, Polygon
+from shapely.geometry import LineString, MultiPolygon, Polygon
 
 from planner.environment.terrain import Ground
 from planner.errors import Finding
@@ -26,7 +26,8 @@ class Region:
     """A region of interest, as an area on the ground.
 
     A corridor (LineString with width) and a target (Point with radius) arrive here as the area they mean.
-    ``approach_rad`` holds the allowed flight directions, None for any.
+    ``approach_rad`` holds the allowed flight directions, None for any; ``revisits`` how often it is to be
+    seen, on separate occasions; ``axis`` the line a corridor follows.
     """
 
     name: str
@@ -36,6 +37,8 @@ class Region:
     sensor: str | None = None
     min_resolution_m: float | None = None
     approach_rad: tuple[float, ...] | None = None
+    revisits: int = 1
+    axis: LineString | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,7 +12,7 @@ from collections import defaultdict
 from dataclasses import dataclass, replace
 
 import shapely
-from shapely.geometry import MultiPolygon, Polygon
+from shapely.geometry import LineString, MultiPolygon, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from planner.scenario import Region
@@ -50,6 +50,12 @@ class MergedRegion:
         Allowed flight directions, None for any.
     required
         Whether a plan without it is a failure.
+    revisits
+        How many visits are asked for.
+    visit
+        Which of how many visits this is; None for the only one.
+    axis
+        The line a corridor follows; None for other shapes and for merged ones.
     """
 
     names: tuple[str, ...]
@@ -59,6 +65,9 @@ class MergedRegion:
     sensor: str | None = None
     approach_rad: tuple[float, ...] | None = None
     required: bool = True
+    revisits: int = 1
+    visit: tuple[int, int] | None = None
+    axis: LineString | None = None
 
     @property
     def label(self) -> str:
@@ -92,7 +101,16 @@ def split_region(region: Region) -> tuple[MergedRegion, ...]:
     """The connected parts of one region, unmerged; each must be seen, each keeps the region's name."""
     return tuple(
         MergedRegion(
-            (region.name,), part, (part,), (region.name,), region.sensor, region.approach_rad, region.required
+            (region.name,),
+            part,
+            (part,),
+            (region.name,),
+            region.sensor,
+            region.approach_rad,
+            region.required,
+            region.revisits,
+            None,
+            region.axis,
         )
         for part in polygons_of(region.area)
     )
@@ -105,8 +123,8 @@ def merge_regions(
 
     Dilation and erosion by a disk are shapely's buffers by +r and −r. Parts further apart than the filter
     bridges stay apart, also parts of one MultiPolygon: each becomes a region of its own under the same name.
-    Regions merge only where they ask for the same sensor, the same set of approach directions, and are both
-    required or both not: otherwise one would lose what it asked for.
+    Regions merge only where they ask for the same sensor, approach directions and number of visits, and are
+    both required or both not: otherwise one would lose what it asked for.
 
     Parameters
     ----------
@@ -127,7 +145,7 @@ def merge_regions(
         limits = None
         if region.approach_rad is not None:
             limits = frozenset(round(math.degrees(angle) % 360.0, 6) % 360.0 for angle in region.approach_rad)
-        key = (region.sensor or default_sensor, limits, region.required)
+        key = (region.sensor or default_sensor, limits, region.required, region.revisits)
         groups[key].extend((index, part) for part in split_region(region))
     merged = [found for group in groups.values() for found in _merge_group(group, radius_m)]
     merged.sort(key=lambda item: item[0])
@@ -148,7 +166,14 @@ def _merge_group(parts: list[tuple[int, MergedRegion]], radius_m: float) -> list
         owners = tuple(part.names[0] for _, part in group)
         names = tuple(dict.fromkeys(owners))
         originals = tuple(part.area for _, part in group)
-        whole = replace(first, names=names, area=components[component], originals=originals, owners=owners)
+        whole = replace(
+            first,
+            names=names,
+            area=components[component],
+            originals=originals,
+            owners=owners,
+            axis=first.axis if len(group) == 1 else None,
+        )
         merged.append((first_index, whole))
     return merged
 

@@ -93,7 +93,7 @@ class Neighbourhood:
         """The pass at the angle with this index and η."""
         line = self.lines(np.array([eta]), opposite=opposite)[index, 0]
         angle_rad = float(self.angles_rad[index]) + (math.pi if opposite else 0.0)
-        return _collect(self.region, self.sensor, self.height_m, self.look, line, angle_rad, eta)
+        return collect_along(self.region, self.sensor, self.height_m, self.look, line, angle_rad, eta)
 
 
 def segment(
@@ -145,7 +145,7 @@ def _turned(spans: Spans) -> Spans:
     return Spans(-spans.x_max_m, -spans.x_min_m, -spans.y_max_m, -spans.y_min_m)
 
 
-def _collect(
+def collect_along(
     region: MergedRegion,
     sensor: SarSensor,
     height_m: float,
@@ -154,6 +154,7 @@ def _collect(
     angle_rad: float,
     eta: float,
 ) -> CollectPass:
+    """The pass along a line, shape (2, 2), flown at an angle; its footprint is what it sees in full."""
     ahead = np.array([math.cos(angle_rad), math.sin(angle_rad)])
     side = np.array([-ahead[1], ahead[0]]) * (1.0 if look == "left" else -1.0)
     half_m = sensor.aperture_m(height_m) / 2.0

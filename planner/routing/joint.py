@@ -21,8 +21,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planner.coverage.merge import MergedRegion, merge_regions
-from planner.coverage.neighbourhood import check_sensor, neighbourhoods
-from planner.coverage.segments import Neighbourhood
+from planner.coverage.neighbourhood import check_sensor
+from planner.coverage.sweeps import Side
 from planner.environment.shapes import DiscShape, hard_shapes, soft_shapes
 from planner.errors import Finding, InfeasibleError
 from planner.progress import Progress, Stop, never, raise_if, silent
@@ -30,6 +30,7 @@ from planner.route import CollectPass, Route
 from planner.routing import joint_kernels as kernels
 from planner.routing import tour
 from planner.routing.options import Options, Surroundings, collect_passes, make_options
+from planner.routing.targets import refusal, targets
 from planner.scenario import Scenario, Terminal
 from planner.vehicle.aircraft import Aircraft
 from planner.vehicle.wind import still_air_costs
@@ -113,7 +114,7 @@ def joint_route(
         if options is None:
             options = make_options(of_region, of_region[0].angles_rad, np.linspace(0.0, 1.0, 9), around)
         if options is None:
-            raise _infeasible(region)
+            raise refusal(region)
         coarse.append(options)
     candidates = _orders(scenario, around, regions, coarse)
     refined = []
@@ -131,9 +132,16 @@ def joint_route(
 
 def _visible(
     scenario: Scenario, around: Surroundings
-) -> tuple[list[MergedRegion], list[tuple[Neighbourhood, ...]], tuple[Finding, ...]]:
-    """Regions with their neighbourhoods; those not required and not to be seen are named and left out."""
-    regions, sides, dropped = [], [], []
+) -> tuple[list[MergedRegion], list[tuple[Side, ...]], tuple[Finding, ...]]:
+    """Parts of regions with the families of passes that see them.
+
+    Regions that are not required and not to be seen are named and left out. The paper's coverage, asked for
+    by name, has two passes at most and divides nothing.
+    """
+    regions: list[MergedRegion] = []
+    sides: list[tuple[Side, ...]] = []
+    dropped: list[Finding] = []
+    wide = scenario.method.coverage != "li2018"
     by_name = {region.name: region for region in scenario.regions}
     for region in merge_regions(scenario.regions, default_sensor=scenario.sensors[0].name):
         first = by_name[region.names[0]]
@@ -141,9 +149,7 @@ def _visible(
         try:
             for name in region.names:
                 check_sensor(by_name[name], sensor, scenario.height_m)
-            found = neighbourhoods(region, sensor, scenario.height_m)
-            if _some(found, around) is None:
-                raise _infeasible(region)
+            found = targets(region, sensor, scenario.height_m, around, wide=wide)
         except InfeasibleError as error:
             if region.required:
                 raise
@@ -153,31 +159,13 @@ def _visible(
                 )
             )
             continue
-        regions.append(region)
-        sides.append(found)
+        regions.extend(target.region for target in found)
+        sides.extend(target.sides for target in found)
     return regions, sides, tuple(dropped)
-
-
-def _some(sides: tuple[Neighbourhood, ...], around: Surroundings) -> Options | None:
-    for count in (3, 9):
-        options = make_options(sides, sides[0].angles_rad, np.linspace(0.0, 1.0, count), around)
-        if options is not None:
-            return options
-    return None
 
 
 def _allowed(region: MergedRegion, angles_rad: Floats) -> Floats:
     return angles_rad if region.approach_rad is None else np.asarray(region.approach_rad, dtype=np.float64)
-
-
-def _infeasible(region: MergedRegion) -> InfeasibleError:
-    return InfeasibleError(
-        "area",
-        region.label,
-        "every pass that sees it leaves the operating area or enters a hard zone",
-        "enlarge the area round it, allow the other look side, or move the zone",
-        region.centroid,
-    )
 
 
 def _orders(
@@ -220,7 +208,7 @@ def _refine(
     scenario: Scenario,
     around: Surroundings,
     regions: list[MergedRegion],
-    sides: list[tuple[Neighbourhood, ...]],
+    sides: list[tuple[Side, ...]],
     choice: _Choice,
 ) -> _Choice:
     """The same order with finer angles and offsets round the chosen ones."""
@@ -257,15 +245,13 @@ def _near(etas: list[float], step: float) -> Floats:
     return np.unique(np.concatenate(around))
 
 
-def _single(
-    choice: _Choice, position: int, sides: tuple[Neighbourhood, ...], around: Surroundings
-) -> Options:
+def _single(choice: _Choice, position: int, sides: tuple[Side, ...], around: Surroundings) -> Options:
     """The chosen option of one region by itself; ``side`` counts within ``sides``."""
     etas = [eta for eta in (choice.eta_first[position], choice.eta_second[position]) if not math.isnan(eta)]
     chosen = (sides[choice.side[position]],)
     options = make_options(chosen, np.array([choice.angle_rad[position]]), np.unique(np.array(etas)), around)
     if options is None:
-        raise _infeasible(chosen[0].region)
+        raise refusal(chosen[0].region)
     same = (options.eta_first == choice.eta_first[position]) & (
         np.isnan(options.eta_second) | (options.eta_second == choice.eta_second[position])
     )

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
 from numpy.typing import NDArray
 from shapely.geometry import Polygon
 
+from planner.coverage.alternatives import of_visit
 from planner.coverage.classify import fits, hull_points, spans_at
 from planner.coverage.neighbourhood import complementary, inside
 from planner.coverage.segments import Neighbourhood
+from planner.coverage.sweeps import VARIANTS, Judge, Side, Sweep, Swept, best_sweeps, sweep_passes
 from planner.dubins.kernels import dubins_lengths
 from planner.environment.kernels import length_in_discs
 from planner.route import CollectPass
@@ -55,6 +58,11 @@ class Surroundings:
     airspeed_m_s: float = 1.0
     wind: Wind = STILL_AIR
 
+    @property
+    def discs(self) -> Floats:
+        """All discs, hard and soft."""
+        return np.concatenate([self.hard, self.soft])
+
 
 @dataclass(frozen=True, slots=True)
 class Options:
@@ -63,13 +71,17 @@ class Options:
     Parameters
     ----------
     side
-        Index into the region's neighbourhoods (one a look side), int64 (K,).
+        Index into the region's sides, int64 (K,): neighbourhoods, one a look side, and sweeps, one a variant.
     angles_rad, eta_first, eta_second
-        Of each option; η of the second pass is NaN where there is only one. float64 (K,).
+        Of each option; η of the second pass is NaN where there is only one, and for sweeps, which share one
+        η among their lanes. Side, angle and these tell any two options of a region apart. float64 (K,).
     entries, exits
         Poses before the first (settling included) and after the last pass, (K, 3).
     inner_m
-        Cost from entry to exit: passes, the turn between them, metres inside threats.
+        Cost from entry to exit: passes, the turns between them, metres inside threats.
+    lanes
+        The order of a sweep's lanes (see ``Swept.order``), −1 for other options and after the last lane;
+        int64 (K, L).
     """
 
     side: NDArray[np.int64]
@@ -79,22 +91,42 @@ class Options:
     entries: Floats
     exits: Floats
     inner_m: Floats
+    lanes: NDArray[np.int64]
 
 
 def make_options(
-    sides: tuple[Neighbourhood, ...], angles_rad: Floats, etas: Floats, around: Surroundings
+    sides: Sequence[Side], angles_rad: Floats, etas: Floats, around: Surroundings
 ) -> Options | None:
     """Options at the given angles and offsets that keep the hard constraints; None where there are none."""
-    parts = [_of_side(index, side, angles_rad, etas, around) for index, side in enumerate(sides)]
-    found = [part for part in parts if part is not None]
+    found = []
+    angles_rad, etas = of_visit(sides[0].region, angles_rad, etas)
+    if len(angles_rad) == 0 or len(etas) == 0:
+        return None
+    for index, side in enumerate(sides):
+        if isinstance(side, Neighbourhood):
+            part = _of_side(index, side, angles_rad, etas, around)
+            if part is not None:
+                found.append(part)
+    found += _of_sweeps(sides, angles_rad, etas, around)
     if not found:
         return None
+    width = max(part.lanes.shape[1] for part in found)
+    found = [
+        replace(
+            part, lanes=np.pad(part.lanes, ((0, 0), (0, width - part.lanes.shape[1])), constant_values=-1)
+        )
+        for part in found
+    ]
     return Options(*(np.concatenate([getattr(part, name) for part in found]) for name in Options.__slots__))
 
 
-def collect_passes(sides: tuple[Neighbourhood, ...], options: Options, index: int) -> tuple[CollectPass, ...]:
+def collect_passes(sides: Sequence[Side], options: Options, index: int) -> tuple[CollectPass, ...]:
     """The passes of one option."""
-    side = _at(sides[int(options.side[index])], options.angles_rad[index : index + 1])
+    chosen = sides[int(options.side[index])]
+    if isinstance(chosen, Sweep):
+        angle_rad, eta = float(options.angles_rad[index]), float(options.eta_first[index])
+        return sweep_passes(chosen, angle_rad, eta, options.lanes[index])
+    side = _at(chosen, options.angles_rad[index : index + 1])
     first = side.collect(0, float(options.eta_first[index]))
     if side.turns == 0:
         return (first,)
@@ -156,7 +188,69 @@ def _finish(
 ) -> Options:
     side = np.full(len(m), index, dtype=np.int64)
     cost_m = inner_m + _cramped_m(entries, exits, around)
-    return Options(side, here.angles_rad[m], eta_first, eta_second, entries, exits, cost_m)
+    none = np.empty((len(m), 0), dtype=np.int64)
+    return Options(side, here.angles_rad[m], eta_first, eta_second, entries, exits, cost_m, none)
+
+
+def _of_sweeps(
+    sides: Sequence[Side], angles_rad: Floats, etas: Floats, around: Surroundings
+) -> list[Options]:
+    """Options of all sweeps among the sides; those that differ in their variant alone are solved together."""
+    families: dict[int, list[tuple[int, Sweep]]] = {}
+    for index, side in enumerate(sides):
+        if isinstance(side, Sweep):
+            families.setdefault(side.extra, []).append((index, side))
+    found = []
+    for family in families.values():
+        best = best_sweeps(family[0][1], angles_rad, etas, _lane_judge(around), around.radius_m, around.discs)
+        number = np.full(VARIANTS, -1, dtype=np.int64)
+        for index, side in family:
+            number[side.variant] = index
+        cost_m = best.inner_m + best.cramped_m.max(axis=1, initial=0.0)
+        kept = _worth(best, np.where(number[best.variant] >= 0, cost_m, np.inf), around.radius_m)
+        if not kept.any():
+            continue
+        found.append(
+            Options(
+                number[best.variant[kept]],
+                angles_rad[best.angle_index[kept]],
+                etas[best.eta_index[kept]],
+                np.full(int(kept.sum()), np.nan),
+                best.entries[kept],
+                best.exits[kept],
+                cost_m[kept],
+                best.order[kept],
+            )
+        )
+    return found
+
+
+def _worth(best: Swept, cost_m: Floats, radius_m: float) -> NDArray[np.bool_]:
+    """Which sweeps can be part of the best tour: flying to the cheapest one's ends instead is not shorter.
+
+    From one pose to another it is at most the distance and two full turns.
+    """
+    if len(cost_m) == 0:
+        return np.zeros(0, dtype=np.bool_)
+    least = int(np.argmin(cost_m))
+    away_m = sum(
+        np.hypot(*(poses[:, :2] - poses[least, :2]).T) + 4.0 * math.pi * radius_m
+        for poses in (best.entries, best.exits)
+    )
+    return np.asarray(np.isfinite(cost_m) & (cost_m <= cost_m[least] + away_m), dtype=np.bool_)
+
+
+def _lane_judge(around: Surroundings) -> Judge:
+    """What lanes cost among these surroundings."""
+
+    def judge(lines: Floats, headings_rad: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+        good, cost_m = _judge(lines[:, None], around)
+        cost_m = np.where(good, cost_m, np.inf)[:, 0]
+        entries, exits = _poses(lines, headings_rad, around.settle_m)
+        cramped = ~np.stack([_roomy(entries, around), _roomy(exits, around)], axis=1)
+        return cost_m, entries, exits, NO_ROOM_M * cramped.astype(np.float64)
+
+    return judge
 
 
 def _judge(lines: Floats, around: Surroundings) -> tuple[NDArray[np.bool_], Floats]:

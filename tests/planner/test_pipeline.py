@@ -160,15 +160,15 @@ def test_stop_is_heard_and_progress_rises() -> None:
 
 
 def test_a_region_that_need_not_be_seen_is_dropped_and_named() -> None:
-    """A region too wide for two swaths is left out when not required: uncovered, with the reason."""
+    """With two passes at most a wide region is left out when not required: uncovered, with the reason."""
     big = feature("X", "roi", "Polygon", square(0.01, -0.04, 0.03), required=False)
-    plan = make_plan(read_scenario(small(big)))
+    plan = make_plan(read_scenario(small(big, method={"coverage": "li2018"})))
     assert [u.roi for u in plan.uncovered] == ["X"]
     assert "swath" in plan.uncovered[0].reason
     assert plan.hard_violations == ()
     big["properties"]["required"] = True
     with pytest.raises(InfeasibleError, match="X"):
-        make_plan(read_scenario(small(big)))
+        make_plan(read_scenario(small(big, method={"coverage": "li2018"})))
 
 
 def test_seconds_come_from_the_callers_clock() -> None:

@@ -1,0 +1,126 @@
+"""From regions to the stops of a tour: parts and visits, each with the families of passes that see it."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planner.coverage.alternatives import Target, families, parts_of, visits
+from planner.coverage.merge import MergedRegion
+from planner.coverage.sweeps import Side
+from planner.errors import InfeasibleError
+from planner.routing import joint_kernels as kernels
+from planner.routing.options import Options, Surroundings, make_options
+from planner.sensors.sar import SarSensor
+
+Floats = NDArray[np.float64]
+
+#: Divisions of a region are compared at these headings and offsets,
+STEP_RAD = math.radians(15.0)
+ETAS = np.array([0.0, 0.5, 1.0])
+#: by this many of each part's cheapest options,
+OPTIONS_COMPARED = 48
+#: in every order up to this many parts.
+EXACT_UP_TO = 4
+
+
+def targets(
+    region: MergedRegion, sensor: SarSensor, height_m: float, around: Surroundings, *, wide: bool = True
+) -> tuple[Target, ...]:
+    """The stops that see one region; several where it is divided or to be visited again.
+
+    Parameters
+    ----------
+    wide
+        Whether more than two swaths, divisions and sweeps are allowed; without, the paper's neighbourhoods.
+
+    Raises
+    ------
+    InfeasibleError
+        Where no pass may be flown that sees it.
+    """
+    known: dict[bytes, Options | None] = {}
+
+    def options_of(part: MergedRegion) -> Options | None:
+        key = part.area.wkb
+        if key not in known:
+            known[key] = _some(part, sensor, height_m, around, wide=wide)[1]
+        return known[key]
+
+    def estimate(parts: tuple[MergedRegion, ...]) -> float:
+        options = [options_of(part) for part in parts]
+        found = [_cheapest(o) for o in options if o is not None]
+        return _tour_m(found, around) if len(found) == len(options) else math.inf
+
+    whole = options_of(region)
+    parts: tuple[MergedRegion, ...] = (region,)
+    if wide and (whole is None or bool((_passes(whole) > 1).all()) or region.axis is not None):
+        parts = parts_of(region, estimate)
+    found = []
+    for part in parts:
+        for visit in visits(part):
+            sides, options = _some(visit, sensor, height_m, around, wide=wide)
+            if options is None and visit.visit is not None:
+                sides, options = _some(part, sensor, height_m, around, wide=wide)
+                visit = part
+            if options is None:
+                raise refusal(region)
+            found.append(Target(visit, sides))
+    return tuple(found)
+
+
+def refusal(region: MergedRegion) -> InfeasibleError:
+    """What to say where every pass is forbidden."""
+    return InfeasibleError(
+        "area",
+        region.label,
+        "every pass that sees it leaves the operating area or enters a hard zone",
+        "enlarge the area round it, allow the other look side, or move the zone",
+        region.centroid,
+    )
+
+
+def _some(
+    region: MergedRegion, sensor: SarSensor, height_m: float, around: Surroundings, *, wide: bool
+) -> tuple[tuple[Side, ...], Options | None]:
+    """The first families with an option, and these options."""
+    sides: tuple[Side, ...] = ()
+    for sides in families(region, sensor, height_m, wide=wide):
+        coarse = np.arange(-math.pi, math.pi - 1e-9, STEP_RAD, dtype=np.float64)
+        if region.approach_rad is not None:
+            coarse = np.asarray(region.approach_rad, dtype=np.float64)
+        for angles_rad, count in ((coarse, 3), (sides[0].angles_rad, 3), (sides[0].angles_rad, 9)):
+            options = make_options(sides, angles_rad, np.linspace(0.0, 1.0, count), around)
+            if options is not None:
+                return sides, options
+    return sides, None
+
+
+def _passes(options: Options) -> NDArray[np.int64]:
+    """How many passes each option takes."""
+    of_sweeps = (options.lanes >= 0).sum(axis=1)
+    of_others = np.where(np.isnan(options.eta_second), 1, 2)
+    return np.asarray(np.where(of_sweeps > 0, of_sweeps, of_others), dtype=np.int64)
+
+
+def _cheapest(options: Options) -> tuple[Floats, Floats, Floats]:
+    kept = np.argsort(options.inner_m, kind="stable")[:OPTIONS_COMPARED]
+    return options.entries[kept], options.exits[kept], options.inner_m[kept]
+
+
+def _tour_m(found: list[tuple[Floats, Floats, Floats]], around: Surroundings) -> float:
+    """Length of the cheapest open tour through one option of each part."""
+    entries, exits, inner_m = (np.concatenate(column) for column in zip(*found, strict=True))
+    offsets = np.concatenate([[0], np.cumsum([len(part[2]) for part in found])]).astype(np.int64)
+    if len(found) == 1:
+        return float(inner_m.min())
+    between = kernels.transit_costs(exits, entries, around.radius_m, around.discs) + inner_m[None, :]
+    nothing = np.zeros(len(inner_m))
+    if len(found) <= EXACT_UP_TO:
+        costs, _ = kernels.best_orders(inner_m, between, nothing, offsets)
+        return float(costs.min())
+    order = np.arange(len(found), dtype=np.int64)
+    cost_m, _ = kernels.best_options(inner_m, between, nothing, offsets, order)
+    return float(cost_m)
