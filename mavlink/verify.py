@@ -13,7 +13,7 @@ from typing import Final, Literal, Protocol
 
 from mavlink.compare import Difference
 from mavlink.errors import BusyError, NotConnectedError, TransferFailedError
-from mavlink.items import MissionItem, MissionResult, MissionType
+from mavlink.items import Command, MissionItem, MissionResult, MissionType
 from mavlink.transfer.machine import Progress
 from mavlink.transfer.outcome import Accepted, Outcome, Refused, Unknown
 
@@ -22,6 +22,11 @@ Compare = Callable[[tuple[MissionItem, ...], tuple[MissionItem, ...]], Sequence[
 # ArduPilot denies downloads until it has given up an upload whose items stopped coming: 8 s.
 _DENIED_TRIES: Final = 6
 _DENIED_PAUSE_S: Final = 2.0
+# ArduPilot looks ten times a second whether FENCE_TOTAL has become 0, and then wipes whatever fence it finds.
+# The total counts corners and circles and stays 0 below three: a short fence sent right behind the clearing
+# would be wiped, even after it was read back.
+_CLEARED_PAUSE_S: Final = 0.5
+_SHORT_FENCE: Final = 3
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,6 +105,8 @@ async def upload_and_verify(
             return await resolve(vehicle, Pending(tuple(items), mission_type, compare, cleared))
         if cleared.kind == "refused":
             return await _read_back(vehicle, Pending(tuple(items), mission_type, compare, cleared))
+        if 0 < sum(item.command != Command.NAV_FENCE_RETURN_POINT for item in items) < _SHORT_FENCE:
+            await asyncio.sleep(_CLEARED_PAUSE_S)
     outcome = await vehicle.upload(items, mission_type, progress)
     return await resolve(vehicle, Pending(tuple(items), mission_type, compare, outcome))
 

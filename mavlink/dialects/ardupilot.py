@@ -59,7 +59,7 @@ def _turns(value: float) -> float:
 
 def _radius_byte(value: float) -> float:
     if math.isnan(value):
-        return value  # refused, so nothing is read back; the comparison must still be possible
+        return value  # refused, but the comparison after a refusal must still be possible
     size = min(abs(value), 2550.0)
     return math.copysign(math.trunc(size) if size <= 255.0 else math.trunc(size / 10.0) * 10.0, value)
 
@@ -314,6 +314,8 @@ class ArduPilotDialect:
 
 
 def _centimetres(altitude_m: float) -> float:
+    if not math.isfinite(altitude_m):
+        return altitude_m  # refused, like every NaN
     # A hair is added first: 0.29 is a little less than 29 hundredths in binary.
     return math.copysign(math.trunc(abs(altitude_m) * 100.0 + 1e-3) / 100.0, altitude_m)
 
