@@ -13,18 +13,18 @@ from mavlink.messages import Message
 from mavlink.transfer.machine import Machine
 from tests.mavlink.transfer.vehicle import GROUND, StubVehicle
 
-_LATENCY_S = 0.02
 _LONGEST_DETOUR_S = 0.4
 
 
 @dataclass(frozen=True, slots=True)
 class Weather:
-    """Chances for each message."""
+    """Chances for each message, and the time one way."""
 
     loss: float = 0.0
     duplication: float = 0.0
     reordering: float = 0.0
     seed: int = 0
+    latency_s: float = 0.02
 
 
 class Air:
@@ -65,5 +65,7 @@ class Air:
             copies = 2 if self._random.random() < self._weather.duplication else 1
             for _ in range(copies):
                 detour = self._random.random() < self._weather.reordering
-                delay_s = _LATENCY_S + (self._random.random() * _LONGEST_DETOUR_S if detour else 0.0)
+                delay_s = self._weather.latency_s + (
+                    self._random.random() * _LONGEST_DETOUR_S if detour else 0.0
+                )
                 heapq.heappush(self._flying, (self.now_s + delay_s, next(self._order), to_vehicle, message))
