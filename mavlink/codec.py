@@ -17,6 +17,7 @@ from typing import Any, Final
 from pymavlink.dialects.v20 import ardupilotmega as dialect
 
 from mavlink.errors import CodecError
+from mavlink.extra_messages import EXTRA_MESSAGES, Definition
 from mavlink.messages import Message, Value
 
 _MAGIC_V1: Final = 0xFE
@@ -77,8 +78,31 @@ def _layout(message_id: int, definition: Any) -> _Layout:
     )
 
 
+def _extra_layout(definition: Definition) -> _Layout:
+    """Read a message that pymavlink lacks."""
+    fields = []
+    first = 0
+    for _, name, length in definition.fields:
+        fields.append(_Field(name, first, max(length, 1), 0))
+        first += max(length, 1)
+    crc = int(dialect.x25crc(definition.signature).crc)
+    names = tuple(field.name for field in fields)
+    return _Layout(
+        definition.message_id,
+        definition.name,
+        bytes([(crc & 0xFF) ^ (crc >> 8)]),
+        struct.Struct(definition.layout),
+        tuple(fields),
+        names,
+        frozenset(names),
+        all(field.length == 1 for field in fields),
+    )
+
+
 _BY_ID: Final[dict[int, _Layout]] = {
-    number: _layout(number, definition) for number, definition in dialect.mavlink_map.items()
+    # Once pymavlink has them too, its own count.
+    **{definition.message_id: _extra_layout(definition) for definition in EXTRA_MESSAGES},
+    **{number: _layout(number, definition) for number, definition in dialect.mavlink_map.items()},
 }
 _BY_NAME: Final[dict[str, _Layout]] = {layout.name: layout for layout in _BY_ID.values()}
 

@@ -15,6 +15,7 @@ from typing import Any, Final, Generic, TypeVar
 
 from mavlink.codec import Codec
 from mavlink.errors import BusyError, CodecError, LinkError, NotConnectedError, ReadOnlyError
+from mavlink.events import EVENT_MESSAGES, EventOrder
 from mavlink.link import DirectLink, Link, ReplayLink
 from mavlink.messages import Message
 from mavlink.modes import GROUND_STATION_TYPE, NO_AUTOPILOT
@@ -102,6 +103,7 @@ class Driver:
         self._commands: dict[int, deque[_Job[CommandOutcome]]] = {}
         self._watchers: set[asyncio.Event] = set()
         self._recorders: set[TrackRecorder] = set()
+        self.events = EventOrder()
 
     def start(self) -> None:
         """Begin to read and to send heartbeats; again is harmless."""
@@ -293,6 +295,8 @@ class Driver:
             return
         now_s = self._clock()
         self._heard_s = now_s
+        if message.name in EVENT_MESSAGES and not self._event_is_new(message):
+            return
         state = updated(self.state, message, now_s)
         if not self.state.connected:
             self._set_state(replace(state, connected=True))
@@ -311,6 +315,15 @@ class Driver:
         if self._lingering is not None:
             answers = self._lingering.receive(message, now_s)
             self._outgoing.extend([self._codec.pack(answer) for answer in answers])
+
+    def _event_is_new(self, message: Message) -> bool:
+        """Whether to read on; events that were lost on the way are asked for again."""
+        new = self.events.take(message)
+        # The vehicle tells its count now and then: often enough to ask, not so often as to flood the link.
+        if message.name == "CURRENT_EVENT_SEQUENCE" and not self.read_only:
+            requests = self.events.requests(message.system_id, message.component_id)
+            self._outgoing.extend([self._codec.pack(request) for request in requests])
+        return new
 
     def _from_vehicle(self, message: Message) -> bool:
         """True for the autopilot's messages; its heartbeat makes the acquaintance, anew after a loss."""

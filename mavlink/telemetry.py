@@ -12,6 +12,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Final
 
+from mavlink.events import read_event
 from mavlink.messages import Message
 from mavlink.modes import Autopilot, VehicleType, autopilot_name, mode_name, vehicle_type_name
 
@@ -23,12 +24,16 @@ _GPS_FIXES: Final = {0: "none", 1: "none", 2: "2d", 3: "3d", 4: "dgps", 5: "rtk_
 
 @dataclass(frozen=True, slots=True)
 class StatusText:
-    """What the vehicle said (STATUSTEXT); severity 0 emergency to 7 debug (MAV_SEVERITY)."""
+    """What the vehicle said (STATUSTEXT, EVENT); severity 0 emergency to 7 debug (MAV_SEVERITY).
+
+    ``against_mission``: it says with this that it will not fly the mission it holds.
+    """
 
     heard_s: float
     severity: int
     text: str
     id: int = 0
+    against_mission: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -229,8 +234,18 @@ def _status_text(state: VehicleState, message: Message) -> VehicleState:
     texts = state.texts
     if identity and message.integer("chunk_seq") and texts and texts[-1].id == identity:
         return replace(state, texts=(*texts[:-1], replace(texts[-1], text=texts[-1].text + text)))
-    entry = StatusText(heard_s, message.integer("severity"), text, identity)
+    # PX4 ends texts that an event says again with a tab.
+    entry = StatusText(heard_s, message.integer("severity"), text.removesuffix("\t"), identity)
     return replace(state, texts=(*texts[1 - _KEPT_TEXTS :], entry))
+
+
+def _event(state: VehicleState, message: Message) -> VehicleState:
+    event = read_event(message)
+    if event is None:
+        return state
+    heard_s = state.heard_s or 0.0
+    entry = StatusText(heard_s, event.severity, event.text, against_mission=event.against_mission)
+    return replace(state, texts=(*state.texts[1 - _KEPT_TEXTS :], entry))
 
 
 def finite(message: Message, name: str) -> float | None:
@@ -259,4 +274,5 @@ _UPDATES: Final[dict[str, Callable[[VehicleState, Message], VehicleState]]] = {
     "NAMED_VALUE_INT": _named_int,
     "RELAY_STATUS": _relay_status,
     "STATUSTEXT": _status_text,
+    "EVENT": _event,
 }
