@@ -8,12 +8,12 @@ shapely, the footprint drawn anew from the sensor's angles.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from shapely import difference, line_merge, union_all
+from shapely import difference, intersection, line_merge, union_all
 from shapely.geometry import LineString, MultiPolygon, Point, Polygon
 from shapely.geometry.base import BaseGeometry
 from shapely.ops import substring
@@ -21,6 +21,7 @@ from shapely.ops import substring
 from planner.environment.shapes import hard_shapes, soft_shapes
 from planner.plan import Collect, FlownPath, LonLat, Plan, Violation
 from planner.scenario import Region, Scenario, Wind
+from planner.sensors.view import seen_on_terrain
 from planner.vehicle.aircraft import Aircraft
 
 #: Arcs have vertices at most this far apart, so a longer edge is straight.
@@ -49,7 +50,7 @@ class Verdict:
     min_turn_radius_m
         Tightest turn found, inf without any.
     coverage
-        Fraction of each region inside the footprints.
+        Fraction of each region inside the footprints, as often as it is to be visited.
     unseen
         What is left of each region that is not covered whole, in the local frame.
     """
@@ -299,14 +300,18 @@ def _collect_violations(
             )
 
 
-def footprint(scenario: Scenario, collect: Collect) -> Polygon:
-    """Ground seen at full resolution during a collect, in the local frame.
+def footprint(scenario: Scenario, collect: Collect) -> Polygon | MultiPolygon:
+    """Ground seen at full resolution during a collect, in the local frame; on terrain without what is hidden.
 
     Between half an aperture after sensor on and half an aperture before sensor off every point between the
     near and the far edge of the beam is lit over a whole aperture.
     """
     sensor = next(s for s in scenario.sensors if s.name == collect.sensor)
-    (east0, north0), (east1, north1) = scenario.frame.to_local([place[:2] for place in collect.line])
+    line_m = scenario.frame.to_local([place[:2] for place in collect.line])
+    if scenario.terrain is not None:
+        level_m = collect.line[0][2]
+        return seen_on_terrain(sensor, line_m, collect.look, level_m, scenario.terrain).area
+    (east0, north0), (east1, north1) = line_m
     length_m = math.hypot(east1 - east0, north1 - north0)
     along = np.array([east1 - east0, north1 - north0]) / length_m
     side = np.array([along[1], -along[0]]) * (1.0 if collect.look == "right" else -1.0)
@@ -330,7 +335,7 @@ def _coverage(
     violations = []
     for region in scenario.regions:
         prints = [footprint(scenario, c) for c in plan.collects if _counts(scenario, region, c)]
-        seen = union_all(prints, grid_size=GRID_M)
+        seen = seen_times(prints, region.revisits)
         # A millimetre of slack: coordinates are rounded to a hundredth of one.
         rest = difference(region.area, seen.buffer(1e-3), grid_size=GRID_M)
         fraction = 1.0 - rest.area / region.area.area
@@ -344,7 +349,8 @@ def _coverage(
             Violation(
                 "coverage",
                 region.name,
-                f"{100.0 * fraction:.3f} % of {region.name} is seen",
+                f"{100.0 * fraction:.3f} % of {region.name} is seen"
+                + (f" {region.revisits} times" if region.revisits > 1 else ""),
                 float(rest.area),
                 "m2",
                 _middle(scenario, rest),
@@ -352,6 +358,20 @@ def _coverage(
             )
         )
     return coverage, unseen, violations
+
+
+def seen_times(prints: Sequence[BaseGeometry], times: int) -> BaseGeometry:
+    """The ground that at least so many of the footprints hold."""
+    if times == 1:
+        return union_all(prints, grid_size=GRID_M)
+    # deep[k] is what the footprints so far hold k + 1 times.
+    deep: list[BaseGeometry] = [Polygon() for _ in range(times)]
+    for ground in prints:
+        for k in range(times - 1, 0, -1):
+            again = intersection(deep[k - 1], ground, grid_size=GRID_M)
+            deep[k] = union_all([deep[k], again], grid_size=GRID_M)
+        deep[0] = union_all([deep[0], ground], grid_size=GRID_M)
+    return deep[-1]
 
 
 def _counts(scenario: Scenario, region: Region, collect: Collect) -> bool:

@@ -92,7 +92,11 @@ class Collect:
 
 @dataclass(frozen=True, slots=True)
 class Transit:
-    """The line between two collects, or from the start, or to the end."""
+    """The line between two collects, or from the start, or to the end.
+
+    ``clearance_m`` is proven: the line comes no nearer to any hard zone, obstacles counted with their
+    clearance; None where there is none.
+    """
 
     vehicle: str
     seq: int
@@ -103,11 +107,15 @@ class Transit:
     risk_missile: float
     risk_radar: float
     method: str
+    clearance_m: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class Footprint:
-    """Ground seen at full quality during one collect."""
+    """Ground seen at full quality during one collect; on terrain a collect may have several.
+
+    ``shadow_m2`` and ``layover_m2`` are the ground in the beam that terrain hides, of the whole collect.
+    """
 
     vehicle: str
     seq: int
@@ -116,6 +124,9 @@ class Footprint:
     ring: Ring
     resolution_m: float | None = None
     niirs: float | None = None
+    holes: tuple[Ring, ...] = ()
+    shadow_m2: float | None = None
+    layover_m2: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -165,12 +165,22 @@ def _transit(p: Mapping[str, Any], line: Any) -> Transit:
         p["risk_missile"],
         p["risk_radar"],
         p["method"],
+        p.get("clearance_m"),
     )
 
 
 def _footprint(p: Mapping[str, Any], rings: Any) -> Footprint:
     return Footprint(
-        p["vehicle"], p["seq"], p["roi"], p["sensor"], _ring(rings[0]), p["resolution_m"], p["niirs"]
+        p["vehicle"],
+        p["seq"],
+        p["roi"],
+        p["sensor"],
+        _ring(rings[0]),
+        p["resolution_m"],
+        p["niirs"],
+        tuple(_ring(r) for r in rings[1:]),
+        p.get("shadow_m2"),
+        p.get("layover_m2"),
     )
 
 

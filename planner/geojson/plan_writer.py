@@ -6,7 +6,17 @@ from collections.abc import Iterable
 from dataclasses import asdict
 from typing import Any
 
-from planner.plan import Collect, FlownPath, LonLat, PathSegment, Plan, Ring, ZoneCircle, ZonePolygon
+from planner.plan import (
+    Collect,
+    FlownPath,
+    Footprint,
+    LonLat,
+    PathSegment,
+    Plan,
+    Ring,
+    ZoneCircle,
+    ZonePolygon,
+)
 
 #: A hundredth of a nanodegree is a micrometre: so fine that no turn on the line gets tighter by rounding.
 DECIMALS_DEG = 11
@@ -29,6 +39,7 @@ def write_plan(plan: Plan) -> dict[str, Any]:
                 risk_missile=t.risk_missile,
                 risk_radar=t.risk_radar,
                 method=t.method,
+                clearance_m=None if t.clearance_m is None else _m(t.clearance_m),
             )
             for t in plan.transits
         ),
@@ -36,7 +47,7 @@ def write_plan(plan: Plan) -> dict[str, Any]:
         *(
             _feature(
                 "Polygon",
-                [_ring(f.ring)],
+                [_ring(r) for r in (f.ring, *f.holes)],
                 role="footprint",
                 vehicle=f.vehicle,
                 seq=f.seq,
@@ -44,6 +55,7 @@ def write_plan(plan: Plan) -> dict[str, Any]:
                 sensor=f.sensor,
                 resolution_m=f.resolution_m,
                 niirs=f.niirs,
+                **_hidden(f),
             )
             for f in plan.footprints
         ),
@@ -86,6 +98,12 @@ def write_plan(plan: Plan) -> dict[str, Any]:
         "planner_version": plan.planner_version,
         "seed": plan.seed,
     }
+
+
+def _hidden(f: Footprint) -> dict[str, float]:
+    """What terrain hides; nothing on flat ground."""
+    given = {"shadow_m2": f.shadow_m2, "layover_m2": f.layover_m2}
+    return {name: round(value, 1) for name, value in given.items() if value is not None}
 
 
 def _collect(c: Collect) -> dict[str, Any]:

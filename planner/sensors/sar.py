@@ -1,36 +1,48 @@
-"""Side-looking synthetic aperture radar in stripmap mode without squint.
+"""Side-looking synthetic aperture radar: stripmap, spotlight and ScanSAR, with or without squint.
 
 Geometry of Li, Chen, Wang, Li (2018), "Sensor-Oriented Path Planning for Multiregion Surveillance with a
 Single Lightweight UAV SAR", section 3. With h = 500 m, θ_L = 45°, θ_B = 30° and θ_A = 10° the formulas give
 l_s = 123.41 m, l_sw = 577.35 m and a near-end distance of 288.68 m; the paper's Table 1 prints 228.68 m for
-the last, a slip of the pen.
+the last, a slip of the pen. Squint and the modes besides stripmap are in ``sar_modes``.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import Literal
+from dataclasses import dataclass, replace
+from typing import Literal, Self
+
+from planner.sensors import sar_modes
+from planner.sensors.sar_modes import Mode
 
 Look = Literal["left", "right"]
 
 
 @dataclass(frozen=True, slots=True)
 class SarSensor:
-    """A stripmap SAR.
+    """A SAR.
 
     Parameters
     ----------
     incidence_rad
         θ_L, of the beam centre, from the vertical.
     elevation_beamwidth_rad
-        θ_B.
+        θ_B, of the whole swath: of all sub-swaths together in ScanSAR.
     azimuth_beamwidth_rad
         θ_A.
     looks
         The sides it can look to.
     resolution_m
-        Ground resolution it delivers; None where unknown.
+        Ground resolution it delivers in its mode; None where unknown.
+    squint_rad
+        From the plane abeam, forward positive: ground at slant range R is seen R·tan ahead of the aircraft.
+    mode, sub_swaths
+        Mode, and the sub-swaths of ScanSAR.
+    turned_rad
+        Spotlight: the angle the line turns round the place, for the wanted resolution.
+    relief_m
+        The ground's height above and below the mean, to either side: the swath is then what the beam holds of
+        every ground between, the aperture that of the lowest.
     """
 
     name: str
@@ -39,22 +51,59 @@ class SarSensor:
     azimuth_beamwidth_rad: float
     looks: tuple[Look, ...] = ("right",)
     resolution_m: float | None = None
+    squint_rad: float = 0.0
+    mode: Mode = "stripmap"
+    sub_swaths: int = 1
+    turned_rad: float | None = None
+    relief_m: float = 0.0
+
+    def over_relief(self, relief_m: float) -> Self:
+        """The same sensor over ground this much above and below its mean height."""
+        return replace(self, relief_m=relief_m)
 
     def near_m(self, height_m: float) -> float:
         """Ground distance from the track to the near edge of the swath, h·tan(θ_L − θ_B/2)."""
-        return height_m * math.tan(self.incidence_rad - self.elevation_beamwidth_rad / 2.0)
+        return (height_m + self.relief_m) * math.tan(self.incidence_rad - self.elevation_beamwidth_rad / 2.0)
 
     def far_m(self, height_m: float) -> float:
         """Ground distance from the track to the far edge of the swath, h·tan(θ_L + θ_B/2)."""
-        return height_m * math.tan(self.incidence_rad + self.elevation_beamwidth_rad / 2.0)
+        return (height_m - self.relief_m) * math.tan(self.incidence_rad + self.elevation_beamwidth_rad / 2.0)
 
     def swath_m(self, height_m: float) -> float:
         """Swath width l_sw on the ground, eq 1."""
         return self.far_m(height_m) - self.near_m(height_m)
 
     def aperture_m(self, height_m: float) -> float:
-        """Synthetic aperture length l_s, eq 5."""
-        return height_m / math.cos(self.incidence_rad) * self.azimuth_beamwidth_rad
+        """Synthetic aperture length l_s, eq 5; with squint or in spotlight that of ``sar_modes``."""
+        range_m = (height_m + self.relief_m) / math.cos(self.incidence_rad)
+        if self.turned_rad is not None:
+            return sar_modes.spotlight_aperture_m(range_m, self.turned_rad, self.squint_rad)
+        return sar_modes.stripmap_aperture_m(range_m, self.azimuth_beamwidth_rad, self.squint_rad)
+
+    def leads_m(self, height_m: float) -> tuple[float, float]:
+        """How far ahead of the aircraft the swath's ground is seen: least and most, R·tan θ_sq."""
+        tangent = math.tan(self.squint_rad)
+        nearest_m = math.hypot(self.near_m(height_m), max(height_m - self.relief_m, 0.0))
+        farthest_m = math.hypot(self.far_m(height_m), height_m + self.relief_m)
+        return (
+            min(nearest_m * tangent, farthest_m * tangent),
+            max(nearest_m * tangent, farthest_m * tangent),
+        )
+
+    def run_in_m(self, height_m: float) -> float:
+        """How far before the ground the sensor must be on: half an aperture, and the squint's lead."""
+        return self.aperture_m(height_m) / 2.0 + self.leads_m(height_m)[1]
+
+    def run_out_m(self, height_m: float) -> float:
+        """How far beyond the ground the sensor must be on."""
+        return self.aperture_m(height_m) / 2.0 - self.leads_m(height_m)[0]
+
+    def spot_m(self, height_m: float) -> float:
+        """Length along track of what one pass can see: of the spot in spotlight, else without limit."""
+        if self.turned_rad is None:
+            return math.inf
+        range_m = (height_m - self.relief_m) / math.cos(self.incidence_rad - self.elevation_beamwidth_rad / 2)
+        return sar_modes.spot_m(range_m, self.azimuth_beamwidth_rad, self.squint_rad)
 
     def collection_m(self, height_m: float, span_m: float) -> float:
         """Length of a collection segment over an along-track span, eq 6."""

@@ -1,0 +1,56 @@
+"""Resolution and aperture of a SAR's modes.
+
+Stripmap keeps the beam abeam, or squinted by a fixed angle; spotlight turns it to stay on one place, so that
+the aperture may be as long as the wanted resolution asks; ScanSAR shares one aperture's time among several
+sub-swaths. I. G. Cumming and F. H. Wong, "Digital Processing of Synthetic Aperture Radar Data", 2005,
+chapter 4 (CW); A. Moreira et al., "A Tutorial on Synthetic Aperture Radar", IEEE GRSM 1(1), 2013, section II
+(M).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Literal
+
+Mode = Literal["stripmap", "spotlight", "scansar"]
+
+
+def azimuth_resolution_m(wavelength_m: float, turned_rad: float, squint_rad: float = 0.0) -> float:
+    """δ = λ / (4 sin(Δθ/2) cos θ_sq): resolution of an aperture seen under Δθ from the place.
+
+    For small Δθ it is λ / (2Δθ); where Δθ = λ/D is the real antenna's beam that is D/2 (CW, M).
+    """
+    return wavelength_m / (4.0 * math.sin(turned_rad / 2.0) * math.cos(squint_rad))
+
+
+def turned_for_rad(wavelength_m: float, resolution_m: float, squint_rad: float = 0.0) -> float:
+    """Δθ that a resolution asks for: the inverse of ``azimuth_resolution_m``; NaN where none gives it."""
+    sine = wavelength_m / (4.0 * resolution_m * math.cos(squint_rad))
+    return 2.0 * math.asin(sine) if sine <= 1.0 else math.nan
+
+
+def stripmap_aperture_m(range_m: float, beamwidth_rad: float, squint_rad: float = 0.0) -> float:
+    """L = R θ_A / cos² θ_sq: the way along which a place abeam at slant range R stays in the beam (CW)."""
+    return range_m * beamwidth_rad / math.cos(squint_rad) ** 2
+
+
+def spotlight_aperture_m(range_m: float, turned_rad: float, squint_rad: float = 0.0) -> float:
+    """The straight line that turns by Δθ, half to either side of the squint, round a place at range R abeam.
+
+    L = R (tan(θ_sq + Δθ/2) − tan(θ_sq − Δθ/2)), which is 2R tan(Δθ/2) without squint.
+    """
+    half = turned_rad / 2.0
+    return range_m * (math.tan(squint_rad + half) - math.tan(squint_rad - half))
+
+
+def spot_m(range_m: float, beamwidth_rad: float, squint_rad: float = 0.0) -> float:
+    """Length along track of the ground that a turning beam holds all the time: R θ_A, as it is abeam.
+
+    Towards both ends of the line the place is farther and the beam on it wider.
+    """
+    return range_m * beamwidth_rad / math.cos(squint_rad)
+
+
+def scansar_resolution_m(stripmap_m: float, sub_swaths: int) -> float:
+    """N sub-swaths take turns of 1/(N + 1) of the aperture each, so δ = (N + 1) δ_stripmap (after M)."""
+    return (sub_swaths + 1) * stripmap_m if sub_swaths > 1 else stripmap_m

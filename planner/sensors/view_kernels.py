@@ -1,0 +1,196 @@
+"""What a side-looking radar sees of a ground profile, compiled: in beam, in shadow, in layover."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from planner.environment.terrain_kernels import ground_at
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.uint8]
+
+OUT, SEEN, SHADOW, LAYOVER = 0, 1, 2, 3
+
+
+@njit(cache=True)
+def profile_flags(
+    level_m: float, out_m: Array, ground_m: Array, near_tan: float, far_tan: float, stretch: float
+) -> Flags:
+    """What is seen of one profile.
+
+    A place at distance y over ground z is seen under the look angle θ = atan(y / (H − z)) and the slant range
+    R = √(s²y² + (H − z)²). It is in the beam between the edges' angles; in shadow where a nearer place has a
+    larger angle; in layover where another lit place of the beam has its range: one nearer with R as large or
+    one farther with R as small (Cumming and Wong 2005, section 1.3; Moreira et al. 2013, section II).
+
+    Parameters
+    ----------
+    level_m
+        H, of the flight, over the datum of the ground.
+    out_m, ground_m
+        y, increasing from the track, and z; float64 (N,). NaN ground is not seen and hides nothing.
+    near_tan, far_tan
+        Tangents of the edges' look angles.
+    stretch
+        s: how much longer the ray's way over ground is than y, for a squinted beam.
+
+    Returns
+    -------
+    ndarray
+        uint8 (N,): 0 out of the beam or unknown, 1 seen, 2 in shadow, 3 in layover.
+    """
+    count = len(out_m)
+    flags = np.zeros(count, dtype=np.uint8)
+    steepest = -math.inf
+    for j in range(count):
+        if math.isnan(ground_m[j]):
+            continue
+        drop_m = level_m - ground_m[j]
+        tangent = out_m[j] / drop_m if drop_m > 0.0 else math.inf
+        if near_tan <= tangent <= far_tan:
+            flags[j] = SEEN if tangent > steepest else SHADOW
+        steepest = max(steepest, tangent)
+    longest_m = -math.inf
+    for j in range(count):
+        if flags[j] == SEEN:
+            range_m = math.hypot(stretch * out_m[j], level_m - ground_m[j])
+            if range_m <= longest_m:
+                flags[j] = LAYOVER
+            longest_m = max(longest_m, range_m)
+    shortest_m = math.inf
+    for j in range(count - 1, -1, -1):
+        if flags[j] == SEEN or flags[j] == LAYOVER:
+            range_m = math.hypot(stretch * out_m[j], level_m - ground_m[j])
+            if range_m >= shortest_m:
+                flags[j] = LAYOVER
+            shortest_m = min(shortest_m, range_m)
+    return flags
+
+
+@njit(cache=True)
+def strip_flags(
+    heights_m: Array,
+    west_m: float,
+    south_m: float,
+    step_m: float,
+    pose: Array,
+    along_m: Array,
+    out_m: Array,
+    level_m: float,
+    near_tan: float,
+    far_tan: float,
+    squint_tan: float,
+) -> tuple[Flags, Array]:
+    """Flags and ground of a strip's cells.
+
+    Parameters
+    ----------
+    heights_m, west_m, south_m, step_m
+        The ground's grid; see ``Ground``.
+    pose
+        East, north of the line's start; unit vectors ahead and to the look side: float64 (6,).
+    along_m, out_m
+        Of the cells' middles: along the line from its start (X,), away from it (Y,).
+    squint_tan
+        Tangent of the squint angle: a place is seen from R·tan ahead of or behind the line's foot, R being
+        its slant range abeam. Each such place then has a profile of its own, along the ray to it.
+
+    Returns
+    -------
+    flags : ndarray
+        uint8 (X, Y); see ``profile_flags``.
+    ground : ndarray
+        float64 (X, Y).
+    """
+    flags = np.zeros((len(along_m), len(out_m)), dtype=np.uint8)
+    ground = np.empty((len(along_m), len(out_m)))
+    for i in range(len(along_m)):
+        for j in range(len(out_m)):
+            e_m = pose[0] + along_m[i] * pose[2] + out_m[j] * pose[4]
+            n_m = pose[1] + along_m[i] * pose[3] + out_m[j] * pose[5]
+            ground[i, j] = ground_at(heights_m, west_m, south_m, step_m, e_m, n_m)
+        if squint_tan == 0.0:
+            flags[i] = profile_flags(level_m, out_m, ground[i], near_tan, far_tan, 1.0)
+            continue
+        profile = np.empty(len(out_m))
+        for j in range(len(out_m)):
+            if math.isnan(ground[i, j]):
+                continue
+            drop_m = level_m - ground[i, j]
+            tangent = out_m[j] / drop_m if drop_m > 0.0 else math.inf
+            if not near_tan <= tangent <= far_tan:
+                continue
+            lead_m = math.hypot(out_m[j], drop_m) * squint_tan
+            for k in range(len(out_m)):
+                at_m = along_m[i] - lead_m * (1.0 - out_m[k] / out_m[j])
+                e_m = pose[0] + at_m * pose[2] + out_m[k] * pose[4]
+                n_m = pose[1] + at_m * pose[3] + out_m[k] * pose[5]
+                profile[k] = ground_at(heights_m, west_m, south_m, step_m, e_m, n_m)
+            profile[j] = ground[i, j]
+            stretch = math.hypot(1.0, lead_m / out_m[j])
+            flags[i, j] = profile_flags(level_m, out_m, profile, near_tan, far_tan, stretch)[j]
+    return flags, ground
+
+
+@njit(cache=True)
+def line_visibility(
+    heights_m: Array,
+    west_m: float,
+    south_m: float,
+    step_m: float,
+    poses: Array,
+    places_m: Array,
+    cell_m: float,
+    level_m: float,
+    near_tan: float,
+    far_tan: float,
+    squint_tan: float,
+) -> Array:
+    """Fraction of places hidden, in shadow or layover, from each of several lines; for choosing among them.
+
+    A place on a line's other side or out of its beam counts as neither: another pass may be for it.
+
+    Parameters
+    ----------
+    poses
+        Starts and unit vectors of the lines as in ``strip_flags``, float64 (L, 6).
+    places_m
+        float64 (P, 2).
+    cell_m
+        Distance between samples of the profiles.
+    """
+    hidden = np.zeros(len(poses))
+    for i in range(len(poses)):
+        pose = poses[i]
+        for p in range(len(places_m)):
+            d_e, d_n = places_m[p, 0] - pose[0], places_m[p, 1] - pose[1]
+            foot_m = d_e * pose[2] + d_n * pose[3]
+            reach_m = d_e * pose[4] + d_n * pose[5]
+            z_m = ground_at(heights_m, west_m, south_m, step_m, places_m[p, 0], places_m[p, 1])
+            if reach_m <= 0.0 or math.isnan(z_m) or z_m >= level_m:
+                continue
+            if not near_tan <= reach_m / (level_m - z_m) <= far_tan:
+                continue
+            lead_m = math.hypot(reach_m, level_m - z_m) * squint_tan
+            last = int(reach_m / cell_m)
+            beyond = int(0.5 * reach_m / cell_m) + 2
+            out_m = np.empty(last + 1 + beyond)
+            profile = np.empty(last + 1 + beyond)
+            for k in range(last + 1 + beyond):
+                # The place itself is one of the samples.
+                out_m[k] = reach_m + (k - last) * cell_m
+                at_m = foot_m - lead_m * (1.0 - out_m[k] / reach_m)
+                e_m = pose[0] + at_m * pose[2] + out_m[k] * pose[4]
+                n_m = pose[1] + at_m * pose[3] + out_m[k] * pose[5]
+                profile[k] = ground_at(heights_m, west_m, south_m, step_m, e_m, n_m)
+            profile[last] = z_m
+            stretch = math.hypot(1.0, lead_m / reach_m)
+            flag = profile_flags(level_m, out_m, profile, near_tan, far_tan, stretch)[last]
+            if flag != SEEN:
+                hidden[i] += 1.0
+        hidden[i] /= max(len(places_m), 1)
+    return hidden
