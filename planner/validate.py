@@ -41,9 +41,12 @@ def read_valid(document: Any, terrains: Terrains | None = None) -> Scenario:
 def unseeable(scenario: Scenario) -> tuple[Finding, ...]:
     """A finding for each region that no pass can see: a warning where the region is not required."""
     found = []
+    # The paper's methods, asked for by name, know two passes at most.
+    wide = scenario.method.coverage == "auto" and scenario.method.routing in ("auto", "joint")
     for region in scenario.regions:
         try:
-            can_be_seen(region, scenario.sensor_for(region), scenario.height_m, scenario.area)
+            sensor = scenario.sensor_for(region)
+            can_be_seen(region, sensor, scenario.height_m, scenario.area, wide=wide)
         except InfeasibleError as error:
             found.append(
                 Finding(

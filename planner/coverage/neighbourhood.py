@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
@@ -11,9 +12,11 @@ import shapely
 from numpy.typing import NDArray
 from shapely.geometry import Polygon
 
+from planner.coverage import decompose
 from planner.coverage.classify import STEP_RAD, Spans, angles_around, fits, hull_points, spans_at
 from planner.coverage.merge import MergedRegion, split_region
 from planner.coverage.segments import Floats, Neighbourhood, too_wide
+from planner.coverage.sweeps import Sweep, flyable_headings
 from planner.errors import InfeasibleError
 from planner.route import CollectPass
 from planner.scenario import Region
@@ -107,9 +110,21 @@ def options(
 
 
 def can_be_seen(
-    region: Region, sensor: SarSensor, height_m: float, area: Polygon | None, step_rad: float = STEP_RAD
+    region: Region,
+    sensor: SarSensor,
+    height_m: float,
+    area: Polygon | None,
+    step_rad: float = STEP_RAD,
+    *,
+    wide: bool = False,
 ) -> None:
     """Whether some choice of passes sees each part of a region from inside the operating area.
+
+    Parameters
+    ----------
+    wide
+        Whether sweeps of any number of lanes are allowed, of the whole or of divisions of it; without, the
+        paper's one or two passes.
 
     Raises
     ------
@@ -120,6 +135,8 @@ def can_be_seen(
     if area is not None:
         shapely.prepare(area)
     for part in split_region(region):
+        if wide and _can_be_swept(part, sensor, height_m, area):
+            continue
         least = neighbourhoods(part, sensor, height_m, step_rad)
         # One pass may leave the area where two, further in, do not.
         if any(_some_inside(side, area) for side in least):
@@ -140,6 +157,19 @@ def can_be_seen(
             "enlarge the area round the region, fly lower, or let the sensor look to both sides",
             part.centroid,
         )
+
+
+def _can_be_swept(part: MergedRegion, sensor: SarSensor, height_m: float, area: Polygon | None) -> bool:
+    """Whether the lanes of some sweep, of the whole or of each piece of some division, stay in the area."""
+    if any(flyable_headings(Sweep(part, sensor, height_m, 0, extra), area).any() for extra in (0, 1)):
+        return True
+    return not decompose.is_plain(part.area) and any(
+        all(
+            flyable_headings(Sweep(replace(part, area=piece), sensor, height_m), area).any()
+            for piece in pieces
+        )
+        for pieces in decompose.cuts(part.area)
+    )
 
 
 def check_sensor(region: Region, sensor: SarSensor, height_m: float) -> None:

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from shapely.geometry import MultiPolygon, Point, Polygon
+from shapely.geometry import LineString, MultiPolygon, Point, Polygon
 
 from planner.frames import LocalFrame
 from planner.geojson import geometry as shapes
@@ -16,6 +16,8 @@ from planner.scenario import NoFlyZone, Obstacle, Region, Terminal, Threat
 
 #: A point target without a radius still has to be inside a footprint, as a disc this large.
 POINT_TARGET_RADIUS_M = 1.0
+#: More visits than this are a slip of the pen: each is a stop of the tour.
+MOST_REVISITS = 50
 
 GEOMETRIES = {
     "roi": ("Polygon", "MultiPolygon", "LineString", "Point"),
@@ -75,20 +77,23 @@ def read_region(raw: RawFeature, frame: LocalFrame, findings: Findings) -> Regio
     fields = raw.fields
     kind = raw.geometry["type"]
     area: Polygon | MultiPolygon | None = None
+    axis: LineString | None = None
     if kind in ("Polygon", "MultiPolygon"):
         area = shapes.area(raw.name, dict(raw.geometry), frame, findings)
     elif kind == "LineString":
         width_m = fields.number("width_m", above=0.0)
-        line = shapes.line(raw.name, dict(raw.geometry), frame, findings)
-        if line is not None and width_m is not None:
-            area = line.buffer(width_m / 2.0, cap_style="flat")
+        axis = shapes.line(raw.name, dict(raw.geometry), frame, findings)
+        if axis is not None and width_m is not None:
+            area = axis.buffer(width_m / 2.0, cap_style="flat")
     else:
         radius_m = fields.number("radius_m", 0.0, minimum=0.0)
         place = shapes.point(raw.name, dict(raw.geometry), frame, findings)
         if place is not None and radius_m is not None:
             area = Point(place).buffer(max(radius_m, POINT_TARGET_RADIUS_M), quad_segs=16)
-    if fields.integer("revisits", 1, minimum=1) > 1:
-        _not_yet(raw, "revisits", "more than one visit to a region", "Leave revisits at 1.", findings)
+    revisits = int(fields.integer("revisits", 1, minimum=1))
+    if revisits > MOST_REVISITS:
+        fields.wrong("revisits", f"is {revisits}", f"Give {MOST_REVISITS} at most.", rule="out-of-range")
+        revisits = 1
     if fields.raw("time_window_s") is not None:
         _not_yet(raw, "time_window_s", "time windows", "Leave time_window_s out.", findings)
     if fields.raw("min_niirs") is not None:
@@ -105,7 +110,7 @@ def read_region(raw: RawFeature, frame: LocalFrame, findings: Findings) -> Regio
     if headings is not None:
         centre = area.centroid
         approach = tuple(frame.angle_rad(centre.x, centre.y, heading) for heading in headings)
-    return Region(raw.name, area, priority, required, sensor, min_resolution_m, approach)
+    return Region(raw.name, area, priority, required, sensor, min_resolution_m, approach, revisits, axis)
 
 
 def _headings(fields: Fields) -> tuple[float, ...] | None:

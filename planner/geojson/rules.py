@@ -15,6 +15,7 @@ AREA_TOLERANCE_M = 0.05
 def check_together(scenario: Scenario, findings: Findings) -> None:
     """Add a finding for each rule between features that the scenario breaks."""
     _names(scenario, findings)
+    _visits(scenario, findings)
     _area(scenario, findings)
     _terminals(scenario, findings)
 
@@ -44,6 +45,20 @@ def _names(scenario: Scenario, findings: Findings) -> None:
             f"altitude_m {scenario.altitude_m:g} is not above home, {scenario.home_amsl_m or 0.0:g} m amsl",
             "Raise altitude_m.",
         )
+
+
+def _visits(scenario: Scenario, findings: Findings) -> None:
+    method = scenario.method
+    if method.routing == "joint" or (method.routing, method.coverage) == ("auto", "auto"):
+        return
+    for region in scenario.regions:
+        if region.revisits > 1:
+            findings.error(
+                region.name,
+                "not-supported",
+                f"asks for {region.revisits} visits, which the paper's routing does not plan",
+                "Leave method.routing and method.coverage at auto, or revisits at 1.",
+            )
 
 
 def _area(scenario: Scenario, findings: Findings) -> None:

@@ -274,8 +274,24 @@ def test_headings_are_true() -> None:
 
 
 def test_region_no_pass_can_see_is_found_without_planning() -> None:
-    """A required region wider than two swaths, or with no room in the area, is an error; else a warning."""
+    """More than two swaths for the paper's coverage, or no room in the area: an error, else a warning."""
+    paper = {"coverage": "li2018"}
     big = feature("X", "roi", "Polygon", square(0.01, -0.04, 0.03))
-    assert [f.rule for f in findings(small(big)) if f.feature == "X"] == ["not-seen-swath"]
+    assert [f.rule for f in findings(small(big, method=paper)) if f.feature == "X"] == ["not-seen-swath"]
+    assert [f for f in findings(small(big)) if f.feature == "X"] == []
+    from_afar = findings(small(altitude_m=20_000.0))
+    assert [f.rule for f in from_afar if f.feature == "A"] == ["not-seen-area"]
     big["properties"]["required"] = False
-    assert [f.severity for f in findings(small(big)) if f.feature == "X"] == ["warning"]
+    assert [f.severity for f in findings(small(big, method=paper)) if f.feature == "X"] == ["warning"]
+
+
+def test_revisits_are_read_for_the_methods_that_plan_them() -> None:
+    """A number of visits is kept; the paper's routing refuses more than one, and 51 are a slip of the pen."""
+    document = small()
+    document["features"][0]["properties"]["revisits"] = 3
+    assert read_scenario(document).regions[0].revisits == 3
+    with pytest.raises(ScenarioError, match="visits"):
+        read_scenario(document | {"method": {"routing": "li2018"}})
+    document["features"][0]["properties"]["revisits"] = 51
+    with pytest.raises(ScenarioError, match="51"):
+        read_scenario(document)
