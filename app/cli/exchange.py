@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from enum import StrEnum
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -9,6 +11,25 @@ import typer
 from app.cli.missions import AutopilotChoice, HeldFormat
 from app.cli.output import CommandError, Exit, Json, Output, emit, emit_json, read_bytes, say
 
+
+class RoleChoice(StrEnum):
+    """Roles that a shape can be given."""
+
+    ROI = "roi"
+    THREAT = "threat"
+    NO_FLY = "no_fly"
+    AREA = "area"
+    OBSTACLE = "obstacle"
+    START = "start"
+    END = "end"
+    BASE = "base"
+    IMPORTANCE = "importance"
+
+
+Metres = Annotated[float | None, typer.Option(help="For shapes that do not say theirs.", metavar="M")]
+RegionFile = Annotated[
+    str, typer.Argument(help=".kml, .kmz, .gpx, .shp, .zip or .geojson; - is standard input.", metavar="FILE")
+]
 MissionFile = Annotated[str, typer.Argument(help=".plan or .waypoints; - is standard input.", metavar="IN")]
 
 
@@ -56,6 +77,58 @@ def convert(
         )
 
 
+def import_(
+    source: RegionFile,
+    output: Output = "-",
+    role: Annotated[
+        RoleChoice | None,
+        typer.Option(
+            help="Role of shapes that no value, name or folder of the file gives one "
+            "(roi for polygons and lines, threat for points)."
+        ),
+    ] = None,
+    width_m: Metres = None,
+    radius_m: Metres = None,
+    height_m: Metres = None,
+    crs: Annotated[
+        str | None, typer.Option(help="Reference system of a shapefile (that of its .prj), e.g. EPSG:32611.")
+    ] = None,
+    as_json: Json = False,
+) -> None:
+    """Turn regions drawn elsewhere into features of a scenario: KML, KMZ, GPX, shapefile, GeoJSON.
+
+    Writes a GeoJSON FeatureCollection to be merged into a scenario. Lines become corridors of --width-m,
+    points threats of --radius-m, footprints of buildings obstacles of --height-m.
+    """
+    from app.services.errors import RefusedError
+    from app.services.regions_import import ImportOptions, import_file
+
+    options = ImportOptions(role.value if role else None, width_m, radius_m, height_m, crs)
+    try:
+        found = import_file(read_bytes(source), options, companions=_companions(source))
+    except RefusedError as error:
+        raise CommandError(f"{source} is not imported: {error}", Exit.BAD_INPUT, error.findings) from error
+    emit_json(found.collection, output)
+    for note in found.notes:
+        say(f"note: {note}")
+    count = len(found.collection["features"])
+    say(f"{count} features from {found.format}")
+    if as_json and output != "-":
+        emit_json({"file": output, "format": found.format, "features": count, "notes": list(found.notes)})
+
+
+def _companions(source: str) -> dict[str, bytes]:
+    """What lies beside a .shp file under the same name."""
+    path = Path(source)
+    if path.suffix.lower() != ".shp":
+        return {}
+    return {
+        beside.suffix.lower(): read_bytes(str(beside))
+        for beside in sorted(path.parent.iterdir())
+        if beside.stem == path.stem and beside.suffix.lower() in (".prj", ".dbf", ".cpg")
+    }
+
+
 def _text(source: str) -> str:
     try:
         return read_bytes(source).decode("utf-8-sig")
@@ -66,3 +139,4 @@ def _text(source: str) -> str:
 def register(cli: typer.Typer) -> None:
     """Add the commands."""
     cli.command()(convert)
+    cli.command("import")(import_)

@@ -7,8 +7,10 @@ from pathlib import Path
 
 import pytest
 
+from app.routers.bodies import EXAMPLE
 from mavlink.encode import encode
 from mavlink.formats import read_plan, read_waypoints, write_plan, write_waypoints
+from tests.app.imports.samples import GPX, RING, kml, line, placemark, polygon, shapefiles
 from tests.app.test_cli import Command, swathplan
 from tests.mavlink.formats.test_qgc_complex import LANDING, SURVEY, plan_of, simple
 from tests.mavlink.plans import make_plan
@@ -53,3 +55,42 @@ def test_bad_mission_files_exit_2(swathplan: Command, text: str, says: str) -> N
     ended = swathplan("convert", "-", stdin=text)
     assert (ended.code, ended.out) == (2, "")
     assert says in ended.err
+
+
+def test_imported_regions_plan(swathplan: Command, tmp_path: Path) -> None:
+    """What import writes stands in a scenario beside its own features, and the scenario is sound."""
+    features = EXAMPLE["features"]
+    region = next(f for f in features if f["properties"]["role"] == "roi")
+    ring = [(lon, lat) for lon, lat, *_ in region["geometry"]["coordinates"][0]]
+    drawn = tmp_path / "fields.kml"
+    drawn.write_bytes(kml(placemark("from the map", polygon(ring)), placemark("lane", line(ring[:2]))))
+    written = tmp_path / "regions.geojson"
+    ended = swathplan("import", str(drawn), "--width-m", "80", "-o", str(written), "--json")
+    assert (ended.code, json.loads(ended.out)["features"]) == (0, 2)
+    imported = json.loads(written.read_text())["features"]
+    merged = EXAMPLE | {"features": [*(f for f in features if f is not region), *imported]}
+    checked = swathplan("validate", "-", stdin=json.dumps(merged))
+    assert checked.code == 0, checked.err
+
+
+def test_a_shapefile_is_read_with_what_lies_beside_it(swathplan: Command, tmp_path: Path) -> None:
+    """The .prj and .dbf of a lone .shp are found; without the first the reference system is asked for."""
+    for ending, content in shapefiles([[RING[::-1]]], ["meadow"]).items():
+        (tmp_path / f"a{ending}").write_bytes(content)
+    ended = swathplan("import", str(tmp_path / "a.shp"))
+    assert json.loads(ended.out)["features"][0]["id"] == "meadow"
+    (tmp_path / "a.prj").unlink()
+    refused = swathplan("import", str(tmp_path / "a.shp"))
+    assert (refused.code, refused.out) == (2, "")
+    assert "EPSG" in refused.err
+    assert swathplan("import", str(tmp_path / "a.shp"), "--crs", "EPSG:4326").code == 0
+
+
+def test_import_refuses_with_findings(swathplan: Command, tmp_path: Path) -> None:
+    """Lines without a width are named, each; the exit code is 2."""
+    path = tmp_path / "a.gpx"
+    path.write_bytes(GPX)
+    ended = swathplan("import", str(path), "--json")
+    assert (ended.code, ended.out) == (2, "")
+    rules = [finding["rule"] for finding in json.loads(ended.err)["errors"]]
+    assert rules == ["width_m-missing", "width_m-missing", "radius_m-missing"]

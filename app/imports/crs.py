@@ -1,0 +1,86 @@
+"""Coordinates of other reference systems, brought to WGS 84."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable
+
+from pyproj import CRS
+from pyproj.exceptions import CRSError, ProjError
+from pyproj.transformer import TransformerGroup
+from shapely import segmentize
+from shapely.geometry import LineString
+
+from app.imports.errors import file_error
+from app.imports.shapes import LonLat
+
+#: A straight edge of a map projection is none in longitude and latitude; cut to pieces of a kilometre, it is
+#: within a decimetre.
+_PIECE_M = 1000.0
+_MAX_PIECES = 10_000
+_NAMED = re.compile(r"(EPSG|ESRI|OGC):[A-Za-z0-9]{1,12}", re.IGNORECASE)
+
+ToWgs84 = Callable[[list[LonLat]], list[LonLat]]
+
+
+def named_crs(name: str) -> CRS:
+    """The reference system of an authority's code, ``EPSG:32611``.
+
+    Raises
+    ------
+    RegionFileError
+        Rule ``crs``.
+    """
+    # nothing else: PROJ strings can name files
+    if not _NAMED.fullmatch(name.strip()):
+        raise file_error("crs", f"{name[:60]!r} is no code of a reference system", "write e.g. EPSG:32611")
+    return _checked(lambda: CRS.from_user_input(name.strip()), name)
+
+
+def crs_of_prj(text: str) -> CRS:
+    """The reference system that a ``.prj`` file describes as well-known text."""
+    return _checked(lambda: CRS.from_wkt(text), "the .prj file")
+
+
+def _checked(make: Callable[[], CRS], name: str) -> CRS:
+    try:
+        crs = make()
+    except (CRSError, ValueError) as error:
+        raise file_error(
+            "crs",
+            f"{name[:60]} names no known reference system",
+            "give the right one as crs, e.g. EPSG:32611",
+        ) from error
+    if crs.is_compound:
+        crs = crs.sub_crs_list[0]
+    if not (crs.is_geographic or crs.is_projected):
+        raise file_error("crs", f"{name[:60]} is no reference system of maps", "give the right one as crs")
+    return crs
+
+
+def to_wgs84(crs: CRS, notes: list[str]) -> ToWgs84:
+    """A function that brings the corners of a line or ring to WGS 84, edges staying where they are."""
+    try:
+        group = TransformerGroup(crs, CRS.from_epsg(4326), always_xy=True)
+        transformer = group.transformers[0]
+    except (ProjError, IndexError) as error:
+        raise file_error("crs", f"there is no way from {crs.name} to WGS 84", "send it in WGS 84") from error
+    if not group.best_available:
+        notes.append(
+            f"the best transformation from {crs.name} needs a grid that is not here: "
+            "places may be some metres off"
+        )
+    projected = crs.is_projected
+    piece = _PIECE_M / (crs.axis_info[0].unit_conversion_factor if projected and crs.axis_info else 1.0)
+
+    def move(places: list[LonLat]) -> list[LonLat]:
+        if projected and len(places) > 1 and all(math.isfinite(value) for place in places for value in place):
+            line = LineString(places)
+            # longer ones are on no map, and would fill the memory
+            if line.length <= _MAX_PIECES * piece:
+                places = [(x, y) for x, y in segmentize(line, piece).coords]
+        east, north = transformer.transform([p[0] for p in places], [p[1] for p in places])
+        return [(float(lon), float(lat)) for lon, lat in zip(east, north, strict=True)]
+
+    return move

@@ -1,0 +1,182 @@
+"""Shapefiles (ESRI white paper, July 1998), alone or in an archive with ``.prj`` and ``.dbf``."""
+
+from __future__ import annotations
+
+import io
+import struct
+from collections.abc import Mapping
+from pathlib import PurePosixPath
+from typing import Any
+
+import shapefile
+from shapely.geometry import Point, Polygon
+
+from app.imports.archive import unpack
+from app.imports.crs import ToWgs84, crs_of_prj, named_crs, to_wgs84
+from app.imports.errors import file_error
+from app.imports.shapes import MAX_SHAPES, LonLat, Rings, Shape
+
+MAGIC = b"\x00\x00\x27\x0a"
+_HEADER_BYTES = 100
+_POLYGONS = frozenset({5, 15, 25})
+_LINES = frozenset({3, 13, 23})
+_POINTS = frozenset({1, 11, 21})
+_MULTIPOINTS = frozenset({8, 18, 28})
+_NAMES = ("name", "label", "title", "id")
+
+
+def read_archive(data: bytes, crs: str | None, notes: list[str]) -> list[Shape]:
+    """The shapes of every shapefile in an archive."""
+    members = unpack(data, (".shp", ".prj", ".dbf", ".cpg"))
+    by_stem: dict[str, dict[str, bytes]] = {}
+    for name, content in members.items():
+        path = PurePosixPath(name.replace("\\", "/"))
+        if "__MACOSX" not in path.parts:
+            by_stem.setdefault(str(path.with_suffix("")), {})[path.suffix.lower()] = content
+    layers = {stem: files for stem, files in by_stem.items() if ".shp" in files}
+    if not layers:
+        raise file_error(
+            "no-shapefile", "the archive holds no .shp file", "pack .shp, .prj and .dbf together"
+        )
+    shapes: list[Shape] = []
+    for stem, files in layers.items():
+        layer = PurePosixPath(stem).name
+        shapes += read_shapefile(files[".shp"], files, crs, notes, layer)
+    return shapes
+
+
+def read_shapefile(
+    data: bytes, companions: Mapping[str, bytes], crs: str | None, notes: list[str], layer: str = ""
+) -> list[Shape]:
+    """The shapes of one shapefile.
+
+    Parameters
+    ----------
+    companions
+        Content of the files beside it, by ending: ``.prj``, ``.dbf``, ``.cpg``.
+    crs
+        Code of the reference system; goes before ``.prj``.
+    layer
+        The file's name, which stands for a folder.
+
+    Raises
+    ------
+    RegionFileError
+        Where the file is damaged, or says no reference system.
+    """
+    _walk(data)
+    move = to_wgs84(_crs(companions, crs, layer), notes)
+    try:
+        with shapefile.Reader(
+            shp=io.BytesIO(data),
+            dbf=io.BytesIO(companions[".dbf"]) if ".dbf" in companions else None,
+            encoding=_encoding(companions),
+            encodingErrors="replace",
+        ) as reader:
+            drawn = list(reader.iterShapes())
+            records = [record.as_dict() for record in reader.records()] if ".dbf" in companions else []
+    except Exception as error:
+        # the reader has no error of its own for most of what a damaged file does to it
+        raise file_error(
+            "shapefile-damaged", f"the shapefile cannot be read: {type(error).__name__}", "export it again"
+        ) from error
+    if records and len(records) != len(drawn):
+        raise file_error(
+            "shapefile-damaged", f".shp has {len(drawn)} shapes, .dbf {len(records)} rows", "export it again"
+        )
+    shapes: list[Shape] = []
+    for index, one in enumerate(drawn):
+        row = {key: str(value).strip() for key, value in records[index].items()} if records else {}
+        shapes += _shapes(one, row, (layer,) if layer else (), move, notes)
+    return shapes
+
+
+def _walk(data: bytes) -> None:
+    """See that the records fit the file: a reader led astray by their lengths would not come back."""
+    if data[:4] != MAGIC or len(data) < _HEADER_BYTES:
+        raise file_error("not-shapefile", "the file is no shapefile", "send the .shp file")
+    at, count = _HEADER_BYTES, 0
+    while at < len(data):
+        if at + 12 > len(data):
+            break
+        (words,) = struct.unpack_from(">i", data, at + 4)
+        count += 1
+        if words < 2 or at + 8 + 2 * words > len(data):
+            raise file_error("shapefile-damaged", f"record {count} does not fit the file", "export it again")
+        if count > MAX_SHAPES:
+            raise file_error("too-many-shapes", f"more than {MAX_SHAPES} shapes", "export fewer")
+        at += 8 + 2 * words
+    if at != len(data):
+        raise file_error("shapefile-damaged", "the file ends within a record", "export it again")
+
+
+def _crs(companions: Mapping[str, bytes], crs: str | None, layer: str) -> Any:
+    if crs is not None:
+        return named_crs(crs)
+    if ".prj" not in companions:
+        raise file_error(
+            "crs-missing",
+            f"{layer or 'the shapefile'} has no .prj file: what its coordinates mean is not known",
+            "send an archive with the .prj file, or give crs, e.g. EPSG:32611",
+        )
+    return crs_of_prj(companions[".prj"].decode("utf-8", "replace").strip("\ufeff\x00 \r\n\t"))
+
+
+def _encoding(companions: Mapping[str, bytes]) -> str:
+    name = companions.get(".cpg", b"").decode("ascii", "ignore").strip()
+    try:
+        "".encode(name or "utf-8")
+    except LookupError:
+        return "utf-8"
+    return name or "utf-8"
+
+
+def _shapes(
+    drawn: Any, row: dict[str, str], folders: tuple[str, ...], move: ToWgs84, notes: list[str]
+) -> list[Shape]:
+    kind = drawn.shapeType
+    lower = {key.lower(): value for key, value in row.items()}
+    name = next((lower[key] for key in _NAMES if lower.get(key)), "")
+    try:
+        places = [(float(point[0]), float(point[1])) for point in getattr(drawn, "points", [])]
+        starts = [int(start) for start in getattr(drawn, "parts", [])]
+    except (TypeError, ValueError, IndexError) as error:
+        raise file_error(
+            "shapefile-damaged", f"{name or 'a shape'} has no places", "export it again"
+        ) from error
+    if kind == 0 or not places:
+        notes.append(f"{name or 'a shape'} is empty and is left out")
+        return []
+    if kind in _POINTS | _MULTIPOINTS:
+        return [Shape("point", ((tuple(move([place])),),), name, folders, lower) for place in places]
+    pieces = [places[a:b] for a, b in zip(starts, [*starts[1:], len(places)], strict=True)]
+    if not all(pieces):
+        raise file_error("shapefile-damaged", f"{name or 'a shape'} has an empty part", "export it again")
+    moved = [tuple(move(piece)) for piece in pieces]
+    if kind in _LINES:
+        return [Shape("line", ((line,),), name, folders, lower) for line in moved]
+    if kind in _POLYGONS:
+        return [Shape("polygon", _group(pieces, moved), name, folders, lower)]
+    raise file_error(
+        "shapefile-kind", f"{name or 'a shape'} is of type {kind}", "export polygons, lines or points"
+    )
+
+
+def _group(pieces: list[list[LonLat]], moved: list[tuple[LonLat, ...]]) -> tuple[Rings, ...]:
+    """Rings by polygon: outer rings run clockwise, holes the other way, each in the outer ring about it."""
+    outers = [i for i, piece in enumerate(pieces) if _clockwise(piece)] or list(range(len(pieces)))
+    holes: dict[int, list[tuple[LonLat, ...]]] = {i: [] for i in outers}
+    for i, piece in enumerate(pieces):
+        if i in holes:
+            continue
+        about = [o for o in outers if len(pieces[o]) > 3 and _holds(Polygon(pieces[o]), piece)]
+        holes[about[0] if about else outers[0]].append(moved[i])
+    return tuple((moved[o], *holes[o]) for o in outers)
+
+
+def _holds(outer: Polygon, piece: list[LonLat]) -> bool:
+    return bool(outer.is_valid and outer.covers(Point(piece[0])))
+
+
+def _clockwise(ring: list[LonLat]) -> bool:
+    return sum((b[0] - a[0]) * (b[1] + a[1]) for a, b in zip(ring, [*ring[1:], ring[0]], strict=True)) > 0.0

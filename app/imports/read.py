@@ -1,0 +1,87 @@
+"""Any region file: its format is found by its content."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from app.imports import esri, gpx, kml, plain
+from app.imports.archive import is_zip, unpack
+from app.imports.errors import file_error
+from app.imports.features import Imported, ImportOptions, check_options, features
+from app.imports.shapes import Shape
+from app.imports.xml import local_name, parse
+
+FORMATS = ("kml", "kmz", "gpx", "shp", "shapefile", "geojson")
+
+
+def import_regions(
+    data: bytes,
+    options: ImportOptions | None = None,
+    form: str | None = None,
+    companions: Mapping[str, bytes] | None = None,
+) -> Imported:
+    """The features of a region file.
+
+    Parameters
+    ----------
+    data
+        The file.
+    options
+        What the file does not say.
+    form
+        One of ``FORMATS``, ``shapefile`` being an archive with a shapefile; None to look at the content.
+    companions
+        Beside a lone ``.shp``: the content of its ``.prj``, ``.dbf`` and ``.cpg`` files, by ending.
+
+    Raises
+    ------
+    RegionFileError
+        With a finding for everything that is wrong.
+    """
+    options = options or ImportOptions()
+    check_options(options)
+    found = form or _format(data)
+    notes: list[str] = []
+    shapes = _shapes(found, data, options.crs, companions or {}, notes)
+    collection = {"type": "FeatureCollection", "features": features(shapes, options, notes)}
+    return Imported(collection, found, tuple(dict.fromkeys(notes)))
+
+
+def _format(data: bytes) -> str:
+    if not data.strip():
+        raise file_error("empty", "the file is empty", f"send one of {', '.join(FORMATS)}")
+    if is_zip(data):
+        return "kmz" if unpack(data, (".kml",)) else "shapefile"
+    if data[:4] == esri.MAGIC:
+        return "shp"
+    start = data.lstrip(b"\xef\xbb\xbf \t\r\n")[:1]
+    if start in (b"{", b"["):
+        return "geojson"
+    if start == b"<" or data[:2] in (b"\xff\xfe", b"\xfe\xff"):
+        return "gpx" if local_name(parse(data)) == "gpx" else "kml"
+    raise file_error(
+        "unknown-format",
+        "the file is of no known format",
+        "send KML, KMZ, GPX, GeoJSON or a zipped shapefile",
+    )
+
+
+def _shapes(
+    form: str, data: bytes, crs: str | None, companions: Mapping[str, bytes], notes: list[str]
+) -> list[Shape]:
+    match form:
+        case "kml":
+            return kml.read_kml(data, notes)
+        case "kmz":
+            return kml.read_kmz(data, notes)
+        case "gpx":
+            return gpx.read_gpx(data, notes)
+        case "shp":
+            return esri.read_shapefile(data, companions, crs, notes)
+        case "shapefile":
+            return esri.read_archive(data, crs, notes)
+        case "geojson":
+            return plain.read_geojson(data, notes)
+    raise file_error(
+        "unknown-format", f"there is no format {form[:40]!r}", f"use one of {', '.join(FORMATS)}"
+    )
