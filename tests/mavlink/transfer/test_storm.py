@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from random import Random
 
 import pytest
@@ -74,31 +74,27 @@ def test_a_refusal_is_never_taken_for_acceptance(loss: float) -> None:
         assert not isinstance(ending.outcome, Accepted)
 
 
-@pytest.mark.parametrize("manner", ["ardupilot", "px4"])
-@pytest.mark.parametrize("seed", range(6))
-def test_a_third_lost_on_a_slow_link(manner: str, seed: int) -> None:
-    """With 30 % lost and 0.4 s each way, a mission goes up and comes back, or its end is told as unknown."""
-    vehicle = StubVehicle(manner)
-    weather = Weather(0.3, 0.0, 0.0, seed, latency_s=0.4)
-    machine = UploadMachine(ITEMS[:40], MissionType.MISSION, 1, 1)
-    air = Air(machine, vehicle, weather)
-    air.run()
-    assert air.now_s < 600.0
-    if machine.outcome == Accepted():
-        assert vehicle.held[0] == ITEMS[:40]
-    else:
-        assert machine.outcome is not None
-        assert machine.outcome.kind == "unknown"
-
-
-def test_most_missions_get_through_a_slow_link() -> None:
-    """Of twenty missions over that link at least three quarters are known to be held."""
-    held = 0
-    for seed in range(20):
+def test_a_third_lost_on_a_slow_link() -> None:
+    """With 30 % lost and 0.4 s each way most missions get through; of the others nothing untrue is said."""
+    weather = Weather(0.3, 0.0, 0.0, latency_s=0.4)
+    known = 0
+    for seed in range(40):
         vehicle = StubVehicle("px4" if seed % 2 else "ardupilot")
         machine = UploadMachine(ITEMS[:40], MissionType.MISSION, 1, 1)
-        Air(machine, vehicle, Weather(0.3, 0.0, 0.0, seed, latency_s=0.4)).run()
-        download = DownloadMachine(MissionType.MISSION, 1, 1)
-        Air(download, vehicle, Weather(0.3, 0.0, 0.0, seed, latency_s=0.4)).run()
-        held += download.outcome == Accepted() and download.items == ITEMS[:40]
-    assert held >= 15
+        air = Air(machine, vehicle, replace(weather, seed=seed))
+        air.run()
+        assert air.now_s < 600.0
+        outcome = machine.outcome
+        assert outcome is not None
+        if isinstance(outcome, Accepted):
+            assert vehicle.held[0] == ITEMS[:40]
+        elif isinstance(outcome, Refused):
+            assert outcome.result in vehicle.said  # a vehicle that hears nothing gives up and says so
+        for again in range(3):
+            download = DownloadMachine(MissionType.MISSION, 1, 1)
+            Air(download, vehicle, replace(weather, seed=1000 + 3 * seed + again)).run()
+            if download.outcome == Accepted():
+                assert download.items == vehicle.held[0]
+                known += download.items == ITEMS[:40]
+                break
+    assert known >= 25
