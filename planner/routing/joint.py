@@ -4,18 +4,18 @@ Li, Chen, Wang, Li (2018) choose them one after the other; here each region offe
 the tour takes one of each at the least whole length, exactly over the order for a dozen regions or fewer.
 
 1. A coarse grid of angles and offsets; Dubins lengths between all options, with what going round threat
-   discs adds; dynamic programming over subsets of regions and last options.
+   discs adds; dynamic programming over subsets of regions and last options, or local search (``large``).
 2. For the best order with each region last, finer grids round the chosen options, halving the step, with a
    shortest path through the layers of options.
-
-Costs between options are estimates where discs or zones are in the way; the flyable line is found by the
-transit stage afterwards.
+3. Costs between options are estimates where discs or zones are in the way: the legs of the tours found are
+   flown in earnest, their true costs fed back (``chain``), and the tours compared by true cost.
+4. Passes of one region are parted where others fit between (``split``).
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,9 +29,14 @@ from planner.progress import Progress, Stop, never, raise_if, silent
 from planner.route import CollectPass, Route
 from planner.routing import joint_kernels as kernels
 from planner.routing import tour
+from planner.routing.chain import Layers, from_start, layers_of, to_end, true_choice
+from planner.routing.large import large_order
+from planner.routing.legs import Legs
 from planner.routing.options import Options, Surroundings, collect_passes, make_options
+from planner.routing.split import split_passes
 from planner.routing.targets import refusal, targets
-from planner.scenario import Scenario, Terminal
+from planner.scenario import Scenario
+from planner.sensors.view import sensing
 from planner.vehicle.aircraft import Aircraft
 from planner.vehicle.wind import still_air_costs
 
@@ -43,20 +48,32 @@ COARSE_ETAS = np.array([0.0, 0.5, 1.0])
 REFINE_ANGLES = 5
 REFINE_ETAS = 2
 REFINEMENTS = 5
-#: Beyond this many regions the order comes from a tour of centroids, improved by moves.
+#: Beyond this many regions the order is searched locally, over fewer options.
 EXACT_ORDER_UP_TO = 9
-ORDER_EVALUATIONS = 20_000
+LARGE_STEP_RAD = math.radians(15.0)
+LARGE_ETAS = np.array([0.0, 1.0])
+#: Tours with their legs flown in earnest, those of them to which true costs are fed back, and how often.
+TRUE_TOURS = 4
+TRUE_SOLVES = 12
+#: A tour that costs this much more than was thought is chosen anew.
+FALSE_M = 5.0
+#: Of one option that is the only one: its side counts within one.
+NO_SIDE = np.zeros(1, dtype=np.int64)
 #: Threat discs are kept this much larger, room for the chords of arcs.
 MARGIN_M = 10.0
 
 
 @dataclass(frozen=True, slots=True)
 class JointRoute:
-    """The chosen route; regions that are not required and cannot be seen; the estimated length."""
+    """The chosen route; regions that are not required and cannot be seen; the true cost in metres.
+
+    ``sides`` are the ways to see each region that were chosen from.
+    """
 
     route: Route
     dropped: tuple[Finding, ...]
-    estimated_m: float
+    cost_m: float
+    sides: tuple[tuple[Side, ...], ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,13 +103,24 @@ def surroundings(scenario: Scenario, aircraft: Aircraft) -> Surroundings:
         settle_m=aircraft.settle_m,
         airspeed_m_s=aircraft.airspeed_m_s,
         wind=scenario.wind,
+        ground=scenario.terrain,
+        level_m=scenario.altitude_amsl_m,
     )
 
 
 def joint_route(
-    scenario: Scenario, aircraft: Aircraft, progress: Progress = silent, stop: Stop = never
+    scenario: Scenario,
+    aircraft: Aircraft,
+    progress: Progress = silent,
+    stop: Stop = never,
+    enough: Stop = never,
 ) -> JointRoute:
     """Choose the passes of all regions and their order together.
+
+    Parameters
+    ----------
+    stop, enough
+        The one cancels; the other ends the search for anything better.
 
     Raises
     ------
@@ -106,28 +134,76 @@ def joint_route(
     if not regions:
         raise InfeasibleError("swath", "scenario", "no region can be seen", "see the findings", None)
     progress("routing", 0.0)
-    angles_rad = np.arange(-math.pi, math.pi - 1e-9, COARSE_STEP_RAD, dtype=np.float64)
+    exact = len(regions) <= EXACT_ORDER_UP_TO
+    step_rad, etas = (COARSE_STEP_RAD, COARSE_ETAS) if exact else (LARGE_STEP_RAD, LARGE_ETAS)
+    angles_rad = np.arange(-math.pi, math.pi - 1e-9, step_rad, dtype=np.float64)
     coarse = []
     for region, of_region in zip(regions, sides, strict=True):
         raise_if(stop)
-        options = make_options(of_region, _allowed(region, angles_rad), COARSE_ETAS, around)
+        options = make_options(of_region, _allowed(region, angles_rad), etas, around)
         if options is None:
             options = make_options(of_region, of_region[0].angles_rad, np.linspace(0.0, 1.0, 9), around)
         if options is None:
             raise refusal(region)
         coarse.append(options)
-    candidates = _orders(scenario, around, regions, coarse)
+    candidates = _orders(scenario, around, regions, coarse, progress, stop, enough)
     refined = []
     for index, choice in enumerate(candidates):
         raise_if(stop)
-        progress("routing", 0.3 + 0.7 * index / len(candidates))
+        progress("routing", 0.4 + 0.3 * index / len(candidates))
         refined.append(_refine(scenario, around, regions, sides, choice))
-    best = min(refined, key=lambda choice: choice.cost_m)
+    legs = Legs(scenario, aircraft, stop)
+    cost_m, passes = _truest(scenario, around, regions, sides, refined, legs, progress, stop, enough)
+    cost_m, passes = split_passes(cost_m, passes, legs, stop)
+    return JointRoute(Route(passes), dropped, cost_m, tuple(sides))
+
+
+def _truest(
+    scenario: Scenario,
+    around: Surroundings,
+    regions: list[MergedRegion],
+    sides: list[tuple[Side, ...]],
+    choices: list[_Choice],
+    legs: Legs,
+    progress: Progress,
+    stop: Stop,
+    enough: Stop,
+) -> tuple[float, tuple[CollectPass, ...]]:
+    """The tour that truly costs least, and its passes.
+
+    Where flying a tour costs more than was thought, options round its own are tried with true costs.
+    """
+    best_m, best = math.inf, _passes(choices[0], sides, around)
+    choices = sorted(choices, key=lambda choice: choice.cost_m)[:TRUE_TOURS]
+    for index, choice in enumerate(choices):
+        raise_if(stop)
+        progress("routing", 0.7 + 0.3 * index / len(choices))
+        passes = _passes(choice, sides, around)
+        true_m = legs.tour_m(passes)
+        if true_m < best_m:
+            best_m, best = true_m, passes
+        if true_m - choice.cost_m <= FALSE_M or choice.cost_m >= best_m or enough():
+            continue
+        # A little finer and a little wider than the last refinement.
+        for step_rad, step_eta in ((COARSE_STEP_RAD / 2.0, 0.125), (COARSE_STEP_RAD / 8.0, 0.03)):
+            layers, of_places = _layers(scenario, around, regions, sides, choice, step_rad, step_eta)
+            found_m, picked = true_choice(layers, of_places, legs, TRUE_SOLVES, stop)
+            if not found_m < true_m - 1e-6:
+                continue
+            true_m = found_m
+            choice = _picked(choice, layers, picked, found_m)
+            passes = _passes(choice, sides, around)
+            if true_m < best_m:
+                best_m, best = true_m, passes
+    return best_m, best
+
+
+def _passes(choice: _Choice, sides: list[tuple[Side, ...]], around: Surroundings) -> tuple[CollectPass, ...]:
     passes: list[CollectPass] = []
-    for position, region_index in enumerate(best.order):
-        option = _single(best, position, sides[region_index], around)
+    for position, region_index in enumerate(choice.order):
+        option = _single(choice, position, sides[region_index], around)
         passes.extend(collect_passes(sides[region_index], option, 0))
-    return JointRoute(Route(tuple(passes)), dropped, best.cost_m)
+    return tuple(passes)
 
 
 def _visible(
@@ -147,9 +223,10 @@ def _visible(
         first = by_name[region.names[0]]
         sensor = scenario.sensor_for(first)
         try:
+            sensor, height_m = sensing(scenario, sensor, region.area)
             for name in region.names:
-                check_sensor(by_name[name], sensor, scenario.height_m)
-            found = targets(region, sensor, scenario.height_m, around, wide=wide)
+                check_sensor(by_name[name], sensor, height_m)
+            found = targets(region, sensor, height_m, around, wide=wide)
         except InfeasibleError as error:
             if region.required:
                 raise
@@ -169,25 +246,44 @@ def _allowed(region: MergedRegion, angles_rad: Floats) -> Floats:
 
 
 def _orders(
-    scenario: Scenario, around: Surroundings, regions: list[MergedRegion], options: list[Options]
+    scenario: Scenario,
+    around: Surroundings,
+    regions: list[MergedRegion],
+    options: list[Options],
+    progress: Progress,
+    stop: Stop,
+    enough: Stop,
 ) -> list[_Choice]:
     """Candidate tours over the coarse options, cheapest first."""
     offsets = np.concatenate([[0], np.cumsum([len(o.inner_m) for o in options])]).astype(np.int64)
-    first, between, last = _costs(scenario, around, options)
-    choices = []
-    if len(options) <= EXACT_ORDER_UP_TO:
-        costs, tours = kernels.best_orders(first, between, last, offsets)
-        for cost, chosen in sorted(zip(costs.tolist(), tours.tolist(), strict=True)):
-            if math.isfinite(cost):
-                choices.append(_choice(options, offsets, chosen, cost))
-        return choices
-    centroids = np.array([region.centroid for region in regions])
-    order = tour.order(centroids, scenario.start.position, scenario.end.position, "exact", scenario.seed)
-    better = kernels.improve_order(
-        first, between, last, offsets, np.array(order, dtype=np.int64), ORDER_EVALUATIONS
+    entries, exits, inner_m = (
+        np.concatenate([getattr(o, name) for o in options]) for name in ("entries", "exits", "inner_m")
     )
-    cost, picked = kernels.best_options(first, between, last, offsets, better)
-    return [_choice(options, offsets, picked.tolist(), cost)]
+    first = from_start(scenario, around, entries, around.discs) + inner_m
+    last = to_end(scenario, around, exits, around.discs)
+    if len(options) <= EXACT_ORDER_UP_TO:
+        costs = kernels.transit_costs(exits, entries, around.radius_m, around.discs)
+        wind = (around.airspeed_m_s, around.wind)
+        between = still_air_costs(costs, exits[:, None], entries[None], *wind) + inner_m[None, :]
+        totals, tours = kernels.best_orders(first, between, last, offsets)
+        return [
+            _choice(options, offsets, chosen, cost)
+            for cost, chosen in sorted(zip(totals.tolist(), tours.tolist(), strict=True))
+            if math.isfinite(cost)
+        ]
+    centroids = np.array([region.centroid for region in regions])
+    order = np.array(
+        tour.order(centroids, scenario.start.position, scenario.end.position, "exact", scenario.seed),
+        dtype=np.int64,
+    )
+    ends = (first, last, around, around.discs)
+    cost, better = large_order(
+        [order, order[::-1].copy()], centroids, options, *ends, scenario.seed, progress, stop, enough
+    )
+    layers = layers_of(scenario, around, [options[c] for c in better], around.discs)
+    cost, picked = layers.best()
+    chosen = [int(offsets[c]) + option for c, option in zip(better, picked, strict=True)]
+    return [_choice(options, offsets, chosen, cost)]
 
 
 def _choice(options: list[Options], offsets: NDArray[np.int64], chosen: list[int], cost_m: float) -> _Choice:
@@ -214,29 +310,51 @@ def _refine(
     """The same order with finer angles and offsets round the chosen ones."""
     step_rad, step_eta = COARSE_STEP_RAD / 2.0, 0.25
     for _ in range(REFINEMENTS):
-        finer = []
-        for position, region_index in enumerate(choice.order):
-            near_rad = step_rad * np.arange(-REFINE_ANGLES, REFINE_ANGLES + 1, dtype=np.float64)
-            angles_rad: Floats = choice.angle_rad[position] + near_rad
-            if regions[region_index].approach_rad is not None:
-                angles_rad = np.asarray(regions[region_index].approach_rad, dtype=np.float64)
-            etas = _near([choice.eta_first[position], choice.eta_second[position]], step_eta)
-            side = (sides[region_index][choice.side[position]],)
-            options = make_options(side, angles_rad, etas, around)
-            if options is None:
-                options = _single(choice, position, sides[region_index], around)
-            finer.append(options)
-        offsets = np.concatenate([[0], np.cumsum([len(o.inner_m) for o in finer])]).astype(np.int64)
-        first, between, last = _costs(scenario, around, finer, chain=True)
-        order = np.arange(len(finer), dtype=np.int64)
-        cost_m, picked = kernels.best_options(first, between, last, offsets, order)
+        layers, _ = _layers(scenario, around, regions, sides, choice, step_rad, step_eta)
+        cost_m, picked = layers.best()
         if cost_m < choice.cost_m:
-            found = _choice(finer, offsets, picked.tolist(), cost_m)
-            choice = _Choice(
-                choice.order, choice.side, found.angle_rad, found.eta_first, found.eta_second, cost_m
-            )
+            choice = _picked(choice, layers, picked, cost_m)
         step_rad, step_eta = step_rad / 2.0, step_eta / 2.0
     return choice
+
+
+def _layers(
+    scenario: Scenario,
+    around: Surroundings,
+    regions: list[MergedRegion],
+    sides: list[tuple[Side, ...]],
+    choice: _Choice,
+    step_rad: float,
+    step_eta: float,
+) -> tuple[Layers, list[tuple[Side, ...]]]:
+    """Options round the chosen ones, place by place, and the one side each place has them of."""
+    finer: list[Options] = []
+    of_places: list[tuple[Side, ...]] = []
+    for position, region_index in enumerate(choice.order):
+        near_rad = step_rad * np.arange(-REFINE_ANGLES, REFINE_ANGLES + 1, dtype=np.float64)
+        angles_rad: Floats = choice.angle_rad[position] + near_rad
+        if regions[region_index].approach_rad is not None:
+            angles_rad = np.asarray(regions[region_index].approach_rad, dtype=np.float64)
+        etas = _near([choice.eta_first[position], choice.eta_second[position]], step_eta)
+        side = (sides[region_index][choice.side[position]],)
+        options = make_options(side, angles_rad, etas, around)
+        if options is None:
+            options = replace(_single(choice, position, sides[region_index], around), side=NO_SIDE)
+        finer.append(options)
+        of_places.append(side)
+    return layers_of(scenario, around, finer, around.discs), of_places
+
+
+def _picked(choice: _Choice, layers: Layers, picked: list[int], cost_m: float) -> _Choice:
+    """The same order and sides with other options."""
+    pairs = list(zip(layers.options, picked, strict=True))
+    return replace(
+        choice,
+        angle_rad=tuple(float(o.angles_rad[i]) for o, i in pairs),
+        eta_first=tuple(float(o.eta_first[i]) for o, i in pairs),
+        eta_second=tuple(float(o.eta_second[i]) for o, i in pairs),
+        cost_m=cost_m,
+    )
 
 
 def _near(etas: list[float], step: float) -> Floats:
@@ -258,54 +376,6 @@ def _single(choice: _Choice, position: int, sides: tuple[Side, ...], around: Sur
     kept = {name: getattr(options, name)[same] for name in Options.__slots__}
     kept["side"] = np.full(int(same.sum()), choice.side[position], dtype=np.int64)
     return Options(**kept)
-
-
-def _costs(
-    scenario: Scenario, around: Surroundings, options: list[Options], chain: bool = False
-) -> tuple[Floats, Floats, Floats]:
-    """Costs from the start, between all options (only neighbours in a ``chain``), and to the end."""
-    entries = np.concatenate([o.entries for o in options])
-    exits = np.concatenate([o.exits for o in options])
-    inner_m = np.concatenate([o.inner_m for o in options])
-    discs = np.concatenate([around.hard, around.soft])
-    first = _terminal_costs(scenario.start, entries, around, discs)
-    first = _in_wind(first, np.array(scenario.start.position), entries, around) + inner_m
-    turned = exits + np.array([0.0, 0.0, math.pi])
-    last = _terminal_costs(_reversed(scenario.end), turned, around, discs)
-    last = _in_wind(last, exits, np.array(scenario.end.position), around)
-    if not chain:
-        costs = kernels.transit_costs(exits, entries, around.radius_m, discs)
-        between = _in_wind(costs, exits[:, None], entries[None], around) + inner_m[None, :]
-        return first, between, last
-    between = np.full((len(entries), len(entries)), np.inf)
-    at = np.concatenate([[0], np.cumsum([len(o.inner_m) for o in options])])
-    for k in range(len(options) - 1):
-        here, there = slice(at[k], at[k + 1]), slice(at[k + 1], at[k + 2])
-        costs = kernels.transit_costs(exits[here], entries[there], around.radius_m, discs)
-        costs = _in_wind(costs, exits[here, None], entries[None, there], around)
-        between[here, there] = costs + inner_m[None, there]
-    return first, between, last
-
-
-def _terminal_costs(terminal: Terminal, entries: Floats, around: Surroundings, discs: Floats) -> Floats:
-    east_m, north_m = terminal.position
-    if terminal.angle_rad is None:
-        costs: Floats = kernels.point_costs(east_m, north_m, entries, around.radius_m, discs)
-        return costs
-    pose = np.array([[east_m, north_m, terminal.angle_rad]])
-    from_pose: Floats = kernels.transit_costs(pose, entries, around.radius_m, discs)[0]
-    return from_pose
-
-
-def _in_wind(costs_m: Floats, begins: Floats, ends: Floats, around: Surroundings) -> Floats:
-    """Costs in metres through the air."""
-    return still_air_costs(costs_m, begins, ends, around.airspeed_m_s, around.wind)
-
-
-def _reversed(terminal: Terminal) -> Terminal:
-    """Where a line flown backwards would start."""
-    angle = None if terminal.angle_rad is None else terminal.angle_rad + math.pi
-    return Terminal(terminal.name, terminal.position, angle)
 
 
 def _discs(shapes: list[DiscShape]) -> Floats:

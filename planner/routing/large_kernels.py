@@ -1,0 +1,477 @@
+"""Compiled search over the order of many regions, each with many options. Numbers only.
+
+Options of region c fill the first ``counts[c]`` rows of arrays (C, K, …). Costs between two regions are a
+block (K, K), made when first asked for and kept in a pool. For an order of regions, ``pre[p, j]`` is the
+least cost of a line from the start to option j of the region at place p, and ``suf[p, j]`` that from there to
+the end: putting a region between two others then costs two products of a vector with a block, not a walk
+through the whole order. Ruin and recreate after G. Schrimpf et al., "Record breaking optimization results
+using the ruin and recreate principle", Journal of Computational Physics 159 (2000).
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from planner.routing.joint_kernels import transit_costs
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Halves = NDArray[np.float32]
+Flags = NDArray[np.bool_]
+
+#: An insertion is passed over with this chance, so that recreation does not always end alike.
+BLINK = 0.02
+
+
+@njit(cache=True)
+def discs_between(places: Floats, others: Floats, discs: Floats, slack: float) -> Floats:
+    """Those of the discs that a straight line from one of the places to one of the others may touch."""
+    ce, cn = places[:, 0].mean(), places[:, 1].mean()
+    de, dn = others[:, 0].mean(), others[:, 1].mean()
+    reach = 0.0
+    for k in range(places.shape[0]):
+        reach = max(reach, math.hypot(places[k, 0] - ce, places[k, 1] - cn))
+    for k in range(others.shape[0]):
+        reach = max(reach, math.hypot(others[k, 0] - de, others[k, 1] - dn))
+    length = math.hypot(de - ce, dn - cn)
+    kept = np.zeros(discs.shape[0], dtype=np.bool_)
+    for k in range(discs.shape[0]):
+        along = 0.0
+        if length > 0.0:
+            along = ((discs[k, 0] - ce) * (de - ce) + (discs[k, 1] - cn) * (dn - cn)) / (length * length)
+            along = min(max(along, 0.0), 1.0)
+        away = math.hypot(discs[k, 0] - ce - along * (de - ce), discs[k, 1] - cn - along * (dn - cn))
+        kept[k] = away <= discs[k, 2] + reach + slack
+    return discs[kept]
+
+
+@njit(cache=True)
+def in_wind(length: float, offset_e: float, offset_n: float, wind: Floats) -> float:
+    """Metres through the air of a line over an offset; the twin of ``vehicle.wind.still_air_costs``.
+
+    ``wind`` is (4,): its east and north parts by the airspeed, its speed by the airspeed, and the mean cost
+    of a metre over all courses.
+    """
+    direct = math.hypot(offset_e, offset_n)
+    if direct == 0.0:
+        return float(length * wind[3])
+    along = (wind[0] * offset_e + wind[1] * offset_n) / direct
+    across = (wind[0] * offset_n - wind[1] * offset_e) / direct
+    speed = along + math.sqrt(max(1.0 - across * across, 0.0))
+    return float(direct / speed + (length - direct) * wind[3])
+
+
+@njit(cache=True)
+def block(
+    a: int,
+    b: int,
+    pool: Halves,
+    slots: Ints,
+    used: Ints,
+    exits: Floats,
+    entries: Floats,
+    inner: Floats,
+    counts: Ints,
+    radius: float,
+    discs: Floats,
+    wind: Floats,
+) -> Halves:
+    """Costs from every option of region a to every option of region b, b's own cost included."""
+    if slots[a, b] < 0:
+        if used[0] == pool.shape[0]:
+            slots[:, :] = -1
+            used[0] = 0
+        slot = used[0]
+        used[0] += 1
+        slots[a, b] = slot
+        here, there = exits[a, : counts[a]], entries[b, : counts[b]]
+        costs = transit_costs(here, there, radius, discs_between(here, there, discs, 0.0))
+        for i in range(counts[a]):
+            for j in range(counts[b]):
+                cost = costs[i, j]
+                if wind[2] > 0.0:
+                    offset_e, offset_n = there[j, 0] - here[i, 0], there[j, 1] - here[i, 1]
+                    cost = in_wind(cost, offset_e, offset_n, wind)
+                pool[slot, i, j] = cost + inner[b, j]
+    found: Halves = pool[slots[a, b]]
+    return found
+
+
+@njit(cache=True)
+def forward(before: Floats, costs: Halves, rows: int, columns: int, out: Floats) -> None:
+    """``out[j]`` = least ``before[i] + costs[i, j]``."""
+    out[:] = np.inf
+    for i in range(rows):
+        so_far = before[i]
+        if so_far < np.inf:
+            for j in range(columns):
+                cost = so_far + costs[i, j]
+                if cost < out[j]:
+                    out[j] = cost
+
+
+@njit(cache=True)
+def backward(after: Floats, costs: Halves, rows: int, columns: int, out: Floats) -> None:
+    """``out[i]`` = least ``costs[i, j] + after[j]``."""
+    out[:] = np.inf
+    for i in range(rows):
+        least = np.inf
+        for j in range(columns):
+            cost = costs[i, j] + after[j]
+            if cost < least:
+                least = cost
+        out[i] = least
+
+
+@njit(cache=True)
+def sweep_forward(
+    order: Ints,
+    size: int,
+    begin: int,
+    pre: Floats,
+    first: Floats,
+    pool: Halves,
+    slots: Ints,
+    used: Ints,
+    exits: Floats,
+    entries: Floats,
+    inner: Floats,
+    counts: Ints,
+    radius: float,
+    discs: Floats,
+    wind: Floats,
+) -> None:
+    """Fill ``pre`` from place ``begin`` on."""
+    for p in range(begin, size):
+        c = order[p]
+        if p == 0:
+            pre[0] = first[c]
+            continue
+        b = order[p - 1]
+        costs = block(b, c, pool, slots, used, exits, entries, inner, counts, radius, discs, wind)
+        forward(pre[p - 1], costs, counts[b], counts[c], pre[p])
+
+
+@njit(cache=True)
+def sweep_backward(
+    order: Ints,
+    size: int,
+    begin: int,
+    suf: Floats,
+    last: Floats,
+    pool: Halves,
+    slots: Ints,
+    used: Ints,
+    exits: Floats,
+    entries: Floats,
+    inner: Floats,
+    counts: Ints,
+    radius: float,
+    discs: Floats,
+    wind: Floats,
+) -> None:
+    """Fill ``suf`` from place ``begin`` back to the first."""
+    for p in range(begin, -1, -1):
+        c = order[p]
+        if p == size - 1:
+            suf[p] = last[c]
+            continue
+        d = order[p + 1]
+        costs = block(c, d, pool, slots, used, exits, entries, inner, counts, radius, discs, wind)
+        backward(suf[p + 1], costs, counts[c], counts[d], suf[p])
+
+
+@njit(cache=True)
+def ruin_and_recreate(
+    order: Ints,
+    iterations: int,
+    seed: int,
+    most: int,
+    heat: float,
+    near: Flags,
+    nearest: Ints,
+    first: Floats,
+    last: Floats,
+    pool: Halves,
+    slots: Ints,
+    used: Ints,
+    exits: Floats,
+    entries: Floats,
+    inner: Floats,
+    counts: Ints,
+    radius: float,
+    discs: Floats,
+    wind: Floats,
+) -> tuple[float, Ints]:
+    """Take out some regions that lie together, put each back where it costs least; keep what is shorter.
+
+    Parameters
+    ----------
+    most
+        Largest number of regions taken out at once.
+    heat
+        A little longer is kept too, by up to ``heat`` times the logarithm of a random number, falling to
+        nothing in the last iteration.
+    near, nearest
+        Whether two regions are neighbours (C, C), and all others of each from the nearest on (C, C − 1).
+
+    Returns
+    -------
+    tuple
+        Cost and order (C,) of the best found.
+    """
+    np.random.seed(seed)
+    n = len(order)
+    k = first.shape[1]
+    pre = np.empty((n, k))
+    suf = np.empty((n, k))
+    vector = np.empty(k)
+    now = order.copy()
+    sweep_forward(
+        now, n, 0, pre, first, pool, slots, used, exits, entries, inner, counts, radius, discs, wind
+    )
+    now_cost = np.inf
+    for j in range(counts[now[n - 1]]):
+        now_cost = min(now_cost, pre[n - 1, j] + last[now[n - 1], j])
+    best, best_cost = now.copy(), now_cost
+    out = np.zeros(n, dtype=np.bool_)
+    removed = np.empty(n, dtype=np.int64)
+    for iteration in range(iterations):
+        count = 1 + np.random.randint(0, most)
+        middle = np.random.randint(0, n)
+        out[:] = False
+        if np.random.random() < 0.5:
+            begin = max(0, min(n - count, middle - np.random.randint(0, count)))
+            for p in range(begin, begin + count):
+                out[now[p]] = True
+                removed[p - begin] = now[p]
+        else:
+            removed[0] = middle
+            out[middle] = True
+            for p in range(count - 1):
+                removed[p + 1] = nearest[middle, p]
+                out[nearest[middle, p]] = True
+        for p in range(count - 1, 0, -1):
+            q = np.random.randint(0, p + 1)
+            removed[p], removed[q] = removed[q], removed[p]
+        trial = np.empty(n, dtype=np.int64)
+        size = 0
+        for p in range(n):
+            if not out[now[p]]:
+                trial[size] = now[p]
+                size += 1
+        sweep_forward(
+            trial, size, 0, pre, first, pool, slots, used, exits, entries, inner, counts, radius, discs, wind
+        )
+        sweep_backward(
+            trial,
+            size,
+            size - 1,
+            suf,
+            last,
+            pool,
+            slots,
+            used,
+            exits,
+            entries,
+            inner,
+            counts,
+            radius,
+            discs,
+            wind,
+        )
+        cost = np.inf
+        for r in range(count):
+            c = removed[r]
+            cost, where = np.inf, -1
+            for only_near in (True, False):
+                for gap in range(size + 1):
+                    if only_near:
+                        if 0 < gap < size and not (near[c, trial[gap - 1]] or near[c, trial[gap]]):
+                            continue
+                        if np.random.random() < BLINK:
+                            continue
+                    if gap == 0:
+                        vector[:] = first[c]
+                    else:
+                        a = trial[gap - 1]
+                        costs = block(
+                            a, c, pool, slots, used, exits, entries, inner, counts, radius, discs, wind
+                        )
+                        forward(pre[gap - 1], costs, counts[a], counts[c], vector)
+                    if gap == size:
+                        for j in range(counts[c]):
+                            if vector[j] + last[c, j] < cost:
+                                cost, where = vector[j] + last[c, j], gap
+                        continue
+                    d = trial[gap]
+                    costs = block(c, d, pool, slots, used, exits, entries, inner, counts, radius, discs, wind)
+                    for i in range(counts[c]):
+                        if vector[i] < cost:
+                            for j in range(counts[d]):
+                                through = vector[i] + costs[i, j] + suf[gap, j]
+                                if through < cost:
+                                    cost, where = through, gap
+                if where >= 0:
+                    break
+            if where < 0:
+                cost = np.inf
+                break
+            for p in range(size, where, -1):
+                trial[p] = trial[p - 1]
+                suf[p] = suf[p - 1]
+            trial[where] = c
+            size += 1
+            if r + 1 < count:
+                sweep_forward(
+                    trial,
+                    size,
+                    where,
+                    pre,
+                    first,
+                    pool,
+                    slots,
+                    used,
+                    exits,
+                    entries,
+                    inner,
+                    counts,
+                    radius,
+                    discs,
+                    wind,
+                )
+                sweep_backward(
+                    trial,
+                    size,
+                    where,
+                    suf,
+                    last,
+                    pool,
+                    slots,
+                    used,
+                    exits,
+                    entries,
+                    inner,
+                    counts,
+                    radius,
+                    discs,
+                    wind,
+                )
+        if not cost < np.inf:
+            continue
+        warmth = heat * (1.0 - (iteration + 1.0) / iterations)
+        if cost < now_cost - warmth * math.log(max(np.random.random(), 1e-12)):
+            now, now_cost = trial, cost
+            if cost < best_cost - 1e-6:
+                best, best_cost = trial.copy(), cost
+    return best_cost, best
+
+
+@njit(cache=True)
+def reverse_runs(
+    order: Ints,
+    longest: int,
+    near: Flags,
+    first: Floats,
+    last: Floats,
+    pool: Halves,
+    slots: Ints,
+    used: Ints,
+    exits: Floats,
+    entries: Floats,
+    inner: Floats,
+    counts: Ints,
+    radius: float,
+    discs: Floats,
+    wind: Floats,
+) -> tuple[float, Ints]:
+    """One round of 2-opt: fly runs of regions the other way round where that is shorter.
+
+    Runs up to ``longest`` that bring two neighbours side by side are tried.
+    """
+    n = len(order)
+    k = first.shape[1]
+    pre = np.empty((n, k))
+    suf = np.empty((n, k))
+    here, there = np.empty(k), np.empty(k)
+    now = order.copy()
+    sweep_forward(
+        now, n, 0, pre, first, pool, slots, used, exits, entries, inner, counts, radius, discs, wind
+    )
+    sweep_backward(
+        now, n, n - 1, suf, last, pool, slots, used, exits, entries, inner, counts, radius, discs, wind
+    )
+    best = np.inf
+    for j in range(counts[now[0]]):
+        best = min(best, pre[0, j] + suf[0, j])
+    for i in range(n):
+        for j in range(i + 1, min(n, i + longest)):
+            beside = (i > 0 and near[now[i - 1], now[j]]) or (j + 1 < n and near[now[i], now[j + 1]])
+            if not beside and i > 0 and j + 1 < n:
+                continue
+            before = i - 1
+            for p in range(j, i - 1, -1):
+                c = now[p]
+                if p == j and before < 0:
+                    here[:] = first[c]
+                    continue
+                b = now[before] if p == j else now[p + 1]
+                costs = block(b, c, pool, slots, used, exits, entries, inner, counts, radius, discs, wind)
+                if p == j:
+                    forward(pre[before], costs, counts[b], counts[c], here)
+                else:
+                    forward(here, costs, counts[b], counts[c], there)
+                    here[:] = there
+            c = now[i]
+            total = np.inf
+            if j + 1 == n:
+                for q in range(counts[c]):
+                    total = min(total, here[q] + last[c, q])
+            else:
+                d = now[j + 1]
+                costs = block(c, d, pool, slots, used, exits, entries, inner, counts, radius, discs, wind)
+                forward(here, costs, counts[c], counts[d], there)
+                for q in range(counts[d]):
+                    total = min(total, there[q] + suf[j + 1, q])
+            if total < best - 1e-3:
+                best = total
+                now[i : j + 1] = now[i : j + 1][::-1].copy()
+                sweep_forward(
+                    now,
+                    n,
+                    i,
+                    pre,
+                    first,
+                    pool,
+                    slots,
+                    used,
+                    exits,
+                    entries,
+                    inner,
+                    counts,
+                    radius,
+                    discs,
+                    wind,
+                )
+                sweep_backward(
+                    now,
+                    n,
+                    j,
+                    suf,
+                    last,
+                    pool,
+                    slots,
+                    used,
+                    exits,
+                    entries,
+                    inner,
+                    counts,
+                    radius,
+                    discs,
+                    wind,
+                )
+    return best, now
