@@ -19,7 +19,8 @@ from planner.route import Anchor, CollectPass, Route
 from planner.routing.greedy import greedy
 from planner.routing.joint import joint_route
 from planner.scenario import Method, Scenario
-from planner.transit import ssas_connector, tangent
+from planner.transit import ssas_connector
+from planner.transit.refine import Risk, connect_by_cost
 from planner.vehicle.aircraft import Aircraft
 from planner.vehicle.wind import drift, in_wind
 from planner.version import __version__
@@ -148,6 +149,7 @@ def _connect(
 ) -> tuple[tuple[Leg, ...], tuple[str, ...]]:
     """A flyable leg from the start through all collects to the end."""
     zones = keep_out(scenario, TRANSIT_MARGIN_M)
+    risk = Risk.of(scenario.threats, scenario.objective, scenario.height_m)
     starts = [Anchor(*scenario.start.position, scenario.start.angle_rad)] + [
         Anchor(*p.end, p.angle_rad) for p in route.passes
     ]
@@ -160,7 +162,9 @@ def _connect(
     for k, (start, goal) in enumerate(zip(starts, goals, strict=True)):
         raise_if(stop)
         progress("transit", k / len(starts))
-        path, method = _leg(scenario, aircraft, methods, zones, start, goal, stop, notes, names[k : k + 2])
+        path, method = _leg(
+            scenario, aircraft, methods, zones, risk, start, goal, stop, notes, names[k : k + 2]
+        )
         if k < len(route.passes) and aircraft.settle_m > 0.0:
             path = _extended(path, route.passes[k])
         legs.append(Leg(names[k], names[k + 1], path, method))
@@ -172,6 +176,7 @@ def _leg(
     aircraft: Aircraft,
     methods: dict[str, str],
     zones: KeepOut,
+    risk: Risk,
     start: Anchor,
     goal: Anchor,
     stop: Stop,
@@ -195,7 +200,7 @@ def _leg(
             notes.append(f"SSAS connects {names[0]} and {names[1]} in no way ({error.message}): tangent used")
         else:
             return path, "ssas"
-    return tangent.connect(start, goal, zones, radius_m, stop), "tangent"
+    return connect_by_cost(start, goal, zones, radius_m, risk, stop), "tangent"
 
 
 def _settled(collect: CollectPass, settle_m: float) -> Anchor:

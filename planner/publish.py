@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from shapely.geometry import MultiPolygon, Polygon
@@ -11,6 +11,7 @@ from shapely.geometry import MultiPolygon, Polygon
 from planner.dubins.path import Path, Segment, join
 from planner.environment.shapes import DiscShape, hard_shapes
 from planner.environment.threats import curve_risk
+from planner.environment.zones import keep_out
 from planner.metrics import DIVIDING_M, energy_wh
 from planner.plan import (
     Collect,
@@ -30,6 +31,7 @@ from planner.plan import (
 )
 from planner.route import CollectPass
 from planner.scenario import Scenario
+from planner.transit.certificate import proven_m
 from planner.vehicle.aircraft import Aircraft
 from planner.vehicle.wind import duration_s
 
@@ -90,6 +92,7 @@ def collects_and_transits(
 ) -> tuple[tuple[Collect, ...], tuple[Transit, ...], tuple[Footprint, ...]]:
     """The features along the line, numbered from 1 in flight order."""
     collects, transits, footprints = [], [], []
+    zones = replace(keep_out(scenario, soft=False), area=None)
     along_m = along_s = 0.0
     for seq, leg in enumerate(legs, start=1):
         missile, radar = curve_risk(
@@ -98,7 +101,7 @@ def collects_and_transits(
         transits.append(
             Transit(
                 aircraft.name, seq, leg.from_name, leg.to_name, _line(scenario, leg.path), leg.path.length_m,
-                missile, radar, leg.method,
+                missile, radar, leg.method, proven_m(leg.path, zones),
             )
         )  # fmt: skip
         along_m += leg.path.length_m

@@ -15,6 +15,7 @@ import numpy as np
 
 from planner.dubins.path import Path, join
 from planner.dubins.words import candidates_between
+from planner.environment.kernels import length_in_discs
 from planner.environment.zones import TOUCH_M, Disc, KeepOut
 from planner.route import Anchor
 
@@ -28,7 +29,10 @@ LEANS_RAD = tuple(math.radians(lean) for lean in (0, 30, -30, 60, -60))
 #: So many of the most promising exits are searched from.
 TRIES = 12
 
-#: Lines are sampled this finely to measure how much of them lies inside.
+#: Of a disc that holds both ends, so many exits are tried with so many entries.
+PAIRS = 4
+
+#: Arcs are sampled this finely to measure how much of them lies inside.
 SAMPLE_M = 5.0
 
 #: A line that hugs a disc is not inside: chords between samples are, by a few millimetres.
@@ -59,6 +63,7 @@ def shorten_crossings(
     """
     if not held:
         return path
+    path = _around(path, start, goal, held, zones, radius_m, solve)
     way_out, rest, origin = _leave(path, start, goal, held, zones, radius_m, solve)
 
     def solve_back(a: Anchor, b: Anchor, kept: KeepOut) -> Path | None:
@@ -84,24 +89,9 @@ def _leave(
     """The best way out of the discs that hold the start, the line from there on, and where it begins."""
     best: tuple[Path | None, Path, Anchor] = (None, path, start)
     best_cost = _cost(path, held)
-    exits: list[tuple[float, int, Path, Anchor]] = []
-    for disc in held:
-        if not _holds(disc, start) or _holds(disc, goal):
-            continue
-        towards = math.atan2(start.north_m - disc.north_m, start.east_m - disc.east_m)
-        for off, lean in itertools.product(EXITS_RAD, LEANS_RAD):
-            angle = towards + off
-            place = Anchor(
-                disc.east_m + disc.radius_m * math.cos(angle),
-                disc.north_m + disc.radius_m * math.sin(angle),
-                angle + lean,
-            )
-            words = candidates_between(start, place, radius_m)
-            out = next((word for word in words if zones.clear(word)), None)
-            if out is not None:
-                least = _cost(out, held) + math.dist(place.position, goal.position)
-                exits.append((least, len(exits), out, place))
-    for least, _, out, place in sorted(exits, key=lambda row: row[:2])[:TRIES]:
+    leaving = [disc for disc in held if _holds(disc, start) and not _holds(disc, goal)]
+    exits = [e for disc in leaving for e in _exits(disc, start, goal, held, zones, radius_m)]
+    for least, out, place in sorted(exits, key=lambda row: row[0])[:TRIES]:
         if least >= best_cost:
             break
         kept = tuple(d for d in held if not _holds(d, place) and not _holds(d, goal))
@@ -114,20 +104,63 @@ def _leave(
     return best
 
 
+def _around(
+    path: Path,
+    start: Anchor,
+    goal: Anchor,
+    held: Sequence[Disc],
+    zones: KeepOut,
+    radius_m: float,
+    solve: Solve,
+) -> Path:
+    """Where a disc holds both ends: out of it, round it, and in again, if that is better."""
+    best, best_cost = path, _cost(path, held)
+    for disc in held:
+        if not (_holds(disc, start) and _holds(disc, goal)):
+            continue
+        outs = _exits(disc, start, goal, held, zones, radius_m)[:PAIRS]
+        ins = _exits(disc, _turned(goal), start, held, zones, radius_m)[:PAIRS]
+        for (_, out, place), (_, back, other) in itertools.product(outs, ins):
+            ends_cost = _cost(out, held) + _cost(back, held)
+            if ends_cost + math.dist(place.position, other.position) >= best_cost:
+                continue
+            kept = tuple(d for d in held if not _holds(d, place) and not _holds(d, other))
+            between = solve(place, _turned(other), replace(zones, discs=zones.discs + kept))
+            if between is None:
+                continue
+            cost = ends_cost + _cost(between, held)
+            if cost < best_cost - 1e-6:
+                best, best_cost = join(out, between, back.reverse()), cost
+    return best
+
+
+def _exits(
+    disc: Disc, start: Anchor, goal: Anchor, held: Sequence[Disc], zones: KeepOut, radius_m: float
+) -> list[tuple[float, Path, Anchor]]:
+    """Ways from the start to a disc's circle: least cost of a line to the goal by it, the way, its end."""
+    exits: list[tuple[float, Path, Anchor]] = []
+    towards = math.atan2(start.north_m - disc.north_m, start.east_m - disc.east_m)
+    for off, lean in itertools.product(EXITS_RAD, LEANS_RAD):
+        angle = towards + off
+        place = Anchor(
+            disc.east_m + disc.radius_m * math.cos(angle),
+            disc.north_m + disc.radius_m * math.sin(angle),
+            angle + lean,
+        )
+        words = candidates_between(start, place, radius_m)
+        out = next((word for word in words if zones.clear(word)), None)
+        if out is not None:
+            exits.append((_cost(out, held) + math.dist(place.position, goal.position), out, place))
+    return sorted(exits, key=lambda row: row[0])
+
+
 def _cost(path: Path, held: Sequence[Disc]) -> float:
     """Length and weighted metres inside."""
-    rows = path.sample(SAMPLE_M, SAMPLE_M)
-    middles = 0.5 * (rows[1:, :2] + rows[:-1, :2])
-    steps_m = np.diff(rows[:, 3])
+    points = path.sample(SAMPLE_M)[:, :2]
     inside_m = sum(
-        float(
-            steps_m[
-                np.hypot(middles[:, 0] - d.east_m, middles[:, 1] - d.north_m) < d.radius_m - HUGGING_M
-            ].sum()
-        )
-        for d in held
+        length_in_discs(points, np.array([[d.east_m, d.north_m, d.radius_m - HUGGING_M]])) for d in held
     )
-    return path.length_m + INSIDE_WEIGHT * inside_m
+    return path.length_m + INSIDE_WEIGHT * float(inside_m)
 
 
 def _holds(disc: Disc, end: Anchor) -> bool:
