@@ -49,6 +49,17 @@ async def track(flight_id: str, flights: FlightsDep) -> Response:
 
 
 @router.get(
+    "/{flight_id}/track.gpx",
+    summary="The track as GPX",
+    response_class=Response,
+    responses=responses(404) | {200: {"content": {"application/gpx+xml": {"schema": {"type": "string"}}}}},
+)
+async def track_gpx(flight_id: str, flights: FlightsDep) -> Response:
+    """The line flown with heights over the sea and times, as GPX 1.1."""
+    return Response(await flights.track_gpx(flight_id), media_type="application/gpx+xml")
+
+
+@router.get(
     "/{flight_id}/coverage.geojson",
     summary="The ground seen",
     response_class=Response,

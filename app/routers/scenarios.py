@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
-from fastapi import APIRouter, Request
+import asyncio
+from typing import Annotated, Any, Literal
+
+from fastapi import APIRouter, Query, Request, Response
 
 from app.deps import PlanningDep
 from app.problems import responses
 from app.routers.bodies import SCENARIO_BODY
 from app.schemas import FindingOut, ValidationOut
-from app.services.documents import read_object
+from app.services.documents import read_object, write_json
 from app.services.errors import RefusedError
+from app.services.regions_import import FORMAT_OF_MEDIA_TYPE, ImportOptions, import_file
 from app.services.work import finding_json
 
 router = APIRouter(prefix="/api/v1/scenarios", tags=["scenarios"])
@@ -30,3 +34,91 @@ async def validate(request: Request, planning: PlanningDep) -> ValidationOut:
     return ValidationOut(
         findings=[FindingOut.model_validate(finding_json(finding)) for finding in verdict.warnings]
     )
+
+
+_BINARY: dict[str, Any] = {"schema": {"type": "string", "format": "binary"}}
+IMPORT_BODY: dict[str, Any] = {
+    "required": True,
+    "description": "The file: KML, KMZ, GPX, GeoJSON, or an archive with a shapefile.",
+    "content": dict.fromkeys((*FORMAT_OF_MEDIA_TYPE, "application/zip", "application/octet-stream"), _BINARY),
+}
+IMPORT_ANSWER: dict[int | str, dict[str, Any]] = {
+    200: {
+        "description": "Features of a scenario; `notes` says what was assumed or left out.",
+        "content": {
+            "application/geo+json": {
+                "schema": {
+                    "type": "object",
+                    "required": ["type", "features", "format", "notes"],
+                    "properties": {
+                        "type": {"const": "FeatureCollection"},
+                        "features": {"type": "array", "items": {"type": "object"}},
+                        "format": {"type": "string"},
+                        "notes": {"type": "array", "items": {"type": "string"}},
+                    },
+                },
+                "example": {
+                    "type": "FeatureCollection",
+                    "features": [
+                        {
+                            "type": "Feature",
+                            "id": "north field",
+                            "geometry": {
+                                "type": "Polygon",
+                                "coordinates": [[[8.5, 47.3], [8.6, 47.3], [8.6, 47.4], [8.5, 47.3]]],
+                            },
+                            "properties": {"role": "roi", "name": "north field"},
+                        }
+                    ],
+                    "format": "kml",
+                    "notes": [],
+                },
+            }
+        },
+    }
+}
+Metres = Annotated[float | None, Query(gt=0, description="For shapes that do not say theirs.")]
+
+
+@router.post(
+    "/import",
+    summary="Turn a file of regions into features",
+    response_class=Response,
+    responses=responses(422) | IMPORT_ANSWER,
+    openapi_extra={"requestBody": IMPORT_BODY},
+)
+async def import_regions(
+    request: Request,
+    form: Annotated[
+        Literal["kml", "kmz", "gpx", "shp", "shapefile", "geojson"] | None,
+        Query(
+            alias="format", description="Format of the body; found by media type and content when left out."
+        ),
+    ] = None,
+    role: Annotated[
+        Literal["roi", "threat", "no_fly", "area", "obstacle", "start", "end", "base", "importance"] | None,
+        Query(
+            description="Role of shapes that no value, name or folder of the file gives one "
+            "[`roi` for polygons and lines, `threat` for points]."
+        ),
+    ] = None,
+    width_m: Metres = None,
+    radius_m: Metres = None,
+    height_m: Metres = None,
+    crs: Annotated[
+        str | None,
+        Query(max_length=20, description="Reference system of a shapefile [its .prj's], e.g. EPSG:32611."),
+    ] = None,
+) -> Response:
+    """A FeatureCollection to merge into a scenario; stores and plans nothing.
+
+    Polygons become regions, lines corridors of `width_m`, points threats of `radius_m`, unless the file's own
+    `role` values, names or folders (`No-fly zones`, `Operating area`, `Start` …) say otherwise.
+    """
+    media_type = request.headers.get("content-type", "").split(";")[0].strip().lower()
+    options = ImportOptions(role, width_m, radius_m, height_m, crs)
+    found = await asyncio.to_thread(
+        import_file, await request.body(), options, form or FORMAT_OF_MEDIA_TYPE.get(media_type)
+    )
+    answer = found.collection | {"format": found.format, "notes": list(found.notes)}
+    return Response(write_json(answer), media_type="application/geo+json")

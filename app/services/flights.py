@@ -13,6 +13,7 @@ from shapely.geometry.base import BaseGeometry
 
 from app.services.documents import read_object
 from app.services.errors import ConflictError, NotFoundError
+from app.services.gpx import write_gpx
 from app.services.missions import plan_of
 from app.services.planning import PlanningService
 from app.services.records import FlightRecord, TrackSample
@@ -44,6 +45,11 @@ class FlightService:
         """The track as GeoJSON: the line, and a piece for each time the sensor was on."""
         record = await self._store.get(flight_id)
         return track_geojson(record, await self._store.track(flight_id))
+
+    async def track_gpx(self, flight_id: str) -> str:
+        """The track as GPX 1.1."""
+        record = await self._store.get(flight_id)
+        return write_gpx(record, await self._store.track(flight_id))
 
     async def coverage(self, flight_id: str) -> dict[str, Any]:
         """The ground seen, as GeoJSON, with the fraction of each region and the cross-track errors.
