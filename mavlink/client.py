@@ -40,6 +40,7 @@ _INTERVALS_HZ: Final = {
 }
 _MICROSECONDS: Final = 1e6
 _PARAMETER_RETRIES: Final = 2
+_PARAMETER_TIMEOUT_S: Final = 0.8
 
 
 class VehicleClient(FlightCommands):
@@ -267,7 +268,11 @@ class VehicleClient(FlightCommands):
 
     def _parameter_settings(self) -> TransferSettings:
         """Fewer retries than for missions: a name the vehicle does not know stays silent every time."""
-        return replace(self._settings, retries=min(self._settings.retries, _PARAMETER_RETRIES))
+        return replace(
+            self._settings,
+            retries=min(self._settings.retries, _PARAMETER_RETRIES),
+            timeout_s=min(self._settings.timeout_s, _PARAMETER_TIMEOUT_S),
+        )
 
     def _target(self) -> tuple[int, int]:
         self._driver.require_connected()

@@ -218,21 +218,21 @@ def _bank_reason(needs: Needs) -> str:
     return f"turns of {needs.turn_radius_m:.0f} m at {needs.airspeed_m_s:g} m/s need {_bank_deg(needs):.0f}°"
 
 
-def _speed(name: str, scale: float = 1.0) -> Rule:
+def _speed(name: str) -> Rule:
     return _check(
         name,
-        lambda value, needs: abs(value * scale - needs.airspeed_m_s) <= 0.1 * needs.airspeed_m_s,
+        lambda value, needs: abs(value - needs.airspeed_m_s) <= 0.1 * needs.airspeed_m_s,
         lambda needs: f"the plan is for {needs.airspeed_m_s:g} m/s, which a DO_CHANGE_SPEED item asks for",
-        lambda needs: needs.airspeed_m_s / scale,
+        lambda needs: needs.airspeed_m_s,
     )
 
 
-def _bank(name: str, scale: float = 1.0) -> Rule:
+def _bank(name: str) -> Rule:
     return _check(
         name,
-        lambda value, needs: value * scale >= _bank_deg(needs),
+        lambda value, needs: value >= _bank_deg(needs),
         _bank_reason,
-        lambda needs: float(math.ceil(_bank_deg(needs) + 5.0) / scale),
+        lambda needs: float(math.ceil(_bank_deg(needs) + 5.0)),
         "error",
     )
 
@@ -395,7 +395,6 @@ RULES: Final[dict[tuple[Autopilot, VehicleType], tuple[Rule, ...]]] = {
         ),
         _speed("AIRSPEED_CRUISE"),
         _bank("ROLL_LIMIT_DEG"),
-        _bank("LIM_ROLL_CD", 0.01),
         _check(
             "RTL_AUTOLAND",
             lambda value, needs: value > 0,

@@ -20,7 +20,10 @@ from app.schemas_vehicles import (
     LogList,
     LogOut,
     MissionIn,
+    ParametersOut,
     Part,
+    PreflightIn,
+    PreflightOut,
     UploadOut,
     VehicleIn,
     VehicleList,
@@ -121,6 +124,29 @@ async def clear(vehicle_id: str, fleet: FleetDep, part: Parts = ["mission"]) -> 
     """Empty the vehicle's lists."""
     outcomes = await fleet.clear(vehicle_id, list(dict.fromkeys(part)))
     return ClearedOut(vehicle_id=vehicle_id, parts={name: o.kind for name, o in outcomes.items()})
+
+
+@router.post("/{vehicle_id}/preflight", summary="Check before flight", responses=responses(404, 409, 422))
+async def preflight(vehicle_id: str, body: PreflightIn, fleet: FleetDep) -> PreflightOut:
+    """Plan, dialect, mission and fence as held, parameters, battery, place, fix, altitude datum, wind.
+
+    The vehicle is read, never changed. It is `ready` when no check has failed.
+    """
+    choice = MissionChoice(body.vehicle, None, body.payload)
+    return PreflightOut.of(await fleet.preflight(vehicle_id, body.plan_id, choice))
+
+
+@router.get("/{vehicle_id}/parameters", summary="Read parameters", responses=responses(404, 409, 422))
+async def parameters(
+    vehicle_id: str,
+    fleet: FleetDep,
+    name: Annotated[list[str] | None, Query(max_length=200, description="Repeat for several.")] = None,
+    plan_id: Annotated[str | None, Query(max_length=36, description="Read and judge what it needs.")] = None,
+    payload: Annotated[str | None, Query(max_length=200)] = None,
+) -> ParametersOut:
+    """Parameters by name; with `plan_id` also those the plan needs, with findings. None is ever changed."""
+    report = await fleet.parameters(vehicle_id, name or [], plan_id, MissionChoice(None, None, payload))
+    return ParametersOut.of(vehicle_id, report)
 
 
 @router.get("/{vehicle_id}/logs", summary="List recordings", responses=responses(404))

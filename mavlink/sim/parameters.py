@@ -33,8 +33,9 @@ class Parameters:
                 "FENCE_TYPE": 7.0,
                 "FENCE_ACTION": 1.0,
                 "CAM1_TYPE": 1.0,
-                "SERVO9_FUNCTION": 10.0,
-            } | {f"RELAY{number}_FUNCTION": 1.0 for number in range(1, 7)}
+            }
+            self._values |= {f"RELAY{number}_FUNCTION": 1.0 for number in range(1, 7)}
+            self._values |= {f"SERVO{n}_FUNCTION": 10.0 if n == 9 else 0.0 for n in range(1, 17)}
         else:
             self._values = {
                 "MAV_SYS_ID": float(settings.system_id),
@@ -50,7 +51,11 @@ class Parameters:
                 "TRIG_MODE": 4.0,
                 "COM_DISARM_PRFLT": 10.0,
                 "COM_DISARM_LAND": 2.0,
-            } | {f"PWM_MAIN_FUNC{output}": 396.0 + output for output in range(5, 9)}
+            } | {
+                f"PWM_{group}_FUNC{output}": 396.0 + output if group == "MAIN" and output > 4 else 0.0
+                for group in ("MAIN", "AUX")
+                for output in range(1, 9)
+            }
 
     def receive(self, message: Message) -> list[Message]:
         """Answers to one message of the parameter protocol; none for others, and none for unknown names."""

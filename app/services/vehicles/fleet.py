@@ -19,7 +19,9 @@ from app.services.planning import PlanningService
 from app.services.store.flights import FlightStore
 from app.services.store.uploads import UploadStore
 from app.services.vehicles.connection import Home, replayed_plan
+from app.services.vehicles.inspection import ParameterReport, inspect, mission_needs, read_parameters
 from app.services.vehicles.items import item_json
+from app.services.vehicles.preflight import Preflight
 from app.services.vehicles.recorder import HeldPlan, is_flying
 from app.services.vehicles.recordings import RecordingFile, Recordings
 from app.services.vehicles.uploads import UploadReport, judge_upload, new_report, report_json, send_parts
@@ -176,7 +178,55 @@ class Fleet:
                 await send_parts(vehicle.client, report, tell)
             finally:
                 await self._record_upload(vehicle)
+            if report.outcome == "accepted":
+                report.preflight = await self._preflight_behind(vehicle, plan, report, choice)
         return report
+
+    async def preflight(self, vehicle_id: str, plan_id: str, choice: MissionChoice) -> Preflight:
+        """Ask the vehicle whether it is ready to fly a plan; changes nothing in it."""
+        vehicle = self.get(vehicle_id)
+        async with vehicle.busy(f"pre-flight check for plan {plan_id}"):
+            plan = plan_of(await self._planning.plan_text(plan_id))
+            choice = _for_vehicle(vehicle, choice)
+            mission = await asyncio.to_thread(encode_plan, plan, choice)
+            scenario = json.loads(await self._planning.scenario_text(plan_id))
+            return await inspect(vehicle.client, plan_id, plan, scenario, mission, choice)
+
+    async def _preflight_behind(
+        self, vehicle: Vehicle, plan: Plan, report: UploadReport, choice: MissionChoice
+    ) -> Preflight | None:
+        """The check behind an upload; None when the vehicle vanished, which leaves the upload as it is."""
+        scenario = json.loads(await self._planning.scenario_text(report.plan_id))
+        try:
+            return await inspect(
+                vehicle.client, report.plan_id, plan, scenario, report.mission, choice, report
+            )
+        except (mavlink_errors.NotConnectedError, mavlink_errors.BusyError):
+            log.warning("no pre-flight check behind the upload", vehicle=vehicle.name)
+            return None
+
+    async def parameters(
+        self, vehicle_id: str, names: Sequence[str], plan_id: str | None, choice: MissionChoice
+    ) -> ParameterReport:
+        """Parameters by name; with a plan also those it needs, judged.
+
+        Raises
+        ------
+        RefusedError
+            A name cannot be one, or neither names nor a plan are given.
+        LinkError
+            The vehicle is not there, or answers about none of them.
+        """
+        vehicle = self.get(vehicle_id)
+        async with vehicle.busy("reading parameters"):
+            if plan_id is None:
+                return await read_parameters(vehicle.client, names, None)
+            plan = plan_of(await self._planning.plan_text(plan_id))
+            choice = _for_vehicle(vehicle, choice)
+            mission = await asyncio.to_thread(encode_plan, plan, choice)
+            scenario = json.loads(await self._planning.scenario_text(plan_id))
+            needs = mission_needs(plan, scenario, mission, choice)
+            return await read_parameters(vehicle.client, names, (mission, needs))
 
     async def download(self, vehicle_id: str, parts: Sequence[PartName]) -> dict[str, list[dict[str, Any]]]:
         """What a vehicle holds, part by part."""

@@ -9,6 +9,7 @@ from typing import Any, Literal
 from app.services.errors import RefusedError, UnsafeError
 from app.services.missions import PARTS, PartName, mission_findings
 from app.services.vehicles.items import difference_json, item_json
+from app.services.vehicles.preflight import Preflight
 from app.services.vehicles.recorder import is_flying
 from app.services.work import finding_json
 from mavlink.client import VehicleClient
@@ -78,6 +79,7 @@ class UploadReport:
     findings: tuple[Finding, ...]
     mission: Mission
     parts: dict[PartName, PartResult] = field(default_factory=dict)
+    preflight: Preflight | None = None
 
     @property
     def outcome(self) -> OutcomeName:

@@ -1,0 +1,132 @@
+"""Asks a vehicle for what the pre-flight check must know: what it holds, and its parameters."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from app.services.errors import LinkError, RefusedError
+from app.services.missions import PARTS, MissionChoice, PartName
+from app.services.vehicles.preflight import Observed, Preflight, preflight, settle_m
+from app.services.vehicles.uploads import UploadReport, comparing
+from mavlink.client import VehicleClient
+from mavlink.encoding.options import DEFAULT_PAYLOAD
+from mavlink.errors import TransferFailedError
+from mavlink.mission import Mission
+from mavlink.parameter_rules import (
+    Needs,
+    ParameterFinding,
+    judge_parameters,
+    names_to_read,
+    needs_of,
+)
+from mavlink.payload import parse_payload
+from mavlink.transfer.parameters import Parameter
+from planner.errors import Finding
+from planner.plan import Plan
+
+
+def mission_needs(plan: Plan, scenario: Mapping[str, Any], mission: Mission, choice: MissionChoice) -> Needs:
+    """What a mission needs of its vehicle."""
+    payload = DEFAULT_PAYLOAD if choice.payload is None else parse_payload(choice.payload)
+    return needs_of(plan, mission, payload, settle_m(scenario, mission.vehicle))
+
+
+@dataclass(frozen=True, slots=True)
+class ParameterReport:
+    """Parameters read, names without answer, and what is not as a plan needs it."""
+
+    values: tuple[Parameter, ...]
+    missing: tuple[str, ...]
+    findings: tuple[ParameterFinding, ...]
+
+
+async def read_parameters(
+    client: VehicleClient, names: Sequence[str], judged_by: tuple[Mission, Needs] | None
+) -> ParameterReport:
+    """Read parameters, and those a mission needs too.
+
+    Raises
+    ------
+    RefusedError
+        Nothing is asked for, or a name cannot be one.
+    LinkError
+        None was answered.
+    """
+    wanted = list(dict.fromkeys(names))
+    if judged_by is not None:
+        mission, needs = judged_by
+        wanted += [
+            n for n in names_to_read(mission.autopilot, mission.vehicle_type, needs) if n not in wanted
+        ]
+    if not wanted:
+        message = "no parameter is named"
+        raise RefusedError(message, (Finding("name", "name-missing", message, "send name or plan_id"),))
+    try:
+        found = await client.read_parameters(wanted)
+    except ValueError as error:
+        finding = Finding("name", "parameter-name", str(error), "write e.g. name=WP_RADIUS")
+        raise RefusedError(str(error), (finding,)) from error
+    except TransferFailedError as error:
+        raise LinkError(str(error)) from error
+    findings: tuple[ParameterFinding, ...] = ()
+    if judged_by is not None:
+        values = {name: parameter.value for name, parameter in found.items()}
+        findings = judge_parameters(mission.autopilot, mission.vehicle_type, needs, values)
+    return ParameterReport(tuple(found.values()), tuple(n for n in wanted if n not in found), findings)
+
+
+async def inspect(
+    client: VehicleClient,
+    plan_id: str,
+    plan: Plan,
+    scenario: Mapping[str, Any],
+    mission: Mission,
+    choice: MissionChoice,
+    report: UploadReport | None = None,
+) -> Preflight:
+    """Ask the vehicle, and judge; one that is not connected is not asked.
+
+    Parameters
+    ----------
+    report
+        Of an upload just made, whose read-back needs no repetition.
+
+    Raises
+    ------
+    NotConnectedError, BusyError
+        It vanished meanwhile, or something else is under way.
+    """
+    needs = mission_needs(plan, scenario, mission, choice)
+    if not client.state.connected:
+        return preflight(plan_id, plan, scenario, mission, needs, Observed(client.state, {}, None))
+    held: dict[PartName, list[Any] | None] = {}
+    for part in ("mission", "fence") if mission.fence else ("mission",):
+        held[part] = await _held(client, mission, part, report)
+    names = names_to_read(mission.autopilot, mission.vehicle_type, needs)
+    values: dict[str, Parameter] | None = None
+    with contextlib.suppress(TransferFailedError):
+        values = await client.read_parameters(names)
+    observed = Observed(
+        client.state,
+        held,
+        None if values is None else {name: parameter.value for name, parameter in values.items()},
+        tuple(name for name in names if name not in (values or {})),
+    )
+    return preflight(plan_id, plan, scenario, mission, needs, observed)
+
+
+async def _held(
+    client: VehicleClient, mission: Mission, part: PartName, report: UploadReport | None
+) -> list[Any] | None:
+    """Differences between what is meant and what is held, in words; None when it could not be read."""
+    if report is not None and part in report.parts:
+        known = report.parts[part].differences
+        return None if known is None else [difference["message"] for difference in known]
+    try:
+        held = await client.download(PARTS[part])
+    except TransferFailedError:
+        return None
+    return list(comparing(mission.dialect)(mission.items_of(PARTS[part]), held))

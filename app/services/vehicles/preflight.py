@@ -1,0 +1,277 @@
+"""Is this vehicle ready to fly this plan? Each question by itself: ok, warning or failed, in words."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from app.services.missions import PARTS, PartName, mission_findings
+from mavlink.geometry import distance_m
+from mavlink.mission import Mission
+from mavlink.parameter_rules import Needs, ParameterFinding, judge_parameters
+from mavlink.telemetry import VehicleState
+from planner.errors import Finding
+from planner.plan import Plan
+
+Status = Literal["ok", "warning", "failed"]
+
+#: A vehicle this near to the plan's start stands there; beyond the second it is the wrong place.
+NEAR_M = 200.0
+FAR_M = 2000.0
+#: Less than this times the need is too little battery for comfort.
+RESERVE = 1.2
+#: A charge that is taken as low where nothing says what the flight needs.
+LOW_PERCENT = 50.0
+FEW_SATELLITES = 6
+GOOD_FIXES = frozenset({"3d", "dgps", "rtk_float", "rtk_fixed"})
+#: A home whose height differs more from the scenario's stands elsewhere, or one datum is wrong.
+HEIGHT_M = 10.0
+#: Wind above this part of the airspeed leaves too little for turns.
+WIND_PART = 0.5
+
+
+@dataclass(frozen=True, slots=True)
+class Check:
+    """One question and its answer."""
+
+    name: str
+    status: Status
+    detail: str
+
+
+@dataclass(frozen=True, slots=True)
+class Preflight:
+    """All answers; a vehicle is ready when none has failed."""
+
+    plan_id: str
+    checks: tuple[Check, ...]
+    parameters: tuple[ParameterFinding, ...] = ()
+
+    @property
+    def ready(self) -> bool:
+        """Whether nothing stands against the flight."""
+        return all(check.status != "failed" for check in self.checks)
+
+
+@dataclass(frozen=True, slots=True)
+class Observed:
+    """What was asked of the vehicle.
+
+    Parameters
+    ----------
+    held
+        Differences between what is meant and what the vehicle holds, by part; None where it could not be
+        read back.
+    values
+        Parameters by name; None when reading them failed.
+    unread
+        Parameters that were asked for and not answered.
+    """
+
+    state: VehicleState
+    held: Mapping[PartName, Sequence[Any] | None]
+    values: Mapping[str, float] | None
+    unread: tuple[str, ...] = ()
+
+
+def preflight(
+    plan_id: str,
+    plan: Plan,
+    scenario: Mapping[str, Any],
+    mission: Mission,
+    needs: Needs,
+    observed: Observed,
+) -> Preflight:
+    """Answer every question.
+
+    Parameters
+    ----------
+    scenario
+        The plan's scenario as it was posted.
+    """
+    found = (
+        ()
+        if observed.values is None
+        else judge_parameters(mission.autopilot, mission.vehicle_type, needs, observed.values)
+    )
+    state = observed.state
+    checks = (
+        _plan(plan),
+        _vehicle(mission, state),
+        _dialect(mission),
+        _held("mission", mission, observed),
+        _fence(mission, observed),
+        _parameters(found, observed),
+        _battery(plan, scenario, mission, state),
+        _place(plan, state),
+        _gps(state),
+        _datum(plan, scenario, state),
+        *_wind(plan, scenario, mission),
+    )
+    return Preflight(plan_id, checks, found)
+
+
+def _plan(plan: Plan) -> Check:
+    if plan.hard_violations:
+        return Check("plan", "failed", f"it breaks a hard constraint: {plan.hard_violations[0].message}")
+    if plan.violations:
+        return Check("plan", "warning", f"a soft constraint is not kept: {plan.violations[0].message}")
+    return Check("plan", "ok", "every constraint is kept")
+
+
+def _vehicle(mission: Mission, state: VehicleState) -> Check:
+    if not state.connected:
+        return Check("vehicle", "failed", "it is not connected")
+    if state.autopilot != mission.autopilot:
+        message = f"its autopilot is {state.autopilot}, the mission is for {mission.autopilot}"
+        return Check("vehicle", "warning" if state.autopilot == "generic" else "failed", message)
+    if state.type != mission.vehicle_type:
+        message = f"it is a {state.type}, the mission is for a {mission.vehicle_type}"
+        return Check("vehicle", "warning" if state.type == "other" else "failed", message)
+    return Check("vehicle", "ok", f"connected: {mission.dialect.name}, mode {state.mode or 'not said'}")
+
+
+def _dialect(mission: Mission) -> Check:
+    found: tuple[Finding, ...] = mission_findings(mission, list(PARTS.values()))
+    worst = next((f for f in found if f.severity == "error"), found[0] if found else None)
+    if worst is None:
+        return Check("dialect", "ok", f"{mission.dialect.name} takes every item as it is meant")
+    status: Status = "failed" if worst.severity == "error" else "warning"
+    more = f", and {len(found) - 1} more" if len(found) > 1 else ""
+    return Check("dialect", status, f"{worst.feature}: {worst.message}{more}")
+
+
+def _held(part: PartName, mission: Mission, observed: Observed) -> Check:
+    differences = observed.held.get(part)
+    if differences is None:
+        return Check(part, "failed", f"the {part} could not be read back")
+    if differences:
+        more = f", and {len(differences) - 1} more" if len(differences) > 1 else ""
+        return Check(part, "failed", f"the vehicle does not hold what is meant: {differences[0]}{more}")
+    count = len(mission.items_of(PARTS[part]))
+    return Check(part, "ok", f"read back and compared: all {count} items are held as meant")
+
+
+def _fence(mission: Mission, observed: Observed) -> Check:
+    if not mission.fence:
+        return Check("fence", "ok", "the plan asks for none")
+    return _held("fence", mission, observed)
+
+
+def _parameters(found: Sequence[ParameterFinding], observed: Observed) -> Check:
+    if observed.values is None:
+        return Check("parameters", "warning", "they could not be read")
+    if found:
+        failed = any(finding.severity == "error" for finding in found)
+        return Check("parameters", "failed" if failed else "warning", "; ".join(str(f) for f in found))
+    if observed.unread:
+        return Check("parameters", "warning", f"no answer about {', '.join(observed.unread)}")
+    return Check("parameters", "ok", f"{len(observed.values)} read, all as the mission needs them")
+
+
+def _battery(plan: Plan, scenario: Mapping[str, Any], mission: Mission, state: VehicleState) -> Check:
+    percent = state.battery_percent
+    if percent is None:
+        return Check("battery", "warning", "the vehicle does not say how full it is")
+    path = next(path for path in plan.paths if path.vehicle == mission.vehicle)
+    limits = _limits(scenario, mission.vehicle)
+    for needed, name, unit in (
+        (path.energy_wh, "energy_wh", "Wh"),
+        (path.duration_s, "max_flight_time_s", "s"),
+        (path.length_m, "max_range_m", "m"),
+    ):
+        capacity = limits.get(name)
+        if needed is None or not isinstance(capacity, (int, float)):
+            continue
+        there = capacity * percent / 100.0
+        words = (
+            f"{percent:.0f} % of {capacity:.0f} {unit} are {there:.0f} {unit}, the flight takes "
+            f"{needed:.0f} {unit}"
+        )
+        if there < needed:
+            return Check("battery", "failed", words)
+        return Check("battery", "warning" if there < RESERVE * needed else "ok", words)
+    words = (
+        f"{percent:.0f} %; whether that is enough for {path.duration_s / 60.0:.0f} minutes is not known: the"
+        " scenario names neither energy_wh nor max_flight_time_s"
+    )
+    return Check("battery", "warning" if percent < LOW_PERCENT else "ok", words)
+
+
+def _limits(scenario: Mapping[str, Any], name: str) -> Mapping[str, Any]:
+    vehicles = scenario.get("vehicles") or ()
+    return next((vehicle for vehicle in vehicles if vehicle.get("name") == name), {})
+
+
+def settle_m(scenario: Mapping[str, Any], name: str) -> float | None:
+    """The straight flight a scenario's vehicle wants before each collect."""
+    value = _limits(scenario, name).get("settle_m")
+    return float(value) if isinstance(value, (int, float)) else None
+
+
+def _place(plan: Plan, state: VehicleState) -> Check:
+    if state.lon_deg is None or state.lat_deg is None:
+        return Check("place", "failed", "the vehicle does not know where it is")
+    away_m = distance_m((state.lon_deg, state.lat_deg), plan.home)
+    words = f"the vehicle is {away_m:.0f} m from the plan's start"
+    if away_m > FAR_M:
+        return Check("place", "failed", words)
+    if away_m > NEAR_M:
+        return Check("place", "warning", words)
+    if state.home_lon_deg is not None and state.home_lat_deg is not None:
+        home_m = distance_m((state.home_lon_deg, state.home_lat_deg), plan.home)
+        if home_m > NEAR_M:
+            detail = f"{words}, but its home, where returns go to, is {home_m:.0f} m from it"
+            return Check("place", "warning", detail)
+    return Check("place", "ok", words)
+
+
+def _gps(state: VehicleState) -> Check:
+    if state.gps_fix is None:
+        return Check("gps", "warning", "the vehicle does not say whether it has a fix")
+    seen = "" if state.satellites is None else f", {state.satellites} satellites"
+    if state.gps_fix not in GOOD_FIXES:
+        return Check("gps", "failed", f"fix: {state.gps_fix}{seen}")
+    few = state.satellites is not None and state.satellites < FEW_SATELLITES
+    return Check("gps", "warning" if few else "ok", f"fix: {state.gps_fix}{seen}")
+
+
+def _datum(plan: Plan, scenario: Mapping[str, Any], state: VehicleState) -> Check:
+    """What the altitudes count from, and whether vehicle and plan mean the same by it."""
+    home_m = state.home_altitude_amsl_m
+    if home_m is None:
+        return Check("altitude", "warning", "the vehicle has not said how high its home is")
+    said = f"home is at {home_m:.0f} m above mean sea level (the autopilot's geoid, EGM96)"
+    planned_m = _home_altitude_m(scenario)
+    if plan.altitude_reference == "amsl":
+        if planned_m is None:
+            words = f"{said}; the plan counts from sea level and does not know the height of its start"
+            return Check("altitude", "warning", words)
+        if abs(planned_m - home_m) > HEIGHT_M:
+            return Check("altitude", "failed", f"{said}; the plan takes it to be at {planned_m:.0f} m")
+        return Check("altitude", "ok", f"{said}, the plan takes it to be at {planned_m:.0f} m")
+    if plan.altitude_reference == "terrain" and not scenario.get("terrain"):
+        words = f"{said}; without a terrain raster the ground is taken to be flat at that height"
+        return Check("altitude", "warning", words)
+    return Check("altitude", "ok", f"{said}; the plan counts from {plan.altitude_reference}")
+
+
+def _home_altitude_m(scenario: Mapping[str, Any]) -> float | None:
+    """The height of the start, where its position has a third coordinate."""
+    for feature in scenario.get("features") or ():
+        if (feature.get("properties") or {}).get("role") == "start":
+            place = feature["geometry"]["coordinates"]
+            return float(place[2]) if len(place) > 2 else None
+    return None
+
+
+def _wind(plan: Plan, scenario: Mapping[str, Any], mission: Mission) -> Iterator[Check]:
+    wind = scenario.get("wind")
+    if not isinstance(wind, Mapping) or not wind.get("speed_m_s"):
+        return
+    speed_m_s = float(wind["speed_m_s"])
+    words = f"planned for {speed_m_s:g} m/s from {float(wind.get('from_deg', 0.0)):.0f}°"
+    strong = speed_m_s > WIND_PART * mission.speed_m_s
+    detail = f"{words}, more than half the airspeed of {mission.speed_m_s:g} m/s" if strong else words
+    yield Check("wind", "warning" if strong else "ok", detail)

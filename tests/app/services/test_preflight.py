@@ -1,0 +1,167 @@
+"""The pre-flight check's answers, one question at a time."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import pytest
+
+from app.services.vehicles.preflight import Check, Observed, preflight, settle_m
+from mavlink.encode import encode
+from mavlink.parameter_rules import needs_of
+from mavlink.payload import RelayPayload
+from mavlink.telemetry import VehicleState
+from planner.plan import Plan, Violation
+from tests.mavlink.plans import make_plan, square_fence
+
+PLAN = replace(make_plan(fence=square_fence(5000.0), ends_at_home=True), altitude_reference="home")
+LON_DEG, LAT_DEG = PLAN.home
+STATE = VehicleState(
+    connected=True,
+    autopilot="ardupilot",
+    type="fixed_wing",
+    mode="AUTO",
+    lon_deg=LON_DEG,
+    lat_deg=LAT_DEG,
+    home_lon_deg=LON_DEG,
+    home_lat_deg=LAT_DEG,
+    home_altitude_amsl_m=40.0,
+    battery_percent=100.0,
+    gps_fix="3d",
+    satellites=12,
+)
+SCENARIO: dict[str, Any] = {
+    "vehicles": [{"name": PLAN.vehicles[0].name, "max_flight_time_s": 3 * PLAN.paths[0].duration_s}],
+    "features": [],
+}
+VALUES = {"WP_RADIUS": 50.0, "NAVL1_PERIOD": 10.0, "RELAY1_FUNCTION": 1.0, "FENCE_ENABLE": 1.0}
+
+
+def checks(
+    plan: Plan = PLAN, scenario: dict[str, Any] | None = None, observed: Observed | None = None
+) -> dict[str, Check]:
+    """Answers by name, for a vehicle with which all is well but for what is given."""
+    mission = encode(plan)
+    needs = needs_of(plan, mission, RelayPayload(0))
+    seen = observed or Observed(STATE, {"mission": (), "fence": ()}, VALUES)
+    report = preflight("id", plan, SCENARIO if scenario is None else scenario, mission, needs, seen)
+    assert report.ready == all(check.status != "failed" for check in report.checks)
+    return {check.name: check for check in report.checks}
+
+
+def of_state(**changes: Any) -> dict[str, Check]:
+    """Answers for a vehicle in another state."""
+    return checks(observed=Observed(replace(STATE, **changes), {"mission": (), "fence": ()}, VALUES))
+
+
+def test_all_well_is_ready() -> None:
+    """Every question is answered ok, or with a warning that names its reason."""
+    found = checks()
+    assert {check.status for name, check in found.items() if name != "dialect"} == {"ok"}
+    assert found["dialect"].status != "failed"
+    assert {"plan", "vehicle", "mission", "fence", "parameters", "battery", "place", "gps"} <= set(found)
+
+
+@pytest.mark.parametrize(
+    ("changes", "name", "status", "words"),
+    [
+        ({"connected": False}, "vehicle", "failed", "not connected"),
+        ({"autopilot": "px4"}, "vehicle", "failed", "px4"),
+        ({"type": "multirotor"}, "vehicle", "failed", "multirotor"),
+        ({"type": "other"}, "vehicle", "warning", "other"),
+        ({"battery_percent": 30.0}, "battery", "failed", "30 %"),
+        ({"battery_percent": 36.0}, "battery", "warning", "36 %"),
+        ({"battery_percent": None}, "battery", "warning", "how full"),
+        ({"lat_deg": LAT_DEG + 0.01}, "place", "warning", "from the plan's start"),
+        ({"lat_deg": LAT_DEG + 0.1}, "place", "failed", "from the plan's start"),
+        ({"lat_deg": None}, "place", "failed", "where it is"),
+        ({"home_lat_deg": LAT_DEG + 0.1}, "place", "warning", "its home"),
+        ({"gps_fix": "2d"}, "gps", "failed", "2d"),
+        ({"gps_fix": None}, "gps", "warning", "fix"),
+        ({"satellites": 4}, "gps", "warning", "4 satellites"),
+        ({"home_altitude_amsl_m": None}, "altitude", "warning", "has not said"),
+    ],
+)
+def test_the_vehicles_state(changes: dict[str, Any], name: str, status: str, words: str) -> None:
+    """What the vehicle says of itself decides, in words that name the figure."""
+    check = of_state(**changes)[name]
+    assert check.status == status
+    assert words in check.detail
+
+
+def test_violations() -> None:
+    """A hard violation fails, a soft one warns."""
+    broken = Violation("turn-radius", "uav", "too tight", 1.0, "m")
+    assert checks(replace(PLAN, violations=(broken,)))["plan"].status == "failed"
+    soft = replace(broken, hard=False)
+    assert checks(replace(PLAN, violations=(soft,)))["plan"].status == "warning"
+
+
+def test_what_is_held() -> None:
+    """Differences and failed read-backs fail, of mission and fence alike."""
+    for held, name in [
+        ({"mission": ["item 3: z"], "fence": ()}, "mission"),
+        ({"mission": None, "fence": ()}, "mission"),
+        ({"mission": (), "fence": ["fence: count"]}, "fence"),
+        ({"mission": ()}, "fence"),
+    ]:
+        found = checks(observed=Observed(STATE, held, VALUES))  # type: ignore[arg-type]
+        assert [check.name for check in found.values() if check.status == "failed"] == [name]
+
+
+def test_a_plan_without_fence_asks_for_none() -> None:
+    """Nothing meant, nothing missed."""
+    plan = replace(PLAN, fence=square_fence(5000.0).__class__())
+    assert checks(plan, observed=Observed(STATE, {"mission": ()}, VALUES))["fence"].status == "ok"
+
+
+def test_parameters() -> None:
+    """Errors fail, warnings warn, silence warns."""
+    for values, unread, status, words in [
+        (VALUES | {"RELAY1_FUNCTION": 0.0}, (), "failed", "RELAY1_FUNCTION"),
+        (VALUES | {"NAVL1_PERIOD": 30.0}, (), "warning", "NAVL1_PERIOD"),
+        (VALUES, ("FENCE_TYPE",), "warning", "FENCE_TYPE"),
+        (None, (), "warning", "could not be read"),
+    ]:
+        found = checks(observed=Observed(STATE, {"mission": (), "fence": ()}, values, unread))
+        assert found["parameters"].status == status
+        assert words in found["parameters"].detail
+
+
+def test_battery_without_a_capacity_says_so() -> None:
+    """Where the scenario limits nothing, only a low charge warns."""
+    full = checks(scenario={"features": []})["battery"]
+    assert (full.status, "not known" in full.detail) == ("ok", True)
+
+
+@pytest.mark.parametrize(
+    ("reference", "scenario", "status"),
+    [
+        ("terrain", {}, "warning"),
+        ("terrain", {"terrain": "an id"}, "ok"),
+        ("amsl", {}, "warning"),
+        ("amsl", {"start_m": 42.0}, "ok"),
+        ("amsl", {"start_m": 90.0}, "failed"),
+    ],
+)
+def test_altitude_datum(reference: Any, scenario: dict[str, Any], status: str) -> None:
+    """What altitudes count from is known, or it is said that it is not."""
+    place = [LON_DEG, LAT_DEG, *([scenario["start_m"]] if "start_m" in scenario else [])]
+    start = {"properties": {"role": "start"}, "geometry": {"type": "Point", "coordinates": place}}
+    plan = replace(PLAN, altitude_reference=reference)
+    assert checks(plan, SCENARIO | scenario | {"features": [start]})["altitude"].status == status
+
+
+@pytest.mark.parametrize(("speed_m_s", "status"), [(5.0, "ok"), (15.0, "warning")])
+def test_wind(speed_m_s: float, status: str) -> None:
+    """Wind is spoken of when it is given, and warned of when it is strong."""
+    assert "wind" not in checks()
+    wind = {"wind": {"speed_m_s": speed_m_s, "from_deg": 270.0}}
+    assert checks(scenario=SCENARIO | wind)["wind"].status == status
+
+
+def test_settling_distance_is_the_scenarios() -> None:
+    """The vehicle's own, None where nothing is said."""
+    assert settle_m({"vehicles": [{"name": "a"}, {"name": "b", "settle_m": 150}]}, "b") == 150.0
+    assert settle_m({}, "b") is None
