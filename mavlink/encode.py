@@ -10,17 +10,19 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import replace
+from functools import partial
 
 from mavlink.dialects import Autopilot
 from mavlink.encoding.ends import beginning, ending
 from mavlink.encoding.fence import fence_items
+from mavlink.encoding.manoeuvres import MARGIN_M
 from mavlink.encoding.options import EncodeError, EncodeOptions, Finish
 from mavlink.encoding.stops import Stop, stops_along
 from mavlink.encoding.task import Task, task_of
 from mavlink.items import Command, Frame, MissionItem, MissionResult, MissionType
 from mavlink.mission import Mission, home_item, numbered, placed
 from mavlink.payload import ActuatorPayload, Payload, PayloadError, RelayPayload, switch_items
-from planner.plan import Plan
+from planner.plan import LonLat, Plan
 
 __all__ = ["EncodeError", "EncodeOptions", "Finish", "Mission", "encode"]
 
@@ -63,7 +65,14 @@ def encode(
     unlisted = sorted({item.command for item in (on, off) if not task.dialect.knows(item.command)})
     payload_notes += tuple(f"it is not known whether {task.dialect.name} takes command {n}" for n in unlisted)
     first, last = beginning(task), ending(task)
-    stops = stops_along(task.path, task.collects, task.local, options.chord_error_m, options.off_delay_m)
+    stops = stops_along(
+        task.path,
+        task.collects,
+        task.local,
+        options.chord_error_m,
+        task.off_delay_m,
+        partial(_may_overshoot, task) if task.turns_early_m > 0.0 else None,
+    )
     home = [home_item(plan.home, options.home_altitude_m)] if task.dialect.home_row else []
     flight = _flight(task, (stop for stop in stops if stop.along_m > first.skipped_m), on, off)
     fence, fence_notes = fence_items(plan, (task.path,))
@@ -132,14 +141,24 @@ def _acceptance_m(task: Task, stop: Stop) -> float:
     return 1.0 if stop.off and task.is_plane else 0.0
 
 
+def _may_overshoot(task: Task, place: LonLat) -> bool:
+    """Whether a waypoint that is turned before may lie there: PX4 wants every waypoint inside its fence."""
+    here = task.local.xy(place)
+    return task.room.line_outside_m2([here, (here[0] + 1.0, here[1])], MARGIN_M) <= 0.0
+
+
 def _pass_by_notes(task: Task) -> tuple[str, ...]:
-    if not (task.is_px4 and task.vehicle.type == "fixed_wing" and task.collects):
+    early_m = task.turns_early_m
+    if not (early_m > 0.0 and task.collects):
         return ()
-    if task.options.off_delay_m > 0.0:
-        return ()
+    if task.off_delay_m < early_m:
+        return (
+            f"PX4's fixed wings count a waypoint as reached some {early_m:.0f} m early: the sensor goes off"
+            " up to that much too soon, unless it is switched off late (off_delay_m)",
+        )
     return (
-        "PX4's fixed wings count a waypoint as reached some 30 m early: the sensor goes off that much too"
-        " soon, unless it is switched off late (off_delay_m) and the passes have straights behind them",
+        f"PX4's fixed wings turn some {early_m:.0f} m before a waypoint: those that end a collect lie up to"
+        f" {task.off_delay_m:.0f} m past its end",
     )
 
 

@@ -41,8 +41,8 @@ class EncodeOptions:
     near_home_m
         Ends nearer to home than this are left to the return.
     off_delay_m
-        How far past a collect's end the sensor is switched off, as far as the straight goes on: for
-        autopilots that pass waypoints early.
+        How far past a collect's end the sensor is switched off, for autopilots that pass waypoints early.
+        None for what the autopilot needs: on PX4's fixed wings how early it turns, elsewhere 0.
     home_altitude_m
         Height of home above sea level, where known.
     rally_at_home
@@ -58,7 +58,7 @@ class EncodeOptions:
     approach_altitude_m: float = 40.0
     approach_slope_deg: float = 4.0
     near_home_m: float = 200.0
-    off_delay_m: float = 0.0
+    off_delay_m: float | None = None
     home_altitude_m: float = 0.0
     rally_at_home: bool = False
 
@@ -75,5 +75,5 @@ class EncodeOptions:
                 raise EncodeError(f"{name} is {value}: a positive number is meant")
         if self.acceptance_radius_m is not None and not 1.0 <= self.acceptance_radius_m <= 255.0:
             raise EncodeError(f"acceptance_radius_m is {self.acceptance_radius_m}: 1 to 255 is meant")
-        if not (math.isfinite(self.off_delay_m) and self.off_delay_m >= 0.0):
+        if self.off_delay_m is not None and not (math.isfinite(self.off_delay_m) and self.off_delay_m >= 0.0):
             raise EncodeError(f"off_delay_m is {self.off_delay_m}: 0 or more is meant")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_right
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -42,6 +42,7 @@ def stops_along(
     local: LocalMap,
     chord_error_m: float,
     off_delay_m: float = 0.0,
+    may_overshoot: Callable[[LonLat], bool] | None = None,
 ) -> tuple[Stop, ...]:
     """Ends of the straights, points on the arcs, and exactly both ends of each collect, in flight order.
 
@@ -51,13 +52,25 @@ def stops_along(
         Largest distance between an arc and the line through its points (the sagitta of each chord).
     off_delay_m
         How far past a collect's end the sensor is switched off, as far as the straight goes on.
+    may_overshoot
+        For aircraft that turn this far before a waypoint: whether one may lie at a place off the path. Then a
+        collect whose straight ends too early has its last waypoint beyond, in the line's direction: the
+        aircraft begins its turn where the path does, and the sensor stays on until there.
     """
     altitude = _altitudes(path)
     stops: list[Stop] = []
+    skipped: list[tuple[float, float]] = []
     for collect in collects:
         (start_lon, start_lat, _), (end_lon, end_lat, _) = collect.line
         stops.append(Stop(collect.start_m, (start_lon, start_lat), altitude(collect.start_m), on=1))
         end = Stop(collect.end_m, (end_lon, end_lat), altitude(collect.end_m))
+        beyond_m = collect.end_m + off_delay_m
+        if may_overshoot is not None and _straight_left_m(path, collect) < off_delay_m - MERGE_M:
+            place = _beyond(collect, local, off_delay_m)
+            if _free(path, collects, collect.end_m, beyond_m) and may_overshoot(place):
+                stops.append(Stop(beyond_m, place, altitude(collect.end_m), off=1))
+                skipped.append((collect.end_m - MERGE_M, beyond_m))
+                continue
         late = _late_stop(path, collect, local, off_delay_m)
         if late is None:
             stops.append(replace(end, off=1))
@@ -67,7 +80,8 @@ def stops_along(
         places = _segment_places(segment, local, chord_error_m)
         for number, place in enumerate(places):
             along_m = segment.start_m + segment.length_m * number / (len(places) - 1)
-            stops.append(Stop(along_m, place, altitude(along_m)))
+            if not any(since_m <= along_m <= until_m for since_m, until_m in skipped):
+                stops.append(Stop(along_m, place, altitude(along_m)))
     return _merged(stops, {(c.line[0][:2]) for c in collects} | {(c.line[1][:2]) for c in collects})
 
 
@@ -80,6 +94,29 @@ def _segment_places(segment: PathSegment, local: LocalMap, chord_error_m: float)
     step_rad = chord_step_rad(math.dist(start, centre), chord_error_m, LARGEST_STEP_RAD)
     between = arc_points(start, end, centre, turn_rad, step_rad)
     return [segment.start, *(local.lonlat(point) for point in between), segment.end]
+
+
+def _straight_left_m(path: FlownPath, collect: Collect) -> float:
+    """How far the straight goes on behind a collect."""
+    ends_m = [
+        segment.start_m + segment.length_m
+        for segment in path.segments
+        if segment.kind == "straight" and segment.start_m <= collect.end_m + MERGE_M
+    ]
+    return max(0.0, max(ends_m, default=0.0) - collect.end_m)
+
+
+def _beyond(collect: Collect, local: LocalMap, distance_m: float) -> LonLat:
+    """A place past a collect's end, in the direction of its line."""
+    (start_x, start_y), (end_x, end_y) = (local.xy(place[:2]) for place in collect.line)
+    part = distance_m / math.hypot(end_x - start_x, end_y - start_y)
+    return local.lonlat((end_x + part * (end_x - start_x), end_y + part * (end_y - start_y)))
+
+
+def _free(path: FlownPath, collects: Sequence[Collect], since_m: float, until_m: float) -> bool:
+    """Whether a piece of the path has no end of a collect in it, nor the path's own."""
+    ends_m = [path.length_m, *(m for collect in collects for m in (collect.start_m, collect.end_m))]
+    return not any(since_m < end_m <= until_m + MERGE_M for end_m in ends_m)
 
 
 def _late_stop(path: FlownPath, collect: Collect, local: LocalMap, off_delay_m: float) -> Stop | None:

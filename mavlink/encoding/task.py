@@ -13,6 +13,9 @@ from mavlink.geometry import LocalMap
 from mavlink.items import Frame
 from planner.plan import Collect, FlownPath, PathSegment, Plan, PlanVehicle
 
+#: NPFG_SW_DST_MLT · NPFG_PERIOD · NPFG_DAMPING, as PX4 has them by default.
+_PX4_TURNS_EARLY_S = 0.32 * 10.0 * 0.7
+
 
 @dataclass(frozen=True, slots=True)
 class Task:
@@ -41,6 +44,19 @@ class Task:
     def hovers(self) -> bool:
         """Whether the vehicle is a multirotor."""
         return self.vehicle.type == "multirotor"
+
+    @property
+    def turns_early_m(self) -> float:
+        """How far before a waypoint the vehicle turns to the next one, whatever the item says."""
+        if not (self.is_px4 and self.vehicle.type == "fixed_wing"):
+            return 0.0
+        return _PX4_TURNS_EARLY_S * self.vehicle.airspeed_m_s
+
+    @property
+    def off_delay_m(self) -> float:
+        """How far past a collect's end its waypoint lies."""
+        delay_m = self.options.off_delay_m
+        return self.turns_early_m if delay_m is None else delay_m
 
     @property
     def frame(self) -> int:

@@ -35,7 +35,12 @@ KINDS: list[tuple[Autopilot, VehicleType]] = [
     ("px4", "multirotor"),
     ("px4", "vtol"),
 ]
-W, R, L = Command.NAV_WAYPOINT, Command.DO_SET_RELAY, Command.NAV_LOITER_TO_ALT
+A, W, R, L = (
+    Command.DO_SET_ACTUATOR,
+    Command.NAV_WAYPOINT,
+    Command.DO_SET_RELAY,
+    Command.NAV_LOITER_TO_ALT,
+)
 
 
 def commands(mission: Mission) -> list[int]:
@@ -119,7 +124,7 @@ def test_a_multirotor_climbs_on_the_spot() -> None:
 def test_triggers_bracket_each_collect(autopilot: Autopilot, kind: VehicleType) -> None:
     """On stands right behind the waypoint at the start of a collect, off right behind that at its end."""
     plan = make_plan(autopilot=autopilot, vehicle_type=kind)
-    items = list(encode(plan).mission)
+    items = list(encode(plan, options=EncodeOptions(off_delay_m=0.0)).mission)
     switch = Command.DO_SET_RELAY if autopilot == "ardupilot" else Command.DO_SET_ACTUATOR
     switches = [index for index, item in enumerate(items) if item.command == switch]
     ends = [place for collect in plan.collects_of("uav-1") for place in collect.line]
@@ -150,9 +155,53 @@ def test_plane_flies_up_to_the_end_of_a_collect() -> None:
 
 def test_px4_passing_by_early_is_said() -> None:
     """PX4 ignores a waypoint's own radius: a note says what is lost, unless the sensor goes off late."""
-    assert any("30 m early" in note for note in encode(make_plan(), autopilot="px4").notes)
-    late = encode(make_plan(), autopilot="px4", options=EncodeOptions(off_delay_m=40.0))
-    assert not any("30 m early" in note for note in late.notes)
+    early = encode(make_plan(), autopilot="px4", options=EncodeOptions(off_delay_m=0.0))
+    assert any("45 m early" in note for note in early.notes)
+    for options in (EncodeOptions(), EncodeOptions(off_delay_m=60.0)):
+        late = encode(make_plan(), autopilot="px4", options=options)
+        assert not any("m early" in note for note in late.notes)
+
+
+def test_on_px4_the_last_waypoint_of_a_collect_lies_where_the_turn_begins_early() -> None:
+    """By default it lies as far past the collect's end as PX4 turns early, on the line."""
+    early_m = 0.32 * 10.0 * 0.7 * 20.0
+    legs = (
+        Leg(length_m=1000.0, collect_m=(400.0, 1000.0)),
+        Leg(turn_deg=90.0, radius_m=120.0),
+        Leg(length_m=900.0, collect_m=(300.0, 600.0)),
+    )
+    plan = make_plan(legs)
+    items = flight(encode(plan, autopilot="px4"))
+    offs = [index for index, item in enumerate(items) if item.command == A and item.param1 == -1.0]
+    assert len(offs) == 2
+    for index, collect in zip(offs, plan.collects, strict=True):
+        begin, end = (FRAME.to_local(place[:2]) for place in collect.line)
+        last = local(items[index - 1])
+        assert math.dist(last, end) == pytest.approx(early_m, abs=0.05)
+        assert math.dist(last, begin) == pytest.approx(math.dist(end, begin) + early_m, abs=0.05)
+        # Nothing that leads back stands behind it.
+        assert math.dist(local(items[index + 1]), begin) > math.dist(last, begin)
+    assert math.dist(local(items[offs[0] - 3]), FRAME.to_local(plan.collects[0].line[0][:2])) < 0.05
+
+
+def test_no_waypoint_is_put_past_the_fence() -> None:
+    """Where the overshoot would leave the area, the sensor goes off at the exact end."""
+    legs = (
+        Leg(length_m=1000.0, collect_m=(400.0, 1000.0)),
+        Leg(turn_deg=90.0, radius_m=120.0),
+        Leg(length_m=900.0),
+    )
+    plan = make_plan(legs)
+    end = FRAME.to_local(plan.collects[0].line[1][:2])
+    begin = FRAME.to_local(plan.collects[0].line[0][:2])
+    angle_rad = math.atan2(end[1] - begin[1], end[0] - begin[0])
+    tower = ZoneCircle(
+        "tower", lonlat((end[0] + 60.0 * math.cos(angle_rad), end[1] + 60.0 * math.sin(angle_rad))), 30.0
+    )
+    fenced = replace(plan, fence=replace(square_fence(6000.0), exclusion_circles=(tower,)))
+    items = flight(encode(fenced, autopilot="px4"))
+    off = next(index for index, item in enumerate(items) if item.command == A and item.param1 == -1.0)
+    assert math.dist(local(items[off - 1]), end) < 0.05
 
 
 def test_collects_that_meet_share_a_waypoint() -> None:

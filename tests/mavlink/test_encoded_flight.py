@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import pytest
 from shapely.geometry import LineString, Point, Polygon
@@ -43,7 +44,10 @@ def fly(
     plan: Plan, autopilot: Autopilot, payload: Payload | None = None
 ) -> tuple[list[tuple[float, float]], ...]:
     """The whole track, then a track for each time the sensor was on."""
-    options = EncodeOptions() if payload is None else EncodeOptions(payload=payload)
+    # The simulated aircraft flies up to its waypoints, so the sensor needs no delay.
+    options = EncodeOptions(off_delay_m=0.0)
+    if payload is not None:
+        options = replace(options, payload=payload)
     mission = encode(plan, autopilot=autopilot, options=options)
     home = Place(plan.home[1], plan.home[0], 488.0)
     station = Station(SimulatedAircraft(SimSettings(home=home, autopilot=Flavour(autopilot))))
