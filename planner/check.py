@@ -21,6 +21,7 @@ from shapely.ops import substring
 from planner.environment.shapes import hard_shapes, soft_shapes
 from planner.plan import Collect, FlownPath, LonLat, Plan, Violation
 from planner.scenario import Region, Scenario, Wind
+from planner.sensors.view import seen_on_flat, seen_on_terrain
 from planner.vehicle.aircraft import Aircraft
 
 #: Arcs have vertices at most this far apart, so a longer edge is straight.
@@ -299,18 +300,24 @@ def _collect_violations(
             )
 
 
-def footprint(scenario: Scenario, collect: Collect) -> Polygon:
-    """Ground seen at full resolution during a collect, in the local frame.
+def footprint(scenario: Scenario, collect: Collect) -> Polygon | MultiPolygon:
+    """Ground seen at full resolution during a collect, in the local frame; on terrain without what is hidden.
 
     Between half an aperture after sensor on and half an aperture before sensor off every point between the
     near and the far edge of the beam is lit over a whole aperture.
     """
     sensor = next(s for s in scenario.sensors if s.name == collect.sensor)
-    (east0, north0), (east1, north1) = scenario.frame.to_local([place[:2] for place in collect.line])
+    line_m = scenario.frame.to_local([place[:2] for place in collect.line])
+    if scenario.terrain is not None:
+        level_m = collect.line[0][2]
+        return seen_on_terrain(sensor, line_m, collect.look, level_m, scenario.terrain).area
+    (east0, north0), (east1, north1) = line_m
     length_m = math.hypot(east1 - east0, north1 - north0)
     along = np.array([east1 - east0, north1 - north0]) / length_m
     side = np.array([along[1], -along[0]]) * (1.0 if collect.look == "right" else -1.0)
     height_m = scenario.height_m
+    if sensor.squint_rad != 0.0 or sensor.mode == "spotlight":
+        return seen_on_flat(sensor, line_m, collect.look, height_m)
     half_beam_rad = sensor.elevation_beamwidth_rad / 2.0
     near_m = height_m * math.tan(sensor.incidence_rad - half_beam_rad)
     far_m = height_m * math.tan(sensor.incidence_rad + half_beam_rad)

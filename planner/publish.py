@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
+import shapely
 from shapely.geometry import MultiPolygon, Polygon
 
 from planner.dubins.path import Path, Segment, join
@@ -31,6 +33,8 @@ from planner.plan import (
 )
 from planner.route import CollectPass
 from planner.scenario import Scenario
+from planner.sensors.sar import SarSensor
+from planner.sensors.view import seen_on_terrain
 from planner.transit.certificate import proven_m
 from planner.vehicle.aircraft import Aircraft
 from planner.vehicle.wind import duration_s
@@ -91,7 +95,8 @@ def collects_and_transits(
     scenario: Scenario, aircraft: Aircraft, legs: tuple[Leg, ...], passes: tuple[CollectPass, ...]
 ) -> tuple[tuple[Collect, ...], tuple[Transit, ...], tuple[Footprint, ...]]:
     """The features along the line, numbered from 1 in flight order."""
-    collects, transits, footprints = [], [], []
+    collects, transits = [], []
+    footprints: list[Footprint] = []
     zones = replace(keep_out(scenario, soft=False), area=None)
     along_m = along_s = 0.0
     for seq, leg in enumerate(legs, start=1):
@@ -124,10 +129,39 @@ def collects_and_transits(
             )
         )  # fmt: skip
         sensor = next(s for s in scenario.sensors if s.name == collect.sensor)
-        ring = _lonlats(scenario, np.asarray(collect.footprint.exterior.coords)[:, :2])
-        footprints.append(Footprint(aircraft.name, seq, name, collect.sensor, ring, sensor.resolution_m))
+        footprints.extend(_footprints(scenario, aircraft, seq, name, collect, sensor))
         along_m, along_s = end_m, end_s
     return tuple(collects), tuple(transits), tuple(footprints)
+
+
+def _footprints(
+    scenario: Scenario, aircraft: Aircraft, seq: int, name: str, collect: CollectPass, sensor: SarSensor
+) -> Iterator[Footprint]:
+    """The ground seen: the pass's own footprint, on terrain one for each part really seen."""
+    if scenario.terrain is None:
+        ring = _lonlats(scenario, np.asarray(collect.footprint.exterior.coords)[:, :2])
+        yield Footprint(aircraft.name, seq, name, collect.sensor, ring, sensor.resolution_m)
+        return
+    line_m = (collect.start, collect.end)
+    seen = seen_on_terrain(sensor, line_m, collect.look, scenario.altitude_amsl_m, scenario.terrain)
+    # Specks of a cell or two say nothing on a map.
+    tidy = seen.area.simplify(scenario.terrain.step_m / 20.0)
+    parts = [part for part in shapely.get_parts(tidy) if part.area > scenario.terrain.step_m**2 / 10.0]
+    for part in parts:
+        outer, *holes = (
+            _lonlats(scenario, np.asarray(ring.coords)[:, :2]) for ring in (part.exterior, *part.interiors)
+        )
+        yield Footprint(
+            aircraft.name,
+            seq,
+            name,
+            collect.sensor,
+            outer,
+            sensor.resolution_m,
+            holes=tuple(holes),
+            shadow_m2=seen.shadow_m2,
+            layover_m2=seen.layover_m2,
+        )
 
 
 def uncovered(

@@ -9,6 +9,7 @@ from planner.environment.terrain import Terrains
 from planner.errors import Finding, InfeasibleError, ScenarioError
 from planner.geojson import read_scenario
 from planner.scenario import Scenario
+from planner.sensors.view import sensing
 
 
 def findings(document: Any, terrains: Terrains | None = None) -> tuple[Finding, ...]:
@@ -45,8 +46,8 @@ def unseeable(scenario: Scenario) -> tuple[Finding, ...]:
     wide = scenario.method.coverage == "auto" and scenario.method.routing in ("auto", "joint")
     for region in scenario.regions:
         try:
-            sensor = scenario.sensor_for(region)
-            can_be_seen(region, sensor, scenario.height_m, scenario.area, wide=wide)
+            sensor, height_m = sensing(scenario, scenario.sensor_for(region), region.area)
+            can_be_seen(region, sensor, height_m, scenario.area, wide=wide)
         except InfeasibleError as error:
             found.append(
                 Finding(

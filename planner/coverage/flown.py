@@ -147,7 +147,9 @@ def _strip(
     edges = []
     for half_beam_rad in (-sensor.elevation_beamwidth_rad / 2.0, sensor.elevation_beamwidth_rad / 2.0):
         look_rad = np.clip(sensor.incidence_rad + half_beam_rad - roll_rad, 0.0, MAX_LOOK_RAD)
-        edges.append(centre + side * (height_m * np.tan(look_rad))[:, None])
+        # A squinted beam sees ground at slant range R abeam R·tan ahead.
+        lead_m = height_m / np.cos(look_rad) * math.tan(sensor.squint_rad)
+        edges.append(centre + side * (height_m * np.tan(look_rad))[:, None] + ahead * lead_m[:, None])
     near, far = edges
     for (near0, far0), (near1, far1) in pairwise(zip(near, far, strict=True)):
         hull = MultiPoint([near0, near1, far1, far0]).convex_hull

@@ -178,7 +178,8 @@ def check_sensor(region: Region, sensor: SarSensor, height_m: float) -> None:
     Raises
     ------
     InfeasibleError
-        ``"swath"`` for a beam that is not wholly on one side, ``"resolution"`` for one too coarse.
+        ``"swath"`` for a beam that is not wholly on one side or a relief too great, ``"spotlight"`` for a
+        region larger than the spot, ``"resolution"`` for one too coarse.
     """
     steepest_rad = sensor.incidence_rad - sensor.elevation_beamwidth_rad / 2.0
     flattest_rad = sensor.incidence_rad + sensor.elevation_beamwidth_rad / 2.0
@@ -188,6 +189,22 @@ def check_sensor(region: Region, sensor: SarSensor, height_m: float) -> None:
             region.name,
             f"sensor {sensor.name} has no swath on one side of the track from {height_m:g} m",
             "keep the whole elevation beam between straight down and the horizon, and fly above the ground",
+        )
+    if sensor.swath_m(height_m) <= 0.0:
+        raise InfeasibleError(
+            "swath",
+            region.name,
+            f"its ground rises and falls by {2.0 * sensor.relief_m:.0f} m: from {height_m:.0f} m no strip "
+            "has all of it in the beam",
+            "fly higher, or divide the region by height",
+        )
+    across_m = 2.0 * float(shapely.minimum_bounding_radius(region.area))
+    if across_m > sensor.spot_m(height_m):
+        raise InfeasibleError(
+            "spotlight",
+            region.name,
+            f"it is {across_m:.0f} m across, the spot of {sensor.name} {sensor.spot_m(height_m):.0f} m",
+            "use stripmap, fly higher, or make the region smaller",
         )
     if region.min_resolution_m is None:
         return

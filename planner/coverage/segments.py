@@ -30,6 +30,7 @@ from planner.coverage.merge import MergedRegion
 from planner.errors import InfeasibleError
 from planner.route import CollectPass
 from planner.sensors.sar import Look, SarSensor
+from planner.sensors.view import seen_on_flat
 
 Floats = NDArray[np.float64]
 
@@ -74,7 +75,7 @@ class Neighbourhood:
         spans = _turned(self.spans) if opposite else self.spans
         angles_rad = self.angles_rad + (math.pi if opposite else 0.0)
         swath_m, near_m = self.sensor.swath_m(self.height_m), self.sensor.near_m(self.height_m)
-        half_m = self.sensor.aperture_m(self.height_m) / 2.0
+        run_in_m, run_out_m = self.sensor.run_in_m(self.height_m), self.sensor.run_out_m(self.height_m)
         # Eq 19 for a right-looking sensor, mirrored for a left-looking one.
         inner_m = spans.y_max_m + near_m
         outer_m = spans.y_min_m + (self.turns + 1) * swath_m + near_m
@@ -82,7 +83,7 @@ class Neighbourhood:
             inner_m = spans.y_min_m - near_m
             outer_m = spans.y_max_m - (self.turns + 1) * swath_m - near_m
         y_m = inner_m[:, None] + etas[None, :] * (outer_m - inner_m)[:, None]
-        x_m = np.stack([spans.x_min_m - half_m, spans.x_max_m + half_m], axis=1)
+        x_m = np.stack([spans.x_min_m - run_in_m, spans.x_max_m + run_out_m], axis=1)
         cos, sin = np.cos(angles_rad)[:, None, None], np.sin(angles_rad)[:, None, None]
         east_m = cos * x_m[:, None, :] - sin * y_m[:, :, None]
         north_m = sin * x_m[:, None, :] + cos * y_m[:, :, None]
@@ -161,6 +162,8 @@ def collect_along(
     near, far = side * sensor.near_m(height_m), side * sensor.far_m(height_m)
     first, last = line[0] + half_m * ahead, line[1] - half_m * ahead
     footprint = Polygon([first + near, last + near, last + far, first + far])
+    if sensor.squint_rad != 0.0 or sensor.mode == "spotlight":
+        footprint = seen_on_flat(sensor, line, look, height_m)
     start, end = (float(line[0, 0]), float(line[0, 1])), (float(line[1, 0]), float(line[1, 1]))
     return CollectPass(region.names, sensor.name, look, start, end, eta, footprint)
 

@@ -156,14 +156,15 @@ def lanes_at(sweep: Sweep, angles_rad: Floats, etas: Floats, count: int) -> Lane
     high_m = (spans.y_max_m[:, None] + beyond_m)[:, :, None] - step_m[:, :, None] * np.arange(count)
     low_m = high_m - swath_m
     extent_m = kernels.strip_extents(_edges(sweep.region), angles_rad, low_m, high_m)
-    half_m = sensor.aperture_m(height_m) / 2.0
+    run_in_m, run_out_m = sensor.run_in_m(height_m), sensor.run_out_m(height_m)
     states: list[Floats] = []
     headings, looks, onward = [], [], []
     for way in _ways(sweep):
         for look in sensor.looks:
             from_high = (look == "right") == (way == 1)
             y_m = high_m + near_m if from_high else low_m - near_m
-            x_m = np.stack([extent_m[..., 0] - half_m, extent_m[..., 1] + half_m], axis=-1)[..., ::way]
+            first_m, last_m = (extent_m[..., 0], extent_m[..., 1])[::way]
+            x_m = np.stack([first_m - way * run_in_m, last_m + way * run_out_m], axis=-1)
             cos = np.cos(angles_rad)[:, None, None, None]
             sin = np.sin(angles_rad)[:, None, None, None]
             east_m = cos * x_m - sin * y_m[..., None]

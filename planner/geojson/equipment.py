@@ -10,10 +10,15 @@ from planner.angles import angle_from_heading
 from planner.geojson.fields import Fields, Findings
 from planner.scenario import Method, Objective, Wind
 from planner.sensors.sar import Look, SarSensor
+from planner.sensors.sar_modes import scansar_resolution_m, turned_for_rad
 from planner.vehicle.aircraft import Aircraft, turn_radius_from_bank_m, turn_radius_from_load_factor_m
 
 SPEED_OF_LIGHT_M_S = 299_792_458.0
 
+#: Beyond this the beam runs along the track rather than beside it.
+MAX_SQUINT_DEG = 60.0
+#: A spotlight pass turns no further than this round its place.
+MAX_TURNED_DEG = 60.0
 #: A multirotor without a stated turn limit rounds its corners with this bank.
 MULTIROTOR_BANK_DEG = 25.0
 
@@ -112,14 +117,22 @@ def read_sensor(raw: Any, index: int, findings: Findings) -> SarSensor | None:
     azimuth_rad = _azimuth_beamwidth_rad(fields)
     resolution_m = fields.number("resolution_m", None, above=0.0)
     look = fields.choice("look", ("left", "right", "both"), "right")
-    squint_deg = fields.number("squint_deg", 0.0, above=-90.0, below=90.0)
-    if squint_deg:
-        fields.wrong("squint_deg", "is not zero", "This version plans without squint.", rule="not-supported")
+    squint_deg = fields.number("squint_deg", 0.0, minimum=-MAX_SQUINT_DEG, maximum=MAX_SQUINT_DEG)
+    mode: Any = fields.choice("mode", ("stripmap", "spotlight", "scansar"), "stripmap")
+    sub_swaths = fields.integer("sub_swaths", 3 if mode == "scansar" else 1, minimum=1)
+    wavelength_m = _wavelength_m(fields)
     fields.refuse_unknown(
         also_known=("azimuth_beamwidth_deg", "aperture_length_m", "wavelength_m", "frequency_hz")
     )
     if name is None or incidence_deg is None or elevation_deg is None or azimuth_rad is None or look is None:
         return None
+    if squint_deg is None or mode is None:
+        return None
+    if sub_swaths > 1 and mode != "scansar":
+        fields.wrong("sub_swaths", "goes with mode scansar", "Leave sub_swaths out, or set mode to scansar.")
+        return None
+    # Sub-swaths lie side by side, each one elevation beam wide.
+    elevation_deg *= sub_swaths
     if incidence_deg - elevation_deg / 2.0 < 0.0 or incidence_deg + elevation_deg / 2.0 >= 90.0:
         fields.wrong(
             "elevation_beamwidth_deg",
@@ -132,9 +145,50 @@ def read_sensor(raw: Any, index: int, findings: Findings) -> SarSensor | None:
     looks: tuple[Look, ...] = (
         ("left", "right") if look == "both" else ("left",) if look == "left" else ("right",)
     )
+    turned_rad = None
+    if mode == "spotlight":
+        turned_rad = _turned_rad(fields, wavelength_m, resolution_m, math.radians(squint_deg))
+        if turned_rad is None:
+            return None
+    if mode == "scansar" and resolution_m is not None:
+        resolution_m = scansar_resolution_m(resolution_m, sub_swaths)
     return SarSensor(
-        name, math.radians(incidence_deg), math.radians(elevation_deg), azimuth_rad, looks, resolution_m
-    )
+        name, math.radians(incidence_deg), math.radians(elevation_deg), azimuth_rad, looks, resolution_m,
+        math.radians(squint_deg), mode, sub_swaths, turned_rad,
+    )  # fmt: skip
+
+
+def _wavelength_m(fields: Fields) -> float | None:
+    """λ, given, or from the frequency."""
+    wavelength_m = fields.number("wavelength_m", None, above=0.0)
+    frequency_hz = fields.number("frequency_hz", None, above=0.0)
+    if wavelength_m is None and frequency_hz is not None:
+        return SPEED_OF_LIGHT_M_S / frequency_hz
+    return wavelength_m
+
+
+def _turned_rad(
+    fields: Fields, wavelength_m: float | None, resolution_m: float | None, squint_rad: float
+) -> float | None:
+    """The angle a spotlight pass turns round its place, for the resolution asked of the sensor."""
+    if wavelength_m is None or resolution_m is None:
+        fields.wrong(
+            "mode",
+            "spotlight needs resolution_m, which its passes are to give, and the wavelength",
+            "Add resolution_m, and wavelength_m or frequency_hz.",
+            rule="missing-property",
+        )
+        return None
+    turned_rad = turned_for_rad(wavelength_m, resolution_m, squint_rad)
+    if math.isnan(turned_rad) or turned_rad > math.radians(MAX_TURNED_DEG):
+        fields.wrong(
+            "resolution_m",
+            f"of {resolution_m:g} m asks for a turn of more than {MAX_TURNED_DEG:g}° round the place",
+            f"Give {wavelength_m / 2.0:.3g} m or more.",
+            rule="out-of-range",
+        )
+        return None
+    return turned_rad
 
 
 def _azimuth_beamwidth_rad(fields: Fields) -> float | None:

@@ -17,6 +17,7 @@ from planner.routing.room import Room
 from planner.routing.tour import TourMethod, order
 from planner.scenario import Region, Scenario
 from planner.sensors.sar import SarSensor
+from planner.sensors.view import sensing
 from planner.vehicle.aircraft import Aircraft
 
 
@@ -90,7 +91,8 @@ def greedy(
     for number, region in enumerate(merged):
         raise_if(stop)
         progress("coverage", 0.8 * number / len(merged))
-        found, failed = _locate(region, _sensor(scenario, region), scenario.height_m, room)
+        sensor, height_m = sensing(scenario, _sensor(scenario, region), region.area)
+        found, failed = _locate(region, sensor, height_m, room)
         located.extend(found)
         dropped.extend(failed)
     raise_if(stop)
@@ -121,7 +123,7 @@ def _sharp_enough(scenario: Scenario) -> tuple[tuple[Region, ...], list[Infeasib
     dropped: list[InfeasibleError] = []
     for region in scenario.regions:
         try:
-            check_sensor(region, scenario.sensor_for(region), scenario.height_m)
+            check_sensor(region, *sensing(scenario, scenario.sensor_for(region), region.area))
         except InfeasibleError as reason:
             if region.required:
                 raise

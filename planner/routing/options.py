@@ -18,8 +18,10 @@ from planner.coverage.segments import Neighbourhood
 from planner.coverage.sweeps import VARIANTS, Judge, Side, Sweep, Swept, best_sweeps, sweep_passes
 from planner.dubins.kernels import dubins_lengths
 from planner.environment.kernels import length_in_discs
+from planner.environment.terrain import Ground
 from planner.route import CollectPass
 from planner.scenario import Wind
+from planner.sensors.view import shadow_cost
 from planner.vehicle.wind import STILL_AIR, still_air_factor
 
 Floats = NDArray[np.float64]
@@ -46,6 +48,8 @@ class Surroundings:
         Turn radius, and straight flight before each collect.
     airspeed_m_s, wind
         In a wind, metres over the ground count as metres through the air: time by airspeed.
+    ground, level_m
+        Terrain, and the flight's level over its datum: ground that a pass leaves in shadow or layover costs.
     """
 
     area: Polygon | None
@@ -57,6 +61,8 @@ class Surroundings:
     settle_m: float
     airspeed_m_s: float = 1.0
     wind: Wind = STILL_AIR
+    ground: Ground | None = None
+    level_m: float = 0.0
 
     @property
     def discs(self) -> Floats:
@@ -151,6 +157,7 @@ def _of_side(
         return None
     first = here.lines(etas)
     good_first, cost_first = _judge(first, around)
+    cost_first += _hidden_m(here, first, around)
     if side.turns == 0:
         rows = np.argwhere(good_first)
         if len(rows) == 0:
@@ -163,6 +170,7 @@ def _of_side(
         )
     second = here.lines(etas, opposite=True)
     good_second, cost_second = _judge(second, around)
+    cost_second += _hidden_m(here, second, around)
     both = good_first[:, :, None] & good_second[:, None, :] & complementary(etas)
     rows = np.argwhere(both)
     if len(rows) == 0:
@@ -251,6 +259,13 @@ def _lane_judge(around: Surroundings) -> Judge:
         return cost_m, entries, exits, NO_ROOM_M * cramped.astype(np.float64)
 
     return judge
+
+
+def _hidden_m(side: Neighbourhood, lines: Floats, around: Surroundings) -> Floats | float:
+    """What the lines cost for ground of the region that terrain hides from them."""
+    if around.ground is None:
+        return 0.0
+    return shadow_cost(lines, side.look, side.sensor, around.level_m, side.region.area, around.ground)
 
 
 def _judge(lines: Floats, around: Surroundings) -> tuple[NDArray[np.bool_], Floats]:

