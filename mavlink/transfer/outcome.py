@@ -15,7 +15,7 @@ MEANING: Final[dict[int, str]] = {
     MissionResult.ERROR: "the vehicle reports an error without a reason",
     MissionResult.UNSUPPORTED_FRAME: "the coordinate frame is not supported",
     MissionResult.UNSUPPORTED: "the command is not supported",
-    MissionResult.NO_SPACE: "more items than the vehicle can store now; ArduPilot says so of any while it starts",
+    MissionResult.NO_SPACE: "more items than the vehicle can store; ArduPilot says so of any while it starts",
     MissionResult.INVALID: "a parameter has an invalid value",
     MissionResult.INVALID_PARAM1: "param1 has an invalid value",
     MissionResult.INVALID_PARAM2: "param2 has an invalid value",
