@@ -40,6 +40,9 @@ _INTERVALS_HZ: Final = {
 }
 _MICROSECONDS: Final = 1e6
 _PARAMETER_RETRIES: Final = 2
+# PX4 judges a mission within moments of its acknowledgement, and gives its reasons one by one.
+_JUDGEMENT_S: Final = 1.0
+_MORE_REASONS_S: Final = 0.2
 _PARAMETER_TIMEOUT_S: Final = 0.8
 
 
@@ -84,7 +87,9 @@ class VehicleClient(FlightCommands):
         codec.tap = tap
         self._driver = Driver(link, codec, clock, self._ask_for_telemetry, vehicle_system, lost_after_s)
         self._settings = settings
+        self._clock = clock
         self._pending: Pending | None = None
+        self._rejected: tuple[tuple[MissionItem, ...], tuple[str, ...]] | None = None
 
     async def __aenter__(self) -> Self:
         return self
@@ -198,12 +203,34 @@ class VehicleClient(FlightCommands):
         BusyError, NotConnectedError, CodecError, ValueError
             Nothing was begun.
         """
+        begun_s = self._clock()
         result = await upload_and_verify(self, items, mission_type, differences, progress)
+        judged = mission_type in (MissionType.MISSION, MissionType.FENCE) and self._driver.events.heard
+        if judged and result.status == "stored":
+            result = replace(result, objections=await self._objections(tuple(items), begun_s))
         unresolved = result.held is None
         self._pending = (
             Pending(tuple(items), mission_type, differences, result.outcome) if unresolved else None
         )
         return result
+
+    async def _objections(self, items: tuple[MissionItem, ...], begun_s: float) -> tuple[str, ...]:
+        """What a vehicle that speaks in events says against its mission, having just taken this list."""
+
+        def said(state: VehicleState) -> tuple[str, ...]:
+            against = (text for text in state.texts if text.against_mission and text.heard_s >= begun_s)
+            return tuple(dict.fromkeys(text.text for text in against))
+
+        try:
+            await self.wait_for(lambda state: bool(said(state)), _JUDGEMENT_S)
+            await asyncio.sleep(_MORE_REASONS_S)
+        except (TimeoutError, NotConnectedError):
+            # It has nothing against it; or it is the list it holds already, which it does not judge again.
+            if self._rejected is not None and self._rejected[0] == items:
+                return self._rejected[1]
+        objections = said(self.state)
+        self._rejected = (items, objections) if objections else None
+        return objections
 
     @property
     def pending(self) -> bool:

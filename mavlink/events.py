@@ -30,7 +30,7 @@ EVENT_MESSAGES: Final = frozenset({"EVENT", "CURRENT_EVENT_SEQUENCE", "RESPONSE_
 
 
 @dataclass(frozen=True, slots=True)
-class _Known:
+class KnownEvent:
     """An event: ``layout`` of its arguments (struct, little-endian), ``words`` to fill them into."""
 
     words: str
@@ -38,60 +38,66 @@ class _Known:
     against_mission: bool = True
 
 
-_KNOWN: Final = {
-    "navigator_mis_no_home_rel_alt": _Known(
+KNOWN_EVENTS: Final = {
+    "navigator_mis_no_home_rel_alt": KnownEvent(
         "mission rejected: item {0} has a height over home, and home is not known yet", "h"
     ),
-    "navigator_mis_unsup_cmd": _Known("mission rejected: item {0} has the unsupported command {1}", "HH"),
-    "navigator_mis_starts_w_landing": _Known("mission rejected: it starts with a landing"),
-    "navigator_mis_starts_w_landing2": _Known("mission rejected: it starts with a landing"),
-    "navigator_mis_takeoff_too_low": _Known(
+    "navigator_mis_unsup_cmd": KnownEvent("mission rejected: item {0} has the unsupported command {1}", "HH"),
+    "navigator_mis_starts_w_landing": KnownEvent("mission rejected: it starts with a landing"),
+    "navigator_mis_starts_w_landing2": KnownEvent("mission rejected: it starts with a landing"),
+    "navigator_mis_takeoff_too_low": KnownEvent(
         "mission rejected: the take-off climbs too low, {0:.1f} m is not enough", "f"
     ),
-    "navigator_mis_takeoff_not_first": _Known("mission rejected: the take-off is not its first place"),
-    "navigator_mis_approach_wp_below_land": _Known(
+    "navigator_mis_takeoff_not_first": KnownEvent("mission rejected: the take-off is not its first place"),
+    "navigator_mis_approach_wp_below_land": KnownEvent(
         "mission rejected: the approach must start above the landing point"
     ),
-    "navigator_mis_land_wp_inside_orbit_radius": _Known(
+    "navigator_mis_land_wp_inside_orbit_radius": KnownEvent(
         "mission rejected: the landing point lies inside the approach's circle"
     ),
-    "navigator_mis_unsupported_landing_approach_wp": _Known(
+    "navigator_mis_unsupported_landing_approach_wp": KnownEvent(
         "mission rejected: a landing can only follow a waypoint or a circle to an altitude"
     ),
-    "navigator_mis_glide_slope_too_steep": _Known(
+    "navigator_mis_glide_slope_too_steep": KnownEvent(
         "mission rejected: the landing is steeper than the {0}.{1}° the vehicle is set to", "BB"
     ),
-    "navigator_mis_correct_glide_slope": _Known(
+    "navigator_mis_correct_glide_slope": KnownEvent(
         "the approach must start {0} m high at most, or {1} m away at least", "II"
     ),
-    "navigator_mis_multiple_land": _Known("mission rejected: more than one start of a landing"),
-    "navigator_mis_land_before_rtl": _Known("mission rejected: a return stands behind the landing's start"),
-    "navigator_mis_invalid_land": _Known(
+    "navigator_mis_multiple_land": KnownEvent("mission rejected: more than one start of a landing"),
+    "navigator_mis_land_before_rtl": KnownEvent(
+        "mission rejected: a return stands behind the landing's start"
+    ),
+    "navigator_mis_invalid_land": KnownEvent(
         "mission rejected: the landing's start is not followed by a landing"
     ),
-    "navigator_mis_takeoff_missing": _Known("mission rejected: a take-off is required"),
-    "navigator_mis_land_missing": _Known("mission rejected: a landing is required"),
-    "navigator_mis_takeoff_or_land_missing": _Known("mission rejected: a take-off or a landing is required"),
-    "feasibility_mis_in_air_landing_req": _Known("mission rejected: a landing is required"),
-    "navigator_mis_add_land_or_rm_to": _Known("mission rejected: a take-off without a landing"),
-    "navigator_mis_add_to_or_rm_land": _Known("mission rejected: a landing without a take-off"),
-    "navigator_mis_first_wp_far": _Known("the first waypoint lies {0} m from home: the right mission?", "I"),
-    "navigator_mis_wp_gate_too_close": _Known(
+    "navigator_mis_takeoff_missing": KnownEvent("mission rejected: a take-off is required"),
+    "navigator_mis_land_missing": KnownEvent("mission rejected: a landing is required"),
+    "navigator_mis_takeoff_or_land_missing": KnownEvent(
+        "mission rejected: a take-off or a landing is required"
+    ),
+    "feasibility_mis_in_air_landing_req": KnownEvent("mission rejected: a landing is required"),
+    "navigator_mis_add_land_or_rm_to": KnownEvent("mission rejected: a take-off without a landing"),
+    "navigator_mis_add_to_or_rm_land": KnownEvent("mission rejected: a landing without a take-off"),
+    "navigator_mis_first_wp_far": KnownEvent(
+        "the first waypoint lies {0} m from home: the right mission?", "I"
+    ),
+    "navigator_mis_wp_gate_too_close": KnownEvent(
         "mission rejected: a waypoint and a gate lie {0:.3f} m apart, {1:.3f} m is the least", "ff"
     ),
-    "navigator_mis_vtol_items": _Known("mission rejected: VTOL items, and the vehicle is none"),
-    "navigator_mis_no_pos_lock": _Known("not ready for a mission yet: no position", "", False),
-    "navigator_mis_geofence_no_home": _Known("the fence needs a home position"),
-    "navigator_mis_geofence_no_home2": _Known("the fence needs a home position"),
-    "navigator_mis_geofence_violation": _Known("mission rejected: item {0} lies outside the fence", "h"),
-    "navigator_geofence_invalid_against_home": _Known(
+    "navigator_mis_vtol_items": KnownEvent("mission rejected: VTOL items, and the vehicle is none"),
+    "navigator_mis_no_pos_lock": KnownEvent("not ready for a mission yet: no position", "", False),
+    "navigator_mis_geofence_no_home": KnownEvent("the fence needs a home position"),
+    "navigator_mis_geofence_no_home2": KnownEvent("the fence needs a home position"),
+    "navigator_mis_geofence_violation": KnownEvent("mission rejected: item {0} lies outside the fence", "h"),
+    "navigator_geofence_invalid_against_home": KnownEvent(
         "the fence does not contain home and is not valid", "", False
     ),
-    "navigator_geofence_invalid_against_cur_pos": _Known(
+    "navigator_geofence_invalid_against_cur_pos": KnownEvent(
         "the fence does not contain the vehicle and is not valid", "", False
     ),
-    "mission_not_valid_refuse": _Known("no valid mission: take-off refused", "", False),
-    "mission_not_valid_loiter": _Known("no valid mission: circling", "", False),
+    "mission_not_valid_refuse": KnownEvent("no valid mission: take-off refused", "", False),
+    "mission_not_valid_loiter": KnownEvent("no valid mission: circling", "", False),
 }
 
 
@@ -103,7 +109,7 @@ def event_id(name: str) -> int:
     return value & 0xFFFFFF | _AUTOPILOT
 
 
-_NAMES: Final = {event_id(name): name for name in _KNOWN}
+_NAMES: Final = {event_id(name): name for name in KNOWN_EVENTS}
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,7 +137,7 @@ def read_event(message: Message) -> Event | None:
     arguments = message.fields["arguments"]
     if name is None or severity > _LEAST_SEVERE or not isinstance(arguments, tuple):
         return None
-    known = _KNOWN[name]
+    known = KNOWN_EVENTS[name]
     values = struct.unpack_from(f"<{known.layout}", bytes(int(byte) for byte in arguments))
     return Event(name, severity, known.words.format(*values), known.against_mission)
 

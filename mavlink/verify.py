@@ -45,21 +45,30 @@ class VerifiedUpload:
         Between meant and held.
     resolved_from
         The unknown outcome in whose place the read-back put a known one.
+    objections
+        Why the vehicle will not fly the mission it holds, in its events' words; PX4 acknowledges it first.
     """
 
     outcome: Outcome
     held: tuple[MissionItem, ...] | None
     differences: tuple[Difference, ...] = ()
     resolved_from: Unknown | None = None
+    objections: tuple[str, ...] = ()
 
     @property
-    def status(self) -> Literal["stored", "different", "refused", "unknown"]:
-        """``stored``: the vehicle holds what was meant. ``different``: it holds something else."""
+    def status(self) -> Literal["stored", "different", "refused", "unknown", "rejected"]:
+        """How it stands.
+
+        ``stored``: the vehicle holds what was meant. ``different``: it holds something else. ``rejected``: it
+        holds what was meant, and will not fly it.
+        """
         if self.outcome.kind == "refused":
             return "refused"
         if self.held is None:
             return "unknown"
-        return "different" if self.differences else "stored"
+        if self.differences:
+            return "different"
+        return "rejected" if self.objections else "stored"
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import struct
+from collections.abc import Sequence
 
 import pytest
 from hypothesis import given
@@ -12,10 +13,14 @@ from pymavlink.dialects.v20 import ardupilotmega as dialect
 
 from mavlink.client import VehicleClient
 from mavlink.codec import Codec
+from mavlink.compare import Difference
 from mavlink.events import EventOrder, event_id, read_event
+from mavlink.items import MissionItem, MissionType
 from mavlink.link import memory_pair
 from mavlink.messages import Message
 from mavlink.telemetry import VehicleState, updated
+from tests.mavlink.aircraft import flying
+from tests.mavlink.transfer.vehicle import waypoints
 
 LAND_MISSING = "navigator_mis_land_missing"
 
@@ -180,3 +185,34 @@ async def test_a_client_asks_for_a_lost_event() -> None:
         state = await client.wait_for(lambda state: bool(state.texts), 5.0)
         assert state.texts[-1].text == "mission rejected: a landing is required"
     await air.close()
+
+
+async def test_an_upload_tells_why_the_vehicle_will_not_fly_it() -> None:
+    """Acknowledged and held, yet rejected, with each reason once; the same list again: the same reasons."""
+
+    def compare(meant: tuple[MissionItem, ...], held: tuple[MissionItem, ...]) -> Sequence[Difference]:
+        return [] if meant == held else [Difference(None, "items", None, None)]
+
+    bad, good = waypoints(3), waypoints(4)
+    async with flying("px4") as (client, aircraft):
+        await aircraft.say("CURRENT_EVENT_SEQUENCE", sequence=4)
+
+        async def judge() -> None:
+            while not any(message.name == "MISSION_ACK" for message in aircraft.heard):
+                await asyncio.sleep(0.01)
+            reasons = (LAND_MISSING, LAND_MISSING, "navigator_mis_takeoff_missing")
+            for sequence, name in enumerate(reasons, start=5):
+                await aircraft.say("EVENT", **event(name, sequence).fields)
+
+        judged = asyncio.create_task(judge())
+        first = await client.upload_verified(bad, MissionType.MISSION, compare)
+        await judged
+        again = await client.upload_verified(bad, MissionType.MISSION, compare)
+        after = await client.upload_verified(good, MissionType.MISSION, compare)
+    for result in (first, again):
+        assert (result.status, result.outcome.kind, result.differences) == ("rejected", "accepted", ())
+        assert result.objections == (
+            "mission rejected: a landing is required",
+            "mission rejected: a take-off is required",
+        )
+    assert (after.status, after.objections) == ("stored", ())

@@ -1,0 +1,170 @@
+"""A PX4 simulator without graphics, if the machine has one, and a flight in it.
+
+``SWATHPLAN_PX4`` names the binary (SITL with the built-in SIH model), ``SWATHPLAN_PX4_ROMFS`` its ``etc``
+folder. PX4 sends to port 14540 plus its instance on loopback, where the test listens.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import socket
+import subprocess
+from collections.abc import AsyncIterator, Iterator, Mapping
+from contextlib import asynccontextmanager, contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+from mavlink.client import VehicleClient
+from mavlink.codec import Codec
+from mavlink.link import open_link
+from mavlink.telemetry import VehicleState
+from mavlink.track import Track
+
+BINARY = os.environ.get("SWATHPLAN_PX4", "")
+ROMFS = os.environ.get("SWATHPLAN_PX4_ROMFS", "")
+FIRST_PORT = 14540
+HOME_ALTITUDE_M = 30.0
+#: Nobody holds a remote control (NAV_RCL_ACT, COM_RCL_EXCEPT: mission, hold); output 5 follows actuator 1, so
+#: that the simulator tells when the sensor is on; nothing is logged (SDLOG_MODE).
+PARAMETERS: Mapping[str, float] = {
+    "NAV_RCL_ACT": 0,
+    "COM_RCL_EXCEPT": 7,
+    "PWM_MAIN_FUNC5": 301,
+    "SDLOG_MODE": -1,
+}
+SENSOR_OUTPUT = "servo5_raw"
+OUTPUT_MIDDLE_US = 1500
+#: Sent up to fifty times a second of the simulator's time, which runs fast; nobody here reads them.
+NOT_NEEDED = (31, 32, 62, 83, 85, 105, 132, 141, 331)
+SET_INTERVAL, SERVO_OUTPUT_RAW = 511, 36
+#: Until position and attitude have settled.
+READY_S = 60.0
+STALLED_S = 60.0
+
+
+def free_instance() -> int:
+    """The first of PX4's instances whose port nobody listens to."""
+    for instance in range(10):
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+            try:
+                probe.bind(("127.0.0.1", FIRST_PORT + instance))
+            except OSError:
+                continue
+            return instance
+    raise OSError("ports 14540 to 14549 are all in use")
+
+
+@contextmanager
+def px4(
+    folder: Path,
+    instance: int,
+    home: tuple[float, float],
+    speedup: float = 1.0,
+    parameters: Mapping[str, float] = PARAMETERS,
+    airframe: str = "10041",
+) -> Iterator[subprocess.Popen[bytes]]:
+    """Run the simulator in a folder of its own; ``home`` is (lon, lat), 10041 the SIH aeroplane."""
+    environment = {
+        **{f"PX4_PARAM_{name}": f"{value:g}" for name, value in parameters.items()},
+        "PATH": f"{Path(BINARY).resolve().parent}:{os.environ['PATH']}",
+        "PX4_SYS_AUTOSTART": airframe,
+        "PX4_SIMULATOR": "sihsim",
+        "PX4_SIM_SPEED_FACTOR": f"{speedup:g}",
+        "PX4_HOME_LON": f"{home[0]:.7f}",
+        "PX4_HOME_LAT": f"{home[1]:.7f}",
+        "PX4_HOME_ALT": f"{HOME_ALTITUDE_M:g}",
+    }
+    command = [BINARY, "-d", "-i", str(instance), "-w", str(folder), str(Path(ROMFS).resolve())]
+    with (folder / "output.txt").open("wb") as output:
+        process = subprocess.Popen(
+            command,
+            cwd=folder,
+            env=environment,
+            stdout=output,
+            stderr=subprocess.STDOUT,
+            stdin=subprocess.DEVNULL,
+        )
+        try:
+            yield process
+        finally:
+            process.terminate()
+            try:
+                process.wait(10)
+            except subprocess.TimeoutExpired:
+                process.kill()
+                process.wait()
+
+
+class SensorWatch:
+    """When the sensor's output was switched, in the simulator's time; fed with the link's frames."""
+
+    def __init__(self) -> None:
+        self.switches: list[tuple[float, bool]] = []
+        self._codec = Codec()
+
+    def __call__(self, frame: bytes) -> None:
+        for message in self._codec.feed(frame):
+            if message.name != "SERVO_OUTPUT_RAW" or message.integer("port") != 0:
+                continue
+            on = message.integer(SENSOR_OUTPUT) > OUTPUT_MIDDLE_US
+            if on != (self.switches[-1][1] if self.switches else False):
+                self.switches.append((message.integer("time_usec") / 1e6, on))
+
+    def on_at(self, time_s: float) -> bool:
+        """Whether it was on then."""
+        return next((on for since_s, on in reversed(self.switches) if since_s <= time_s), False)
+
+
+@asynccontextmanager
+async def aeroplane(
+    folder: Path,
+    home: tuple[float, float],
+    speedup: float,
+    parameters: Mapping[str, float] = PARAMETERS,
+    watch: SensorWatch | None = None,
+) -> AsyncIterator[VehicleClient]:
+    """A simulator that is ready to fly, and a client of it."""
+    instance = free_instance()
+    link = await open_link(f"udpin:127.0.0.1:{FIRST_PORT + instance}")
+    async with VehicleClient(link, tap=watch) as client:
+        with px4(folder, instance, home, speedup, parameters):
+            await client.connect(30.0)
+            await client.wait_for(lambda state: state.home_lat_deg is not None, READY_S)
+            for message_id in NOT_NEEDED:
+                await client.command(SET_INTERVAL, (float(message_id), -1.0))
+            await client.command(SET_INTERVAL, (float(SERVO_OUTPUT_RAW), 1e5))
+            yield client
+
+
+@dataclass(frozen=True, slots=True)
+class Flight:
+    """A mission flown to its end."""
+
+    track: Track
+    texts: tuple[str, ...]
+    final: VehicleState
+
+
+async def fly(client: VehicleClient) -> Flight:
+    """Start the mission, which arms PX4, and wait until the vehicle has landed and disarmed."""
+    recorder = client.start_recording()
+    for _ in range(120):
+        started = await client.start_mission()
+        if started.accepted:
+            break
+        await asyncio.sleep(0.5)
+    assert started.accepted, (started, [text.text for text in client.state.texts])
+    await client.wait_for(lambda state: state.armed, 20.0)
+    texts: list[str] = []
+    last_seq, quiet_s = -1, 0.0
+    while client.state.armed:
+        await asyncio.sleep(0.05)
+        state = client.state
+        assert state.connected, "the simulator fell silent"
+        texts += [text.text for text in state.texts if text.text not in texts]
+        quiet_s = 0.0 if state.mission_current != last_seq else quiet_s + 0.05
+        last_seq = state.mission_current if state.mission_current is not None else -1
+        assert quiet_s < STALLED_S, f"stuck at item {last_seq}, mode {state.mode}: {texts[-5:]}"
+    client.stop_recording(recorder)
+    return Flight(recorder.track(), tuple(texts), client.state)

@@ -1,0 +1,145 @@
+"""Plans in a real PX4 aeroplane: stored as meant, flown as planned, the regions seen; refusals in words.
+
+Skipped unless ``SWATHPLAN_PX4`` names the simulator's binary and ``SWATHPLAN_PX4_ROMFS`` its ``etc`` folder;
+see ``px4.py``.
+"""
+
+from __future__ import annotations
+
+import json
+import lzma
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import pytest
+from shapely.geometry import LineString, Polygon
+
+from app.services.flights import seen_by
+from app.services.vehicles.recorder import Thinner
+from mavlink.compare import Difference, differences
+from mavlink.dialects import dialect_for
+from mavlink.encode import encode
+from mavlink.events import KNOWN_EVENTS, event_id
+from mavlink.items import Command, MissionItem, MissionType
+from mavlink.mission import numbered, unplaced
+from planner.geojson import read_scenario
+from planner.pipeline import make_plan
+from planner.plan import Plan
+from planner.scenario import Scenario
+from tests.flows.px4 import BINARY, ROMFS, SensorWatch, aeroplane, fly
+
+pytestmark = [
+    pytest.mark.px4,
+    pytest.mark.skipif(
+        not (BINARY and ROMFS), reason="SWATHPLAN_PX4 and SWATHPLAN_PX4_ROMFS name no simulator"
+    ),
+]
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+AEROPLANE = dialect_for("px4", "fixed_wing")
+SPEEDUP = 18.0
+
+
+@cache
+def planned() -> tuple[Scenario, Plan]:
+    """The first example for the simulator's small aeroplane, which flies at 14 m/s."""
+    document: dict[str, Any] = json.loads((EXAMPLES / "sar-case-1.geojson").read_text())
+    document["vehicles"][0].update(
+        autopilot="px4", airspeed_m_s=14.0, min_turn_radius_m=100.0, settle_m=100.0
+    )
+    scenario = read_scenario(document)
+    return scenario, make_plan(scenario)
+
+
+def compare(meant: tuple[MissionItem, ...], held: tuple[MissionItem, ...]) -> Sequence[Difference]:
+    """As every upload compares."""
+    return differences(meant, held, AEROPLANE)
+
+
+async def test_a_plan_is_stored_flown_and_seen(tmp_path: Path) -> None:
+    """Read back equal; every pass flown near its line, inside the fence; regions seen; landed at the end."""
+    scenario, plan = planned()
+    mission = encode(plan, autopilot="px4")
+    watch = SensorWatch()
+    async with aeroplane(tmp_path, plan.home, SPEEDUP, watch=watch) as client:
+        for kind in (MissionType.MISSION, MissionType.FENCE):
+            result = await client.upload_verified(mission.items_of(kind), kind, compare)
+            assert (result.status, result.differences, result.objections) == ("stored", (), ())
+        flight = await fly(client)
+
+    samples = tuple(
+        replace(sample, sensor_on=watch.on_at(sample.time_s)) for sample in Thinner(0.0).more(flight.track)
+    )
+    ground = seen_by(scenario, plan, samples)
+    assert [one.seq for one in ground.passes] == [collect.seq for collect in plan.collects]
+    assert max(one.cross_track_p95_m for one in ground.passes) < 3.0
+    assert min(ground.fraction.values()) > 0.96
+    # What is missing is the small aeroplane's rolling by 2°: a beam held level sees all.
+    level = seen_by(scenario, plan, tuple(replace(sample, roll_deg=0.0) for sample in samples))
+    assert min(level.fraction.values()) > 0.995
+    assert all(abs(s.altitude_home_m - plan.altitude_m) < 5.0 for s in samples if s.sensor_on)
+    for collect, one in zip(plan.collects, ground.passes, strict=True):
+        assert one.sensor_on_m > collect.end_m - collect.start_m - 10.0
+    places = scenario.frame.to_local([(sample.lon_deg, sample.lat_deg) for sample in samples])
+    for zone in plan.fence.inclusion:
+        assert Polygon(scenario.frame.to_local(zone.ring)).contains(LineString(places))
+    final = flight.final
+    assert final.lon_deg is not None
+    assert final.lat_deg is not None
+    here, there = scenario.frame.to_local([(final.lon_deg, final.lat_deg), plan.end])
+    # It rolls out along the runway that the land item stands for.
+    assert float(abs(here - there).max()) < 150.0
+
+
+def without(mission: tuple[MissionItem, ...], *commands: int) -> tuple[MissionItem, ...]:
+    """A mission with some of its items left out."""
+    return numbered([item for item in mission if item.command not in commands])
+
+
+async def test_an_infeasible_mission_is_told_in_words(tmp_path: Path) -> None:
+    """PX4 acknowledges it all the same; its reason is told, also when the same list is sent again."""
+    _, plan = planned()
+    good = encode(plan, autopilot="px4").mission
+    no_landing = without(good, Command.NAV_LAND, Command.DO_LAND_START)
+    steep = tuple(
+        replace(item, z=400.0) if before.command == Command.NAV_LOITER_TO_ALT and item.z < 100.0 else item
+        for before, item in zip((good[0], *good), good, strict=False)
+    )
+    late_takeoff = numbered([replace(good[1], seq=0), replace(good[0], seq=1), *good[2:]])
+    early_return = numbered([*good, unplaced(Command.NAV_RETURN_TO_LAUNCH)])
+    cases = {
+        "a landing is required": no_landing,
+        "steeper": steep,
+        "the take-off is not its first place": late_takeoff,
+        "a return stands behind": early_return,
+    }
+    async with aeroplane(tmp_path, plan.home, 2.0) as client:
+        for words, items in cases.items():
+            # Our own check foretells it; what counts here is what the vehicle says.
+            assert AEROPLANE.check(items)
+            for _ in range(2):
+                result = await client.upload_verified(items, MissionType.MISSION, compare)
+                assert result.outcome.kind == "accepted"
+                assert result.status == "rejected", (words, [text.text for text in client.state.texts])
+                assert any(words in objection for objection in result.objections), result.objections
+        result = await client.upload_verified(good, MissionType.MISSION, compare)
+        assert (result.status, result.objections) == ("stored", ())
+
+
+def test_names_and_arguments_of_events_are_those_of_its_metadata() -> None:
+    """What PX4 ships about its events knows each of ours, by number and by the types of its arguments."""
+    metadata = json.loads(lzma.decompress((Path(ROMFS) / "extras/all_events.json.xz").read_bytes()))
+    listed = {
+        int(component) << 24 | int(number): event
+        for component, groups in metadata["components"].items()
+        for group in groups.get("event_groups", {}).values()
+        for number, event in group["events"].items()
+    }
+    letters = {"int16_t": "h", "uint8_t": "B", "uint16_t": "H", "uint32_t": "I", "float": "f"}
+    for name, known in KNOWN_EVENTS.items():
+        event = listed[event_id(name)]
+        assert event["name"] == name
+        assert "".join(letters[one["type"]] for one in event.get("arguments", [])) == known.layout
