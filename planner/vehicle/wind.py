@@ -3,7 +3,7 @@
 The course is kept and the nose points into the wind by the crab angle (the wind triangle). Where δ is the
 angle from the direction the air moves to, to the course, V the airspeed and W the wind::
 
-    crab = -asin(W sin δ / V)          ground speed = W cos δ + √(V² - W² sin² δ)
+    crab = asin(W sin δ / V)          ground speed = W cos δ + √(V² - W² sin² δ)
 
 A turn that is an arc over the ground is none in the air: at ground speed v the aircraft needs the sideways
 acceleration v² / (r cos crab), most of it downwind, where v = V + W. An arc is flyable in any wind direction
