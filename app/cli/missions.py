@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 import typer
 
-from app.cli.output import CommandError, Exit, Json, Output, emit, emit_json, read_document, say
+from app.cli.output import CommandError, Exit, Json, Output, emit, emit_bytes, emit_json, read_document, say
 
 if TYPE_CHECKING:
     from app.services.missions import MissionChoice
@@ -35,6 +35,7 @@ class MissionFormat(StrEnum):
     PLAN = "plan"
     WAYPOINTS = "waypoints"
     KML = "kml"
+    KMZ = "kmz"
 
 
 class HeldFormat(StrEnum):
@@ -101,18 +102,18 @@ def export(
 
     With --json and -o FILE the file's name, format and size go to standard output.
     """
-    from app.services.missions import MissionChoice, mission_text
+    from app.services.missions import MissionChoice, mission_bytes
 
     document = read_plan_file(plan)
     choice = MissionChoice(vehicle, autopilot.value if autopilot else None, payload)
 
-    async def write() -> str:
-        return mission_text(document, choice, form.value)
+    async def write() -> bytes:
+        return mission_bytes(document, choice, form.value)
 
-    text = run_async(write())
-    emit(text, output)
+    content = run_async(write())
+    emit_bytes(content, output)
     if as_json and output != "-":
-        emit_json({"file": output, "format": form.value, "bytes": len(text.encode())})
+        emit_json({"file": output, "format": form.value, "bytes": len(content)})
 
 
 def upload(

@@ -54,10 +54,19 @@ def emit(text: str, output: str = "-") -> None:
         sys.stdout.write(text)
         sys.stdout.flush()
         return
+    emit_bytes(text.encode(), output)
+
+
+def emit_bytes(content: bytes, output: str = "-") -> None:
+    """Write a result that is no text; a file appears whole or not at all."""
+    if output == "-":
+        sys.stdout.buffer.write(content)
+        sys.stdout.buffer.flush()
+        return
     target = Path(output)
     partial = target.with_name(f".{target.name}.partial")
     try:
-        partial.write_text(text, encoding="utf-8")
+        partial.write_bytes(content)
         partial.replace(target)
     except OSError as error:
         raise CommandError(f"{output} cannot be written: {error.strerror}") from error

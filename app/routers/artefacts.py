@@ -9,7 +9,7 @@ from fastapi import APIRouter, Query, Response
 
 from app.deps import PlanningDep
 from app.problems import responses
-from app.services.missions import AutopilotName, MissionChoice, mission_text, plan_of
+from app.services.missions import AutopilotName, MissionChoice, mission_bytes, plan_of
 from app.services.report import write_report
 
 router = APIRouter(prefix="/api/v1/plans/{plan_id}", tags=["artefacts"])
@@ -73,7 +73,7 @@ def _mission_route(form: str, name: str, media_type: str, summary: str, kind: st
         """The mission of one vehicle, as a file to save."""
         text = await planning.plan_text(plan_id)
         choice = MissionChoice(vehicle, autopilot, payload)
-        body = await asyncio.to_thread(lambda: mission_text(plan_of(text), choice, form))
+        body = await asyncio.to_thread(lambda: mission_bytes(plan_of(text), choice, form))
         return Response(
             body,
             media_type=media_type,
@@ -84,6 +84,7 @@ def _mission_route(form: str, name: str, media_type: str, summary: str, kind: st
 _mission_route("plan", "mission.plan", "application/json", "QGroundControl plan", "object")
 _mission_route("waypoints", "mission.waypoints", "text/plain", "Waypoint file (QGC WPL 110)")
 _mission_route("kml", "mission.kml", "application/vnd.google-earth.kml+xml", "KML")
+_mission_route("kmz", "mission.kmz", "application/vnd.google-earth.kmz", "KMZ")
 
 
 @router.get(

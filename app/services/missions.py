@@ -93,6 +93,15 @@ def mission_text(plan: Plan, choice: MissionChoice, form: str) -> str:
     raise ValueError(f"unknown format {form}")
 
 
+def mission_bytes(plan: Plan, choice: MissionChoice, form: str) -> bytes:
+    """A plan's mission in any format: those of :func:`mission_text`, or ``kmz``."""
+    from mavlink.formats import kmz
+
+    if form == "kmz":
+        return kmz.write_kmz(plan, _vehicle_of(plan, choice.vehicle))
+    return mission_text(plan, choice, form).encode()
+
+
 def _vehicle_of(plan: Plan, name: str | None) -> str:
     if name is None:
         return plan.vehicles[0].name

@@ -4,7 +4,16 @@ from __future__ import annotations
 
 from mavlink.formats.errors import FormatError
 from mavlink.formats.kml import write_kml
+from mavlink.formats.kmz import write_kmz
 from mavlink.formats.qgc_plan import read_plan, write_plan
 from mavlink.formats.waypoints import read_waypoints, write_waypoints
 
-__all__ = ["FormatError", "read_plan", "read_waypoints", "write_kml", "write_plan", "write_waypoints"]
+__all__ = [
+    "FormatError",
+    "read_plan",
+    "read_waypoints",
+    "write_kml",
+    "write_kmz",
+    "write_plan",
+    "write_waypoints",
+]

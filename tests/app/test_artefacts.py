@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import io
 import json
 import xml.etree.ElementTree as ElementTree
+import zipfile
 from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
@@ -56,6 +58,9 @@ async def test_missions_are_what_other_programs_read(client: httpx.AsyncClient, 
     rows = (await client.get(base + "mission.waypoints")).text.splitlines()
     assert rows[0] == "QGC WPL 110"
     assert [row.split("\t")[0] for row in rows[1:]] == [str(n) for n in range(len(rows) - 1)]
+    kmz = await client.get(base + "mission.kmz")
+    assert kmz.headers["content-type"] == "application/vnd.google-earth.kmz"
+    assert zipfile.ZipFile(io.BytesIO(kmz.content)).namelist() == ["doc.kml"]
     kml = await client.get(base + "mission.kml")
     assert ElementTree.fromstring(kml.text).tag == "{http://www.opengis.net/kml/2.2}kml"
 

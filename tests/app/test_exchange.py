@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import zipfile
 from pathlib import Path
 
 import pytest
@@ -94,3 +95,19 @@ def test_import_refuses_with_findings(swathplan: Command, tmp_path: Path) -> Non
     assert (ended.code, ended.out) == (2, "")
     rules = [finding["rule"] for finding in json.loads(ended.err)["errors"]]
     assert rules == ["width_m-missing", "width_m-missing", "radius_m-missing"]
+
+
+def test_a_plan_goes_out_as_kmz_and_comes_in_again(
+    swathplan: Command, plan_file: Path, tmp_path: Path
+) -> None:
+    """The archive holds the KML that export writes, the same bytes every time, and import reads it."""
+    first, again = tmp_path / "a.kmz", tmp_path / "b.kmz"
+    for path in (first, again):
+        assert swathplan("export", str(plan_file), "--format", "kmz", "-o", str(path)).code == 0
+    assert first.read_bytes() == again.read_bytes()
+    with zipfile.ZipFile(first) as archive:
+        assert archive.read("doc.kml").decode() == swathplan("export", str(plan_file), "--format", "kml").out
+    ended = swathplan("import", str(first), "--width-m", "10", "--radius-m", "10")
+    assert ended.code == 0
+    names = [feature["id"] for feature in json.loads(ended.out)["features"]]
+    assert any(name.startswith("path of") for name in names)
