@@ -16,8 +16,10 @@ from planner.plan import Plan
 from planner.progress import Progress, Stop, never, raise_if, silent
 from planner.publish import Leg, assemble, uncovered, whole_path
 from planner.route import Anchor, CollectPass, Route
+from planner.routing.bounds import bounded, lower_bound_m
 from planner.routing.greedy import greedy
-from planner.routing.joint import joint_route
+from planner.routing.joint import joint_route, sides_of
+from planner.routing.legs import TRANSIT_MARGIN_M as TRANSIT_MARGIN_M
 from planner.scenario import Method, Scenario
 from planner.transit import ssas_connector
 from planner.transit.refine import Risk, connect_by_cost
@@ -27,12 +29,12 @@ from planner.version import __version__
 
 Clock = Callable[[], float]
 
-#: Transits keep this far from zones and the area's edge, more than the chords of arcs can cut.
-TRANSIT_MARGIN_M = 2.0
+#: The search for better routes ends after this part of the scenario's time budget.
+ROUTING_SHARE = 0.6
 
 #: What ``auto`` stands for.
 AUTO = {
-    "coverage": "li2018",
+    "coverage": "sweeps",
     "routing": "joint",
     "transit": "tangent",
     "smoothing": "fillet",
@@ -72,7 +74,8 @@ def make_plan(
     stop
         Asked between steps; planning ends with CancelledError once it says True.
     clock
-        Seconds, for ``metrics.planning_time_s``; the same scenario gives the same plan whatever it says.
+        Seconds, for ``metrics.planning_time_s`` and the scenario's time budget; without a budget the same
+        scenario gives the same plan whatever it says.
 
     Raises
     ------
@@ -84,7 +87,8 @@ def make_plan(
     methods = chosen_methods(scenario.method)
     watch = _Stopwatch(clock)
     with watch.stage("routing"):
-        route, dropped = _route(scenario, aircraft, methods, _part(progress, 0.0, 0.5), stop)
+        enough = _budget(clock, scenario.time_budget_s)
+        route, dropped = _route(scenario, aircraft, methods, _part(progress, 0.0, 0.5), stop, enough)
     with watch.stage("transit"):
         legs, notes = _connect(scenario, aircraft, methods, route, _part(progress, 0.5, 0.9), stop)
     crab_findings = drift(scenario, aircraft, route.passes)
@@ -100,6 +104,8 @@ def make_plan(
             planner_version=__version__,
             warnings=tuple(str(f) for f in (*scenario.warnings, *dropped, *crab_findings)) + notes,
         )
+    with watch.stage("bound"):
+        bound_m = _bound_m(scenario, aircraft, methods, path.length_m, stop)
     progress("check", 0.95)
     with watch.stage("check"):
         verdict = judge(scenario, draft)
@@ -107,7 +113,13 @@ def make_plan(
     progress("done", 1.0)
     return replace(
         draft,
-        metrics=replace(draft.metrics, coverage=verdict.coverage, planning_time_s=dict(watch.seconds)),
+        metrics=replace(
+            draft.metrics,
+            coverage=verdict.coverage,
+            planning_time_s=dict(watch.seconds),
+            lower_bound_m=bound_m,
+            gap=None if bound_m is None else 1.0 - bound_m / path.length_m,
+        ),
         violations=verdict.violations,
         uncovered=uncovered(scenario, verdict.unseen, reasons),
     )
@@ -120,17 +132,49 @@ def chosen_methods(method: Method) -> dict[str, str]:
     if method.routing == "auto" and method.coverage == "li2018":
         # Asking for the paper's neighbourhoods by name means the paper's choice among them.
         chosen["routing"] = "li2018"
+    if chosen["routing"] != "joint":
+        # The paper's choices are among the paper's neighbourhoods.
+        chosen["coverage"] = "li2018"
     return chosen
 
 
+def _budget(clock: Clock | None, budget_s: float | None) -> Stop:
+    """Whether the search for better routes has had its share of the time; never without clock or budget."""
+    if clock is None or budget_s is None:
+        return never
+    end_s = clock() + ROUTING_SHARE * budget_s
+    return lambda: clock() > end_s
+
+
+def _bound_m(
+    scenario: Scenario, aircraft: Aircraft, methods: dict[str, str], length_m: float, stop: Stop
+) -> float | None:
+    """What no plan is shorter than; None for sensors whose passes the bound does not know."""
+    if not bounded(scenario):
+        return None
+    if methods["routing"] != "joint":
+        # The paper's choices are among its own neighbourhoods.
+        scenario = replace(scenario, method=replace(scenario.method, coverage="li2018"))
+    try:
+        sides = sides_of(scenario, aircraft)
+    except InfeasibleError:
+        return None
+    return lower_bound_m(scenario, aircraft, sides, length_m, stop=stop) if sides else None
+
+
 def _route(
-    scenario: Scenario, aircraft: Aircraft, methods: dict[str, str], progress: Progress, stop: Stop
+    scenario: Scenario,
+    aircraft: Aircraft,
+    methods: dict[str, str],
+    progress: Progress,
+    stop: Stop,
+    enough: Stop,
 ) -> tuple[Route, tuple[Finding, ...]]:
     if methods["routing"] != "joint":
         aware = methods["routing"] == "li2018-threat-aware"
         chosen = greedy(scenario, progress, stop, threat_aware=aware, aircraft=aircraft)
         return chosen.route, tuple(_dropped(error) for error in chosen.dropped)
-    joint = joint_route(scenario, aircraft, progress, stop)
+    joint = joint_route(scenario, aircraft, progress, stop, enough)
     return joint.route, joint.dropped
 
 
