@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
+from planner.environment.terrain import Terrain
 from planner.geojson import read_scenario
 from planner.pipeline import make_plan
 
@@ -96,3 +99,6 @@ def warm_up() -> None:
         {"routing": "li2018", "transit": "ssas", "smoothing": "shortcut"},
     ):
         make_plan(read_scenario(_SCENARIO | {"method": method}))
+    # The scenario lies at 0° N 0° E.
+    plain = Terrain("plain", np.zeros((21, 21), dtype=np.float32), (0.1, 0.0, -1.0, 0.0, -0.1, 1.0))
+    make_plan(read_scenario(_SCENARIO | {"terrain": "plain"}, {"plain": plain}))

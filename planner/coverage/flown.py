@@ -13,9 +13,11 @@ from shapely import difference, intersection, union_all
 from shapely.geometry import LineString, MultiPoint, Polygon
 from shapely.geometry.base import BaseGeometry
 
+from planner.environment.terrain import Ground
 from planner.plan import Collect, Plan
 from planner.scenario import Scenario
 from planner.sensors.sar import SarSensor
+from planner.sensors.view import seen_beside
 
 #: A beam lifted to within this of the horizon by bank sees no farther.
 MAX_LOOK_RAD = math.radians(85.0)
@@ -29,7 +31,7 @@ GRID_M = 1e-6
 class TrackSample:
     """Where the aircraft was, and whether the sensor was on.
 
-    ``height_m`` is over the ground; ``roll_deg`` is positive with the right wing down.
+    ``height_m`` is over the ground, on terrain over home; ``roll_deg`` is positive with the right wing down.
     """
 
     time_s: float
@@ -76,7 +78,9 @@ def flown_coverage(scenario: Scenario, plan: Plan, track: Sequence[TrackSample])
         if collect is None:
             continue
         sensor = next(s for s in scenario.sensors if s.name == collect.sensor)
-        strips.setdefault(collect.sensor, []).extend(_strip(sensor, collect.look, places, interval))
+        strips.setdefault(collect.sensor, []).extend(
+            _strip(sensor, collect.look, places, interval, scenario.terrain, scenario.home_amsl_m or 0.0)
+        )
         passes.append(_pass(scenario, collect, places))
     seen_by = {name: union_all(parts, grid_size=GRID_M) for name, parts in strips.items()}
     fraction, seen, unseen = {}, {}, {}
@@ -120,7 +124,12 @@ def _nearest_collect(scenario: Scenario, plan: Plan, places: NDArray[np.float64]
 
 
 def _strip(
-    sensor: SarSensor, look: str, places: NDArray[np.float64], samples: Sequence[TrackSample]
+    sensor: SarSensor,
+    look: str,
+    places: NDArray[np.float64],
+    samples: Sequence[TrackSample],
+    ground: Ground | None,
+    home_amsl_m: float,
 ) -> Iterable[Polygon]:
     """Slices of ground seen at full resolution, each between two places of the track."""
     along_m = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(places, axis=0).T))])
@@ -144,6 +153,9 @@ def _strip(
     height_m = np.interp(at_m, along_m, [s.height_m for s in samples])
     # Right wing down turns a right-looking beam towards the nadir, a left-looking one towards the horizon.
     roll_rad = np.interp(at_m, along_m, [math.radians(s.roll_deg) for s in samples]) * sign
+    if ground is not None:
+        yield from _slices(sensor, ground, at_m, centre, ahead, side, height_m + home_amsl_m, roll_rad)
+        return
     edges = []
     for half_beam_rad in (-sensor.elevation_beamwidth_rad / 2.0, sensor.elevation_beamwidth_rad / 2.0):
         look_rad = np.clip(sensor.incidence_rad + half_beam_rad - roll_rad, 0.0, MAX_LOOK_RAD)
@@ -155,6 +167,30 @@ def _strip(
         hull = MultiPoint([near0, near1, far1, far0]).convex_hull
         if isinstance(hull, Polygon):
             yield hull
+
+
+def _slices(
+    sensor: SarSensor,
+    ground: Ground,
+    at_m: NDArray[np.float64],
+    centre: NDArray[np.float64],
+    ahead: NDArray[np.float64],
+    side: NDArray[np.float64],
+    level_m: NDArray[np.float64],
+    roll_rad: NDArray[np.float64],
+) -> Iterable[Polygon]:
+    """The same on terrain, without what it hides: one slice half-way between each two places."""
+    half_beam_rad = sensor.elevation_beamwidth_rad / 2.0
+    for k in range(len(at_m) - 1):
+        here = [(values[k] + values[k + 1]) / 2.0 for values in (centre, ahead, side, level_m, roll_rad)]
+        middle, forward, outward, level, roll = here
+        looks_rad = [sensor.incidence_rad + sign * half_beam_rad - roll for sign in (-1.0, 1.0)]
+        near_tan, far_tan = (math.tan(min(max(float(angle), 0.0), MAX_LOOK_RAD)) for angle in looks_rad)
+        # Neighbouring slices of a weaving track are to touch.
+        half_m = (at_m[k + 1] - at_m[k]) / 2.0 * 1.02
+        pose = np.concatenate([middle, forward / np.hypot(*forward), outward / np.hypot(*outward)])
+        squint = math.tan(sensor.squint_rad)
+        yield from seen_beside(pose, float(half_m), float(level), (near_tan, far_tan), squint, ground)
 
 
 def _pass(scenario: Scenario, collect: Collect, places: NDArray[np.float64]) -> FlownPass:

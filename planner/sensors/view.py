@@ -119,6 +119,43 @@ def seen_on_terrain(
     )
 
 
+def seen_beside(
+    pose: Floats,
+    half_along_m: float,
+    level_m: float,
+    edges_tan: tuple[float, float],
+    squint: float,
+    ground: Ground,
+) -> list[Polygon]:
+    """Ground seen at one moment of a flight, as wide along the track as half to either side.
+
+    Parameters
+    ----------
+    pose
+        East, north; unit vectors ahead and to the look side: float64 (6,).
+    edges_tan
+        Tangents of the look angles of the beam's edges, bank included.
+    squint
+        Tangent of the squint angle.
+    """
+    frame = _Axes(np.asarray(pose, dtype=np.float64), 2.0 * half_along_m)
+    near_tan, far_tan = edges_tan
+    lowest_m = _lowest(ground, frame, level_m, far_tan)
+    if math.isnan(lowest_m):
+        return []
+    out_edges = _edges(0.0, (level_m - lowest_m) * far_tan, ground.step_m)
+    out_m = (out_edges[:-1] + out_edges[1:]) / 2.0
+    lead_m = np.hypot(out_m, level_m - lowest_m) * squint
+    middle_m = float(lead_m[len(lead_m) // 2])
+    flags, heights = view_kernels.strip_flags(
+        ground.heights_m, ground.west_m, ground.south_m, ground.step_m, frame.pose,
+        np.array([middle_m]), out_m, level_m, near_tan, far_tan, squint,
+    )  # fmt: skip
+    along_edges = np.array([middle_m - half_along_m, middle_m + half_along_m])
+    seen = _visible_area(flags, along_edges, out_edges, out_m, level_m - heights, near_tan, far_tan)
+    return [part for part in shapely.get_parts(frame.to_local(seen)) if isinstance(part, Polygon)]
+
+
 def shadow_cost(
     lines_m: Floats,
     look: Look,
