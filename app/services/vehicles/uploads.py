@@ -65,6 +65,10 @@ class PartResult:
             self.differences = [difference_json(difference) for difference in result.differences]
             if self.outcome == "unknown":
                 self.outcome = "different"
+        if result.objections:
+            # PX4 acknowledges and holds what it then will not fly.
+            self.outcome = "refused"
+            self.reason = "; ".join(result.objections)
 
 
 @dataclass(slots=True)
