@@ -330,9 +330,9 @@ _PX4_COMMON: Final = (
     ),
     _any(
         lambda needs: _PX4_OUTPUTS,
-        lambda value, needs: round(value) == 400 + _actuator_number(needs),
+        lambda value, needs: round(value) == 300 + _actuator_number(needs),
         lambda needs: (
-            f"no output has function {400 + _actuator_number(needs)} (actuator set "
+            f"no output has function {300 + _actuator_number(needs)} (actuator set "
             f"{_actuator_number(needs)}), which switches the sensor"
         ),
         lambda needs: isinstance(needs.payload, ActuatorPayload),

@@ -117,7 +117,7 @@ def test_ardupilots_outputs_follow_the_payload(
     assert [finding.name for finding in found] == ([] if wrong is None else [wrong])
 
 
-@pytest.mark.parametrize(("function", "wrong"), [(402.0, False), (401.0, True)])
+@pytest.mark.parametrize(("function", "wrong"), [(302.0, False), (402.0, True), (301.0, True)])
 def test_px4s_actuator_needs_an_output(function: float, wrong: bool) -> None:
     """One output must carry the function of the actuator that switches the sensor."""
     needs = replace(PLANE, payload=ActuatorPayload(2))
