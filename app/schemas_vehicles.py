@@ -319,7 +319,9 @@ class FlightOut(BaseModel):
     def of(cls, record: FlightRecord) -> Self:
         """The answer for a record."""
         base = f"/api/v1/flights/{record.id}"
-        links = {"self": base} | {name: f"{base}/{name}" for name in ("track.geojson", "coverage.geojson")}
+        links = {"self": base} | {
+            name: f"{base}/{name}" for name in ("track.geojson", "coverage.geojson", "report.html")
+        }
         return cls(**asdict(record), links=links)
 
 

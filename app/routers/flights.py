@@ -5,9 +5,11 @@ from __future__ import annotations
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Response
+from fastapi.responses import HTMLResponse
 
-from app.deps import FlightsDep
+from app.deps import FleetDep, FlightsDep, PlanningDep, SettingsDep
 from app.problems import responses
+from app.schemas import PlanOut
 from app.schemas_vehicles import FlightList, FlightOut
 from app.services.documents import write_json
 
@@ -68,3 +70,39 @@ async def track_gpx(flight_id: str, flights: FlightsDep) -> Response:
 async def coverage(flight_id: str, flights: FlightsDep) -> Response:
     """Ground of each region seen and not seen as flown, the fractions, and the cross-track errors."""
     return Response(write_json(await flights.coverage(flight_id)), media_type=GEOJSON)
+
+
+@router.get(
+    "/{flight_id}/report.html",
+    summary="A printable report",
+    response_class=HTMLResponse,
+    responses=responses(404, 409),
+)
+async def report(flight_id: str, flights: FlightsDep) -> HTMLResponse:
+    """What was flown and seen: regions, missed triggers, cross-track errors, one page without scripts."""
+    return HTMLResponse(await flights.report(flight_id))
+
+
+@router.post(
+    "/{flight_id}/refly", status_code=202, summary="Plan the gaps", responses=responses(404, 409, 422, 429)
+)
+async def refly(
+    flight_id: str,
+    flights: FlightsDep,
+    fleet: FleetDep,
+    planning: PlanningDep,
+    settings: SettingsDep,
+    response: Response,
+    wait: Annotated[float, Query(ge=0, description="Seconds to hold the answer for the plan's end.")] = 0.0,
+) -> PlanOut:
+    """Plan what the flight did not see, from where the aircraft is while it flies, else from the start.
+
+    A new scenario, named `<name>-refly`: the unseen parts of the regions, slivers left out, among the same
+    threats and zones. 409 when nothing is left to fly again for.
+    """
+    scenario = await flights.refly(flight_id, fleet.place_in_flight(flight_id))
+    record = await planning.submit(scenario)
+    if wait > 0 and not record.ended:
+        record = await planning.wait(record.id, min(wait, settings.max_wait_s))
+    response.headers["Location"] = f"/api/v1/plans/{record.id}"
+    return PlanOut.of(record)

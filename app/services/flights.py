@@ -11,12 +11,15 @@ from shapely import transform
 from shapely.geometry import mapping
 from shapely.geometry.base import BaseGeometry
 
+from app.services.as_flown import gaps, regions_json, triggers
 from app.services.documents import read_object
 from app.services.errors import ConflictError, NotFoundError
 from app.services.gpx import write_gpx
 from app.services.missions import plan_of
 from app.services.planning import PlanningService
 from app.services.records import FlightRecord, TrackSample
+from app.services.refly import refly_scenario
+from app.services.report import write_flight_report
 from app.services.store.flights import FlightStore
 from planner.coverage import flown
 from planner.environment.terrain import Terrains
@@ -59,6 +62,32 @@ class FlightService:
         ConflictError
             The flight followed no plan of this service, or the plan has been deleted.
         """
+        return await asyncio.to_thread(coverage_geojson, *await self._flown(flight_id))
+
+    async def report(self, flight_id: str) -> str:
+        """What was flown and seen, as one printable HTML page; raises as ``coverage``."""
+        flown_by = await self._flown(flight_id)
+        return await asyncio.to_thread(_report, *flown_by)
+
+    async def refly(self, flight_id: str, here: tuple[float, float, float | None] | None) -> dict[str, Any]:
+        """The scenario of what a flight did not see.
+
+        Parameters
+        ----------
+        here
+            Longitude, latitude and course in degrees of the aircraft while it flies; None once it has landed.
+
+        Raises
+        ------
+        ConflictError
+            As ``coverage``, and when nothing worth a pass was missed.
+        """
+        flown_by = await self._flown(flight_id)
+        return await asyncio.to_thread(_refly, *flown_by, here)
+
+    async def _flown(
+        self, flight_id: str
+    ) -> tuple[FlightRecord, str, str, tuple[TrackSample, ...], Terrains | None]:
         record = await self._store.get(flight_id)
         if record.plan_id is None:
             raise ConflictError("the flight followed no plan of this service")
@@ -68,9 +97,7 @@ class FlightService:
         except NotFoundError as error:
             raise ConflictError("the flight's plan has been deleted") from error
         samples = await self._store.track(flight_id)
-        return await asyncio.to_thread(
-            coverage_geojson, record, plan_text, scenario_text, samples, self._planning.terrain
-        )
+        return record, plan_text, scenario_text, samples, self._planning.terrain
 
 
 def _feature(geometry: dict[str, Any], **properties: Any) -> dict[str, Any]:
@@ -142,8 +169,9 @@ def coverage_geojson(
 ) -> dict[str, Any]:
     """What a flight saw: roles ``seen`` and ``unseen`` by region, and figures as foreign members.
 
-    Members: ``coverage`` {region: fraction as flown}, ``planned_coverage``, and ``collects`` with the
-    distance of the track from each planned line while the sensor was on.
+    Members: ``coverage`` {region: fraction as flown}, ``planned_coverage``, ``collects`` with the
+    distance of the track from each planned line while the sensor was on, ``triggers`` with how the sensor
+    was switched over each, and ``regions`` with what was wanted of each and what is missing.
     """
     scenario = read_scenario(read_object(scenario_text), terrains)
     plan = plan_of(plan_text)
@@ -162,8 +190,37 @@ def coverage_geojson(
         "coverage": result.fraction,
         "planned_coverage": plan.metrics.coverage,
         "collects": [asdict(collect) for collect in result.passes],
+        "triggers": [asdict(trigger) for trigger in triggers(scenario, plan, record.plan_vehicle, samples)],
+        "regions": regions_json(scenario, plan, result),
         "features": features,
     }
+
+
+def _refly(
+    record: FlightRecord,
+    plan_text: str,
+    scenario_text: str,
+    samples: tuple[TrackSample, ...],
+    terrains: Terrains | None,
+    here: tuple[float, float, float | None] | None,
+) -> dict[str, Any]:
+    document = read_object(scenario_text)
+    scenario = read_scenario(document, terrains)
+    missing = gaps(scenario, seen_by(scenario, plan_of(plan_text), samples))
+    if not missing:
+        raise ConflictError("nothing is left to fly again for: every region was seen, but for slivers")
+    return refly_scenario(document, missing, scenario.frame, record.plan_vehicle, here)
+
+
+def _report(
+    record: FlightRecord,
+    plan_text: str,
+    scenario_text: str,
+    samples: tuple[TrackSample, ...],
+    terrains: Terrains | None,
+) -> str:
+    coverage = coverage_geojson(record, plan_text, scenario_text, samples, terrains)
+    return write_flight_report(record, read_object(scenario_text), track_geojson(record, samples), coverage)
 
 
 def _to_wgs84(frame: LocalFrame, shape: BaseGeometry) -> BaseGeometry:

@@ -10,7 +10,7 @@ from typing import Any
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined, Template, select_autoescape
 
-from app.services.records import PlanRecord
+from app.services.records import FlightRecord, PlanRecord
 from app.services.report_map import draw_map
 
 TEMPLATES = Path(__file__).resolve().parents[1] / "templates"
@@ -30,8 +30,8 @@ def _clock(seconds: float | None) -> str:
     return f"{hours}:{minutes:02d}:{rest:02d}" if hours else f"{minutes}:{rest:02d}"
 
 
-@lru_cache(maxsize=1)
-def _template() -> Template:
+@lru_cache(maxsize=4)
+def _template(name: str) -> Template:
     environment = Environment(
         loader=FileSystemLoader(TEMPLATES),
         autoescape=select_autoescape(default=True, default_for_string=True),
@@ -40,7 +40,7 @@ def _template() -> Template:
         lstrip_blocks=True,
     )
     environment.filters |= {"number": _number, "clock": _clock}
-    return environment.get_template("report.html.jinja")
+    return environment.get_template(name)
 
 
 def write_report(record: PlanRecord, plan_text: str, scenario_text: str) -> str:
@@ -50,7 +50,7 @@ def write_report(record: PlanRecord, plan_text: str, scenario_text: str) -> str:
     by_role: dict[str, list[dict[str, Any]]] = {}
     for feature in plan["features"]:
         by_role.setdefault(feature["properties"]["role"], []).append(feature["properties"])
-    return _template().render(
+    return _template("report.html.jinja").render(
         plan=plan,
         scenario=scenario,
         record=record,
@@ -61,4 +61,30 @@ def write_report(record: PlanRecord, plan_text: str, scenario_text: str) -> str:
         paths=by_role.get("path", []),
         footprints={(f["vehicle"], f["seq"]): f for f in by_role.get("footprint", [])},
         uncovered=by_role.get("uncovered", []),
+    )
+
+
+#: Roles of a flight's features, and those of a plan that are drawn as they shall be.
+_DRAWN_AS = {"track": "path", "sensor_on": "collect", "seen": "footprint"}
+
+
+def write_flight_report(
+    record: FlightRecord, scenario: dict[str, Any], track: dict[str, Any], coverage: dict[str, Any]
+) -> str:
+    """The report of a flight as one HTML page without scripts or outside parts."""
+    features = [
+        feature | {"properties": {"role": _DRAWN_AS[feature["properties"]["role"]]}}
+        for feature in (*coverage["features"], *track["features"])
+        if feature["properties"]["role"] in _DRAWN_AS
+        and feature["geometry"]["type"] in ("Polygon", "MultiPolygon", "LineString")
+    ]
+    lines = {collect["seq"]: collect for collect in coverage["collects"]}
+    return _template("flight_report.html.jinja").render(
+        record=record,
+        name=scenario.get("name") or "Flight",
+        map=draw_map(scenario, {"features": features}),
+        regions=coverage["regions"],
+        triggers=[trigger | {"line": lines.get(trigger["seq"])} for trigger in coverage["triggers"]],
+        missed=[trigger for trigger in coverage["triggers"] if trigger["state"] != "ok"],
+        unseen=[region for region in coverage["regions"] if not region["seen"]],
     )

@@ -290,6 +290,16 @@ class Fleet:
         message = f"{command} needs the number of an item in seq"
         raise RefusedError(message, (Finding("seq", "seq-missing", message, "send seq"),))
 
+    def place_in_flight(self, flight_id: str) -> tuple[float, float, float | None] | None:
+        """Longitude, latitude and course in degrees of the vehicle on a flight; None when none is."""
+        for vehicle in self._vehicles.values():
+            state = vehicle.state
+            if vehicle.flight_id != flight_id or not state.connected or vehicle.replay:
+                continue
+            if state.lon_deg is not None and state.lat_deg is not None:
+                return state.lon_deg, state.lat_deg, state.course_deg
+        return None
+
     def recordings(self, vehicle_id: str) -> tuple[RecordingFile, ...]:
         """Recordings of a vehicle's link, also of one let go; raises NotFoundError when there is neither."""
         vehicle = self._vehicles.get(vehicle_id)
