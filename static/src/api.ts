@@ -89,6 +89,13 @@ export const get = <T>(path: string): Promise<T> => call<T>("GET", path);
 export const post = <T>(path: string, body: unknown): Promise<T> => call<T>("POST", path, body);
 export const remove = (path: string): Promise<unknown> => call<unknown>("DELETE", path);
 
+/** Send a file as it is, and read the JSON answered. */
+export async function sendFile<T>(path: string, file: File): Promise<T> {
+  const headers = { accept: "application/json, application/problem+json", "content-type": "application/octet-stream" };
+  const response = await send(apiUrl(path), { method: "POST", headers, body: file });
+  return (await response.json()) as T;
+}
+
 /** A list answer, bare or under one key. */
 export async function list<T>(path: string, key: string): Promise<T[]> {
   const answer = await get<unknown>(path);

@@ -1,11 +1,17 @@
-/** Take a scenario file from a drop on the page or from the file dialog. */
+/** Take a file from a drop on the page or from the file dialog: a scenario, or regions of another program. */
 import { byId } from "./dom";
 import { news, report } from "./notices";
+import { importRegions, isRegionFile } from "./regions";
 import { parseScenario, scenarios } from "./scenario";
 
 const LIMIT_BYTES = 20_000_000;
 
-export async function openScenario(file: File): Promise<boolean> {
+/** Open a scenario in place of the one shown, or add another program's regions to it. */
+export async function openFile(file: File): Promise<boolean> {
+  return isRegionFile(file) ? importRegions(file) : openScenario(file);
+}
+
+async function openScenario(file: File): Promise<boolean> {
   try {
     if (file.size > LIMIT_BYTES) throw new Error(`The file has ${(file.size / 1e6).toFixed(1)} MB, more than a scenario can have.`);
     const scenario = parseScenario(await file.text());
@@ -39,6 +45,6 @@ export function acceptDrops(then: () => void): void {
     depth = 0;
     curtain.hidden = true;
     const file = event.dataTransfer?.files[0];
-    if (file) void openScenario(file).then((opened) => opened && then());
+    if (file) void openFile(file).then((opened) => opened && then());
   });
 }

@@ -128,6 +128,22 @@ export class ScenarioStore {
     return name;
   }
 
+  /** Add features of a file under free names; a new area, start or end takes the place of the one there was. */
+  merge(features: ScenarioFeature[]): void {
+    this.selection.set(null);
+    this.change((draft) => {
+      for (const feature of features) {
+        const role = feature.properties.role;
+        if (SINGLE.has(role)) draft.features = draft.features.filter((other) => other.properties.role !== role);
+        const taken = new Set(draft.features.map(nameOf));
+        const wanted = nameOf(feature);
+        let name = wanted;
+        for (let i = 2; taken.has(name); i += 1) name = `${wanted} ${i}`;
+        draft.features.push({ ...feature, id: name, properties: { ...feature.properties, name } });
+      }
+    });
+  }
+
   reshape(name: string, geometry: Geometry, properties: Record<string, unknown> = {}): void {
     this.change((draft) => {
       const feature = draft.features.find((candidate) => nameOf(candidate) === name);

@@ -2,7 +2,8 @@
 import { ask } from "../dialog";
 import { button, fill, h, section } from "../dom";
 import { download } from "../download";
-import { openScenario } from "../drop";
+import { openFile } from "../drop";
+import { REGION_FILES } from "../regions";
 import { emptyScenario, nameOf, scenarios } from "../scenario";
 import type { Finding } from "../types";
 import { judge, judgement, type Judgement } from "../validation";
@@ -25,11 +26,11 @@ const STATE_WORDS: Record<Judgement["state"], string> = {
 };
 
 function files(view: View): HTMLElement {
-  const input = h("input", { type: "file", id: "file", accept: ".geojson,.json,application/geo+json,application/json", class: "sr-only", tabindex: "-1" });
+  const input = h("input", { type: "file", id: "file", accept: `.geojson,.json,application/geo+json,application/json,${REGION_FILES}`, class: "sr-only", tabindex: "-1" });
   input.addEventListener("change", () => {
     const file = input.files?.[0];
     input.value = "";
-    if (file) void openScenario(file).then((opened) => opened && view.zoomToAll());
+    if (file) void openFile(file).then((opened) => opened && view.zoomToAll());
   });
   const start = async (): Promise<void> => {
     const edits = scenarios.edited.value && scenarios.document.value.features.length > 0;
@@ -41,7 +42,7 @@ function files(view: View): HTMLElement {
   return h(
     "div",
     { class: "row" },
-    button("Open file …", () => input.click(), { title: "A scenario as GeoJSON; it can also be dropped on the page" }),
+    button("Open file …", () => input.click(), { title: "A scenario as GeoJSON, or regions as KML, KMZ, GPX or zipped shapefile to add; files can also be dropped on the page" }),
     input,
     button("Download", save),
     button("New", () => void start()),
