@@ -101,6 +101,8 @@ def _plan_row(case: int, name: str, document: dict[str, Any], repeats: int) -> d
         "case": case,
         "planner": name,
         "rl_m": plan.metrics.length_m,
+        "lower_bound_m": plan.metrics.lower_bound_m,
+        "gap": plan.metrics.gap,
         "cl_m": plan.metrics.collection_length_m,
         "dc_percent": 100.0 * plan.metrics.duty_cycle,
         "risk_missile": plan.metrics.risk_missile,

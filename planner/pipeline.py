@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 
 from planner.check import judge
+from planner.coverage.sweeps import Side
 from planner.dubins.path import Path, Segment, join
 from planner.environment.zones import KeepOut, keep_out
 from planner.errors import Finding, InfeasibleError
@@ -88,7 +89,7 @@ def make_plan(
     watch = _Stopwatch(clock)
     with watch.stage("routing"):
         enough = _budget(clock, scenario.time_budget_s)
-        route, dropped = _route(scenario, aircraft, methods, _part(progress, 0.0, 0.5), stop, enough)
+        route, dropped, sides = _route(scenario, aircraft, methods, _part(progress, 0.0, 0.5), stop, enough)
     with watch.stage("transit"):
         legs, notes = _connect(scenario, aircraft, methods, route, _part(progress, 0.5, 0.9), stop)
     crab_findings = drift(scenario, aircraft, route.passes)
@@ -105,7 +106,7 @@ def make_plan(
             warnings=tuple(str(f) for f in (*scenario.warnings, *dropped, *crab_findings)) + notes,
         )
     with watch.stage("bound"):
-        bound_m = _bound_m(scenario, aircraft, methods, path.length_m, stop)
+        bound_m = _bound_m(scenario, aircraft, sides, path.length_m, stop)
     progress("check", 0.95)
     with watch.stage("check"):
         verdict = judge(scenario, draft)
@@ -147,18 +148,22 @@ def _budget(clock: Clock | None, budget_s: float | None) -> Stop:
 
 
 def _bound_m(
-    scenario: Scenario, aircraft: Aircraft, methods: dict[str, str], length_m: float, stop: Stop
+    scenario: Scenario,
+    aircraft: Aircraft,
+    sides: tuple[tuple[Side, ...], ...] | None,
+    length_m: float,
+    stop: Stop,
 ) -> float | None:
     """What no plan is shorter than; None for sensors whose passes the bound does not know."""
     if not bounded(scenario):
         return None
-    if methods["routing"] != "joint":
+    if sides is None:
         # The paper's choices are among its own neighbourhoods.
-        scenario = replace(scenario, method=replace(scenario.method, coverage="li2018"))
-    try:
-        sides = sides_of(scenario, aircraft)
-    except InfeasibleError:
-        return None
+        by_paper = replace(scenario, method=replace(scenario.method, coverage="li2018"))
+        try:
+            sides = sides_of(by_paper, aircraft)
+        except InfeasibleError:
+            return None
     return lower_bound_m(scenario, aircraft, sides, length_m, stop=stop) if sides else None
 
 
@@ -169,13 +174,14 @@ def _route(
     progress: Progress,
     stop: Stop,
     enough: Stop,
-) -> tuple[Route, tuple[Finding, ...]]:
+) -> tuple[Route, tuple[Finding, ...], tuple[tuple[Side, ...], ...] | None]:
+    """The route, what was left out, and the ways to see each region where they are the joint choice's."""
     if methods["routing"] != "joint":
         aware = methods["routing"] == "li2018-threat-aware"
         chosen = greedy(scenario, progress, stop, threat_aware=aware, aircraft=aircraft)
-        return chosen.route, tuple(_dropped(error) for error in chosen.dropped)
+        return chosen.route, tuple(_dropped(error) for error in chosen.dropped), None
     joint = joint_route(scenario, aircraft, progress, stop, enough)
-    return joint.route, joint.dropped
+    return joint.route, joint.dropped, joint.sides
 
 
 def _dropped(error: InfeasibleError) -> Finding:

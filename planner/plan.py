@@ -169,7 +169,11 @@ class Violation:
 
 @dataclass(frozen=True, slots=True)
 class Metrics:
-    """What the plan costs and gives."""
+    """What the plan costs and gives.
+
+    ``lower_bound_m`` is what no plan over these regions is shorter than, threats left out, and ``gap`` how
+    much of ``length_m`` is above it; None where there is no bound.
+    """
 
     length_m: float
     collection_length_m: float
@@ -183,6 +187,8 @@ class Metrics:
     coverage: dict[str, float]
     importance_collected: float | None = None
     planning_time_s: dict[str, float] = field(default_factory=dict)
+    lower_bound_m: float | None = None
+    gap: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

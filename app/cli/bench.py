@@ -16,6 +16,7 @@ class Benchmark(StrEnum):
     """Benchmarks by name."""
 
     SAR = "sar"
+    SCALE = "scale"
     LINK = "link"
     TRANSIT = "transit"
     KERNELS = "kernels"

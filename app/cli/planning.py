@@ -122,6 +122,11 @@ def tell_plan(document: dict[str, Any]) -> None:
         f"collecting {metrics['duty_cycle']:.0%} of the way, "
         f"{sum(fraction >= 0.9999 for fraction in coverage)} of {len(coverage)} regions covered"
     )
+    if metrics.get("gap") is not None:
+        say(
+            f"no plan is shorter than {metrics['lower_bound_m'] / 1000:.2f} km: "
+            f"this one is at most {metrics['gap']:.1%} from the best"
+        )
     for violation in document["violations"]:
         say(f"violation: {violation.get('feature', '')}: {violation.get('message', violation)}")
 

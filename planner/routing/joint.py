@@ -67,7 +67,7 @@ MARGIN_M = 10.0
 class JointRoute:
     """The chosen route; regions that are not required and cannot be seen; the true cost in metres.
 
-    ``sides`` are the ways to see each region that were chosen from.
+    ``sides`` are the ways to see each region, part of one or visit to one that were chosen from.
     """
 
     route: Route
@@ -156,6 +156,11 @@ def joint_route(
     cost_m, passes = _truest(scenario, around, regions, sides, refined, legs, progress, stop, enough)
     cost_m, passes = split_passes(cost_m, passes, legs, stop)
     return JointRoute(Route(passes), dropped, cost_m, tuple(sides))
+
+
+def sides_of(scenario: Scenario, aircraft: Aircraft) -> tuple[tuple[Side, ...], ...]:
+    """The ways to see each region, part of one or visit to one that is not left out."""
+    return tuple(_visible(scenario, surroundings(scenario, aircraft))[1])
 
 
 def _truest(
