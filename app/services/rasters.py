@@ -60,6 +60,8 @@ def read_raster(content: bytes, filename: str, name: str, datum: VerticalDatum |
         ``implausible-heights``, ``height-unit``, ``geoid-grid-missing``.
     """
     import rasterio
+    from pyproj.exceptions import ProjError
+    from rasterio._err import CPLE_BaseError
     from rasterio.io import MemoryFile
 
     if len(content) in _HGT_SIZES and not _HGT_NAME.fullmatch(filename):
@@ -74,12 +76,14 @@ def read_raster(content: bytes, filename: str, name: str, datum: VerticalDatum |
         try:
             with MemoryFile(content, filename=safe) as memory, _opened(memory.name) as dataset:
                 heights, affine, stated = _posts(dataset)
-        except rasterio.errors.RasterioError as error:
+        except (rasterio.errors.RasterioError, CPLE_BaseError, ProjError, ValueError) as error:
+            # Broken files end in any of these: GDAL's refusals, reference systems that are none, bad text.
             _refuse(
                 "raster-format",
                 f"it cannot be read as GeoTIFF, DTED or SRTM HGT ({str(error)[:200]})",
                 "Send an elevation file in one of these formats, whole.",
             )
+    _check_place(heights, affine)
     heights = np.where(np.isfinite(heights), heights, np.float32(np.nan)).astype(np.float32)
     known = np.isfinite(heights)
     if not known.any():
@@ -95,6 +99,20 @@ def read_raster(content: bytes, filename: str, name: str, datum: VerticalDatum |
     if chosen == "ellipsoid":
         heights, chosen = _over_sea(heights, affine), "EGM96"
     return Terrain(name, heights, affine, None, chosen)
+
+
+def _check_place(heights: NDArray[np.float32], affine: Affine) -> None:
+    """Refuse a raster that does not lie on Earth, or whose posts lie on each other."""
+    a, b, c, d, e, f = affine
+    rows, columns = heights.shape
+    reach = [(a * j + b * i + c, d * j + e * i + f) for i in (0, rows - 1) for j in (0, columns - 1)]
+    on_earth = all(abs(lon) <= 180.5 and abs(lat) <= 90.0 for lon, lat in reach)
+    if not on_earth or abs(a * e - b * d) < 1e-16:
+        _refuse(
+            "no-georeference",
+            f"its corners are at {', '.join(f'{lon:g} {lat:g}' for lon, lat in reach)}",
+            "Send a file that lies within longitudes −180 to 180 and latitudes −90 to 90.",
+        )
 
 
 def _opened(path: str) -> Any:

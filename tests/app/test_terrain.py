@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import re
 from pathlib import Path
@@ -12,6 +13,9 @@ import numpy as np
 import pyproj
 import pytest
 import rasterio.shutil
+from hypothesis import given
+from hypothesis import settings as hypothesis_settings
+from hypothesis import strategies as st
 from rasterio.io import MemoryFile
 from rasterio.transform import from_origin
 from typer.testing import CliRunner
@@ -28,6 +32,7 @@ from tests.planner.scenarios import feature, small, square
 
 TERRAIN = "/api/v1/terrain"
 HGT = "N36W085.hgt"
+WHOLE = ramp()
 
 
 def hgt() -> bytes:
@@ -115,6 +120,8 @@ def test_projected_rasters_are_laid_into_degrees() -> None:
         (written(np.zeros((3, 5, 5), np.uint8), crs="EPSG:4326",
                  transform=from_origin(0, 0, 0.1, 0.1)), "x.tif", "raster-format"),
         (ramp(crs="EPSG:4979"), "x.tif", "geoid-grid-missing"),
+        (ramp(transform=from_origin(275.0, 37.0, 0.002, 0.002)), "x.tif", "no-georeference"),
+        (ramp(transform=from_origin(0.0, 120.0, 0.002, 0.002)), "x.tif", "no-georeference"),
     ],
 )  # fmt: skip
 def test_refused_files(content: bytes, filename: str, rule: str, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -123,6 +130,23 @@ def test_refused_files(content: bytes, filename: str, rule: str, monkeypatch: py
     with pytest.raises(RefusedError) as caught:
         read_raster(content, filename, "x")
     assert [finding.rule for finding in caught.value.findings] == [rule]
+
+
+@hypothesis_settings(max_examples=100, deadline=None)
+@given(st.integers(0, 2**32 - 1))
+def test_broken_files_are_refused_or_read(seed: int) -> None:
+    """A GeoTIFF with bytes exchanged, or cut short, is either read as a raster on Earth or refused."""
+    rng = np.random.default_rng(seed)
+    content = bytearray(WHOLE)
+    for _ in range(rng.integers(1, 12)):
+        place = rng.integers(0, 600) if rng.random() < 0.5 else len(content) - 1 - rng.integers(0, 600)
+        content[place] = rng.integers(0, 256)
+    if rng.random() < 0.2:
+        content = content[: rng.integers(1, len(content))]
+    with contextlib.suppress(RefusedError):
+        terrain = read_raster(bytes(content), "x.tif", "x")
+        assert terrain.resolution_m > 0.0
+        assert np.isfinite(terrain.bounds_deg).all()
 
 
 def test_too_many_posts_are_refused_before_they_are_read(monkeypatch: pytest.MonkeyPatch) -> None:
