@@ -25,6 +25,8 @@ from mavlink.encode import encode
 from mavlink.events import KNOWN_EVENTS, event_id
 from mavlink.items import Command, MissionItem, MissionType
 from mavlink.mission import numbered, unplaced
+from mavlink.parameter_rules import judge_parameters, names_to_read, needs_of
+from mavlink.payload import ActuatorPayload
 from planner.geojson import read_scenario
 from planner.pipeline import make_plan
 from planner.plan import Plan
@@ -93,6 +95,20 @@ async def test_a_plan_is_stored_flown_and_seen(tmp_path: Path) -> None:
     here, there = scenario.frame.to_local([(final.lon_deg, final.lat_deg), plan.end])
     # It rolls out along the runway that the land item stands for.
     assert float(abs(here - there).max()) < 150.0
+
+
+async def test_its_parameters_are_judged_by_what_it_holds(tmp_path: Path) -> None:
+    """Every name asked for exists on it or on a board with other outputs; its set-up draws no error."""
+    _, plan = planned()
+    mission = encode(plan, autopilot="px4")
+    needs = needs_of(plan, mission, ActuatorPayload(1), 100.0)
+    names = names_to_read("px4", "fixed_wing", needs)
+    async with aeroplane(tmp_path, plan.home, 1.0) as client:
+        values = {name: read.value for name, read in (await client.read_parameters(names)).items()}
+    assert {name for name in names if not name.startswith("PWM_AUX")} <= values.keys()
+    assert values["PWM_MAIN_FUNC5"] == 301.0
+    found = judge_parameters("px4", "fixed_wing", needs, values)
+    assert [finding for finding in found if finding.severity == "error"] == []
 
 
 def without(mission: tuple[MissionItem, ...], *commands: int) -> tuple[MissionItem, ...]:
