@@ -56,6 +56,8 @@ def families(
     InfeasibleError
         Where there is none.
     """
+    # A spot is no strip: nothing longer than it is seen lane by lane.
+    wide = wide and sensor.mode != "spotlight"
     try:
         least = neighbourhoods(region, sensor, height_m)
     except InfeasibleError:

@@ -161,6 +161,8 @@ def can_be_seen(
 
 def _can_be_swept(part: MergedRegion, sensor: SarSensor, height_m: float, area: Polygon | None) -> bool:
     """Whether the lanes of some sweep, of the whole or of each piece of some division, stay in the area."""
+    if sensor.mode == "spotlight":
+        return False
     if any(flyable_headings(Sweep(part, sensor, height_m, 0, extra), area).any() for extra in (0, 1)):
         return True
     return not decompose.is_plain(part.area) and any(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -191,3 +192,22 @@ def test_the_papers_coverage_knows_two_passes_at_most() -> None:
     plan = make_plan(read_scenario(small(wide)))
     assert plan.violations == ()
     assert sum(c.roi == "X" for c in plan.collects) >= 4
+
+
+@pytest.mark.parametrize("squint", [-0.3, 0.25])
+def test_sweeps_see_the_whole_region_with_squint(squint: float) -> None:
+    """Lanes of a squinted sensor, seen ahead of or behind the aircraft, hold all of a wide region."""
+    area = Polygon([(0, 0), (2600, 300), (2400, 1900), (-300, 1500)])
+    (region,) = split_region(Region("R", area))
+    found = targets(region, replace(SENSOR, squint_rad=squint), HEIGHT_M, open_ground())
+    passes = [p for stop in found for p in cheapest_passes(stop)]
+    assert len(passes) > 2
+    assert unseen_m2(area, [p.footprint.buffer(1e-6) for p in passes]) < 1e-2
+
+
+def test_a_spot_is_not_swept() -> None:
+    """In spotlight what is longer than the spot is refused, not covered by lanes."""
+    spot = replace(SENSOR, mode="spotlight", turned_rad=0.2)
+    (region,) = split_region(Region("R", Polygon([(0, 0), (3000, 0), (3000, 2000), (0, 2000)])))
+    with pytest.raises(InfeasibleError):
+        targets(region, spot, HEIGHT_M, open_ground())
