@@ -39,3 +39,23 @@ def test_matrix_is_every_pair() -> None:
     assert matrix.shape == (7, 5)
     for i, row in enumerate(starts):
         np.testing.assert_allclose(matrix[i], dubins_lengths(np.tile(row, (5, 1)), goals, 60.0), atol=1e-9)
+
+
+def test_blocks_of_pairs_are_the_plain_ones() -> None:
+    """Pairs in several blocks, near and far, angles aligned, equal or huge: the plain length of each."""
+    generator = np.random.default_rng(5)
+    count = 900
+    starts = generator.uniform(-3000.0, 3000.0, (count, 3))
+    goals = generator.uniform(-3000.0, 3000.0, (count, 3))
+    goals[::3, :2] = starts[::3, :2] + generator.uniform(-350.0, 350.0, (count // 3, 2))
+    quarters = 0.5 * math.pi * np.arange(-4, 5)
+    starts[:, 2] = np.where(
+        np.arange(count) % 2 == 0, generator.choice(quarters, count), starts[:, 2] / 500.0
+    )
+    goals[:, 2] = np.where(np.arange(count) % 5 == 0, starts[:, 2], generator.choice(quarters, count))
+    goals[::7, 1] = starts[::7, 1]
+    starts[::50, 2] += 2.0 * math.pi * 100_000.0
+    lengths_m = dubins_lengths(starts, goals, 80.0)
+    for start, goal, length_m in zip(starts.tolist(), goals.tolist(), lengths_m.tolist(), strict=True):
+        assert length_m == pytest.approx(shortest(Pose(*start), Pose(*goal), 80.0).length_m, abs=1e-8)
+    assert dubins_lengths(starts[:0], goals[:0], 80.0).shape == (0,)
