@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+from collections import Counter
 from dataclasses import dataclass, replace
 from random import Random
 
@@ -98,3 +100,18 @@ def test_a_third_lost_on_a_slow_link() -> None:
                 known += download.items == ITEMS[:40]
                 break
     assert known >= 25
+
+
+def main() -> None:
+    """Print how the thousand uploads ended."""
+    counts: Counter[str] = Counter()
+    for seed in range(1000):
+        ending = storm(1000 * (seed // 100) + seed % 100, 0.2, 600, refusing=False)
+        settled = ", settled by read-back" if ending.resolved else ""
+        counts[("" if ending.true else "UNTRUE ") + ending.outcome.kind + settled] += 1
+    for name, count in sorted(counts.items()):
+        sys.stdout.write(f"{count:5d} {name}\n")
+
+
+if __name__ == "__main__":
+    main()
