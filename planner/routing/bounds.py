@@ -56,7 +56,7 @@ HEADINGS = 24
 #: Cells the exact search may hold at a time: its matrices are of this squared.
 MOST_CELLS = 700
 #: Splits of pairs of cells for neighbours and for others, and how many nearest are neighbours.
-SPLITS_NEAR, SPLITS_FAR, NEIGHBOURS = 120, 12, 14
+SPLITS_NEAR, SPLITS_FAR, NEIGHBOURS = 120, 3, 10
 PAIR_HEADINGS = 12
 ASCENT_STEPS = 1_500
 
