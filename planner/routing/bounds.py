@@ -54,7 +54,7 @@ TARGET = 0.02
 #: Headings of the first cells.
 HEADINGS = 24
 #: Cells the exact search may hold at a time: its matrices are of this squared.
-MOST_CELLS = 700
+MOST_CELLS = 1_000
 #: Splits of pairs of cells for neighbours and for others, and how many nearest are neighbours.
 SPLITS_NEAR, SPLITS_FAR, NEIGHBOURS = 120, 3, 10
 PAIR_HEADINGS = 12
