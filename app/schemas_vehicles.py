@@ -320,7 +320,8 @@ class FlightOut(BaseModel):
         """The answer for a record."""
         base = f"/api/v1/flights/{record.id}"
         links = {"self": base} | {
-            name: f"{base}/{name}" for name in ("track.geojson", "coverage.geojson", "report.html")
+            name: f"{base}/{name}"
+            for name in ("track.geojson", "track.gpx", "coverage.geojson", "report.html")
         }
         return cls(**asdict(record), links=links)
 

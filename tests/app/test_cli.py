@@ -69,7 +69,8 @@ def test_help_lists_every_command() -> None:
     """A process of its own answers --help with all commands and exit code 0."""
     command = [sys.executable, "-m", "app.cli", "--help"]
     ended = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=30, check=True)
-    commands = ("serve", "plan", "validate", "export", "upload", "download", "sim", "bench", "demo")
+    commands = ("serve", "plan", "validate", "export", "upload", "download", "convert", "import", "sim")
+    commands = (*commands, "bench", "demo")
     assert all(f" {name} " in ended.stdout for name in commands)
 
 
