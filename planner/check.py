@@ -335,8 +335,13 @@ def _coverage(
     coverage: dict[str, float] = {}
     unseen: dict[str, Polygon | MultiPolygon] = {}
     violations = []
+    seen_by = [(collect, footprint(scenario, collect)) for collect in plan.collects]
     for region in scenario.regions:
-        prints = [footprint(scenario, c) for c in plan.collects if _counts(scenario, region, c)]
+        prints = [
+            ground
+            for collect, ground in seen_by
+            if ground.intersects(region.area) and _counts(scenario, region, collect)
+        ]
         seen = seen_times(prints, region.revisits)
         # A millimetre of slack: coordinates are rounded to a hundredth of one.
         rest = difference(region.area, seen.buffer(1e-3), grid_size=GRID_M)

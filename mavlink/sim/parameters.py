@@ -52,7 +52,7 @@ class Parameters:
                 "COM_DISARM_PRFLT": 10.0,
                 "COM_DISARM_LAND": 2.0,
             } | {
-                f"PWM_{group}_FUNC{output}": 396.0 + output if group == "MAIN" and output > 4 else 0.0
+                f"PWM_{group}_FUNC{output}": 296.0 + output if group == "MAIN" and output > 4 else 0.0
                 for group in ("MAIN", "AUX")
                 for output in range(1, 9)
             }

@@ -94,9 +94,12 @@ def divide(area: Polygon, chords: list[LineString]) -> tuple[Polygon, ...] | Non
 
 
 def _with_overlap(area: Polygon, face: Polygon) -> Polygon:
-    grown: BaseGeometry = area.intersection(face.buffer(OVERLAP_M, join_style="mitre"))
+    # On a grid: without one the nearly parallel edges of outline and buffer can defeat the overlay.
+    grown: BaseGeometry = shapely.intersection(
+        area, face.buffer(OVERLAP_M, join_style="mitre"), grid_size=1e-6
+    )
     for part in shapely.get_parts(grown):
-        if isinstance(part, Polygon) and part.buffer(1e-6).covers(face):
+        if isinstance(part, Polygon) and part.buffer(1e-5).covers(face):
             return part
     return face
 
@@ -130,7 +133,11 @@ def _chord(area: Polygon, place: Floats, direction: Floats, *, both: bool = True
     unit = direction / np.hypot(*direction)
     reach_m = 2.0 * area.length
     ray = LineString([place - (reach_m if both else 0.0) * unit, place + reach_m * unit])
-    inside = [part for part in shapely.get_parts(area.intersection(ray)) if part.length > OVERLAP_M]
+    inside = [
+        part
+        for part in shapely.get_parts(shapely.intersection(area, ray, grid_size=1e-6))
+        if part.length > OVERLAP_M
+    ]
     touching = [part for part in inside if part.distance(shapely.Point(place)) < 1e-6]
     if not touching:
         return None
