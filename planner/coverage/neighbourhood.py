@@ -183,14 +183,22 @@ def check_sensor(region: Region, sensor: SarSensor, height_m: float) -> None:
         ``"swath"`` for a beam that is not wholly on one side or a relief too great, ``"spotlight"`` for a
         region larger than the spot, ``"resolution"`` for one too coarse.
     """
-    steepest_rad = sensor.incidence_rad - sensor.elevation_beamwidth_rad / 2.0
-    flattest_rad = sensor.incidence_rad + sensor.elevation_beamwidth_rad / 2.0
+    whole = sensor.whole()
+    steepest_rad, flattest_rad = whole.steepest_rad, whole.flattest_rad
     if height_m <= 0.0 or steepest_rad < 0.0 or flattest_rad >= math.pi / 2.0 or flattest_rad <= steepest_rad:
         raise InfeasibleError(
             "swath",
             region.name,
             f"sensor {sensor.name} has no swath on one side of the track from {height_m:g} m",
             "keep the whole elevation beam between straight down and the horizon, and fly above the ground",
+        )
+    if sensor.swath_m(height_m) <= 0.0 < whole.swath_m(height_m):
+        raise InfeasibleError(
+            "swath",
+            region.name,
+            f"the margins of sensor {sensor.name} leave nothing of its swath of "
+            f"{whole.swath_m(height_m):.0f} m from {height_m:.0f} m",
+            "fly higher, or lower pointing_margin_deg or position_margin_m",
         )
     if sensor.swath_m(height_m) <= 0.0:
         raise InfeasibleError(

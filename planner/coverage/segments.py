@@ -158,6 +158,7 @@ def collect_along(
     """The pass along a line, shape (2, 2), flown at an angle; its footprint is what it sees in full."""
     ahead = np.array([math.cos(angle_rad), math.sin(angle_rad)])
     side = np.array([-ahead[1], ahead[0]]) * (1.0 if look == "left" else -1.0)
+    sensor = sensor.whole()
     half_m = sensor.aperture_m(height_m) / 2.0
     near, far = side * sensor.near_m(height_m), side * sensor.far_m(height_m)
     first, last = line[0] + half_m * ahead, line[1] - half_m * ahead
@@ -171,7 +172,9 @@ def collect_along(
 def too_wide(region: MergedRegion, sensor: SarSensor, height_m: float, across_m: float) -> InfeasibleError:
     """The refusal of a region that two swaths cannot see, with the height that would do."""
     swath_m = sensor.swath_m(height_m)
-    needed_m = height_m * across_m / (2.0 * swath_m)
+    # Of a swath only the part that the beam gives grows with the height.
+    fixed_m = 2.0 * sensor.position_margin_m
+    needed_m = height_m * (across_m / 2.0 + fixed_m) / (swath_m + fixed_m)
     return InfeasibleError(
         "swath",
         region.label,

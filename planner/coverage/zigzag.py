@@ -125,7 +125,7 @@ def _strips(regions: BaseGeometry, swath_m: float, from_high_edge: bool) -> list
 def _lanes(
     strips: list[_Strip], sensor: SarSensor, height_m: float, forward_first: bool, swap: bool
 ) -> list[_Lane]:
-    near_m, half_m = sensor.near_m(height_m), sensor.aperture_m(height_m) / 2.0
+    near_m, half_m = sensor.near_m(height_m), sensor.aperture_m(height_m) / 2.0 + sensor.position_margin_m
     # Flying forward, which is north or east, the right-hand side lies towards higher across only when north.
     sees_higher_forward = ("right" in sensor.looks) != swap
     lanes = []
@@ -161,7 +161,7 @@ def _measured(
 ) -> Zigzag:
     corners = _corners(start, lanes, end)
     reached_m = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(corners, axis=0).T))])
-    half_m = sensor.aperture_m(height_m) / 2.0
+    half_m = sensor.aperture_m(height_m) / 2.0 + sensor.position_margin_m
     on: list[Interval] = []
     footprints: list[BaseGeometry] = []
     for number, lane in enumerate(lanes):

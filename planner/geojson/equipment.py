@@ -120,13 +120,15 @@ def read_sensor(raw: Any, index: int, findings: Findings) -> SarSensor | None:
     squint_deg = fields.number("squint_deg", 0.0, minimum=-MAX_SQUINT_DEG, maximum=MAX_SQUINT_DEG)
     mode: Any = fields.choice("mode", ("stripmap", "spotlight", "scansar"), "stripmap")
     sub_swaths = fields.integer("sub_swaths", 3 if mode == "scansar" else 1, minimum=1)
+    pointing_deg = fields.number("pointing_margin_deg", 0.0, minimum=0.0)
+    position_m = fields.number("position_margin_m", 0.0, minimum=0.0)
     wavelength_m = _wavelength_m(fields)
     fields.refuse_unknown(
         also_known=("azimuth_beamwidth_deg", "aperture_length_m", "wavelength_m", "frequency_hz")
     )
     if name is None or incidence_deg is None or elevation_deg is None or azimuth_rad is None or look is None:
         return None
-    if squint_deg is None or mode is None:
+    if squint_deg is None or mode is None or pointing_deg is None or position_m is None:
         return None
     if sub_swaths > 1 and mode != "scansar":
         fields.wrong("sub_swaths", "goes with mode scansar", "Leave sub_swaths out, or set mode to scansar.")
@@ -139,6 +141,14 @@ def read_sensor(raw: Any, index: int, findings: Findings) -> SarSensor | None:
             f"is {elevation_deg:g} round an incidence of {incidence_deg:g}: the beam passes the nadir or the "
             "horizon, so the swath is not a positive width on one side",
             "Keep incidence_deg ± elevation_beamwidth_deg / 2 within 0 and 90.",
+            rule="swath-not-positive",
+        )
+        return None
+    if 2.0 * pointing_deg >= elevation_deg:
+        fields.wrong(
+            "pointing_margin_deg",
+            f"is {pointing_deg:g} at either edge of a beam of {elevation_deg:g}: nothing is left",
+            "Keep it below half the elevation beam.",
             rule="swath-not-positive",
         )
         return None
@@ -155,6 +165,7 @@ def read_sensor(raw: Any, index: int, findings: Findings) -> SarSensor | None:
     return SarSensor(
         name, math.radians(incidence_deg), math.radians(elevation_deg), azimuth_rad, looks, resolution_m,
         math.radians(squint_deg), mode, sub_swaths, turned_rad,
+        pointing_margin_rad=math.radians(pointing_deg), position_margin_m=position_m,
     )  # fmt: skip
 
 

@@ -15,6 +15,7 @@ AREA_TOLERANCE_M = 0.05
 def check_together(scenario: Scenario, findings: Findings) -> None:
     """Add a finding for each rule between features that the scenario breaks."""
     _names(scenario, findings)
+    _swaths(scenario, findings)
     _visits(scenario, findings)
     _area(scenario, findings)
     _terminals(scenario, findings)
@@ -45,6 +46,20 @@ def _names(scenario: Scenario, findings: Findings) -> None:
             f"altitude_m {scenario.altitude_m:g} is not above home, {scenario.home_amsl_m or 0.0:g} m amsl",
             "Raise altitude_m.",
         )
+
+
+def _swaths(scenario: Scenario, findings: Findings) -> None:
+    if scenario.terrain is not None or scenario.height_m <= 0.0:
+        return
+    for sensor in scenario.sensors:
+        if sensor.swath_m(scenario.height_m) <= 0.0:
+            findings.error(
+                f"sensor {sensor.name}",
+                "swath-not-positive",
+                f"has margins that leave nothing of its swath of "
+                f"{sensor.whole().swath_m(scenario.height_m):.0f} m from {scenario.height_m:.0f} m",
+                "Lower position_margin_m or pointing_margin_deg, or raise altitude_m.",
+            )
 
 
 def _visits(scenario: Scenario, findings: Findings) -> None:

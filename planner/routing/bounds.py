@@ -139,7 +139,7 @@ def visits(sides: Sequence[Side], settle_m: float, region_index: int) -> list[Vi
         kinds.append(kernels.NEAR_LONG)
     elif several:
         kinds += [kernels.NEAR_STRIP, kernels.FAR_STRIP]
-    strip = (sensor.near_m(height_m), sensor.swath_m(height_m), 0.5 * sensor.aperture_m(height_m), settle_m)
+    strip = (sensor.near_m(height_m), sensor.swath_m(height_m), sensor.run_in_m(height_m), settle_m)
     families = [
         (kind, 1.0 if look == "right" else -1.0, *strip, *middle) for look in sensor.looks for kind in kinds
     ]

@@ -43,6 +43,11 @@ class SarSensor:
     relief_m
         The ground's height above and below the mean, to either side: the swath is then what the beam holds of
         every ground between, the aperture that of the lowest.
+    pointing_margin_rad
+        Planning leaves out this much of the beam at either edge, so that it may roll by as much.
+    position_margin_m
+        Planning leaves out this much of the swath at either edge, and begins and ends each pass so much
+        further out, so that the aircraft may be off its place by as much.
     """
 
     name: str
@@ -56,18 +61,34 @@ class SarSensor:
     sub_swaths: int = 1
     turned_rad: float | None = None
     relief_m: float = 0.0
+    pointing_margin_rad: float = 0.0
+    position_margin_m: float = 0.0
 
     def over_relief(self, relief_m: float) -> Self:
         """The same sensor over ground this much above and below its mean height."""
         return replace(self, relief_m=relief_m)
 
+    def whole(self) -> Self:
+        """The same sensor without margins: what it really sees."""
+        return replace(self, pointing_margin_rad=0.0, position_margin_m=0.0)
+
+    @property
+    def steepest_rad(self) -> float:
+        """Of the beam's edges that nearer the vertical, without the margin: θ_L − θ_B/2."""
+        return self.incidence_rad - self.elevation_beamwidth_rad / 2.0 + self.pointing_margin_rad
+
+    @property
+    def flattest_rad(self) -> float:
+        """Of the beam's edges that nearer the horizon, without the margin: θ_L + θ_B/2."""
+        return self.incidence_rad + self.elevation_beamwidth_rad / 2.0 - self.pointing_margin_rad
+
     def near_m(self, height_m: float) -> float:
         """Ground distance from the track to the near edge of the swath, h·tan(θ_L − θ_B/2)."""
-        return (height_m + self.relief_m) * math.tan(self.incidence_rad - self.elevation_beamwidth_rad / 2.0)
+        return (height_m + self.relief_m) * math.tan(self.steepest_rad) + self.position_margin_m
 
     def far_m(self, height_m: float) -> float:
         """Ground distance from the track to the far edge of the swath, h·tan(θ_L + θ_B/2)."""
-        return (height_m - self.relief_m) * math.tan(self.incidence_rad + self.elevation_beamwidth_rad / 2.0)
+        return (height_m - self.relief_m) * math.tan(self.flattest_rad) - self.position_margin_m
 
     def swath_m(self, height_m: float) -> float:
         """Swath width l_sw on the ground, eq 1."""
@@ -91,20 +112,21 @@ class SarSensor:
         )
 
     def run_in_m(self, height_m: float) -> float:
-        """How far before the ground the sensor must be on: half an aperture, and the squint's lead."""
-        return self.aperture_m(height_m) / 2.0 + self.leads_m(height_m)[1]
+        """How far before the ground the sensor must be on: half an aperture, squint's lead, margin."""
+        return self.aperture_m(height_m) / 2.0 + self.leads_m(height_m)[1] + self.position_margin_m
 
     def run_out_m(self, height_m: float) -> float:
         """How far beyond the ground the sensor must be on."""
-        return self.aperture_m(height_m) / 2.0 - self.leads_m(height_m)[0]
+        return self.aperture_m(height_m) / 2.0 - self.leads_m(height_m)[0] + self.position_margin_m
 
     def spot_m(self, height_m: float) -> float:
         """Length along track of what one pass can see: of the spot in spotlight, else without limit."""
         if self.turned_rad is None:
             return math.inf
-        range_m = (height_m - self.relief_m) / math.cos(self.incidence_rad - self.elevation_beamwidth_rad / 2)
-        return sar_modes.spot_m(range_m, self.azimuth_beamwidth_rad, self.squint_rad)
+        range_m = (height_m - self.relief_m) / math.cos(self.steepest_rad)
+        spot_m = sar_modes.spot_m(range_m, self.azimuth_beamwidth_rad, self.squint_rad)
+        return spot_m - 2.0 * self.position_margin_m
 
     def collection_m(self, height_m: float, span_m: float) -> float:
         """Length of a collection segment over an along-track span, eq 6."""
-        return span_m + self.aperture_m(height_m)
+        return span_m + self.aperture_m(height_m) + 2.0 * self.position_margin_m

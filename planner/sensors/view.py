@@ -68,6 +68,7 @@ def sensing(scenario: Scenario, sensor: SarSensor, area: Polygon | MultiPolygon)
 
 def seen_on_flat(sensor: SarSensor, line_m: ArrayLike, look: Look, height_m: float) -> Polygon:
     """Ground seen from a line (2, 2) at a height over flat ground; empty where the line is too short."""
+    sensor = sensor.whole()
     frame = _Axes.of(line_m, look)
     near_m, far_m = sensor.near_m(height_m), sensor.far_m(height_m)
     squinted = sensor.squint_rad != 0.0
