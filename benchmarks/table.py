@@ -23,18 +23,19 @@ def tables(rows: Iterable[dict[str, Any]]) -> str:
     listed = list(rows)
     lines = [
         "| case | planner | RL, m | CL, m | DC, % | paper: RL, m | CL, m | DC, % | in threats, m "
-        "| least coverage | tightest turn, m | planned in, s | paper, s |",
-        "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |",
+        "| least coverage | tightest turn, m | gap to the bound, % | planned in, s | paper, s |",
+        "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |",
     ]
     for row in (r for r in listed if r["bench"] == "sar"):
         own = [f"{row['rl_m']:,.0f}", f"{row['cl_m']:,.0f}", f"{row['dc_percent']:.1f}"]
         paper = [f"{row['paper_rl_m']:,.0f}", f"{row['paper_cl_m']:,.0f}", f"{row['paper_dc_percent']:.1f}"]
-        checked = ["", "", "", "", ""]
+        checked = ["", "", "", "", "", ""]
         if "planning_s" in row:
             checked = [
                 f"{row['metres_in_threats']:.0f}",
                 f"{row['least_coverage']:.6f}",
                 f"{row['min_turn_radius_m']:.2f}",
+                "" if row["gap"] is None else f"{100.0 * row['gap']:.0f}",
                 f"{row['planning_s']:.2f}",
                 f"{row['paper_planning_s']:.1f}",
             ]
