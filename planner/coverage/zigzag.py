@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -125,7 +125,7 @@ def _strips(regions: BaseGeometry, swath_m: float, from_high_edge: bool) -> list
 def _lanes(
     strips: list[_Strip], sensor: SarSensor, height_m: float, forward_first: bool, swap: bool
 ) -> list[_Lane]:
-    near_m, half_m = sensor.near_m(height_m), sensor.aperture_m(height_m) / 2.0 + sensor.position_margin_m
+    near_m, half_m = sensor.near_m(height_m), _run_in_m(sensor, height_m)
     # Flying forward, which is north or east, the right-hand side lies towards higher across only when north.
     sees_higher_forward = ("right" in sensor.looks) != swap
     lanes = []
@@ -145,6 +145,11 @@ def _lanes(
     return lanes
 
 
+def _run_in_m(sensor: SarSensor, height_m: float) -> float:
+    """Half an aperture and the margins; the paper's sensors look abeam."""
+    return replace(sensor, squint_rad=0.0).run_in_m(height_m)
+
+
 def _corners(start: Point, lanes: list[_Lane], end: Point) -> NDArray[np.float64]:
     corners = [start]
     for lane in lanes:
@@ -161,7 +166,7 @@ def _measured(
 ) -> Zigzag:
     corners = _corners(start, lanes, end)
     reached_m = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(corners, axis=0).T))])
-    half_m = sensor.aperture_m(height_m) / 2.0 + sensor.position_margin_m
+    half_m = _run_in_m(sensor, height_m)
     on: list[Interval] = []
     footprints: list[BaseGeometry] = []
     for number, lane in enumerate(lanes):

@@ -17,6 +17,8 @@ SPEED_OF_LIGHT_M_S = 299_792_458.0
 
 #: Beyond this the beam runs along the track rather than beside it.
 MAX_SQUINT_DEG = 60.0
+#: Beyond this there is nothing to call a pointing.
+MAX_POINTING_DEG = 15.0
 #: A spotlight pass turns no further than this round its place.
 MAX_TURNED_DEG = 60.0
 #: A multirotor without a stated turn limit rounds its corners with this bank.
@@ -120,7 +122,7 @@ def read_sensor(raw: Any, index: int, findings: Findings) -> SarSensor | None:
     squint_deg = fields.number("squint_deg", 0.0, minimum=-MAX_SQUINT_DEG, maximum=MAX_SQUINT_DEG)
     mode: Any = fields.choice("mode", ("stripmap", "spotlight", "scansar"), "stripmap")
     sub_swaths = fields.integer("sub_swaths", 3 if mode == "scansar" else 1, minimum=1)
-    pointing_deg = fields.number("pointing_margin_deg", 0.0, minimum=0.0)
+    pointing_deg = fields.number("pointing_margin_deg", 0.0, minimum=0.0, maximum=MAX_POINTING_DEG)
     position_m = fields.number("position_margin_m", 0.0, minimum=0.0)
     wavelength_m = _wavelength_m(fields)
     fields.refuse_unknown(

@@ -44,7 +44,8 @@ class SarSensor:
         The ground's height above and below the mean, to either side: the swath is then what the beam holds of
         every ground between, the aperture that of the lowest.
     pointing_margin_rad
-        Planning leaves out this much of the beam at either edge, so that it may roll by as much.
+        Planning leaves out this much of the beam at either edge, so that it may roll by as much, and begins
+        and ends each pass so much further out that it may turn by as much from abeam.
     position_margin_m
         Planning leaves out this much of the swath at either edge, and begins and ends each pass so much
         further out, so that the aircraft may be off its place by as much.
@@ -102,13 +103,17 @@ class SarSensor:
         return sar_modes.stripmap_aperture_m(range_m, self.azimuth_beamwidth_rad, self.squint_rad)
 
     def leads_m(self, height_m: float) -> tuple[float, float]:
-        """How far ahead of the aircraft the swath's ground is seen: least and most, R·tan θ_sq."""
-        tangent = math.tan(self.squint_rad)
+        """How far ahead of the aircraft the swath's ground is seen, R·tan θ_sq: least and most, with margin.
+
+        In spotlight the beam is kept on its place and has no margin along the track.
+        """
+        margin_rad = 0.0 if self.turned_rad is not None else self.pointing_margin_rad
+        least, most = math.tan(self.squint_rad - margin_rad), math.tan(self.squint_rad + margin_rad)
         nearest_m = math.hypot(self.near_m(height_m), max(height_m - self.relief_m, 0.0))
         farthest_m = math.hypot(self.far_m(height_m), height_m + self.relief_m)
         return (
-            min(nearest_m * tangent, farthest_m * tangent),
-            max(nearest_m * tangent, farthest_m * tangent),
+            min(nearest_m * least, farthest_m * least),
+            max(nearest_m * most, farthest_m * most),
         )
 
     def run_in_m(self, height_m: float) -> float:
@@ -129,4 +134,4 @@ class SarSensor:
 
     def collection_m(self, height_m: float, span_m: float) -> float:
         """Length of a collection segment over an along-track span, eq 6."""
-        return span_m + self.aperture_m(height_m) + 2.0 * self.position_margin_m
+        return self.run_in_m(height_m) + span_m + self.run_out_m(height_m)

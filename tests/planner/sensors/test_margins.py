@@ -51,8 +51,9 @@ def test_a_beam_rolled_and_moved_within_its_margins_still_holds_the_planned_swat
     far_m = height_m * math.tan(math.radians(45.0) + half + share * margin) + share * position_m
     assert near_m <= sensor.near_m(height_m) + 1e-9
     assert far_m >= sensor.far_m(height_m) - 1e-9
-    assert sensor.run_in_m(height_m) == pytest.approx(PLAIN.run_in_m(height_m) + position_m)
-    assert sensor.run_out_m(height_m) == pytest.approx(PLAIN.run_out_m(height_m) + position_m)
+    turned_m = math.hypot(sensor.far_m(height_m), height_m) * math.tan(margin)
+    assert sensor.run_in_m(height_m) == pytest.approx(PLAIN.run_in_m(height_m) + position_m + turned_m)
+    assert sensor.run_out_m(height_m) == pytest.approx(PLAIN.run_out_m(height_m) + position_m + turned_m)
     assert sensor.collection_m(height_m, 900.0) == pytest.approx(
         900.0 + sensor.run_in_m(height_m) + sensor.run_out_m(height_m)
     )
@@ -129,6 +130,7 @@ def test_no_margin_changes_nothing() -> None:
     ("margins", "rule"),
     [
         ({"pointing_margin_deg": 15.0}, "swath-not-positive"),
+        ({"pointing_margin_deg": 15.1}, "out-of-range"),
         ({"pointing_margin_deg": -1.0}, "out-of-range"),
         ({"position_margin_m": -0.5}, "out-of-range"),
         ({"position_margin_m": "wide"}, "bad-value"),
