@@ -102,6 +102,14 @@ def polygon(owner: str, rings: Any, frame: LocalFrame, findings: Findings) -> Po
     shape = Polygon(read[0] or [], [ring for ring in read[1:] if ring])
     if not shape.is_valid:
         reason = explain_validity(shape)
+        if reason.startswith(("Hole lies outside", "Holes are nested")):
+            findings.error(
+                owner,
+                "hole-misplaced",
+                f"is not a valid polygon: {reason}",
+                "Put each hole inside the outer ring and outside the other holes.",
+            )
+            return None
         findings.error(
             owner,
             "ring-self-intersects",

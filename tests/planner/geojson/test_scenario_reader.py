@@ -57,6 +57,21 @@ BAD: dict[str, tuple[dict[str, Any], str, str]] = {
         "X",
         "ring-self-intersects",
     ),
+    "hole outside its ring": (
+        small(
+            feature(
+                "X",
+                "roi",
+                "Polygon",
+                [
+                    [[0, 0], [0.01, 0], [0.01, 0.01], [0, 0]],
+                    [[0.02, 0.02], [0.03, 0.02], [0.03, 0.03], [0.02, 0.02]],
+                ],
+            )
+        ),
+        "X",
+        "hole-misplaced",
+    ),
     "empty ring": (small(feature("X", "roi", "Polygon", [[]])), "X", "ring-empty"),
     "no ring": (small(feature("X", "roi", "Polygon", [])), "X", "ring-empty"),
     "open ring": (
