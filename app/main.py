@@ -14,7 +14,7 @@ from starlette.routing import Match, Mount
 from starlette.types import Scope
 
 from app import middleware, problems
-from app.routers import artefacts, flights, health, plans, scenarios, terrain, vehicles
+from app.routers import artefacts, flights, health, interface, plans, scenarios, terrain, vehicles
 from app.services.house import House, Limits
 from app.services.vehicles.recordings import Recordings
 from app.settings import Settings
@@ -38,8 +38,8 @@ TAGS = [
 
 NO_MAP = """<!doctype html><html lang="en"><meta charset="utf-8"><title>Swathplan</title>
 <body style="font: 16px/1.5 system-ui; max-width: 40em; margin: 4em auto; padding: 0 1em">
-<h1>Swathplan</h1><p>The service runs, but the map has not been built. Build it with <code>make map</code>
-(or start with <code>make run</code>, which builds it) and reload.</p>
+<h1>Swathplan</h1><p>The service runs, but the map has not been built. <code>make run</code> builds it and
+starts the service.</p>
 <p>The interface for programs is described at <a href="/docs">/docs</a>.</p>"""
 
 
@@ -72,17 +72,27 @@ def create_app(settings: Settings | None = None, build_house: Callable[[Limits],
         house = build_house(limits_of(settings))
         app.state.house = house
         try:
-            await house.open()
+            try:
+                await house.open()
+            except Exception as error:
+                app.state.start_failure = error
+                raise
             yield
         finally:
             await house.close()
 
     app = FastAPI(
-        title="Swathplan", version=VERSION, description=DESCRIPTION, openapi_tags=TAGS, lifespan=lifespan
+        title="Swathplan",
+        version=VERSION,
+        description=DESCRIPTION,
+        openapi_tags=TAGS,
+        lifespan=lifespan,
+        docs_url=None,
+        redoc_url=None,
     )
     app.state.settings = settings
     problems.install(app)
-    for module in (plans, artefacts, scenarios, terrain, vehicles, flights, health):
+    for module in (plans, artefacts, scenarios, terrain, vehicles, flights, health, interface):
         app.include_router(module.router)
     _add_map(app, settings)
     # The last added stands outermost.

@@ -25,6 +25,10 @@ log = structlog.get_logger(__name__)
 GRACE_S = 5
 
 
+class StartError(Exception):
+    """The service could not start; the message says why."""
+
+
 @dataclass(frozen=True, slots=True)
 class Welcome:
     """What a fresh service does by itself: connect simulated aircraft, plan a scenario."""
@@ -71,7 +75,13 @@ def run_server(
     announce: Callable[[str], None],
     build_house: Callable[[Limits], House] = House,
 ) -> None:
-    """Serve until a signal; ``announce`` gets the address once requests are answered."""
+    """Serve until a signal; ``announce`` gets the address once requests are answered.
+
+    Raises
+    ------
+    StartError
+        The port is taken, or the services cannot be opened.
+    """
     configure(settings.log_level)
     app = create_app(settings, build_house)
     config = uvicorn.Config(
@@ -83,7 +93,11 @@ def run_server(
         server_header=False,
         timeout_graceful_shutdown=GRACE_S,
     )
-    listener = config.bind_socket()
+    try:
+        listener = config.bind_socket()
+    except SystemExit as error:  # uvicorn ends the process after logging what the system said
+        reason = f"{settings.host} port {settings.port} cannot be listened on: {error.__context__}"
+        raise StartError(f"{reason}. Choose another with --port") from error
     port = listener.getsockname()[1]
     name = f"[{settings.host}]" if ":" in settings.host else settings.host
     greeting: list[asyncio.Task[None]] = []
@@ -92,4 +106,8 @@ def run_server(
         announce(f"http://{name}:{port}")
         greeting.append(asyncio.create_task(_greet(app.state.house, welcome)))
 
-    _Server(config, listening).run(sockets=[listener])
+    server = _Server(config, listening)
+    try:
+        server.run(sockets=[listener])
+    except SystemExit as error:  # uvicorn's end after a failed start
+        raise StartError(f"the service cannot start: {app.state.start_failure}") from error

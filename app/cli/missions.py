@@ -119,7 +119,9 @@ def export(
 def upload(
     plan: PlanFile,
     to: Url,
-    part: Annotated[list[PartChoice] | None, typer.Option(help="What to upload [mission].")] = None,
+    part: Annotated[
+        list[PartChoice] | None, typer.Option(help="What to upload (mission when left out).")
+    ] = None,
     override: Annotated[
         str | None,
         typer.Option(help="Upload although a hard constraint is broken; say why.", metavar="REASON"),

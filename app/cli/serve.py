@@ -10,10 +10,14 @@ from app.cli.output import CommandError, Exit, Json, emit, read_document
 
 
 def serve(
-    host: Annotated[str | None, typer.Option(help="Address to listen on [127.0.0.1].")] = None,
-    port: Annotated[int | None, typer.Option(help="Port to listen on [8000]; 0 takes a free one.")] = None,
-    database: Annotated[str | None, typer.Option(help="Database file [var/swathplan.db].")] = None,
-    workers: Annotated[int | None, typer.Option(help="Planning processes [cores - 1].")] = None,
+    host: Annotated[str | None, typer.Option(help="Address to listen on (127.0.0.1 when left out).")] = None,
+    port: Annotated[
+        int | None, typer.Option(help="Port to listen on (8000 when left out); 0 takes a free one.")
+    ] = None,
+    database: Annotated[
+        str | None, typer.Option(help="Database file (var/swathplan.db when left out).")
+    ] = None,
+    workers: Annotated[int | None, typer.Option(help="Planning processes (cores - 1 when left out).")] = None,
     sim: Annotated[bool, typer.Option("--sim", help="Connect a simulated aircraft at the start.")] = False,
     sim_count: Annotated[int, typer.Option(min=1, max=16, help="How many with --sim.")] = 1,
     sim_url: Annotated[
@@ -42,14 +46,17 @@ def serve(
         )
         raise CommandError(reasons, Exit.BAD_INPUT) from error
 
-    from app.server import Welcome, run_server
+    from app.server import StartError, Welcome, run_server
 
     welcome = Welcome(simulated=sim_count if sim else 0, sim_url=sim_url, scenario=document)
 
     def announce(address: str) -> None:
         emit(f'{{"address": "{address}"}}' if as_json else f"Swathplan is at {address}")
 
-    run_server(settings, welcome, announce)
+    try:
+        run_server(settings, welcome, announce)
+    except StartError as error:
+        raise CommandError(str(error)) from error
 
 
 def register(cli: typer.Typer) -> None:

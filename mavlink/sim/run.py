@@ -120,10 +120,10 @@ class _Session:
 
 
 def parser() -> argparse.ArgumentParser:
-    """The command line of ``python -m mavlink.sim``."""
+    """The command line of ``swathplan sim`` and ``python -m mavlink.sim``."""
     defaults = SimSettings()
     p = argparse.ArgumentParser(
-        prog="python -m mavlink.sim",
+        prog="swathplan sim",
         description="A simulated fixed wing with an ArduPilot- or PX4-like autopilot on a MAVLink link.",
     )
     p.add_argument("--url", default="udpout:127.0.0.1:14550", help="link address (default: %(default)s)")

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import fcntl
 import io
 import json
+import socket
 import subprocess
 import sys
 from collections.abc import Callable
@@ -72,6 +74,32 @@ def test_help_lists_every_command() -> None:
     commands = ("serve", "plan", "validate", "export", "upload", "download", "convert", "import", "sim")
     commands = (*commands, "bench", "demo")
     assert all(f" {name} " in ended.stdout for name in commands)
+
+
+@pytest.mark.parametrize("name", ["serve", "upload"])
+def test_help_tells_what_is_taken_when_left_out(name: str) -> None:
+    """The help's text reaches the screen whole: words in square brackets would be taken for markup."""
+    command = [sys.executable, "-m", "app.cli", name, "--help"]
+    ended = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=30, check=True)
+    assert "when left out" in " ".join(ended.stdout.replace("│", " ").split())
+
+
+def test_serve_on_what_is_taken_exits_1(tmp_path: Path) -> None:
+    """A taken port and a database in use end the service with 1 and the reason in words."""
+
+    def serve(port: int, database: Path) -> subprocess.CompletedProcess[str]:
+        command = [sys.executable, "-m", "app.cli", "serve", "--port", str(port), "--database", str(database)]
+        return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=60, check=False)
+
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        ended = serve(taken.getsockname()[1], tmp_path / "a.db")
+    assert ended.returncode == 1
+    assert "Choose another with --port" in ended.stderr
+    with (tmp_path / "b.db.lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        ended = serve(0, tmp_path / "b.db")
+    assert ended.returncode == 1
+    assert "error: the service cannot start: another service is at work on" in ended.stderr
 
 
 def test_plan_from_file_to_file(swathplan: Command, scenario_file: Path, tmp_path: Path) -> None:
