@@ -56,7 +56,7 @@ class Problem(BaseModel):
                     "type": TYPE_PREFIX + "refused",
                     "title": "The input is refused",
                     "status": 422,
-                    "detail": "the scenario is refused: the ring crosses itself at 33.5015, -117.7401",
+                    "detail": "the scenario is refused: R2: the ring crosses itself at 33.5015, -117.7401",
                     "instance": "/api/v1/plans",
                     "errors": [
                         {

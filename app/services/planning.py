@@ -145,8 +145,8 @@ class PlanningService:
             raise OverloadedError("too many plans are waiting; try again later", retry_after_s=10)
         verdict = await self.validate(document)
         if verdict.errors:
-            count = len(verdict.errors)
-            detail = verdict.errors[0].message if count == 1 else f"{count} rules are broken"
+            count, first = len(verdict.errors), verdict.errors[0]
+            detail = f"{first.feature}: {first.message}" if count == 1 else f"{count} rules are broken"
             raise RefusedError(f"the scenario is refused: {detail}", verdict.errors)
         warnings = [work.finding_json(finding) for finding in verdict.warnings]
         record = await self._store.add(_name_of(document), text, digest, warnings, key)

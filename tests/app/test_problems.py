@@ -69,6 +69,14 @@ async def test_bad_bodies_are_422(client: httpx.AsyncClient, path: str, body: by
     assert (await client.get("/health/live")).status_code == 200
 
 
+async def test_detail_names_the_feature(client: httpx.AsyncClient) -> None:
+    """A single finding is told in the detail together with the feature it is about."""
+    answer = await client.post(PLANS, content=b'{"type": "FeatureCollection", "features": []}')
+    body = answer.json()
+    (entry,) = body["errors"]
+    assert body["detail"] == f"the scenario is refused: {entry['feature']}: {entry['message']}"
+
+
 @pytest.mark.parametrize(
     ("method", "path", "status"),
     [
