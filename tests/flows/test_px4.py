@@ -45,13 +45,18 @@ AEROPLANE = dialect_for("px4", "fixed_wing")
 SPEEDUP = 18.0
 
 
+#: Margins of the sensor for an aeroplane that rolls by 1° (standard deviation), as docs/px4.md records them.
+MARGINS = {"pointing_margin_deg": 2.0, "position_margin_m": 5.0}
+
+
 @cache
-def planned() -> tuple[Scenario, Plan]:
+def planned(settle_m: float = 100.0, *, margins: bool = False) -> tuple[Scenario, Plan]:
     """The first example for the simulator's small aeroplane, which flies at 14 m/s."""
     document: dict[str, Any] = json.loads((EXAMPLES / "sar-case-1.geojson").read_text())
     document["vehicles"][0].update(
-        autopilot="px4", airspeed_m_s=14.0, min_turn_radius_m=100.0, settle_m=100.0
+        autopilot="px4", airspeed_m_s=14.0, min_turn_radius_m=100.0, settle_m=settle_m
     )
+    document["sensors"][0].update(MARGINS if margins else {})
     scenario = read_scenario(document)
     return scenario, make_plan(scenario)
 
@@ -61,9 +66,12 @@ def compare(meant: tuple[MissionItem, ...], held: tuple[MissionItem, ...]) -> Se
     return differences(meant, held, AEROPLANE)
 
 
-async def test_a_plan_is_stored_flown_and_seen(tmp_path: Path) -> None:
+@pytest.mark.parametrize(("settle_m", "margins", "seen"), [(100.0, False, 0.96), (150.0, True, 0.995)])
+async def test_a_plan_is_stored_flown_and_seen(
+    tmp_path: Path, settle_m: float, margins: bool, seen: float
+) -> None:
     """Read back equal; every pass flown near its line, inside the fence; regions seen; landed at the end."""
-    scenario, plan = planned()
+    scenario, plan = planned(settle_m, margins=margins)
     mission = encode(plan, autopilot="px4")
     watch = SensorWatch()
     async with aeroplane(tmp_path, plan.home, SPEEDUP, watch=watch) as client:
@@ -78,7 +86,7 @@ async def test_a_plan_is_stored_flown_and_seen(tmp_path: Path) -> None:
     ground = seen_by(scenario, plan, samples)
     assert [one.seq for one in ground.passes] == [collect.seq for collect in plan.collects]
     assert max(one.cross_track_p95_m for one in ground.passes) < 3.0
-    assert min(ground.fraction.values()) > 0.96
+    assert min(ground.fraction.values()) > seen
     # What is missing is the small aeroplane's rolling by 2°: a beam held level sees all.
     level = seen_by(scenario, plan, tuple(replace(sample, roll_deg=0.0) for sample in samples))
     assert min(level.fraction.values()) > 0.995
