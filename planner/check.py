@@ -270,7 +270,11 @@ def _limit_violations(
     ):
         if used is not None and limit is not None and used > limit:
             yield Violation(
-                constraint, path.vehicle, f"needs {used:.0f} {unit} of {limit:.0f} {unit}", used - limit, unit
+                constraint,
+                path.vehicle,
+                f"needs {used:.0f} {unit} but has {limit:.0f} {unit}",
+                used - limit,
+                unit,
             )
 
 
