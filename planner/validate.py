@@ -8,8 +8,10 @@ from planner.coverage.neighbourhood import can_be_seen
 from planner.environment.terrain import Terrains
 from planner.errors import Finding, InfeasibleError, ScenarioError
 from planner.geojson import read_scenario
+from planner.routing.joint import sides_of
 from planner.scenario import Scenario
 from planner.sensors.view import sensing
+from planner.vehicle.wind import in_wind
 
 
 def findings(document: Any, terrains: Terrains | None = None) -> tuple[Finding, ...]:
@@ -40,22 +42,34 @@ def read_valid(document: Any, terrains: Terrains | None = None) -> Scenario:
 
 
 def unseeable(scenario: Scenario) -> tuple[Finding, ...]:
-    """A finding for each region that no pass can see: a warning where the region is not required."""
+    """A finding for each region that no pass can see: a warning where the region is not required.
+
+    Where each can be seen by itself, also what hard zones, terrain and the wind forbid.
+    """
     found = []
     # The paper's methods, asked for by name, know two passes at most.
     wide = scenario.method.coverage == "auto" and scenario.method.routing in ("auto", "joint")
+    required = {region.name for region in scenario.regions if region.required}
     for region in scenario.regions:
         try:
             sensor, height_m = sensing(scenario, scenario.sensor_for(region), region.area)
             can_be_seen(region, sensor, height_m, scenario.area, wide=wide)
         except InfeasibleError as error:
-            found.append(
-                Finding(
-                    error.feature,
-                    f"not-seen-{error.constraint}",
-                    error.message,
-                    error.relaxation,
-                    "error" if region.required else "warning",
-                )
-            )
+            found.append(_finding(error, region.name in required))
+    if wide and not any(finding.severity == "error" for finding in found):
+        try:
+            flown = in_wind(scenario)
+            sides_of(flown, flown.aircraft[0])
+        except InfeasibleError as error:
+            found.append(_finding(error, True))
     return tuple(found)
+
+
+def _finding(error: InfeasibleError, required: bool) -> Finding:
+    return Finding(
+        error.feature,
+        f"not-seen-{error.constraint}" if error.constraint != "wind" else "wind-too-strong",
+        error.message,
+        error.relaxation,
+        "error" if required else "warning",
+    )

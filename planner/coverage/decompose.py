@@ -94,10 +94,14 @@ def divide(area: Polygon, chords: list[LineString]) -> tuple[Polygon, ...] | Non
 
 
 def _with_overlap(area: Polygon, face: Polygon) -> Polygon:
-    # On a grid: without one the nearly parallel edges of outline and buffer can defeat the overlay.
-    grown: BaseGeometry = shapely.intersection(
-        area, face.buffer(OVERLAP_M, join_style="mitre"), grid_size=1e-6
-    )
+    wide = shapely.make_valid(face.buffer(OVERLAP_M, join_style="mitre"))
+    try:
+        # On a grid: without one the nearly parallel edges of outline and buffer can defeat the overlay.
+        grown: BaseGeometry = shapely.intersection(area, wide, grid_size=1e-6)
+    except shapely.GEOSException:
+        # A spike of the outline thinner than the grid defeats it all the same. Pieces without an overlap
+        # still share their edge.
+        return face
     for part in shapely.get_parts(grown):
         if isinstance(part, Polygon) and part.buffer(1e-5).covers(face):
             return part

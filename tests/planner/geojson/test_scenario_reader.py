@@ -310,3 +310,11 @@ def test_revisits_are_read_for_the_methods_that_plan_them() -> None:
     document["features"][0]["properties"]["revisits"] = 51
     with pytest.raises(ScenarioError, match="51"):
         read_scenario(document)
+
+
+def test_region_behind_a_hard_zone_and_too_much_wind_are_found_without_planning() -> None:
+    """What zones or the wind forbid is an error of validation, not of the plan."""
+    wall = feature("Z", "no_fly", "Polygon", square(-0.013, -0.013, 0.029))
+    assert [f.feature for f in findings(small(wall)) if f.severity == "error"] == ["A"]
+    storm = small(wind={"speed_m_s": 25.0, "from_deg": 0.0})
+    assert [f.rule for f in findings(storm) if f.severity == "error"] == ["wind-too-strong"]
