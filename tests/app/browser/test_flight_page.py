@@ -124,16 +124,21 @@ def test_an_unsafe_plan_needs_a_reason(page: Page, planned: str, tmp_path: Path)
 
 
 def test_a_failed_plan_says_why(page: Page, planned: str, tmp_path: Path) -> None:
-    """A region inside a hard threat cannot be seen: the page names the region and the way out."""
+    """A start walled in by a no-fly zone has no way out: the page names the zone."""
     closed = json.loads(json.dumps(CASE_1))
-    threat = {"role": "threat", "name": "H", "model": "missile", "radius_m": 1500, "hard": True}
-    place = {"type": "Point", "coordinates": [-117.7474, 33.5145]}
-    closed["features"].append({"type": "Feature", "id": "H", "properties": threat, "geometry": place})
+    start = next(f for f in closed["features"] if f["properties"]["role"] == "start")
+    lon, lat = start["geometry"]["coordinates"][:2]
+    corners = ((-1, -1), (1, -1), (1, 1), (-1, 1), (-1, -1))
+    outer, inner = ([[lon + h * x, lat + h * y] for x, y in corners] for h in (0.005, 0.003))
+    wall = {"type": "Polygon", "coordinates": [outer, inner[::-1]]}
+    closed["features"].append(
+        {"type": "Feature", "id": "Z", "properties": {"role": "no_fly", "name": "Z"}, "geometry": wall}
+    )
     path = tmp_path / "closed.geojson"
     path.write_text(json.dumps(closed), encoding="utf-8")
     start_planning(page, path)
     page.wait_for_selector("#failure", timeout=PLANNING_LIMIT_S * 1000)
-    expect(page.locator("#failure")).to_contain_text("R1")
+    expect(page.locator("#failure")).to_contain_text("Z")
     expect(page.locator("#notices")).to_contain_text("No plan can satisfy the scenario")
 
 
