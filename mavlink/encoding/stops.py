@@ -57,7 +57,7 @@ def stops_along(
         collect whose straight ends too early has its last waypoint beyond, in the line's direction: the
         aircraft begins its turn where the path does, and the sensor stays on until there.
     """
-    altitude = _altitudes(path)
+    altitude = _Altitudes(path)
     stops: list[Stop] = []
     skipped: list[tuple[float, float]] = []
     for collect in collects:
@@ -151,7 +151,7 @@ def _merged(stops: list[Stop], exact: set[LonLat]) -> tuple[Stop, ...]:
     return tuple(merged)
 
 
-class _altitudes:  # noqa: N801 - used like a function
+class _Altitudes:
     """Altitude along a path, linear between the vertices of its line."""
 
     def __init__(self, path: FlownPath) -> None:
