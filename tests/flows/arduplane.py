@@ -7,17 +7,16 @@
 from __future__ import annotations
 
 import asyncio
-import math
 import os
 import subprocess
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
-from dataclasses import dataclass
+from collections.abc import AsyncIterator, Iterator, Mapping
+from contextlib import asynccontextmanager, contextmanager
 from pathlib import Path
 
 from mavlink.client import VehicleClient
+from mavlink.link import open_link
 from mavlink.telemetry import VehicleState
-from mavlink.track import Track
+from tests.flows.flying import Flight, until_disarmed
 
 BINARY = os.environ.get("SWATHPLAN_ARDUPLANE", "")
 #: Relay 0 exists only where it is given a function; nobody holds a remote control.
@@ -25,13 +24,17 @@ PARAMETERS: Mapping[str, float] = {"RELAY1_FUNCTION": 1, "RELAY1_PIN": 13, "THR_
 HOME_ALTITUDE_M = 30.0
 #: Arming is refused until position and attitude have settled: some 30 s of the simulator's time.
 ARMING_TRIES = 240
-STALLED_S = 60.0
 
 
 def default_parameters() -> Path:
     """The vehicle's own parameter file."""
     named = os.environ.get("SWATHPLAN_ARDUPLANE_PARAMS")
     return Path(named) if named else Path(BINARY).with_name("plane.parm")
+
+
+def in_wind(wind: tuple[float, float] | None) -> Mapping[str, float]:
+    """Its parameters, with a steady wind (m/s, where from) in the simulator."""
+    return PARAMETERS if wind is None else {**PARAMETERS, "SIM_WIND_SPD": wind[0], "SIM_WIND_DIR": wind[1]}
 
 
 @contextmanager
@@ -41,6 +44,7 @@ def arduplane(
     home: tuple[float, float],
     speedup: float = 1.0,
     parameters: Mapping[str, float] = PARAMETERS,
+    model: str = "plane",
 ) -> Iterator[subprocess.Popen[bytes]]:
     """Run the simulator in a folder of its own, calling a port on loopback; ``home`` is (lon, lat)."""
     own = folder / "own.parm"
@@ -49,7 +53,7 @@ def arduplane(
         BINARY,
         "--synthetic-clock",
         "--wipe",
-        *("--model", "plane"),
+        *("--model", model),
         *("--speedup", f"{speedup:g}"),
         *("--home", f"{home[1]:.7f},{home[0]:.7f},{HOME_ALTITUDE_M:g},0"),
         *("--defaults", f"{default_parameters().resolve()},{own}"),
@@ -74,13 +78,21 @@ def arduplane(
                 process.wait()
 
 
-@dataclass(frozen=True, slots=True)
-class Flight:
-    """A mission flown to its end."""
-
-    track: Track
-    texts: tuple[str, ...]
-    final: VehicleState
+@asynccontextmanager
+async def aeroplane(
+    folder: Path,
+    home: tuple[float, float],
+    speedup: float,
+    parameters: Mapping[str, float] = PARAMETERS,
+    model: str = "plane",
+) -> AsyncIterator[VehicleClient]:
+    """A simulator that has booted, and a client of it."""
+    link = await open_link("udpin:127.0.0.1:0")
+    port = int(link.url.rpartition(":")[2])
+    with arduplane(folder, port, home, speedup, parameters, model):
+        async with VehicleClient(link) as client:
+            await booted(client)
+            yield client
 
 
 async def booted(client: VehicleClient) -> VehicleState:
@@ -105,21 +117,6 @@ async def fly(client: VehicleClient) -> Flight:
     recorder = client.start_recording()
     started = await client.start_mission()
     assert started.accepted, started
-    texts: list[str] = []
-    last_seq, quiet_s = -1, 0.0
-    while client.state.armed:
-        await asyncio.sleep(0.05)
-        state = client.state
-        assert state.connected, "the simulator fell silent"
-        texts += [text.text for text in state.texts if text.text not in texts]
-        quiet_s = 0.0 if state.mission_current != last_seq else quiet_s + 0.05
-        last_seq = state.mission_current if state.mission_current is not None else -1
-        assert quiet_s < STALLED_S, f"stuck at item {last_seq}, mode {state.mode}: {texts[-5:]}"
+    texts = await until_disarmed(client)
     client.stop_recording(recorder)
-    return Flight(recorder.track(), tuple(texts), client.state)
-
-
-def distance_m(here: tuple[float, float], there: tuple[float, float]) -> float:
-    """Distance between two near places, longitude and latitude in degrees."""
-    east = math.radians(there[0] - here[0]) * math.cos(math.radians(here[1]))
-    return 6_371_009.0 * math.hypot(east, math.radians(there[1] - here[1]))
+    return Flight(recorder.track(), texts, client.state)

@@ -12,14 +12,12 @@ import socket
 import subprocess
 from collections.abc import AsyncIterator, Iterator, Mapping
 from contextlib import asynccontextmanager, contextmanager
-from dataclasses import dataclass
 from pathlib import Path
 
 from mavlink.client import VehicleClient
 from mavlink.codec import Codec
 from mavlink.link import open_link
-from mavlink.telemetry import VehicleState
-from mavlink.track import Track
+from tests.flows.flying import Flight, until_disarmed
 
 BINARY = os.environ.get("SWATHPLAN_PX4", "")
 ROMFS = os.environ.get("SWATHPLAN_PX4_ROMFS", "")
@@ -40,7 +38,6 @@ NOT_NEEDED = (31, 32, 62, 83, 85, 105, 132, 141, 331)
 SET_INTERVAL, SERVO_OUTPUT_RAW = 511, 36
 #: Until position and attitude have settled.
 READY_S = 60.0
-STALLED_S = 60.0
 
 
 def free_instance() -> int:
@@ -137,15 +134,6 @@ async def aeroplane(
             yield client
 
 
-@dataclass(frozen=True, slots=True)
-class Flight:
-    """A mission flown to its end."""
-
-    track: Track
-    texts: tuple[str, ...]
-    final: VehicleState
-
-
 async def fly(client: VehicleClient) -> Flight:
     """Start the mission, which arms PX4, and wait until the vehicle has landed and disarmed."""
     recorder = client.start_recording()
@@ -156,15 +144,6 @@ async def fly(client: VehicleClient) -> Flight:
         await asyncio.sleep(0.5)
     assert started.accepted, (started, [text.text for text in client.state.texts])
     await client.wait_for(lambda state: state.armed, 20.0)
-    texts: list[str] = []
-    last_seq, quiet_s = -1, 0.0
-    while client.state.armed:
-        await asyncio.sleep(0.05)
-        state = client.state
-        assert state.connected, "the simulator fell silent"
-        texts += [text.text for text in state.texts if text.text not in texts]
-        quiet_s = 0.0 if state.mission_current != last_seq else quiet_s + 0.05
-        last_seq = state.mission_current if state.mission_current is not None else -1
-        assert quiet_s < STALLED_S, f"stuck at item {last_seq}, mode {state.mode}: {texts[-5:]}"
+    texts = await until_disarmed(client)
     client.stop_recording(recorder)
-    return Flight(recorder.track(), tuple(texts), client.state)
+    return Flight(recorder.track(), texts, client.state)

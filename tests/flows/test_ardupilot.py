@@ -11,23 +11,18 @@ import math
 import socket
 import subprocess
 import sys
-from collections.abc import AsyncIterator, Iterator, Sequence
-from contextlib import asynccontextmanager
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
-from typing import Any
 
 import pytest
-from shapely.geometry import LineString, Polygon
 
-from app.services.flights import seen_by
-from app.services.vehicles.recorder import Thinner
 from mavlink.client import VehicleClient
 from mavlink.compare import Difference, differences
 from mavlink.dialects import dialect_for
 from mavlink.dialects.ardupilot import ArduPilotDialect
-from mavlink.encode import encode
+from mavlink.encode import EncodeOptions, encode
 from mavlink.items import Command, Frame, MissionItem, MissionResult, MissionType
 from mavlink.link import open_link
 from mavlink.mission import home_item, numbered, placed, unplaced
@@ -37,14 +32,14 @@ from planner.geojson import read_scenario
 from planner.pipeline import make_plan
 from planner.plan import Plan
 from planner.scenario import Scenario
-from tests.flows.arduplane import BINARY, arduplane, booted, distance_m, fly
+from tests.flows.arduplane import BINARY, aeroplane, arduplane, booted, fly, in_wind
+from tests.flows.flying import CASES, WIND, Figures, case_document, figures, from_end_m, inside_fence, store
 
 pytestmark = [
     pytest.mark.ardupilot,
     pytest.mark.skipif(not BINARY, reason="SWATHPLAN_ARDUPLANE names no simulator"),
 ]
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
 PLANE = dialect_for("ardupilot", "fixed_wing")
 HOME = (-117.7514038, 33.4860851)
 SPEEDUP = 40.0
@@ -52,20 +47,15 @@ SPEEDUP = 40.0
 
 #: Margins of the sensor, as docs/ardupilot.md records them.
 MARGINS = {"pointing_margin_deg": 1.5, "position_margin_m": 5.0}
-
-
-def scenario_document(settle_m: float, *, margins: bool = False) -> dict[str, Any]:
-    """The first example, with some straight flight before each collect."""
-    document: dict[str, Any] = json.loads((EXAMPLES / "sar-case-1.geojson").read_text())
-    document["vehicles"][0]["settle_m"] = settle_m
-    document["sensors"][0].update(MARGINS if margins else {})
-    return document
+LAND = EncodeOptions(finish="land")
 
 
 @cache
-def planned(settle_m: float, *, margins: bool = False) -> tuple[Scenario, Plan]:
-    """The scenario and its plan."""
-    scenario = read_scenario(scenario_document(settle_m, margins=margins))
+def planned(
+    case: int, settle_m: float, *, margins: bool = False, wind: tuple[float, float] | None = None
+) -> tuple[Scenario, Plan]:
+    """A shared case and its plan."""
+    scenario = read_scenario(case_document(case, {"settle_m": settle_m}, MARGINS if margins else None, wind))
     return scenario, make_plan(scenario)
 
 
@@ -74,63 +64,55 @@ def compare(meant: tuple[MissionItem, ...], held: tuple[MissionItem, ...]) -> Se
     return differences(meant, held, PLANE)
 
 
-@asynccontextmanager
-async def plane(folder: Path, speedup: float = SPEEDUP) -> AsyncIterator[VehicleClient]:
-    """A simulator that has booted, and a client of it."""
-    link = await open_link("udpin:127.0.0.1:0")
-    port = int(link.url.rpartition(":")[2])
-    with arduplane(folder, port, HOME, speedup):
-        async with VehicleClient(link) as client:
-            await booted(client)
-            yield client
+async def flown(
+    folder: Path, scenario: Scenario, plan: Plan, wind: tuple[float, float] | None = None
+) -> Figures:
+    """Store a plan, fly it, and judge it: inside the fence, at its height, landed at its end."""
+    mission = encode(plan, autopilot="ardupilot", options=LAND)
+    async with aeroplane(folder, plan.home, SPEEDUP, in_wind(wind)) as client:
+        await store(client, mission)
+        flight = await fly(client)
+    samples = flight.samples()
+    assert inside_fence(scenario, plan, samples)
+    assert from_end_m(scenario, plan, flight.final) < 60.0
+    return figures(scenario, plan, mission, samples)
 
 
 @pytest.mark.parametrize(
-    ("settle_m", "margins", "cross_track_p95_m", "seen"),
-    [
-        # Its default tuning takes some 130 m to come back to a line after a turn of 100 m radius.
-        (0.0, False, 30.0, 0.80),
-        (150.0, False, 4.0, 0.95),
-        (300.0, False, 2.0, 0.99),
-        (150.0, True, 4.0, 0.999),
-    ],
+    ("settle_m", "cross_track_p95_m", "seen"),
+    # Its default tuning takes some 130 m to come back to a line after a turn of 100 m radius.
+    [(0.0, 30.0, 0.80), (150.0, 4.0, 0.95), (300.0, 2.0, 0.99)],
 )
-async def test_a_plan_is_stored_flown_and_seen(
-    tmp_path: Path, settle_m: float, margins: bool, cross_track_p95_m: float, seen: float
+async def test_straight_flight_before_each_pass(
+    tmp_path: Path, settle_m: float, cross_track_p95_m: float, seen: float
 ) -> None:
-    """Read back equal; every pass flown near its line, inside the fence; regions seen; landed at the end."""
-    scenario, plan = planned(settle_m, margins=margins)
-    mission = encode(plan, autopilot="ardupilot")
-    async with plane(tmp_path) as client:
-        for kind in (MissionType.MISSION, MissionType.FENCE):
-            result = await client.upload_verified(mission.items_of(kind), kind, compare)
-            assert (result.status, result.differences) == ("stored", ())
-        flight = await fly(client)
+    """Without margins: the more of it, the nearer to the line and the more is seen."""
+    flight = await flown(tmp_path, *planned(1, settle_m))
+    flight.tell("1", "ArduPlane", "none", f"no margins, {settle_m:g} m")
+    assert max(flight.cross_track_p95_m) < cross_track_p95_m
+    assert flight.least_seen > seen
 
-    samples = tuple(Thinner(0.0).more(flight.track))
-    ground = seen_by(scenario, plan, samples)
-    assert [one.seq for one in ground.passes] == [
-        collect.seq for collect in plan.collects_of(mission.vehicle)
-    ]
-    assert max(one.cross_track_p95_m for one in ground.passes) < cross_track_p95_m
-    assert min(ground.fraction.values()) > seen
-    heights_m = [sample.altitude_home_m or 0.0 for sample in samples if sample.sensor_on]
-    assert all(abs(height_m - plan.altitude_m) < 2.0 for height_m in heights_m)
 
-    places = scenario.frame.to_local([(sample.lon_deg, sample.lat_deg) for sample in samples])
-    for zone in plan.fence.inclusion:
-        assert Polygon(scenario.frame.to_local(zone.ring)).contains(LineString(places))
-    final = flight.final
-    assert final.lon_deg is not None
-    assert final.lat_deg is not None
-    assert distance_m((final.lon_deg, final.lat_deg), plan.end) < 60.0
+@pytest.mark.parametrize("wind", [None, WIND], ids=["still air", "wind"])
+@pytest.mark.parametrize("case", CASES)
+async def test_every_shared_case_is_stored_flown_and_seen(
+    tmp_path: Path, case: int, wind: tuple[float, float] | None
+) -> None:
+    """Read back equal; every pass flown near its line; every region seen; landed at the end."""
+    scenario, plan = planned(case, 150.0, margins=True, wind=wind)
+    flight = await flown(tmp_path, scenario, plan, wind)
+    flight.tell(str(case), "ArduPlane", f"{wind[0]:g} m/s" if wind else "none")
+    assert max(flight.cross_track_p95_m) < (10.0 if wind else 5.0)
+    assert flight.least_seen > 0.995
+    low_m, high_m = flight.heights_m
+    assert plan.altitude_m - 2.0 < low_m < high_m < plan.altitude_m + 2.0
 
 
 async def test_orders_in_flight(tmp_path: Path) -> None:
     """Pause, resume, another item, return: the mode and the item follow each order."""
-    _, plan = planned(150.0)
+    _, plan = planned(1, 150.0)
     mission = encode(plan, autopilot="ardupilot")
-    async with plane(tmp_path) as client:
+    async with aeroplane(tmp_path, HOME, SPEEDUP) as client:
         await client.upload_verified(mission.mission, MissionType.MISSION, compare)
         flying = asyncio.create_task(fly(client))
         await client.wait_for(lambda state: (state.mission_current or 0) >= 4, 120.0)
@@ -157,7 +139,7 @@ def swathplan(*arguments: str) -> str:
 def test_the_command_line_uploads_and_downloads(tmp_path: Path) -> None:
     """``swathplan upload`` reads back what was meant, and ``download`` finds it again."""
     scenario, plan = tmp_path / "scenario.geojson", tmp_path / "plan.geojson"
-    scenario.write_text(json.dumps(scenario_document(0.0)))
+    scenario.write_text(json.dumps(case_document(1, {"settle_m": 0.0})))
     swathplan("plan", str(scenario), "-o", str(plan))
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as free:
         free.bind(("127.0.0.1", 0))
@@ -224,7 +206,7 @@ def _item(command: int, values: tuple[float, ...], frame: int = Frame.GLOBAL_REL
 async def test_the_tables_say_what_it_answers_and_gives_back(tmp_path: Path) -> None:
     """Item by item: the answer foretold, and the values foretold where it is taken."""
     wrong: list[tuple[MissionItem, str]] = []
-    async with plane(tmp_path) as client:
+    async with aeroplane(tmp_path, HOME, SPEEDUP) as client:
         for item in items_of_the_table():
             foretold = PLANE.answer(replace(item, seq=1))
             rows = numbered([home_item(HOME, 30.0), item])
@@ -248,7 +230,7 @@ async def test_a_mission_too_long_is_refused_and_a_fresh_one_taken(tmp_path: Pat
     assert isinstance(PLANE, ArduPilotDialect)
     limit = PLANE.limits[MissionType.MISSION]
     point = placed(Command.NAV_WAYPOINT, HOME, 100.0, Frame.GLOBAL_RELATIVE_ALT)
-    async with plane(tmp_path) as client:
+    async with aeroplane(tmp_path, HOME, SPEEDUP) as client:
         long = numbered([home_item(HOME, 30.0), *[point] * limit])
         assert _answer(await client.upload_verified(long, MissionType.MISSION, compare)) == (
             MissionResult.NO_SPACE
@@ -263,7 +245,7 @@ async def test_circles_over_a_polygon_are_still_a_fence(tmp_path: Path) -> None:
     vertex = Command.NAV_FENCE_POLYGON_VERTEX_INCLUSION
     polygon = [replace(placed(vertex, corner, 0.0, Frame.GLOBAL), param1=3.0) for corner in corners]
     circle = replace(placed(Command.NAV_FENCE_CIRCLE_EXCLUSION, corners[0], 0.0, Frame.GLOBAL), param1=250.0)
-    async with plane(tmp_path, speedup=10.0) as client:
+    async with aeroplane(tmp_path, HOME, 10.0) as client:
         for items in (polygon, [circle]) * 5:
             rows = numbered(items, MissionType.FENCE)
             result = await client.upload_verified(rows, MissionType.FENCE, compare)
