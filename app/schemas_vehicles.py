@@ -216,6 +216,7 @@ class VehicleOut(BaseModel):
     name: str
     url: str
     connected: bool
+    link_failure: str | None = Field(description="Why its link is not open; it is tried again and again.")
     simulated: bool
     replay: bool = Field(description="It is a recording: it takes no transfers and no commands.")
     created_at: datetime
@@ -235,6 +236,7 @@ class VehicleOut(BaseModel):
             name=vehicle.name,
             url=vehicle.url,
             connected=vehicle.state.connected,
+            link_failure=vehicle.link_failure,
             simulated=vehicle.simulated is not None,
             replay=vehicle.replay,
             created_at=vehicle.created_at,

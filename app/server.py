@@ -43,7 +43,7 @@ async def _greet(house: House, welcome: Welcome) -> None:
         if welcome.scenario is not None:
             await _plan_sample(house, welcome.scenario)
         for number in range(1, welcome.simulated + 1):
-            await house.fleet.connect(f"sim-{number}", welcome.sim_url)
+            await house.fleet.connect(f"sim-{number}", welcome.sim_url, keep=False)
     except ServiceError as error:
         log.error("start-up wish not fulfilled", reason=str(error))
 

@@ -17,6 +17,7 @@ from app.services.store.flights import FlightStore
 from app.services.store.plans import PlanStore
 from app.services.store.terrain import TerrainStore
 from app.services.store.uploads import UploadStore
+from app.services.store.vehicles import VehicleStore
 from app.services.terrain import TerrainService
 from app.services.validation import Verdict, judge
 from app.services.vehicles.fleet import Fleet
@@ -66,7 +67,12 @@ class House:
         flights = FlightStore(self.database)
         self.flights = FlightService(flights, self.planning)
         self.fleet = Fleet(
-            self.planning, UploadStore(self.database), flights, limits.track_interval_s, limits.recordings
+            self.planning,
+            UploadStore(self.database),
+            flights,
+            VehicleStore(self.database),
+            limits.track_interval_s,
+            limits.recordings,
         )
 
     async def open(self) -> None:

@@ -71,6 +71,26 @@ class FlightRecord:
 
 
 @dataclass(frozen=True, slots=True)
+class HeldMission:
+    """The plan whose mission a vehicle was seen to hold, and how it was encoded."""
+
+    plan_id: str
+    plan_vehicle: str
+    payload: str | None
+
+
+@dataclass(frozen=True, slots=True)
+class VehicleRecord:
+    """One vehicle as it was added; ``held`` is None where no plan was seen in it."""
+
+    id: str
+    name: str
+    url: str
+    created_at: datetime
+    held: HeldMission | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class PlanRecord:
     """One request to plan and what became of it.
 

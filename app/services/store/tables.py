@@ -63,6 +63,21 @@ class PlanDocumentRow(Base):
     plan: Mapped[str | None] = mapped_column(Text)
 
 
+class VehicleRow(Base):
+    """One vehicle that was added, and the plan it was last seen to hold."""
+
+    __tablename__ = "vehicles"
+
+    number: Mapped[int] = mapped_column(Integer, primary_key=True, autoincrement=True)
+    id: Mapped[str] = mapped_column(String(36), unique=True)
+    name: Mapped[str] = mapped_column(String(200))
+    url: Mapped[str] = mapped_column(String(300))
+    created_at: Mapped[datetime] = mapped_column(UtcTime)
+    held_plan_id: Mapped[str | None] = mapped_column(String(36))
+    held_plan_vehicle: Mapped[str | None] = mapped_column(String(200))
+    held_payload: Mapped[str | None] = mapped_column(String(200))
+
+
 class UploadRow(Base):
     """One upload to a vehicle: what was meant, how it ended, who overrode what."""
 

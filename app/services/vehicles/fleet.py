@@ -5,26 +5,43 @@ from __future__ import annotations
 import asyncio
 import json
 import uuid
-from collections.abc import AsyncIterator, Sequence
+from collections.abc import AsyncGenerator, Sequence
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
 import structlog
 
-from app.services.errors import CommandRefusedError, ConflictError, LinkError, NotFoundError, RefusedError
+from app.services.errors import (
+    CommandRefusedError,
+    ConflictError,
+    LinkError,
+    NotFoundError,
+    RefusedError,
+    ServiceError,
+)
 from app.services.hub import Hub
 from app.services.metrics import UPLOADS, VEHICLES
 from app.services.missions import PARTS, MissionChoice, PartName, encode_plan, plan_of
 from app.services.planning import PlanningService
+from app.services.records import HeldMission, VehicleRecord
 from app.services.store.flights import FlightStore
 from app.services.store.uploads import UploadStore
+from app.services.store.vehicles import VehicleStore
 from app.services.vehicles.connection import Home, replayed_plan
 from app.services.vehicles.inspection import ParameterReport, inspect, mission_needs, read_parameters
 from app.services.vehicles.items import item_json
 from app.services.vehicles.preflight import Preflight
 from app.services.vehicles.recorder import HeldPlan, is_flying
 from app.services.vehicles.recordings import RecordingFile, Recordings
-from app.services.vehicles.uploads import UploadReport, judge_upload, new_report, report_json, send_parts
+from app.services.vehicles.uploads import (
+    UploadReport,
+    comparing,
+    judge_upload,
+    new_report,
+    report_json,
+    send_parts,
+)
 from app.services.vehicles.vehicle import Vehicle
 from mavlink import errors as mavlink_errors
 from mavlink.geometry import distance_m
@@ -44,27 +61,44 @@ AT_HOME_M = 50.0
 
 
 class Fleet:
-    """The vehicles of one service. They are known as long as it runs; uploads and flights are kept."""
+    """The vehicles of one service.
+
+    They are known until they are let go, also over a restart. Recordings and aircraft simulated by the
+    start-up's wish are not: a recording would be flown and recorded anew by every restart.
+    """
 
     def __init__(
         self,
         planning: PlanningService,
         uploads: UploadStore,
         flights: FlightStore,
+        kept: VehicleStore,
         track_interval_s: float,
         recordings: Recordings | None = None,
     ) -> None:
         self._planning = planning
         self._uploads = uploads
         self._flights = flights
+        self._kept = kept
         self._track_interval_s = track_interval_s
         self._recordings = recordings
         self._vehicles: dict[str, Vehicle] = {}
         self._hub: Hub[Vehicle] = Hub()
 
     async def open(self) -> None:
-        """Close the flights an earlier service left open."""
+        """Close the flights an earlier service left open; listen for its vehicles, commanding nothing."""
         await self._flights.recover()
+        home = await self._default_home()
+        for record in await self._kept.all():
+            try:
+                vehicle = self._vehicle(record)
+            except ServiceError as error:
+                log.error("vehicle forgotten", vehicle=record.name, url=record.url, reason=str(error))
+                await self._kept.forget(record.id)
+                continue
+            self._vehicles[vehicle.id] = vehicle
+            vehicle.resume(home, CONNECT_S)
+            log.info("vehicle known from before", vehicle=vehicle.name, url=vehicle.url)
 
     async def close(self) -> None:
         """Let every vehicle go."""
@@ -82,8 +116,15 @@ class Fleet:
             raise NotFoundError("vehicle", vehicle_id)
         return vehicle
 
-    async def connect(self, name: str, url: str, timeout_s: float = CONNECT_S) -> Vehicle:
+    async def connect(
+        self, name: str, url: str, timeout_s: float = CONNECT_S, *, keep: bool = True
+    ) -> Vehicle:
         """Connect a vehicle; when it stays silent it is known all the same, and listened for.
+
+        Parameters
+        ----------
+        keep
+            Whether the next service shall know it too.
 
         Raises
         ------
@@ -99,25 +140,21 @@ class Fleet:
                 raise ConflictError(f"there is a vehicle called {name} already")
             if other.url == url and other.simulated is None:
                 raise ConflictError(f"{url} is in use by {other.name}")
-        vehicle = Vehicle(
-            str(uuid.uuid4()),
-            name,
-            url,
-            self._flights,
-            self._track_interval_s,
-            self._publish,
-            self._resolved,
-            self._recordings,
-        )
+        vehicle = self._vehicle(VehicleRecord(str(uuid.uuid4()), name, url, datetime.now(UTC)))
         if vehicle.replay:
             vehicle.held = await self._flown_plan(url)
         self._vehicles[vehicle.id] = vehicle
         try:
             await vehicle.open(await self._default_home(), timeout_s)
         except BaseException:
-            del self._vehicles[vehicle.id]
+            self._vehicles.pop(vehicle.id, None)
             await vehicle.close()
             raise
+        if vehicle.id not in self._vehicles:
+            await vehicle.close()
+            raise ConflictError(f"{name} was let go while it was being connected")
+        if keep and not vehicle.replay:
+            await self._kept.add(VehicleRecord(vehicle.id, name, url, vehicle.created_at))
         log.info("vehicle added", vehicle=name, url=url, connected=vehicle.state.connected)
         return vehicle
 
@@ -125,11 +162,12 @@ class Fleet:
         """Let a vehicle go; raises NotFoundError."""
         vehicle = self.get(vehicle_id)
         del self._vehicles[vehicle_id]
+        await self._kept.forget(vehicle_id)
         await vehicle.close()
         self._hub.publish(vehicle_id, vehicle)
         log.info("vehicle let go", vehicle=vehicle.name)
 
-    async def telemetry(self, vehicle_id: str) -> AsyncIterator[Vehicle]:
+    async def telemetry(self, vehicle_id: str) -> AsyncGenerator[Vehicle, None]:
         """The vehicle now and at every change, until it is let go."""
         async with self._hub.listen(vehicle_id) as queue:
             yield self.get(vehicle_id)
@@ -167,13 +205,14 @@ class Fleet:
             findings = judge_upload(plan, mission, parts, vehicle.state, override)
             await self._bring_home(vehicle, plan)
             report = await self._begin_upload(vehicle, plan_id, mission, parts, override, findings)
+            report.payload = choice.payload
 
             def tell(part: PartName, made: Progress) -> None:
                 vehicle.progress = {"part": part, "done": made.done, "total": made.total}
                 self._publish(vehicle)
 
             if "mission" in parts:
-                vehicle.held = None
+                vehicle.holds_unknown()
             try:
                 await send_parts(vehicle.client, report, tell)
             finally:
@@ -248,7 +287,8 @@ class Fleet:
             for name in parts:
                 outcomes[name] = await vehicle.client.clear(PARTS[name])
                 if name == "mission":
-                    vehicle.held = None
+                    vehicle.holds_unknown()
+                    await self._kept.hold(vehicle.id, None)
             return outcomes
 
     async def command(self, vehicle_id: str, command: str, seq: int | None) -> CommandOutcome | Outcome:
@@ -368,8 +408,11 @@ class Fleet:
         report = vehicle.upload
         assert report is not None
         mission = report.parts.get("mission")
-        if mission is not None and mission.verified:
-            vehicle.held = HeldPlan(report.plan_id, report.plan_vehicle)
+        if mission is not None:
+            if mission.verified:
+                vehicle.held = HeldPlan(report.plan_id, report.plan_vehicle)
+            held = HeldMission(report.plan_id, report.plan_vehicle, report.payload)
+            await self._kept.hold(vehicle.id, held if mission.verified else None)
         outcome = "unknown" if report.outcome == "not_attempted" else report.outcome
         UPLOADS.labels(outcome=outcome).inc()
         await self._uploads.end(report.number, outcome, report_json(report))
@@ -378,6 +421,32 @@ class Fleet:
 
     async def _resolved(self, vehicle: Vehicle) -> None:
         await self._record_upload(vehicle)
+
+    def _vehicle(self, record: VehicleRecord) -> Vehicle:
+        return Vehicle(
+            record,
+            self._flights,
+            self._track_interval_s,
+            self._publish,
+            self._resolved,
+            self._still_holds,
+            self._recordings,
+        )
+
+    async def _still_holds(self, vehicle: Vehicle, held: HeldMission) -> bool:
+        """Read back whether a vehicle holds the plan it held before the service was restarted."""
+        try:
+            plan = plan_of(await self._planning.plan_text(held.plan_id))
+        except (NotFoundError, ConflictError):
+            return False
+        choice = _for_vehicle(vehicle, MissionChoice(held.plan_vehicle, None, held.payload))
+        mission = await asyncio.to_thread(encode_plan, plan, choice)
+        meant = mission.items_of(PARTS["mission"])
+        found = await vehicle.client.download(PARTS["mission"])
+        same = not comparing(mission.dialect)(meant, found)
+        if not same:
+            await self._kept.hold(vehicle.id, None)
+        return same
 
     def _publish(self, vehicle: Vehicle) -> None:
         connected = sum(other.state.connected for other in self._vehicles.values())

@@ -84,6 +84,7 @@ class UploadReport:
     mission: Mission
     parts: dict[PartName, PartResult] = field(default_factory=dict)
     preflight: Preflight | None = None
+    payload: str | None = None
 
     @property
     def outcome(self) -> OutcomeName:

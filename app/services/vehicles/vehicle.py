@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import asynccontextmanager
-from datetime import UTC, datetime
 from typing import Any
 
 import structlog
 
-from app.services.errors import BusyError, ConflictError, LinkError
+from app.services.errors import BusyError, ConflictError, LinkError, ServiceError
+from app.services.records import HeldMission, VehicleRecord
 from app.services.store.flights import FlightStore
 from app.services.vehicles.connection import Connection, Home, connect, is_replay, simulated_of
 from app.services.vehicles.recorder import FlightRecorder, HeldPlan
@@ -42,29 +42,33 @@ class Vehicle:
 
     Parameters
     ----------
+    record
+        What it is called and where it is; with ``held`` the plan it held before the service was restarted.
     publish
         Called when its state has changed, no more often than ``TELEMETRY_S``.
     resolved
         Called when an upload whose outcome was unknown has been resolved by reading back.
+    still_holds
+        Asked, once the vehicle is heard, whether it holds the plan it held before.
     recordings
         Where the link is recorded; None not to. A recording is not recorded again.
     """
 
     def __init__(
         self,
-        vehicle_id: str,
-        name: str,
-        url: str,
+        record: VehicleRecord,
         flights: FlightStore,
         track_interval_s: float,
         publish: Callable[[Vehicle], None],
-        resolved: Callable[[Vehicle], Any],
+        resolved: Callable[[Vehicle], Awaitable[None]],
+        still_holds: Callable[[Vehicle, HeldMission], Awaitable[bool]],
         recordings: Recordings | None = None,
     ) -> None:
-        self.id = vehicle_id
-        self.name = name
-        self.url = url
-        self.created_at = datetime.now(UTC)
+        self.id = record.id
+        self.name = record.name
+        self.url = url = record.url
+        self.created_at = record.created_at
+        self.link_failure: str | None = None
         self.held: HeldPlan | None = None
         self.upload: UploadReport | None = None
         self.progress: dict[str, Any] | None = None
@@ -73,7 +77,10 @@ class Vehicle:
         self.replay = is_replay(url)
         self._recordings = None if self.replay else recordings
         self._writer: TlogWriter | None = None
-        self._recorder = FlightRecorder(flights, vehicle_id, name, track_interval_s)
+        self._recorder = FlightRecorder(flights, record.id, record.name, track_interval_s)
+        # A simulated aircraft is a new one, and holds nothing.
+        self._believed = None if self.simulated is not None else record.held
+        self._still_holds = still_holds
         self._publish = publish
         self._resolved = resolved
         self._connection: Connection | None = None
@@ -118,6 +125,33 @@ class Vehicle:
         self._connection = await connect(self.url, home, timeout_s, self._tap)
         self._tasks = [asyncio.create_task(self._watch()), asyncio.create_task(self._record())]
 
+    def resume(self, home: Home | None, timeout_s: float) -> None:
+        """Open the link in the background, again and again until it opens."""
+        if self._recordings is not None:
+            self._writer = self._recordings.writer(self.id)
+        self._tasks = [
+            asyncio.create_task(self._resume(home, timeout_s)),
+            asyncio.create_task(self._record()),
+        ]
+
+    async def _resume(self, home: Home | None, timeout_s: float) -> None:
+        await self._reopen(home, timeout_s)
+        await self._watch()
+
+    async def _reopen(self, home: Home | None, timeout_s: float) -> None:
+        """Open the link; when it cannot be, say why once and try again."""
+        while self._connection is None:
+            try:
+                self._connection = await connect(self.url, home, timeout_s, self._tap)
+            except ServiceError as error:
+                if self.link_failure != str(error):
+                    log.warning("link not open", vehicle=self.name, url=self.url, reason=str(error))
+                self.link_failure = str(error)
+                self._publish(self)
+                await asyncio.sleep(REOPEN_S)
+        self.link_failure = None
+        self._publish(self)
+
     async def close(self) -> None:
         """Close the link, end the simulator, close the flight."""
         for task in self._tasks:
@@ -141,6 +175,10 @@ class Vehicle:
         """Put everything recorded so far where readers see it."""
         if self._writer is not None:
             self._writer.flush()
+
+    def holds_unknown(self) -> None:
+        """Believe nothing about the mission it holds: it is being changed."""
+        self.held = self._believed = None
 
     def require_orders(self, what: str) -> None:
         """Raise ConflictError for a recording, which takes none."""
@@ -178,27 +216,45 @@ class Vehicle:
     async def _watch(self) -> None:
         """Follow the vehicle; open the link anew when it fails, as a TCP peer that restarts makes it do."""
         while True:
-            await self._follow(self.client)
+            client = self.client
+            await self._follow(client)
             self._publish(self)
             if self.simulated is not None or self.replay:
                 return
             log.warning("link lost", vehicle=self.name, url=self.url)
+            self.link_failure = client.failure
             await self._drop()
-            while self._connection is None:
-                await asyncio.sleep(REOPEN_S)
-                with contextlib.suppress(LinkError):
-                    self._connection = await connect(self.url, None, REOPEN_S, self._tap)
+            await asyncio.sleep(REOPEN_S)
+            await self._reopen(None, REOPEN_S)
 
     async def _follow(self, client: VehicleClient) -> None:
         tries = RESOLVE_TRIES
-        async for state in client.states():
-            self._publish(self)
-            if not state.connected:
-                tries = RESOLVE_TRIES
-            elif self.pending and self.operation is None and tries:
-                tries -= 1
-                await self._resolve(client)
-            await asyncio.sleep(TELEMETRY_S)
+        async with contextlib.aclosing(client.states()) as states:
+            async for state in states:
+                self._publish(self)
+                if not state.connected:
+                    tries = RESOLVE_TRIES
+                elif self.pending and self.operation is None and tries:
+                    tries -= 1
+                    await self._resolve(client)
+                elif self._believed is not None and self.operation is None:
+                    tries -= 1
+                    await self._confirm(self._believed, last=tries <= 0)
+                await asyncio.sleep(TELEMETRY_S)
+
+    async def _confirm(self, held: HeldMission, *, last: bool) -> None:
+        """Read back whether it holds what it held before; a vehicle that does not answer is not believed."""
+        try:
+            async with self.busy("reading back the mission held before the restart"):
+                if await self._still_holds(self, held):
+                    self.held = HeldPlan(held.plan_id, held.plan_vehicle)
+        except (ServiceError, mavlink_errors.TransferFailedError) as error:
+            log.warning("mission not read back", vehicle=self.name, reason=str(error))
+            if not last:
+                return
+        log.info("mission read back", vehicle=self.name, plan_id=self.held and self.held.plan_id)
+        self._believed = None
+        self._publish(self)
 
     async def _resolve(self, client: VehicleClient) -> None:
         """Read back what an upload left whose outcome is unknown."""
@@ -214,7 +270,8 @@ class Vehicle:
     async def _record(self) -> None:
         while True:
             try:
-                if self._connection is not None:
+                # A flight that begins is filed under the plan held, so that has to be known first.
+                if self._connection is not None and self._believed is None:
                     await self._recorder.look(self._connection.client, self.held)
             except Exception as error:
                 # A track with a gap is better than none.

@@ -1,0 +1,50 @@
+"""Vehicles that were added, kept for the next start of the service."""
+
+from __future__ import annotations
+
+from sqlalchemy import delete, select, update
+
+from app.services.records import HeldMission, VehicleRecord
+from app.services.store.database import Database
+from app.services.store.tables import VehicleRow
+
+
+def _record(row: VehicleRow) -> VehicleRecord:
+    held = None
+    if row.held_plan_id is not None and row.held_plan_vehicle is not None:
+        held = HeldMission(row.held_plan_id, row.held_plan_vehicle, row.held_payload)
+    return VehicleRecord(row.id, row.name, row.url, row.created_at, held)
+
+
+class VehicleStore:
+    """Vehicles: added, let go; and the plan each was last seen to hold."""
+
+    def __init__(self, database: Database) -> None:
+        self._database = database
+
+    async def add(self, record: VehicleRecord) -> None:
+        """A new vehicle."""
+        row = VehicleRow(id=record.id, name=record.name, url=record.url, created_at=record.created_at)
+        async with self._database.session() as session:
+            session.add(row)
+
+    async def all(self) -> tuple[VehicleRecord, ...]:
+        """Every vehicle, oldest first."""
+        async with self._database.session() as session:
+            rows = await session.scalars(select(VehicleRow).order_by(VehicleRow.number))
+            return tuple(_record(row) for row in rows)
+
+    async def hold(self, vehicle_id: str, held: HeldMission | None) -> None:
+        """Note what a vehicle holds; nothing for one that is not kept."""
+        values = {
+            "held_plan_id": held.plan_id if held else None,
+            "held_plan_vehicle": held.plan_vehicle if held else None,
+            "held_payload": held.payload if held else None,
+        }
+        async with self._database.session() as session:
+            await session.execute(update(VehicleRow).where(VehicleRow.id == vehicle_id).values(**values))
+
+    async def forget(self, vehicle_id: str) -> None:
+        """Let one go; nothing for one that is not kept."""
+        async with self._database.session() as session:
+            await session.execute(delete(VehicleRow).where(VehicleRow.id == vehicle_id))

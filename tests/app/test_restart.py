@@ -1,0 +1,167 @@
+"""What a service remembers of its vehicles when it is started again, and that it commands none of them."""
+
+from __future__ import annotations
+
+import asyncio
+import socket
+import sqlite3
+from collections.abc import AsyncIterator, Callable
+from contextlib import asynccontextmanager, closing
+from pathlib import Path
+from typing import Any
+
+import httpx
+import pytest
+from pymavlink.dialects.v20 import ardupilotmega
+
+from app.main import create_app
+from app.settings import Settings
+from mavlink.sim.run import serve
+from mavlink.sim.settings import SimSettings
+from tests.app.conftest import fake_house, serving, stored
+
+VEHICLES = "/api/v1/vehicles"
+
+
+def free_port() -> int:
+    """A UDP port nobody listens on."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        probe.bind(("127.0.0.1", 0))
+        return int(probe.getsockname()[1])
+
+
+def held_plan(settings: Settings) -> str | None:
+    """The plan that is noted for the only vehicle."""
+    with closing(sqlite3.connect(settings.database)) as database:
+        (plan_id,) = database.execute("SELECT held_plan_id FROM vehicles").fetchone()
+    return None if plan_id is None else str(plan_id)
+
+
+@asynccontextmanager
+async def service(settings: Settings) -> AsyncIterator[httpx.AsyncClient]:
+    """One life of the service."""
+    async with serving(create_app(settings, fake_house)) as client:
+        yield client
+
+
+@asynccontextmanager
+async def autopilot(url: str) -> AsyncIterator[None]:
+    """A simulated aircraft that does not belong to the service."""
+    simulator = asyncio.create_task(serve(url, SimSettings()))
+    try:
+        yield
+    finally:
+        simulator.cancel()
+        await asyncio.gather(simulator, return_exceptions=True)
+
+
+async def until(client: httpx.AsyncClient, ready: Callable[[Any], bool]) -> Any:
+    """The first vehicle, once it is ready."""
+    async with asyncio.timeout(20):
+        while not ready(body := (await client.get(VEHICLES)).json()["vehicles"][0]):
+            await asyncio.sleep(0.05)
+    return body
+
+
+async def add(client: httpx.AsyncClient, name: str, url: str, timeout_s: float = 10.0) -> dict[str, Any]:
+    """A vehicle that was added."""
+    answer = await client.post(VEHICLES, json={"name": name, "url": url, "timeout_s": timeout_s})
+    assert answer.status_code == 201, answer.text
+    body: dict[str, Any] = answer.json()
+    return body
+
+
+async def test_vehicles_come_back_under_their_ids(settings: Settings) -> None:
+    """Added vehicles are there after a restart, simulated ones fly anew; one let go is not."""
+    async with service(settings) as client:
+        kept = await add(client, "sim", "sim:?speedup=10")
+        silent = await add(client, "quiet", f"udpin:127.0.0.1:{free_port()}", 0.1)
+        gone = await add(client, "gone", f"udpin:127.0.0.1:{free_port()}", 0.1)
+        await client.delete(f"{VEHICLES}/{gone['id']}")
+    async with service(settings) as client:
+        known = (await client.get(VEHICLES)).json()["vehicles"]
+        identity = ("id", "name", "url", "created_at")
+        assert [[v[key] for key in identity] for v in known] == [
+            [v[key] for key in identity] for v in (kept, silent)
+        ]
+        assert not (await until(client, lambda body: body["connected"]))["state"]["armed"]
+
+
+async def test_held_plan_is_read_back_not_believed(settings: Settings, plan_file: Path) -> None:
+    """The plan a vehicle held is its plan again when it still holds it, and no longer when it was cleared."""
+    url = f"127.0.0.1:{free_port()}"
+    async with autopilot(f"udpout:{url}"):
+        async with service(settings) as client:
+            vehicle = await add(client, "uav", f"udpin:{url}")
+            plan_id = await stored(client, plan_file)
+            report = await client.post(f"{VEHICLES}/{vehicle['id']}/mission", json={"plan_id": plan_id})
+            assert report.json()["verified"], report.text
+        async with service(settings) as client:
+            assert (await until(client, lambda body: body["plan_id"] is not None))["plan_id"] == plan_id
+    assert held_plan(settings) == plan_id
+    async with autopilot(f"udpout:{url}"), service(settings) as client:
+        # another aircraft at the same address, with an empty mission
+        await until(client, lambda body: body["connected"])
+        async with asyncio.timeout(20):
+            while held_plan(settings) is not None:
+                await asyncio.sleep(0.1)
+        assert (await until(client, lambda body: body["connected"]))["plan_id"] is None
+
+
+async def test_reconnection_commands_nothing(settings: Settings) -> None:
+    """What a restarted service sends to a vehicle it knows: heartbeats and requests for data, no more."""
+    port = free_port()
+    async with service(settings) as client:
+        await add(client, "uav", f"udpin:127.0.0.1:{port}", 0.1)
+    heard = ardupilotmega.MAVLink(None, srcSystem=1, srcComponent=1)
+    heartbeat = heard.heartbeat_encode(
+        ardupilotmega.MAV_TYPE_FIXED_WING, ardupilotmega.MAV_AUTOPILOT_ARDUPILOTMEGA, 0, 0, 3
+    ).pack(heard)
+    sent = []
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as vehicle:
+        vehicle.bind(("127.0.0.1", 0))
+        vehicle.setblocking(False)
+        async with service(settings) as client:
+            for _ in range(30):
+                vehicle.sendto(heartbeat, ("127.0.0.1", port))
+                await asyncio.sleep(0.1)
+                while True:
+                    try:
+                        sent += heard.parse_buffer(vehicle.recv(4096)) or []
+                    except BlockingIOError:
+                        break
+            assert (await until(client, lambda body: body["connected"]))["name"] == "uav"
+    kinds = {message.get_type() for message in sent}
+    assert {"HEARTBEAT", "COMMAND_LONG"} <= kinds
+    assert kinds <= {"HEARTBEAT", "COMMAND_LONG", "TIMESYNC", "PING"}
+    commands = {message.command for message in sent if message.get_type() == "COMMAND_LONG"}
+    assert commands <= {
+        ardupilotmega.MAV_CMD_SET_MESSAGE_INTERVAL,
+        ardupilotmega.MAV_CMD_REQUEST_MESSAGE,
+    }
+
+
+async def test_link_that_cannot_be_opened_says_why_and_opens_later(settings: Settings) -> None:
+    """A TCP vehicle that is not there at the start is listed with the reason, and connects when it comes."""
+    port = free_port()
+    async with autopilot(f"tcpin:127.0.0.1:{port}"):
+        await asyncio.sleep(0.2)
+        async with service(settings) as client:
+            await add(client, "uav", f"tcp:127.0.0.1:{port}")
+    async with service(settings) as client:
+        body = await until(client, lambda body: body["link_failure"])
+        assert not body["connected"]
+        assert str(port) in body["link_failure"]
+        async with autopilot(f"tcpin:127.0.0.1:{port}"):
+            assert (await until(client, lambda body: body["connected"]))["link_failure"] is None
+
+
+@pytest.mark.parametrize("url", ["sim:?colour=red", "pigeon:post"])
+async def test_address_no_longer_understood_is_forgotten(settings: Settings, url: str) -> None:
+    """A kept address that this version cannot read does not keep the service from starting."""
+    async with service(settings) as client:
+        await add(client, "uav", f"udpin:127.0.0.1:{free_port()}", 0.1)
+    with closing(sqlite3.connect(settings.database)) as database, database:
+        database.execute("UPDATE vehicles SET url = ?", (url,))
+    async with service(settings) as client:
+        assert (await client.get(VEHICLES)).json() == {"vehicles": []}
