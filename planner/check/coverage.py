@@ -1,0 +1,91 @@
+"""What of each region the footprints hold, as often as it is to be visited."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from shapely import difference, intersection, union_all
+from shapely.geometry import MultiPolygon, Polygon
+from shapely.geometry.base import BaseGeometry
+
+from planner.check.footprints import footprint
+from planner.check.places import middle
+from planner.plan import Collect, Plan, Violation
+from planner.scenario import Region, Scenario
+
+#: Overlays are done on a grid: without one, outlines equal but for rounding can be taken for disjoint.
+GRID_M = 1e-6
+#: A region counts as seen when no more than this fraction of it is left out.
+UNSEEN_FRACTION = 1e-5
+
+
+def covered(
+    scenario: Scenario, plan: Plan
+) -> tuple[dict[str, float], dict[str, Polygon | MultiPolygon], list[Violation]]:
+    """Fraction of each region seen, what is left of it in the local frame, and the violations."""
+    coverage: dict[str, float] = {}
+    unseen: dict[str, Polygon | MultiPolygon] = {}
+    violations = []
+    seen_by = [(collect, footprint(scenario, collect)) for collect in plan.collects]
+    for region in scenario.regions:
+        prints = [
+            ground
+            for collect, ground in seen_by
+            if ground.intersects(region.area) and _counts(scenario, region, collect)
+        ]
+        seen = seen_times(prints, region.revisits)
+        # A millimetre of slack: coordinates are rounded to a hundredth of one.
+        rest = difference(region.area, seen.buffer(1e-3), grid_size=GRID_M)
+        fraction = 1.0 - rest.area / region.area.area
+        coverage[region.name] = fraction
+        if rest.area <= UNSEEN_FRACTION * region.area.area:
+            coverage[region.name] = 1.0
+            continue
+        polygons = [part for part in getattr(rest, "geoms", [rest]) if isinstance(part, Polygon)]
+        unseen[region.name] = polygons[0] if len(polygons) == 1 else MultiPolygon(polygons)
+        violations.append(
+            Violation(
+                "coverage",
+                region.name,
+                f"{100.0 * fraction:.3f} % of {region.name} is seen"
+                + (f" {region.revisits} times" if region.revisits > 1 else ""),
+                float(rest.area),
+                "m2",
+                middle(scenario, rest),
+                hard=region.required,
+            )
+        )
+    return coverage, unseen, violations
+
+
+def seen_times(prints: Sequence[BaseGeometry], times: int) -> BaseGeometry:
+    """The ground that at least so many of the footprints hold."""
+    if times == 1:
+        return union_all(prints, grid_size=GRID_M)
+    # deep[k] is what the footprints so far hold k + 1 times.
+    deep: list[BaseGeometry] = [Polygon() for _ in range(times)]
+    for ground in prints:
+        for k in range(times - 1, 0, -1):
+            again = intersection(deep[k - 1], ground, grid_size=GRID_M)
+            deep[k] = union_all([deep[k], again], grid_size=GRID_M)
+        deep[0] = union_all([deep[0], ground], grid_size=GRID_M)
+    return deep[-1]
+
+
+def _counts(scenario: Scenario, region: Region, collect: Collect) -> bool:
+    """Whether a collect sees with a sensor, a resolution and a direction that the region allows."""
+    sensor = next(s for s in scenario.sensors if s.name == collect.sensor)
+    if sensor.name != scenario.sensor_for(region).name:
+        return False
+    if region.min_resolution_m is not None and (
+        sensor.resolution_m is None or sensor.resolution_m > region.min_resolution_m
+    ):
+        return False
+    if region.approach_rad is None:
+        return True
+    (east0, north0), (east1, north1) = scenario.frame.to_local([place[:2] for place in collect.line])
+    angle = math.atan2(north1 - north0, east1 - east0)
+    return any(
+        abs(math.remainder(angle - allowed, math.tau)) < math.radians(1.0) for allowed in region.approach_rad
+    )
