@@ -32,7 +32,7 @@ class Aircraft:
     cruise_power_w
         Electrical power in cruise: the simplest power model; None where unknown.
     settle_m
-        Straight flight wanted before each collect.
+        Straight flight wanted before each collect, over the ground in ``wind_m_s``.
     max_climb_deg
         Steepest climb or descent.
     base
@@ -56,8 +56,12 @@ class Aircraft:
     wind_m_s: float = 0.0
 
     def in_wind(self, wind_m_s: float) -> Aircraft:
-        """The same aircraft in a steady wind of this speed: its turns over the ground are wider."""
-        return replace(self, wind_m_s=wind_m_s)
+        """The same aircraft in a steady wind of this speed: its turns over the ground are wider.
+
+        Coming back to a line takes an autopilot time: downwind, over so much more ground.
+        """
+        longer = (self.airspeed_m_s + wind_m_s) / (self.airspeed_m_s + self.wind_m_s)
+        return replace(self, wind_m_s=wind_m_s, settle_m=self.settle_m * longer)
 
     @property
     def ground_turn_radius_m(self) -> float:

@@ -84,6 +84,32 @@ def test_ground_arcs_need_no_more_than_the_bank(wind_m_s: float, side: float) ->
     assert air_radii_m.min() == pytest.approx(90.0, rel=1e-4)
 
 
+def test_settling_takes_longer_lines_in_wind() -> None:
+    """As long in time straight downwind as in still air; told of the same wind twice, no longer."""
+    still = Aircraft("a", "fixed_wing", "ardupilot", 20.0, 90.0, settle_m=150.0)
+    aircraft = still.in_wind(8.0)
+    courses = np.linspace(0.0, 2.0 * math.pi, 721)
+    fastest_m_s = float(ground_speed_m_s(courses, 20.0, Wind(8.0, 0.0)).max())
+    assert aircraft.settle_m / fastest_m_s == pytest.approx(still.settle_m / 20.0)
+    assert aircraft.in_wind(8.0) == aircraft
+
+
+@pytest.mark.parametrize("from_deg", [0.0, 130.0])
+def test_passes_in_wind_have_the_straight_flight(from_deg: float) -> None:
+    """Every collect is preceded by settle_m times (V + W) / V of straight flight on its line."""
+    document = case(1) | {"wind": {"speed_m_s": 8.0, "from_deg": from_deg}}
+    document["vehicles"] = [document["vehicles"][0] | {"settle_m": 150.0}]
+    scenario = read_scenario(document)
+    plan = make_plan(scenario)
+    assert not plan.hard_violations
+    for collect in plan.collects:
+        straight = [
+            s for s in plan.paths[0].segments if s.kind == "straight" and s.start_m < collect.start_m - 0.1
+        ]
+        assert straight[-1].start_m <= collect.start_m - 150.0 * 28.0 / 20.0 + 0.1
+        assert straight[-1].start_m + straight[-1].length_m >= collect.start_m - 0.1
+
+
 def windy(speed_m_s: float, from_deg: float, **members: Any) -> Scenario:
     """The small scenario in a wind."""
     return read_scenario(small(wind={"speed_m_s": speed_m_s, "from_deg": from_deg}, **members))
