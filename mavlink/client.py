@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import time
-from collections.abc import AsyncGenerator, Callable, Sequence
+from collections.abc import AsyncGenerator, Callable, Mapping, Sequence
 from dataclasses import replace
 from types import TracebackType
 from typing import Final, Self
@@ -15,6 +15,15 @@ from mavlink.errors import NotConnectedError, TransferFailedError, VehicleNotFou
 from mavlink.flight import FlightCommands
 from mavlink.items import Command, MissionItem, MissionType
 from mavlink.link import Link
+from mavlink.outputs import (
+    INTERVALS_HZ,
+    SensorOutput,
+    function_parameters,
+    output_of,
+    pulse_parameters,
+    switched_by,
+)
+from mavlink.payload import Payload
 from mavlink.telemetry import VehicleState
 from mavlink.track import TrackRecorder
 from mavlink.transfer.clear import ClearMachine, SetCurrentMachine
@@ -36,6 +45,7 @@ _INTERVALS_HZ: Final = {
     24: 1.0,  # GPS_RAW_INT
     242: 0.2,  # HOME_POSITION
     245: 1.0,  # EXTENDED_SYS_STATE
+    2: 1.0,  # SYSTEM_TIME: cameras tell their times since 1970
     376: 4.0,  # RELAY_STATUS: in no stream of ArduPilot's, sent only when asked for
 }
 _MICROSECONDS: Final = 1e6
@@ -88,6 +98,7 @@ class VehicleClient(FlightCommands):
         self._driver = Driver(link, codec, clock, self._ask_for_telemetry, vehicle_system, lost_after_s)
         self._settings = settings
         self._clock = clock
+        self._watched_hz: dict[int, float] = {}
         self._pending: Pending | None = None
         self._rejected: tuple[tuple[MissionItem, ...], tuple[str, ...]] | None = None
 
@@ -146,10 +157,37 @@ class VehicleClient(FlightCommands):
                     return
                 await changed.wait()
 
-    def start_recording(self) -> TrackRecorder:
-        """A recorder fed with everything the vehicle sends from now on."""
-        recorder = TrackRecorder()
+    async def sensor_output(self, payload: Payload) -> SensorOutput | None:
+        """Where this vehicle shows whether a payload is on; None where it shows it nowhere.
+
+        On PX4 parameters are read: they say which output an actuator is, and what its pulses mean.
+
+        Raises
+        ------
+        BusyError, NotConnectedError
+            Nothing was asked.
+        """
+        autopilot = self.state.autopilot
+        payload = switched_by(payload, autopilot)
+        values = await self._parameters_there(function_parameters(payload, autopilot))
+        values |= await self._parameters_there(pulse_parameters(payload, autopilot, values))
+        return output_of(payload, autopilot, values)
+
+    def start_recording(self, output: SensorOutput | None = None) -> TrackRecorder:
+        """A recorder fed with everything the vehicle sends from now on.
+
+        Parameters
+        ----------
+        output
+            What switches the sensor, as ``sensor_output`` tells; the vehicle is asked to report it.
+        """
+        recorder = TrackRecorder(output)
         self._driver.record(recorder)
+        if output is not None:
+            wanted_hz = INTERVALS_HZ[type(output)]
+            self._watched_hz |= wanted_hz
+            if self.state.connected:
+                self._ask_for(wanted_hz)
         return recorder
 
     def stop_recording(self, recorder: TrackRecorder) -> None:
@@ -275,6 +313,16 @@ class VehicleClient(FlightCommands):
             raise TransferFailedError("reading parameters", outcome)
         return {name: machine.values[name] for name in machine.names if name in machine.values}
 
+    async def _parameters_there(self, names: Sequence[str]) -> dict[str, float]:
+        """Values of those the vehicle has."""
+        if not names:
+            return {}
+        try:
+            found = await self.read_parameters(names)
+        except TransferFailedError:
+            return {}
+        return {name: parameter.value for name, parameter in found.items()}
+
     async def list_parameters(
         self, progress: Callable[[Progress], None] | None = None
     ) -> dict[str, Parameter]:
@@ -307,9 +355,12 @@ class VehicleClient(FlightCommands):
 
     def _ask_for_telemetry(self) -> None:
         """Ask for what the state is made of; a vehicle that knows no intervals just says so."""
+        self._ask_for(_INTERVALS_HZ | self._watched_hz)
+
+    def _ask_for(self, rates_hz: Mapping[int, float]) -> None:
         if self._driver.read_only:
             return
-        for message_id, rate_hz in _INTERVALS_HZ.items():
+        for message_id, rate_hz in rates_hz.items():
             parameters = (float(message_id), _MICROSECONDS / rate_hz)
             self._driver.post(
                 CommandMachine(Command.SET_MESSAGE_INTERVAL, parameters, *self._target(), self._settings)

@@ -20,7 +20,7 @@ from mavlink.link import DirectLink, Link, ReplayLink
 from mavlink.messages import Message
 from mavlink.modes import GROUND_STATION_TYPE, NO_AUTOPILOT
 from mavlink.telemetry import VehicleState, updated
-from mavlink.track import TrackRecorder
+from mavlink.track import CAMERA_MESSAGES, TrackRecorder
 from mavlink.transfer.command import CommandMachine, CommandOutcome
 from mavlink.transfer.machine import Machine, Progress
 from mavlink.transfer.outcome import Outcome, Unknown
@@ -292,6 +292,9 @@ class Driver:
 
     def _take(self, message: Message) -> None:
         if not self._from_vehicle(message):
+            if message.name in CAMERA_MESSAGES and message.system_id == self.state.system_id:
+                for recorder in self._recorders:
+                    recorder.take(message, self.state)
             return
         now_s = self._clock()
         self._heard_s = now_s

@@ -1,21 +1,38 @@
 """What was flown: positions in the vehicle's time, and what its sensors reported meanwhile.
 
 Source: MAVLink ``common.xml`` and ``ardupilotmega.xml``: GLOBAL_POSITION_INT, CAMERA_FEEDBACK (180),
-CAMERA_IMAGE_CAPTURED (263), NAMED_VALUE_INT (252), RELAY_STATUS (376).
+CAMERA_IMAGE_CAPTURED (263), CAMERA_CAPTURE_STATUS (262), NAMED_VALUE_INT (252), SERVO_OUTPUT_RAW (36),
+RELAY_STATUS (376), SYSTEM_TIME (2).
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Final, Literal
 
 from mavlink.messages import Message
+from mavlink.outputs import CameraOutput, RelayOutput, SensorOutput, ServoOutput
 from mavlink.telemetry import VehicleState, finite, is_sensor_switch
 
 # Older than this before the last point is a reboot, not a datagram that was overtaken.
 _REBOOT_S: Final = 5.0
 # Fourteen hours at 4 Hz; afterwards every second point is dropped and the rate halves.
 _MOST_POINTS: Final = 200_000
+# SERVO_OUTPUT_RAW counts microseconds in 32 bits: it begins anew every 71.6 minutes.
+_WRAP_S: Final = 2**32 / 1e6
+# A camera's clock that says less or more than this beside the vehicle's is another clock.
+_SAME_CLOCK_S: Final = 5.0
+
+#: Told by a camera, which is often a component of its own beside the autopilot.
+CAMERA_MESSAGES: Final = frozenset({"CAMERA_FEEDBACK", "CAMERA_IMAGE_CAPTURED", "CAMERA_CAPTURE_STATUS"})
+
+EventSource = Literal["camera", "payload", "relay", "servo"]
+_SOURCES: Final[dict[type, EventSource]] = {
+    RelayOutput: "relay",
+    ServoOutput: "servo",
+    CameraOutput: "camera",
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,22 +62,29 @@ class SensorEvent:
     kind
         ``photo``; ``on`` and ``off`` of the payload's switch.
     source
-        ``camera`` (feedback messages), ``payload`` (``SAR_ON``), ``relay`` (with ``index``).
+        ``camera`` (feedback and capture status), ``payload`` (``SAR_ON``), ``relay`` and ``servo`` (with
+        ``index``).
     time_s
         The vehicle's time since boot.
     lon_deg, lat_deg, relative_m
         Where: as the camera says, else the track's last position; None before the first.
     index
-        Image or relay number.
+        Image, relay or servo number.
+    amsl_m, heading_deg, roll_deg, pitch_deg
+        Of a photo, as the camera says; None where it does not.
     """
 
     time_s: float
     kind: Literal["on", "off", "photo"]
-    source: Literal["camera", "payload", "relay"]
+    source: EventSource
     lon_deg: float | None = None
     lat_deg: float | None = None
     relative_m: float | None = None
     index: int | None = None
+    amsl_m: float | None = None
+    heading_deg: float | None = None
+    roll_deg: float | None = None
+    pitch_deg: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,16 +96,25 @@ class Track:
 
 
 class TrackRecorder:
-    """Collects a track from a vehicle's messages and the state after each."""
+    """Collects a track from a vehicle's messages and the state after each.
 
-    def __init__(self) -> None:
+    Parameters
+    ----------
+    output
+        What the payload in use switches; a sensor that reports itself is believed before it.
+    """
+
+    def __init__(self, output: SensorOutput | None = None) -> None:
+        self.output = output
         self._points: list[TrackPoint] = []
         self._events: list[SensorEvent] = []
         self._sensor_on: bool | None = None
+        self._output_on: bool | None = None
         self._relays_on: int | None = None
+        self._unix_minus_boot_s: float | None = None
         self._keep_every = 1
         self._skipped = 0
-        self._images: set[int] = set()
+        self._images: set[tuple[int, int, int, int]] = set()
 
     def track(self) -> Track:
         """What was recorded so far."""
@@ -100,6 +133,26 @@ class TrackRecorder:
             self._relays(message, state)
         elif message.name in ("CAMERA_FEEDBACK", "CAMERA_IMAGE_CAPTURED"):
             self._photo(message, state)
+        elif message.name == "SYSTEM_TIME":
+            if message.integer("time_unix_usec"):
+                self._unix_minus_boot_s = message.integer("time_unix_usec") / 1e6 - _boot_s(message)
+        elif message.name in ("SERVO_OUTPUT_RAW", "CAMERA_CAPTURE_STATUS"):
+            self._switched(message, state)
+
+    def _switched(self, message: Message, state: VehicleState) -> None:
+        """The output that switches the sensor, where this message tells of it."""
+        output = self.output
+        on = None if output is None else output.reads(message)
+        if output is None or on is None:
+            return
+        before, self._output_on = self._output_on, on
+        if on == bool(before):
+            return
+        if message.name == "SERVO_OUTPUT_RAW":
+            time_s = unwrapped_s(message.integer("time_usec") / 1e6, state.time_s)
+        else:
+            time_s = _boot_s(message)
+        self._event(state, "on" if on else "off", _SOURCES[type(output)], time_s=time_s, index=output.index)
 
     def _position(self, state: VehicleState) -> None:
         time_s, lon_deg, lat_deg = state.time_s, state.lon_deg, state.lat_deg
@@ -124,7 +177,7 @@ class TrackRecorder:
                 state.roll_deg,
                 state.pitch_deg,
                 state.ground_speed_m_s,
-                state.sensor_on,
+                self._output_on if state.sensor_on is None else state.sensor_on,
                 state.mission_current,
             )
         )
@@ -136,40 +189,103 @@ class TrackRecorder:
         present, on = message.integer("present"), message.integer("on")
         before = on if self._relays_on is None else self._relays_on
         self._relays_on = on
+        if isinstance(self.output, RelayOutput):
+            self._output_on = self.output.reads(message)
         for number in range(16):
             bit = 1 << number
             if present & bit and (before ^ on) & bit:
-                kind: Literal["on", "off"] = "on" if on & bit else "off"
-                self._event(state, kind, "relay", time_s=_boot_s(message), index=number)
+                self._event(
+                    state, "on" if on & bit else "off", "relay", time_s=_boot_s(message), index=number
+                )
 
     def _photo(self, message: Message, state: VehicleState) -> None:
         if message.name == "CAMERA_FEEDBACK":
-            index, lon = message.integer("img_idx"), message.integer("lng")
-            relative_m, time_s = finite(message, "alt_rel"), state.time_s
+            index, lon, camera = (
+                message.integer("img_idx"),
+                message.integer("lng"),
+                message.integer("cam_idx"),
+            )
+            relative_m, amsl_m = finite(message, "alt_rel"), finite(message, "alt_msl")
+            angles_deg = tuple(finite(message, name) for name in ("roll", "pitch", "yaw"))
+            time_s = self._camera_clock_s(message.integer("time_usec") / 1e6, state.time_s)
         else:
             if message.integer("capture_result") != 1:
                 return
-            index, lon = message.integer("image_index"), message.integer("lon")
-            relative_m, time_s = message.number("relative_alt") / 1000.0, _boot_s(message)
-        if index in self._images:
+            index, lon, camera = message.integer("image_index"), message.integer("lon"), message.component_id
+            relative_m, amsl_m = (message.number(name) / 1000.0 for name in ("relative_alt", "alt"))
+            angles_deg = _angles_deg(message.fields.get("q"))
+            time_s = _boot_s(message)
+        lat = message.integer("lat")
+        image = (camera, index, lat, lon)
+        if image in self._images:
             return  # the same feedback again, by another way
-        self._images.add(index)
-        place = (lon / 1e7, message.integer("lat") / 1e7, relative_m)
-        self._event(state, "photo", "camera", time_s=time_s, index=index, place=place)
+        self._images.add(image)
+        if lat == 0 and lon == 0:
+            # A camera without a position says zero.
+            place, relative_m = (state.lon_deg, state.lat_deg), state.relative_altitude_m
+            amsl_m = state.altitude_amsl_m
+        else:
+            place = (lon / 1e7, lat / 1e7)
+        roll_deg, pitch_deg, yaw_deg = angles_deg
+        self._events.append(
+            SensorEvent(
+                time_s if time_s is not None else state.time_s or 0.0,
+                "photo",
+                "camera",
+                *place,
+                relative_m,
+                index,
+                amsl_m,
+                None if yaw_deg is None else yaw_deg % 360.0,
+                roll_deg,
+                pitch_deg,
+            )
+        )
+
+    def _camera_clock_s(self, told_s: float, near_s: float | None) -> float | None:
+        """The vehicle's time of a time in the camera's clock: since boot or since 1970."""
+        for offset_s in (0.0, self._unix_minus_boot_s):
+            if (
+                near_s is not None
+                and offset_s is not None
+                and abs(told_s - offset_s - near_s) < _SAME_CLOCK_S
+            ):
+                return told_s - offset_s
+        return near_s
 
     def _event(
         self,
         state: VehicleState,
-        kind: Literal["on", "off", "photo"],
-        source: Literal["camera", "payload", "relay"],
+        kind: Literal["on", "off"],
+        source: EventSource,
         *,
-        time_s: float | None,
+        time_s: float,
         index: int | None = None,
-        place: tuple[float | None, float | None, float | None] | None = None,
     ) -> None:
-        lon_deg, lat_deg, relative_m = place or (state.lon_deg, state.lat_deg, state.relative_altitude_m)
-        when_s = time_s if time_s is not None else state.time_s or 0.0
-        self._events.append(SensorEvent(when_s, kind, source, lon_deg, lat_deg, relative_m, index))
+        place = (state.lon_deg, state.lat_deg, state.relative_altitude_m)
+        self._events.append(SensorEvent(time_s, kind, source, *place, index))
+
+
+def unwrapped_s(told_s: float, near_s: float | None) -> float:
+    """A time of 32 bits of microseconds, made whole with one that lies near it."""
+    if near_s is None:
+        return told_s
+    return told_s + round((near_s - told_s) / _WRAP_S) * _WRAP_S
+
+
+def _angles_deg(quaternion: object) -> tuple[float | None, float | None, float | None]:
+    """Roll, pitch and yaw of a quaternion (w, x, y, z); None for one that is none."""
+    if not isinstance(quaternion, tuple) or len(quaternion) != 4:
+        return None, None, None
+    w, x, y, z = quaternion
+    norm = math.sqrt(w * w + x * x + y * y + z * z)
+    if not (math.isfinite(norm) and norm > 0.5):
+        return None, None, None
+    w, x, y, z = (part / norm for part in (w, x, y, z))
+    roll = math.atan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y))
+    pitch = math.asin(max(-1.0, min(1.0, 2.0 * (w * y - z * x))))
+    yaw = math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
+    return math.degrees(roll), math.degrees(pitch), math.degrees(yaw)
 
 
 def _boot_s(message: Message) -> float:

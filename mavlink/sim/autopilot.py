@@ -17,7 +17,7 @@ from mavlink.sim.payload import Payload
 from mavlink.sim.pilot import Pilot
 from mavlink.sim.replies import received_item, status_text
 from mavlink.sim.settings import SimSettings
-from mavlink.sim.telemetry import STREAMS, Snapshot, Streams, build
+from mavlink.sim.telemetry import OF_THE_PAYLOAD, STREAMS, Snapshot, Streams, build
 
 #: MISSION_ITEM with this in ``current`` is ArduPilot's "fly here now".
 _GUIDED_ITEM = 2
@@ -133,10 +133,8 @@ class SimulatedAircraft:
 
     def message(self, name: str) -> Message | None:
         """A telemetry message as of now; None when there is none of that name."""
-        if name == "NAMED_VALUE_INT":
-            return self.payload.sensor_report(self.state)
-        if name == "RELAY_STATUS":
-            return self.payload.relay_status(self.state)
+        if name in OF_THE_PAYLOAD:
+            return next(iter(self.payload.reports(name, self.state)), None)
         return build(name, self._snapshot(), self._settings) if name in STREAMS else None
 
     def move_home(self, home: Place) -> None:
@@ -156,9 +154,8 @@ class SimulatedAircraft:
         if due:
             snapshot = self._snapshot()
             for name in due:
-                if name in ("NAMED_VALUE_INT", "RELAY_STATUS"):
-                    message = self.message(name)
-                    out += [message] if message is not None else []
+                if name in OF_THE_PAYLOAD:
+                    out += self.payload.reports(name, state)
                 else:
                     out.append(build(name, snapshot, self._settings))
         return out

@@ -57,6 +57,9 @@ class Fault(StrEnum):
     SENSOR_DEAD = "sensor_dead"
     """The sensor never switches on, whatever is ordered."""
 
+    SENSOR_SKIPS = "sensor_skips"
+    """The second time the sensor is switched on it stays off: one pass sees nothing."""
+
 
 def parse_faults(names: Iterable[str]) -> frozenset[Fault]:
     """Faults of their names.

@@ -1,12 +1,13 @@
 """Payload outputs of the simulated aircraft: relays, servos, camera trigger, and the sensor they switch.
 
 Source: MAVLink ``common.xml`` (DO_SET_RELAY, DO_SET_SERVO, DO_SET_ACTUATOR, DO_SET_CAM_TRIGG_DIST,
-IMAGE_START_CAPTURE, CAMERA_FEEDBACK, CAMERA_IMAGE_CAPTURED).
+IMAGE_START_CAPTURE, SERVO_OUTPUT_RAW, CAMERA_FEEDBACK, CAMERA_IMAGE_CAPTURED, CAMERA_CAPTURE_STATUS).
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 from mavlink.items import Command
 from mavlink.messages import Message
@@ -19,6 +20,12 @@ from mavlink.sim.settings import SimSettings
 _SERVO_ON_US = 1500.0
 _RELAYS = 16
 _RELAYS_PRESENT = (1 << _RELAYS) - 1
+_OUTPUTS, _OUTPUTS_A_PORT = 32, 16
+#: PX4's actuators 1 to 4 are outputs 5 to 8, as the parameters PWM_MAIN_FUNC5 to 8 say.
+_FIRST_ACTUATOR_OUTPUT, _ACTUATORS = 5, 4
+_PX4_MIDDLE_US, _PX4_HALF_US = 1500.0, 500.0
+#: The switching-on that the fault ``sensor_skips`` swallows.
+_SKIPPED = 2
 SENSOR_NAME = "SAR_ON"
 
 Params = tuple[float, float, float, float]
@@ -36,7 +43,13 @@ class Payload:
     def __init__(self, settings: SimSettings, faults: frozenset[Fault]) -> None:
         self._settings = settings
         self._dead = Fault.SENSOR_DEAD in faults
+        self._skips = Fault.SENSOR_SKIPS in faults
+        self._switched_on = 0
+        self._ordered_on = False
         self.sensor_on = False
+        self._pulses_us = [0] * _OUTPUTS
+        if settings.autopilot is Flavour.PX4:
+            self._actuators((-1.0,) * _ACTUATORS)
         self._relays = 0
         self._spacing_m = 0.0
         self._interval_s = 0.0
@@ -62,13 +75,17 @@ class Payload:
                     return None
                 bit = 1 << int(p1)
                 self._relays = self._relays | bit if p2 else self._relays & ~bit
-                answers.append(self.relay_status(state))
+                answers += self.reports("RELAY_STATUS", state)
                 if settings.sensor_relay in (None, int(p1)):
                     answers += self._switch(p2 != 0.0, state)
             case Command.DO_SET_SERVO:
+                if not 1.0 <= p1 <= _OUTPUTS:
+                    return None
+                self._pulses_us[int(p1) - 1] = round(min(max(p2, 0.0), 65535.0))
                 if settings.sensor_servo in (None, int(p1)):
                     answers += self._switch(p2 > _SERVO_ON_US, state)
             case Command.DO_SET_ACTUATOR:
+                self._actuators(params)
                 value = params[settings.sensor_actuator - 1] if settings.sensor_actuator <= 4 else math.nan
                 if not math.isnan(value):
                     answers += self._switch(value > 0.0, state)
@@ -111,25 +128,74 @@ class Payload:
             return self._photo(state)
         return []
 
-    def sensor_report(self, state: AircraftState) -> Message:
-        """Whether the sensor is on, as NAMED_VALUE_INT."""
+    def reports(self, name: str, state: AircraftState) -> list[Message]:
+        """Messages of a name that tell of the payload now; none for other names."""
+        match name:
+            case "NAMED_VALUE_INT" if self._settings.sensor_reports:
+                return [self._sensor_report(state)]
+            case "RELAY_STATUS" if self._settings.autopilot is Flavour.ARDUPILOT:
+                return [self._relay_status(state)]
+            case "SERVO_OUTPUT_RAW":
+                # The second port is told of once one of its outputs is in use.
+                ports = (0, 1) if any(self._pulses_us[_OUTPUTS_A_PORT:]) else (0,)
+                return [self._servo_output(state, port) for port in ports]
+            case "CAMERA_CAPTURE_STATUS":
+                return [self._capture_status(state)]
+        return []
+
+    def _sensor_report(self, state: AircraftState) -> Message:
         return Message(
             "NAMED_VALUE_INT",
             {"time_boot_ms": _ms(state), "name": SENSOR_NAME, "value": int(self.sensor_on)},
         )
 
-    def relay_status(self, state: AircraftState) -> Message:
-        """RELAY_STATUS."""
+    def _relay_status(self, state: AircraftState) -> Message:
         return Message(
             "RELAY_STATUS", {"time_boot_ms": _ms(state), "on": self._relays, "present": _RELAYS_PRESENT}
         )
 
+    def _servo_output(self, state: AircraftState, port: int) -> Message:
+        first = port * _OUTPUTS_A_PORT
+        pulses_us = self._pulses_us[first : first + _OUTPUTS_A_PORT]
+        fields = {f"servo{number}_raw": pulse_us for number, pulse_us in enumerate(pulses_us, start=1)}
+        return Message(
+            "SERVO_OUTPUT_RAW", {"time_usec": round(state.time_s * 1e6) & 0xFFFFFFFF, "port": port} | fields
+        )
+
+    def _capture_status(self, state: AircraftState) -> Message:
+        return Message(
+            "CAMERA_CAPTURE_STATUS",
+            {
+                "time_boot_ms": _ms(state),
+                "image_status": 2 if self._interval_s > 0.0 else 0,
+                "video_status": 0,
+                "image_interval": self._interval_s,
+                "recording_time_ms": 0,
+                "available_capacity": 0.0,
+                "image_count": self._photos,
+            },
+        )
+
+    def _actuators(self, values: Sequence[float]) -> None:
+        """Values from -1 to 1 as pulses; NaN leaves an actuator as it is."""
+        for number, value in enumerate(values[:_ACTUATORS]):
+            if not math.isnan(value):
+                pulse_us = _PX4_MIDDLE_US + _PX4_HALF_US * min(max(value, -1.0), 1.0)
+                self._pulses_us[_FIRST_ACTUATOR_OUTPUT - 1 + number] = round(pulse_us)
+
     def _switch(self, on: bool, state: AircraftState) -> list[Message]:
-        on = on and not self._dead
+        if on and not self._ordered_on:
+            self._switched_on += 1
+        self._ordered_on = on
+        on = on and not self._failed
         if on == self.sensor_on:
             return []
         self.sensor_on = on
-        return [self.sensor_report(state)]
+        return self.reports("NAMED_VALUE_INT", state)
+
+    @property
+    def _failed(self) -> bool:
+        return self._dead or (self._skips and self._switched_on == _SKIPPED)
 
     def _trigger(self, *, spacing_m: float = 0.0, interval_s: float = 0.0, photos: int | None = None) -> None:
         self._spacing_m, self._interval_s, self._left = spacing_m, interval_s, photos
@@ -138,7 +204,7 @@ class Payload:
 
     def _photo(self, state: AircraftState) -> list[Message]:
         self._last_place, self._last_photo_s = state.place, state.time_s
-        if self._dead:
+        if self._failed:
             return []
         self._photos += 1
         if self._left is not None:

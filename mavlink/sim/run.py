@@ -166,6 +166,12 @@ def parser() -> argparse.ArgumentParser:
         default="auto",
         help="auto: JSBSim's c172p at 38-60 m/s where installed, kinematic otherwise (so also at 20 m/s)",
     )
+    p.add_argument(
+        "--sensor-reports",
+        choices=["yes", "no"],
+        default="yes",
+        help="whether the sensor says by itself that it is on, as NAMED_VALUE_INT SAR_ON (default: yes)",
+    )
     p.add_argument("--battery-wh", type=float, default=defaults.battery_wh)
     p.add_argument("--seed", type=int, default=0)
     p.add_argument(
@@ -199,6 +205,7 @@ def settings_of(arguments: argparse.Namespace) -> SimSettings:
         speedup=arguments.speedup,
         dynamics=arguments.dynamics,
         battery_wh=arguments.battery_wh,
+        sensor_reports=arguments.sensor_reports == "yes",
         faults=tuple(arguments.fault),
     )
 

@@ -31,6 +31,7 @@ STREAMS: dict[str, tuple[int, float]] = {
     "GPS_RAW_INT": (24, 2.0),
     "ATTITUDE": (30, 4.0),
     "GLOBAL_POSITION_INT": (33, 5.0),
+    "SERVO_OUTPUT_RAW": (36, 0.0),
     "MISSION_CURRENT": (42, 1.0),
     "VFR_HUD": (74, 2.0),
     "BATTERY_STATUS": (147, 0.5),
@@ -39,8 +40,11 @@ STREAMS: dict[str, tuple[int, float]] = {
     "HOME_POSITION": (242, 0.1),
     "EXTENDED_SYS_STATE": (245, 1.0),
     "NAMED_VALUE_INT": (252, 2.0),
+    "CAMERA_CAPTURE_STATUS": (262, 0.0),
     "RELAY_STATUS": (376, 0.5),
 }
+#: Those that tell of the payload, and come from it.
+OF_THE_PAYLOAD = frozenset({"NAMED_VALUE_INT", "RELAY_STATUS", "SERVO_OUTPUT_RAW", "CAMERA_CAPTURE_STATUS"})
 NAMES = {number: name for name, (number, _) in STREAMS.items()}
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 
 import pytest
 
@@ -257,7 +258,20 @@ def test_relays_are_recorded_when_they_change() -> None:
 
 def test_photos_of_both_kinds_are_recorded_once() -> None:
     """ArduPilot's and the camera's own feedback; repeated and failed captures are left out."""
-    feedback = received("CAMERA_FEEDBACK", img_idx=1, lat=470_000_000, lng=80_000_000, alt_rel=99.5)
+    feedback = received(
+        "CAMERA_FEEDBACK",
+        img_idx=1,
+        lat=470_000_000,
+        lng=80_000_000,
+        alt_rel=99.5,
+        alt_msl=587.5,
+        roll=4.0,
+        pitch=-2.0,
+        yaw=-90.0,
+    )
+    # Heading east, rolled right: a turn by 90 degrees about down, then by 30 about the nose.
+    half, bank = math.sqrt(0.5), math.radians(15.0)
+    turned = tuple(half * part for part in (math.cos(bank), math.sin(bank), math.sin(bank), math.cos(bank)))
     captured = received(
         "CAMERA_IMAGE_CAPTURED",
         image_index=2,
@@ -265,14 +279,36 @@ def test_photos_of_both_kinds_are_recorded_once() -> None:
         lat=471_000_000,
         lon=81_000_000,
         relative_alt=98_500,
+        alt=586_500,
         capture_result=1,
+        q=turned,
     )
     failed = received("CAMERA_IMAGE_CAPTURED", image_index=3, capture_result=0)
     events = record(at(6500), feedback, feedback, captured, captured, failed).track().events
+    near = partial(pytest.approx, abs=1e-3)
     assert events == (
-        SensorEvent(6.5, "photo", "camera", 8.0, 47.0, 99.5, 1),
-        SensorEvent(7.0, "photo", "camera", 8.1, 47.1, 98.5, 2),
+        SensorEvent(6.5, "photo", "camera", 8.0, 47.0, 99.5, 1, 587.5, 270.0, 4.0, -2.0),
+        SensorEvent(7.0, "photo", "camera", 8.1, 47.1, 98.5, 2, 586.5, near(90.0), near(30.0), near(0.0)),
     )
+
+
+def test_a_photo_has_the_time_of_the_camera_in_the_vehicles_clock() -> None:
+    """Since 1970 or since boot, as the camera tells; what fits neither clock has the time it was heard."""
+
+    def photo(index: int, time_s: float) -> Message:
+        return received("CAMERA_FEEDBACK", img_idx=index, time_usec=round(time_s * 1e6), lat=1, lng=1)
+
+    clock = received("SYSTEM_TIME", time_unix_usec=1_700_000_100_000_000, time_boot_ms=100_000)
+    heard = [at(103_000), photo(1, 1_700_000_102.8), photo(2, 102.9), photo(3, 77.0), photo(4, 0.0)]
+    events = record(clock, *heard).track().events
+    assert [event.time_s for event in events] == pytest.approx([102.8, 102.9, 103.0, 103.0])
+
+
+def test_a_camera_without_a_position_has_the_vehicles() -> None:
+    """Latitude and longitude zero are no place."""
+    (event,) = record(POSITION, received("CAMERA_FEEDBACK", img_idx=1)).track().events
+    assert (event.lon_deg, event.lat_deg, event.relative_m) == (-8.5456, 47.3977, 100.25)
+    assert event.amsl_m == 588.25
 
 
 def test_a_very_long_flight_is_thinned_not_cut(monkeypatch: pytest.MonkeyPatch) -> None:

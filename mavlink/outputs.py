@@ -1,0 +1,183 @@
+"""Where a vehicle shows whether its sensor is on: the output that the payload in use switches.
+
+A sensor that reports itself (``SAR_ON``) is believed first; most do not, and then the output tells what the
+autopilot ordered.
+
+Source: MAVLink ``common.xml`` (SERVO_OUTPUT_RAW 36, CAMERA_CAPTURE_STATUS 262, RELAY_STATUS 376); PX4
+``mixer_module`` (functions 301 to 306 are actuator sets 1 to 6; PWM_*_MIN, _MAX and _REV say how a value
+becomes a pulse).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Final
+
+from mavlink.messages import Message
+from mavlink.modes import Autopilot
+from mavlink.payload import (
+    ActuatorPayload,
+    CameraPayload,
+    ImagePayload,
+    Payload,
+    RelayPayload,
+    ServoPayload,
+)
+
+SERVO_OUTPUT_RAW: Final = 36
+CAMERA_CAPTURE_STATUS: Final = 262
+RELAY_STATUS: Final = 376
+
+_CHANNELS: Final = 16
+#: An output without pulses, and one that is not there.
+_NO_PULSE_US: Final = frozenset({0, 65535})
+_GROUPS: Final = ("PWM_MAIN", "PWM_AUX")
+_OUTPUTS_A_GROUP: Final = 8
+_FIRST_ACTUATOR_FUNCTION: Final = 301
+_PX4_PULSES_US: Final = (1000.0, 2000.0)
+#: CAMERA_CAPTURE_STATUS.image_status from here on: an interval is set.
+_INTERVAL_SET: Final = 2
+
+
+@dataclass(frozen=True, slots=True)
+class RelayOutput:
+    """A relay by its number from 0."""
+
+    relay: int
+
+    @property
+    def index(self) -> int:
+        """Its number in events."""
+        return self.relay
+
+    def reads(self, message: Message) -> bool | None:
+        """Whether it is closed; None when the message does not tell."""
+        bit = 1 << self.relay
+        if message.name != "RELAY_STATUS" or not message.integer("present") & bit:
+            return None
+        return bool(message.integer("on") & bit)
+
+
+@dataclass(frozen=True, slots=True)
+class ServoOutput:
+    """A servo output by port and its number there from 1; on is whatever lies nearer to on than to off."""
+
+    port: int
+    channel: int
+    on_us: float
+    off_us: float
+
+    @property
+    def index(self) -> int:
+        """Its number in events, counted over the ports."""
+        return self.port * _CHANNELS + self.channel
+
+    def reads(self, message: Message) -> bool | None:
+        """Whether its pulses say on; None when the message does not tell."""
+        if message.name != "SERVO_OUTPUT_RAW" or message.integer("port") != self.port:
+            return None
+        pulse_us = message.integer(f"servo{self.channel}_raw")
+        if pulse_us in _NO_PULSE_US:
+            return False
+        return abs(pulse_us - self.on_us) < abs(pulse_us - self.off_us)
+
+
+@dataclass(frozen=True, slots=True)
+class CameraOutput:
+    """A camera told to take pictures at an interval; its pictures are recorded whatever the payload is."""
+
+    index: int | None = None
+
+    def reads(self, message: Message) -> bool | None:
+        """Whether an interval is set; None when the message does not tell."""
+        if message.name != "CAMERA_CAPTURE_STATUS":
+            return None
+        return message.integer("image_status") >= _INTERVAL_SET
+
+
+SensorOutput = RelayOutput | ServoOutput | CameraOutput
+
+#: Messages that outputs are read from which the autopilot sends only when asked, and how often a second.
+INTERVALS_HZ: Final[Mapping[type, Mapping[int, float]]] = {
+    RelayOutput: {RELAY_STATUS: 10.0},
+    ServoOutput: {SERVO_OUTPUT_RAW: 10.0},
+    CameraOutput: {CAMERA_CAPTURE_STATUS: 4.0},
+}
+
+
+def switched_by(payload: Payload, autopilot: Autopilot) -> Payload:
+    """The payload as an autopilot switches it: PX4 has no relays, an actuator stands for each."""
+    if autopilot == "px4" and isinstance(payload, RelayPayload):
+        return ActuatorPayload(payload.relay + 1)
+    return payload
+
+
+def function_parameters(payload: Payload, autopilot: Autopilot) -> tuple[str, ...]:
+    """Parameters that say which output a payload is; none where the payload says so itself."""
+    if autopilot != "px4" or not isinstance(payload, ActuatorPayload):
+        return ()
+    return tuple(f"{group}_FUNC{n}" for group in _GROUPS for n in range(1, _OUTPUTS_A_GROUP + 1))
+
+
+def pulse_parameters(
+    payload: Payload, autopilot: Autopilot, functions: Mapping[str, float]
+) -> tuple[str, ...]:
+    """Parameters that say how the output's values become pulses, once its function is known."""
+    place = _place(payload, functions) if function_parameters(payload, autopilot) else None
+    if place is None:
+        return ()
+    group, number = place
+    return (f"{group}_MIN{number}", f"{group}_MAX{number}", f"{group}_REV")
+
+
+def output_of(
+    payload: Payload, autopilot: Autopilot, values: Mapping[str, float] | None = None
+) -> SensorOutput | None:
+    """The output to watch; None when the payload has none, or the parameters name none.
+
+    Parameters
+    ----------
+    payload
+        As the autopilot switches it.
+    values
+        Parameters by name: ``function_parameters``, and of ``pulse_parameters`` those the vehicle has.
+    """
+    match payload:
+        case RelayPayload():
+            return RelayOutput(payload.relay)
+        case ServoPayload():
+            port, channel = divmod(payload.servo - 1, _CHANNELS)
+            return ServoOutput(port, channel + 1, float(payload.on_pwm_us), float(payload.off_pwm_us))
+        case ActuatorPayload():
+            return _actuator(payload, values or {})
+        case CameraPayload() | ImagePayload():
+            return CameraOutput()
+    return None
+
+
+def _actuator(payload: ActuatorPayload, values: Mapping[str, float]) -> ServoOutput | None:
+    place = _place(payload, values)
+    if place is None:
+        return None
+    group, number = place
+    least_us = values.get(f"{group}_MIN{number}", _PX4_PULSES_US[0])
+    most_us = values.get(f"{group}_MAX{number}", _PX4_PULSES_US[1])
+    turned = round(values.get(f"{group}_REV", 0.0)) >> (number - 1) & 1
+
+    def pulse_us(value: float) -> float:
+        part = (1.0 - value if turned else 1.0 + value) / 2.0
+        return least_us + part * (most_us - least_us)
+
+    return ServoOutput(_GROUPS.index(group), number, pulse_us(payload.on_value), pulse_us(payload.off_value))
+
+
+def _place(payload: Payload, values: Mapping[str, float]) -> tuple[str, int] | None:
+    """Group and number of the first output with the actuator's function."""
+    assert isinstance(payload, ActuatorPayload)
+    function = _FIRST_ACTUATOR_FUNCTION + payload.actuator - 1
+    for group in _GROUPS:
+        for number in range(1, _OUTPUTS_A_GROUP + 1):
+            if round(values.get(f"{group}_FUNC{number}", 0.0)) == function:
+                return group, number
+    return None

@@ -1,0 +1,165 @@
+"""Which output shows that the sensor is on, and what the track makes of it."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from mavlink.messages import Message
+from mavlink.outputs import (
+    CameraOutput,
+    RelayOutput,
+    SensorOutput,
+    ServoOutput,
+    function_parameters,
+    output_of,
+    pulse_parameters,
+    switched_by,
+)
+from mavlink.payload import ActuatorPayload, Payload, parse_payload
+from mavlink.telemetry import VehicleState, updated
+from mavlink.track import Track, TrackRecorder, unwrapped_s
+from tests.mavlink.test_telemetry import at, received
+
+
+def recorded(output: SensorOutput | None, *messages: Message) -> Track:
+    """The track of some messages."""
+    recorder, state = TrackRecorder(output), VehicleState()
+    for message in messages:
+        state = updated(state, message, 0.0)
+        recorder.take(message, state)
+    return recorder.track()
+
+
+def pulses(time_s: float, port: int = 0, **channels: int) -> Message:
+    """SERVO_OUTPUT_RAW, its time in the 32 bits it has."""
+    return received("SERVO_OUTPUT_RAW", time_usec=round(time_s * 1e6) & 0xFFFFFFFF, port=port, **channels)
+
+
+@pytest.mark.parametrize(
+    ("text", "output"),
+    [
+        ("relay:3", RelayOutput(3)),
+        ("servo:9", ServoOutput(0, 9, 1900.0, 1100.0)),
+        ("servo:17:1000:2000", ServoOutput(1, 1, 1000.0, 2000.0)),
+        ("camera:distance=25", CameraOutput()),
+        ("image:interval=2", CameraOutput()),
+        ("command:31010:1/0", None),
+    ],
+)
+def test_payloads_that_say_themselves_where_they_show(text: str, output: SensorOutput | None) -> None:
+    """No parameter is needed."""
+    payload = parse_payload(text)
+    assert function_parameters(payload, "ardupilot") == ()
+    assert output_of(payload, "ardupilot") == output
+
+
+def test_an_actuator_is_found_by_its_function() -> None:
+    """Group and number from the function, the pulses from limits and direction where the vehicle has them."""
+    payload = switched_by(parse_payload("relay:1"), "px4")
+    assert payload == ActuatorPayload(2)
+    names = function_parameters(payload, "px4")
+    assert {"PWM_MAIN_FUNC1", "PWM_AUX_FUNC8"} <= set(names)
+    functions = dict.fromkeys(names, 0.0) | {"PWM_MAIN_FUNC3": 301.0, "PWM_AUX_FUNC6": 302.0}
+    assert pulse_parameters(payload, "px4", functions) == ("PWM_AUX_MIN6", "PWM_AUX_MAX6", "PWM_AUX_REV")
+    assert output_of(payload, "px4", functions) == ServoOutput(1, 6, 2000.0, 1000.0)
+    limited = functions | {"PWM_AUX_MIN6": 900.0, "PWM_AUX_MAX6": 2100.0, "PWM_AUX_REV": 32.0}
+    assert output_of(payload, "px4", limited) == ServoOutput(1, 6, 900.0, 2100.0)
+    half = ActuatorPayload(2, 0.5, 0.0)
+    assert output_of(half, "px4", functions) == ServoOutput(1, 6, 1750.0, 1500.0)
+
+
+def test_an_actuator_without_output_shows_nowhere() -> None:
+    """No output has its function: there is nothing to watch."""
+    payload = ActuatorPayload(1)
+    assert pulse_parameters(payload, "px4", {}) == ()
+    assert output_of(payload, "px4", {"PWM_MAIN_FUNC1": 101.0}) is None
+
+
+@pytest.mark.parametrize(
+    ("text", "on", "off"),
+    [
+        ("servo:9:1900:1100", pulses(1.0, servo9_raw=1800), pulses(2.0, servo9_raw=1500)),
+        ("servo:9:1100:1900", pulses(1.0, servo9_raw=1100), pulses(2.0, servo9_raw=0)),
+        ("servo:18", pulses(1.0, 1, servo2_raw=1900), pulses(2.0, 1, servo2_raw=1100)),
+        (
+            "relay:2",
+            received("RELAY_STATUS", on=0b100, present=0b100),
+            received("RELAY_STATUS", on=0b011, present=0b111),
+        ),
+        (
+            "image:interval=2",
+            received("CAMERA_CAPTURE_STATUS", image_status=3),
+            received("CAMERA_CAPTURE_STATUS", image_status=1),
+        ),
+    ],
+)
+def test_points_know_whether_the_output_was_on(text: str, on: Message, off: Message) -> None:
+    """Unknown before the first report, then as last reported."""
+    output = output_of(parse_payload(text), "ardupilot")
+    track = recorded(output, at(0), on, at(1000), off, at(2000))
+    assert [point.sensor_on for point in track.points] == [None, True, False]
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        pulses(1.0, servo8_raw=1900, servo9_raw=1100),
+        pulses(1.0, port=1, servo9_raw=1900),
+        received("RELAY_STATUS", on=1, present=1),
+        received("CAMERA_CAPTURE_STATUS", image_status=2),
+    ],
+)
+def test_other_outputs_are_of_no_concern(other: Message) -> None:
+    """Another channel, another port, another kind: the sensor is not on for them."""
+    output = output_of(parse_payload("servo:9"), "ardupilot")
+    track = recorded(output, other, at(1000))
+    assert not track.points[0].sensor_on
+    assert [event for event in track.events if event.source == "servo"] == []
+
+
+def test_switches_of_a_servo_are_events_in_the_vehicles_time() -> None:
+    """Past 71.6 minutes the message's own count has begun anew; the event's has not."""
+    output = output_of(parse_payload("servo:5"), "ardupilot")
+    late_s = 2 * 2**32 / 1e6 + 12.0
+    track = recorded(
+        output,
+        at(round(late_s * 1000)),
+        pulses(late_s + 0.1, servo5_raw=1100),
+        pulses(late_s + 0.2, servo5_raw=1900),
+        pulses(late_s + 0.3, servo5_raw=1890),
+        pulses(late_s + 0.4, servo5_raw=1100),
+    )
+    assert [(event.kind, event.source, event.index) for event in track.events] == [
+        ("on", "servo", 5),
+        ("off", "servo", 5),
+    ]
+    assert [event.time_s for event in track.events] == pytest.approx([late_s + 0.2, late_s + 0.4], abs=2e-3)
+
+
+@given(st.floats(0, 4e6), st.floats(-600, 600))
+def test_a_time_is_made_whole_again(time_s: float, off_s: float) -> None:
+    """Whatever was cut off comes back from a time some minutes away."""
+    told_s = (round(time_s * 1e6) & 0xFFFFFFFF) / 1e6
+    assert unwrapped_s(told_s, time_s + off_s) == pytest.approx(time_s, abs=1e-3)
+
+
+def test_a_sensor_that_reports_itself_is_believed_before_its_output() -> None:
+    """The output says what was ordered, the sensor what it does."""
+    output = output_of(parse_payload("relay:0"), "ardupilot")
+    closed = received("RELAY_STATUS", on=1, present=1)
+    dead = received("NAMED_VALUE_INT", name="SAR_ON", value=0)
+    track = recorded(output, closed, at(0), dead, at(1000))
+    assert [point.sensor_on for point in track.points] == [True, False]
+
+
+PAYLOADS: list[Payload] = [parse_payload(t) for t in ("relay:0", "servo:9", "actuator:1", "image:interval=1")]
+
+
+@pytest.mark.parametrize("payload", PAYLOADS)
+def test_without_a_report_nothing_is_claimed(payload: Payload) -> None:
+    """A vehicle that never tells of the output leaves the sensor unknown."""
+    output = output_of(payload, "ardupilot", {"PWM_MAIN_FUNC1": 301.0})
+    assert output is not None
+    assert [point.sensor_on for point in recorded(output, at(0), at(1000)).points] == [None, None]
