@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import hashlib
 import socket
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Coroutine, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -59,14 +59,22 @@ async def _plan_sample(house: House, scenario: Mapping[str, Any]) -> None:
 class _Server(uvicorn.Server):
     """Tells when it listens, then greets."""
 
-    def __init__(self, config: uvicorn.Config, listening: Callable[[], None]) -> None:
+    def __init__(self, config: uvicorn.Config, listening: Callable[[], Coroutine[Any, Any, None]]) -> None:
         super().__init__(config)
         self._listening = listening
+        self._greeting: asyncio.Task[None] | None = None
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
         await super().startup(sockets)
         if self.started:
-            self._listening()
+            self._greeting = asyncio.create_task(self._listening())
+
+    async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
+        # Before the services close: what is still being connected would outlive them.
+        if self._greeting is not None:
+            self._greeting.cancel()
+            await asyncio.gather(self._greeting, return_exceptions=True)
+        await super().shutdown(sockets)
 
 
 def run_server(
@@ -100,11 +108,10 @@ def run_server(
         raise StartError(f"{reason}. Choose another with --port") from error
     port = listener.getsockname()[1]
     name = f"[{settings.host}]" if ":" in settings.host else settings.host
-    greeting: list[asyncio.Task[None]] = []
 
-    def listening() -> None:
+    def listening() -> Coroutine[Any, Any, None]:
         announce(f"http://{name}:{port}")
-        greeting.append(asyncio.create_task(_greet(app.state.house, welcome)))
+        return _greet(app.state.house, welcome)
 
     server = _Server(config, listening)
     try:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import AsyncGenerator
+from contextlib import aclosing
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Header, Query, Request, Response
@@ -89,9 +90,10 @@ async def plan_events(plan_id: str, planning: PlanningDep) -> EventSourceRespons
     await planning.get(plan_id)
 
     async def stream() -> AsyncGenerator[ServerSentEvent, None]:
-        async for record in planning.events(plan_id):
-            name = record.state if record.ended else "progress"
-            yield ServerSentEvent(PlanOut.of(record).model_dump_json(), event=name)
+        async with aclosing(planning.events(plan_id)) as records:
+            async for record in records:
+                name = record.state if record.ended else "progress"
+                yield ServerSentEvent(PlanOut.of(record).model_dump_json(), event=name)
 
     return event_stream(stream())
 

@@ -34,7 +34,10 @@ def file_stream(path: Path, media_type: str) -> StreamingResponse:
 
 
 def event_stream(events: AsyncGenerator[ServerSentEvent, None]) -> EventSourceResponse:
-    """An answer made of events, to their end, the listener's or the service's."""
+    """An answer made of events, to their end, the listener's or the service's.
+
+    The generator is closed with the answer; one that takes from another has to close that one itself.
+    """
     stop = anyio.Event()
     return EventSourceResponse(
         _until(events, stop), ping=PING_S, shutdown_event=stop, shutdown_grace_period=GRACE_S
@@ -54,11 +57,13 @@ async def _until(
                 return
             yield event
     finally:
-        for task in (coming, stopping):
-            if task is not None:
-                task.cancel()
-                await asyncio.gather(task, return_exceptions=True)
-        await events.aclose()
+        tasks = [task for task in (coming, stopping) if task is not None]
+        for task in tasks:
+            task.cancel()
+        # The scope this is cancelled with would cut every wait short, and leave a task pending.
+        with anyio.CancelScope(shield=True):
+            await asyncio.gather(*tasks, return_exceptions=True)
+            await events.aclose()
 
 
 async def _next(events: AsyncGenerator[ServerSentEvent, None]) -> ServerSentEvent | None:

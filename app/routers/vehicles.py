@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import AsyncGenerator
+from contextlib import aclosing
 from typing import Annotated
 
 from fastapi import APIRouter, Query, Response
@@ -85,8 +86,9 @@ async def telemetry(vehicle_id: str, fleet: FleetDep) -> EventSourceResponse:
     fleet.get(vehicle_id)
 
     async def stream() -> AsyncGenerator[ServerSentEvent, None]:
-        async for vehicle in fleet.telemetry(vehicle_id):
-            yield ServerSentEvent(VehicleOut.of(vehicle).model_dump_json(), event="state")
+        async with aclosing(fleet.telemetry(vehicle_id)) as vehicles:
+            async for vehicle in vehicles:
+                yield ServerSentEvent(VehicleOut.of(vehicle).model_dump_json(), event="state")
 
     return event_stream(stream())
 

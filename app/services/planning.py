@@ -6,7 +6,7 @@ import asyncio
 import contextlib
 import hashlib
 import json
-from collections.abc import AsyncIterator, Callable, Mapping
+from collections.abc import AsyncGenerator, Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -178,7 +178,7 @@ class PlanningService:
             raise ConflictError(f"plan {plan_id} is {record.state}, it has no plan{reason}")
         return plan
 
-    async def events(self, plan_id: str) -> AsyncIterator[PlanRecord]:
+    async def events(self, plan_id: str) -> AsyncGenerator[PlanRecord, None]:
         """The plan as it is now, then at every change, to its end."""
         async with self._hub.listen(plan_id) as queue:
             record = await self.get(plan_id)
@@ -191,9 +191,10 @@ class PlanningService:
         """The plan when it has ended, or as it is when the time is over."""
         with contextlib.suppress(TimeoutError):
             async with asyncio.timeout(timeout_s):
-                async for record in self.events(plan_id):
-                    if record.ended:
-                        return record
+                async with contextlib.aclosing(self.events(plan_id)) as records:
+                    async for record in records:
+                        if record.ended:
+                            return record
         return await self.get(plan_id)
 
     async def remove(self, plan_id: str) -> PlanRecord | None:
