@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Annotated, Any
 
 import typer
@@ -46,6 +47,8 @@ def serve(
         )
         raise CommandError(reasons, Exit.BAD_INPUT) from error
 
+    _check_wishes(document, settings.database, sim_url)
+
     from app.server import StartError, Welcome, run_server
 
     welcome = Welcome(simulated=sim_count if sim else 0, sim_url=sim_url, scenario=document)
@@ -57,6 +60,26 @@ def serve(
         run_server(settings, welcome, announce)
     except StartError as error:
         raise CommandError(str(error)) from error
+
+
+def _check_wishes(scenario: dict[str, Any] | None, database: Path, sim_url: str) -> None:
+    """Refuse before anything is started what would be refused afterwards, where nobody looks."""
+    from app.services.errors import RefusedError
+    from app.services.house import terrain_folder
+    from app.services.validation import judge
+    from app.services.vehicles.connection import simulated_of
+
+    try:
+        if simulated_of(sim_url) is None:
+            raise CommandError(
+                f"--sim-url {sim_url} is not the address of a simulated aircraft", Exit.BAD_INPUT
+            )
+    except RefusedError as error:
+        raise CommandError(f"--sim-url: {error}", Exit.BAD_INPUT, error.findings) from error
+    if scenario is not None:
+        verdict = judge(scenario, str(terrain_folder(database)))
+        if verdict.errors:
+            raise CommandError("the scenario is refused", Exit.BAD_INPUT, verdict.errors)
 
 
 def register(cli: typer.Typer) -> None:

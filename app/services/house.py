@@ -38,6 +38,11 @@ class Limits:
     recordings: Recordings | None = None
 
 
+def terrain_folder(database: Path) -> Path:
+    """Where the posts of uploaded rasters lie: beside the database, each raster in a file of its own."""
+    return database.resolve().with_name(database.stem + "-terrain")
+
+
 class House:
     """The services, wired."""
 
@@ -51,8 +56,7 @@ class House:
     ) -> None:
         self.database = Database(limits.database)
         self.pool = WorkerPool(limits.workers, initialiser)
-        # Posts of rasters lie beside the database, each in a file of its own.
-        folder = limits.database.resolve().with_name(limits.database.stem + "-terrain")
+        folder = terrain_folder(limits.database)
         self.terrain = TerrainService(TerrainStore(self.database), folder)
         self.planning = PlanningService(
             PlanStore(self.database),

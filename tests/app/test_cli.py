@@ -227,3 +227,27 @@ def test_demo_flies_what_it_planned(swathplan: Command, scenario_file: Path) -> 
     assert told["read_back_equal"]
     assert told["cross_track_max_m"] < 10.0
     assert min(told["seen"].values()) > 0.99
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (("--scenario", "-"), "crossing"),
+        (("--sim", "--sim-url", "udpin:127.0.0.1:0"), "not the address of a simulated aircraft"),
+        (("--sim", "--sim-url", "sim:?colour=red"), "has no option colour"),
+    ],
+)
+def test_serve_refuses_wishes_it_cannot_fulfil(
+    swathplan: Command, tmp_path: Path, arguments: tuple[str, ...], told: str
+) -> None:
+    """A scenario or simulated aircraft that is wrong ends the start with 2 and its findings."""
+    crossing = [[8.55, 47.37], [8.56, 47.38], [8.56, 47.37], [8.55, 47.38], [8.55, 47.37]]
+    scenario = json.loads(json.dumps(EXAMPLE))
+    scenario["features"][0] |= {"id": "crossing", "geometry": {"type": "Polygon", "coordinates": [crossing]}}
+    database = tmp_path / "plans.db"
+    ended = swathplan(
+        "serve", "--port", "0", "--database", str(database), *arguments, stdin=json.dumps(scenario)
+    )
+    assert ended.code == 2, ended
+    assert told in ended.err
+    assert not database.exists()
