@@ -1,0 +1,222 @@
+"""True costs of legs: against the plain Dubins words, shapely and the wind triangle, each found but once."""
+
+from __future__ import annotations
+
+import itertools
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from shapely.geometry import LineString, Point
+
+from planner.check import flown_s
+from planner.dubins.words import shortest_between
+from planner.errors import InfeasibleError
+from planner.geojson import read_scenario
+from planner.progress import never
+from planner.route import Anchor, CollectPass
+from planner.routing import legs as module
+from planner.routing.legs import TRANSIT_MARGIN_M, Legs, anchor, leaves
+from planner.routing.options import INSIDE_FACTOR
+from planner.scenario import Scenario
+from planner.transit.tangent import connect
+from tests.planner.scenarios import feature, small
+
+metre = st.floats(-1500.0, 1500.0)
+anchors = st.builds(Anchor, metre, metre, st.none() | st.floats(-3.0, 3.0))
+lines = st.tuples(metre, metre, st.floats(-3.0, 3.0), st.floats(50.0, 900.0)).map(
+    lambda row: flown((row[0], row[1]), row[2], row[3])
+)
+
+
+def flown(start: tuple[float, float], angle_rad: float, length_m: float) -> CollectPass:
+    """A pass from a place, so far in a direction."""
+    end = start[0] + length_m * math.cos(angle_rad), start[1] + length_m * math.sin(angle_rad)
+    ground = Point(*start).buffer(1.0)
+    return CollectPass(("A",), "sar", "right", start, end, 0.0, ground)
+
+
+def open_ground(**members: object) -> Scenario:
+    """The small scenario without an operating area."""
+    document = small(**members)
+    document["features"] = [f for f in document["features"] if f["properties"]["role"] != "area"]
+    return read_scenario(document)
+
+
+OPEN = open_ground()
+THREATENED = read_scenario(
+    small(feature("M", "threat", "Point", [-0.02, -0.02], model="missile", radius_m=500.0))
+)
+SETTLED = open_ground(
+    vehicles=[{"name": "uav", "airspeed_m_s": 20.0, "min_turn_radius_m": 100.0, "settle_m": 150.0}]
+)
+
+
+def legs_of(scenario: Scenario) -> Legs:
+    """Legs of the scenario's first aircraft."""
+    return Legs(scenario, scenario.aircraft[0], never)
+
+
+def radius_of(scenario: Scenario) -> float:
+    """The radius its transits are flown with."""
+    return scenario.aircraft[0].planned_turn_radius_m
+
+
+@settings(deadline=None, max_examples=60)
+@given(anchors, anchors)
+def test_open_ground_costs_the_shortest_dubins_line(start: Anchor, goal: Anchor) -> None:
+    """With nothing in the way a leg costs the length of the plain Dubins word."""
+    if math.dist(start.position, goal.position) < 1.0:
+        return
+    expected_m = shortest_between(start, goal, radius_of(OPEN)).length_m
+    assert legs_of(OPEN).cost_m(start, goal) == pytest.approx(expected_m, abs=1e-6)
+
+
+@settings(deadline=None, max_examples=30)
+@given(st.lists(lines, min_size=1, max_size=4))
+def test_a_tour_is_the_sum_of_its_parts(passes: list[CollectPass]) -> None:
+    """From start to end: Dubins lines between settling runs, the runs and the passes, summed by hand."""
+    settle_m, radius_m = SETTLED.aircraft[0].settle_m, radius_of(SETTLED)
+    expected_m, before = 0.0, Anchor(*SETTLED.start.position)
+    for one in passes:
+        back = np.array(one.start) - settle_m * np.array([math.cos(one.angle_rad), math.sin(one.angle_rad)])
+        expected_m += shortest_between(before, Anchor(*map(float, back), one.angle_rad), radius_m).length_m
+        expected_m += settle_m + one.length_m
+        before = Anchor(*one.end, one.angle_rad)
+    expected_m += shortest_between(before, Anchor(*SETTLED.end.position), radius_m).length_m
+    legs = legs_of(SETTLED)
+    assert legs.tour_m(passes) == pytest.approx(expected_m, abs=1e-4)
+    ends_m = legs.between_m(None, pose(legs.arrives(passes[0]))) + legs.between_m(
+        pose(leaves(passes[-1])), None
+    )
+    assert legs.inner_m(passes) == pytest.approx(expected_m - ends_m, abs=1e-4)
+
+
+def pose(at: Anchor) -> np.ndarray:
+    """An anchor as the arrays of options have it."""
+    return np.array([at.east_m, at.north_m, at.angle_rad])
+
+
+@given(lines)
+def test_a_transit_ends_where_settling_begins(one: CollectPass) -> None:
+    """The settling run lies straight before the pass and is as long as the aircraft wants."""
+    arrives = legs_of(SETTLED).arrives(one)
+    assert math.dist(arrives.position, one.start) == pytest.approx(SETTLED.aircraft[0].settle_m)
+    assert math.dist(arrives.position, one.end) == pytest.approx(
+        SETTLED.aircraft[0].settle_m + one.length_m, abs=1e-6
+    )
+    assert arrives.angle_rad == one.angle_rad
+    assert leaves(one) == Anchor(*one.end, one.angle_rad)
+
+
+def test_what_was_asked_for_is_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each pair of ends is connected once however often it is asked for; the way back is another pair."""
+    asked = []
+
+    def counted(start: Anchor, goal: Anchor, *rest: object) -> object:
+        asked.append((start, goal))
+        return connect(start, goal, *rest)
+
+    monkeypatch.setattr(module.tangent, "connect", counted)
+    legs = legs_of(OPEN)
+    a, b = Anchor(0.0, 0.0, 1.0), Anchor(900.0, 300.0, 2.0)
+    costs = [legs.cost_m(a, b), legs.cost_m(a, b), legs.between_m(pose(a), pose(b))]
+    assert len(set(costs)) == 1
+    legs.cost_m(b, a)
+    assert asked == [(a, b), (b, a)]
+
+
+def test_no_line_costs_infinitely_much() -> None:
+    """An end inside a hard zone cannot be reached: the leg, and any tour with it, costs inf."""
+    zone = feature("Z", "no_fly", "Point", [0.02, 0.02], radius_m=400.0)
+    scenario = read_scenario(small(zone))
+    legs = legs_of(scenario)
+    ((east_m, north_m),) = scenario.frame.to_local([(0.02, 0.02)])
+    inside, away = Anchor(float(east_m), float(north_m), 0.0), Anchor(*scenario.start.position)
+    assert legs.cost_m(away, inside) == math.inf
+    assert legs.tour_m([flown(inside.position, 0.0, 100.0)]) == math.inf
+    with pytest.raises(InfeasibleError, match="Z"):
+        connect(away, inside, module.keep_out(scenario, TRANSIT_MARGIN_M), radius_of(scenario), never)
+
+
+def test_a_way_round_a_hard_zone_is_longer_than_straight_on() -> None:
+    """A zone between two ends costs what the convex hull of ends and zone says, arcs of entry apart."""
+    scenario = read_scenario(small(feature("Z", "no_fly", "Point", [0.02, 0.02], radius_m=400.0)))
+    ((east_m, north_m),) = scenario.frame.to_local([(0.02, 0.02)])
+    start, goal = (
+        Anchor(float(east_m) - 1500.0, float(north_m)),
+        Anchor(float(east_m) + 1500.0, float(north_m)),
+    )
+    disc = Point(east_m, north_m).buffer(400.0 + TRANSIT_MARGIN_M, quad_segs=512)
+    hull = disc.union(LineString([start.position, goal.position])).convex_hull
+    assert legs_of(scenario).cost_m(start, goal) == pytest.approx(hull.exterior.length / 2.0, abs=0.05)
+
+
+@settings(deadline=None, max_examples=40)
+@given(st.floats(-700.0, 700.0), st.floats(-700.0, 700.0), st.floats(-3.0, 3.0), st.floats(50.0, 900.0))
+def test_metres_inside_a_soft_threat_cost_as_said(
+    east_m: float, north_m: float, angle_rad: float, length_m: float
+) -> None:
+    """A pass costs its length and, for each metre that shapely finds in the disc, the factor more."""
+    centre, radius_m = THREATENED.threats[0].centre, THREATENED.threats[0].radius_m
+    one = flown((centre[0] + east_m, centre[1] + north_m), angle_rad, length_m)
+    line = LineString([one.start, one.end])
+    inside_m = line.intersection(Point(*centre).buffer(radius_m, quad_segs=2048)).length
+    expected_m = one.length_m + INSIDE_FACTOR * inside_m
+    assert legs_of(THREATENED).pass_m(one) == pytest.approx(expected_m, abs=0.5)
+
+
+def test_a_transit_that_cannot_keep_out_pays_for_what_it_crosses() -> None:
+    """A leg that begins in a soft disc costs its length and the factor for the metres inside."""
+    centre = THREATENED.threats[0].centre
+    start, goal = Anchor(centre[0] + 200.0, centre[1], 0.0), Anchor(centre[0] + 2000.0, centre[1], 0.0)
+    assert legs_of(THREATENED).cost_m(start, goal) == pytest.approx(1800.0 + INSIDE_FACTOR * 300.0, rel=2e-3)
+
+
+@settings(deadline=None, max_examples=30)
+@given(anchors, anchors, st.floats(0.0, 359.0))
+def test_in_a_wind_time_counts(start: Anchor, goal: Anchor, from_deg: float) -> None:
+    """A leg costs its time by the airspeed, as the judge times its line."""
+    if math.dist(start.position, goal.position) < 1.0:
+        return
+    scenario = open_ground(wind={"speed_m_s": 8.0, "from_deg": from_deg})
+    aircraft = scenario.aircraft[0].in_wind(8.0)
+    legs = Legs(scenario, aircraft, never)
+    zones = module.keep_out(scenario, TRANSIT_MARGIN_M)
+    path = connect(start, goal, zones, aircraft.planned_turn_radius_m, never)
+    seconds = flown_s(path.sample(0.5)[:, :2], aircraft.airspeed_m_s, scenario.wind)
+    assert legs.cost_m(start, goal) == pytest.approx(aircraft.airspeed_m_s * seconds, rel=1e-4)
+
+
+def test_a_pass_along_the_wind_costs_less_than_one_against_it() -> None:
+    """Downwind at V + W, upwind at V - W: metres through the air for the same line."""
+    scenario = open_ground(wind={"speed_m_s": 5.0, "from_deg": 270.0})
+    legs = Legs(scenario, scenario.aircraft[0].in_wind(5.0), never)
+    east, west = flown((0.0, 0.0), 0.0, 600.0), flown((600.0, 0.0), math.pi, 600.0)
+    assert legs.pass_m(east) == pytest.approx(600.0 * 20.0 / 25.0, rel=1e-3)
+    assert legs.pass_m(west) == pytest.approx(600.0 * 20.0 / 15.0, rel=1e-3)
+
+
+def test_terminals_keep_their_directions() -> None:
+    """A start with a heading is left in it, an end with one reached in it."""
+    document = small()
+    for each in document["features"]:
+        if each["properties"]["role"] == "start":
+            each["properties"]["heading_deg"] = 90.0
+    scenario = read_scenario(document)
+    legs = legs_of(scenario)
+    assert anchor(scenario.start).angle_rad == pytest.approx(0.0, abs=1e-3)
+    behind = np.array([scenario.start.position[0] - 1000.0, scenario.start.position[1], math.pi])
+    free = shortest_between(Anchor(*scenario.start.position), Anchor(*behind), radius_of(scenario)).length_m
+    assert legs.between_m(None, behind) > free + math.pi * radius_of(scenario) - 1.0
+
+
+def test_the_order_of_passes_matters_to_the_tour() -> None:
+    """Of all orders of three passes in a row, the one along the row is the cheapest."""
+    east_m, north_m = OPEN.start.position
+    row = [flown((east_m + 1000.0 * k, north_m), 0.0, 200.0) for k in (1, 2, 3)]
+    legs = legs_of(OPEN)
+    best = min(itertools.permutations(row), key=legs.tour_m)
+    assert list(best) == row
