@@ -13,7 +13,7 @@ from mavlink.codec import Codec
 from mavlink.driver import Driver
 from mavlink.errors import NotConnectedError, TransferFailedError, VehicleNotFoundError
 from mavlink.flight import FlightCommands
-from mavlink.items import Command, MissionItem, MissionType
+from mavlink.items import Command
 from mavlink.link import Link
 from mavlink.outputs import (
     INTERVALS_HZ,
@@ -26,14 +26,10 @@ from mavlink.outputs import (
 from mavlink.payload import Payload
 from mavlink.telemetry import VehicleState
 from mavlink.track import TrackRecorder
-from mavlink.transfer.clear import ClearMachine, SetCurrentMachine
 from mavlink.transfer.command import CommandMachine, CommandOutcome
-from mavlink.transfer.download import DownloadMachine
 from mavlink.transfer.machine import DEFAULT_SETTINGS, Progress, TransferSettings
-from mavlink.transfer.outcome import Outcome
 from mavlink.transfer.parameters import Parameter, ParameterListMachine, ParametersMachine
-from mavlink.transfer.upload import UploadMachine
-from mavlink.verify import Compare, Pending, VerifiedUpload, resolve, upload_and_verify
+from mavlink.transfers import MissionTransfers
 
 # Messages asked for at connection, and how often a second.
 _INTERVALS_HZ: Final = {
@@ -50,13 +46,10 @@ _INTERVALS_HZ: Final = {
 }
 _MICROSECONDS: Final = 1e6
 _PARAMETER_RETRIES: Final = 2
-# PX4 judges a mission within moments of its acknowledgement, and gives its reasons one by one.
-_JUDGEMENT_S: Final = 1.0
-_MORE_REASONS_S: Final = 0.2
 _PARAMETER_TIMEOUT_S: Final = 0.8
 
 
-class VehicleClient(FlightCommands):
+class VehicleClient(MissionTransfers, FlightCommands):
     """One vehicle at the other end of a link.
 
     Parameters
@@ -95,12 +88,11 @@ class VehicleClient(FlightCommands):
     ) -> None:
         codec = Codec(system_id)
         codec.tap = tap
+        super().__init__()
         self._driver = Driver(link, codec, clock, self._ask_for_telemetry, vehicle_system, lost_after_s)
         self._settings = settings
         self._clock = clock
         self._watched_hz: dict[int, float] = {}
-        self._pending: Pending | None = None
-        self._rejected: tuple[tuple[MissionItem, ...], tuple[str, ...]] | None = None
 
     async def __aenter__(self) -> Self:
         return self
@@ -193,103 +185,6 @@ class VehicleClient(FlightCommands):
     def stop_recording(self, recorder: TrackRecorder) -> None:
         """Stop feeding a recorder; its track stays."""
         self._driver.stop_recording(recorder)
-
-    async def upload(
-        self,
-        items: Sequence[MissionItem],
-        mission_type: MissionType,
-        progress: Callable[[Progress], None] | None = None,
-    ) -> Outcome:
-        """Upload without reading back. Raises BusyError, NotConnectedError, CodecError, ValueError."""
-        machine = UploadMachine(items, mission_type, *self._target(), self._settings)
-        return await self._driver.transfer(machine, progress)
-
-    async def download(
-        self, mission_type: MissionType, progress: Callable[[Progress], None] | None = None
-    ) -> tuple[MissionItem, ...]:
-        """What the vehicle holds. Raises TransferFailedError, BusyError, NotConnectedError."""
-        machine = DownloadMachine(mission_type, *self._target(), self._settings)
-        outcome = await self._driver.transfer(machine, progress)
-        if outcome.kind != "accepted":
-            raise TransferFailedError(f"download of the {mission_type.name.lower()}", outcome)
-        return machine.items
-
-    async def clear(self, mission_type: MissionType) -> Outcome:
-        """Empty one of the vehicle's lists. Raises BusyError, NotConnectedError."""
-        return await self._driver.transfer(ClearMachine(mission_type, *self._target(), self._settings))
-
-    async def set_current(self, seq: int) -> Outcome:
-        """Make an item the one flown next. Raises BusyError, NotConnectedError."""
-        return await self._driver.transfer(SetCurrentMachine(seq, *self._target(), self._settings))
-
-    async def upload_verified(
-        self,
-        items: Sequence[MissionItem],
-        mission_type: MissionType,
-        differences: Compare,
-        progress: Callable[[Progress], None] | None = None,
-    ) -> VerifiedUpload:
-        """Upload, read back and compare; an unknown outcome is resolved by what is read back.
-
-        Parameters
-        ----------
-        differences
-            ``differences(meant, held)``: what differs, empty when the vehicle holds what was meant.
-
-        Raises
-        ------
-        BusyError, NotConnectedError, CodecError, ValueError
-            Nothing was begun.
-        """
-        begun_s = self._clock()
-        result = await upload_and_verify(self, items, mission_type, differences, progress)
-        judged = mission_type in (MissionType.MISSION, MissionType.FENCE) and self._driver.events.heard
-        if judged and result.status == "stored":
-            result = replace(result, objections=await self._objections(tuple(items), begun_s))
-        unresolved = result.held is None
-        self._pending = (
-            Pending(tuple(items), mission_type, differences, result.outcome) if unresolved else None
-        )
-        return result
-
-    async def _objections(self, items: tuple[MissionItem, ...], begun_s: float) -> tuple[str, ...]:
-        """What a vehicle that speaks in events says against its mission, having just taken this list."""
-
-        def said(state: VehicleState) -> tuple[str, ...]:
-            against = (text for text in state.texts if text.against_mission and text.heard_s >= begun_s)
-            return tuple(dict.fromkeys(text.text for text in against))
-
-        try:
-            await self.wait_for(lambda state: bool(said(state)), _JUDGEMENT_S)
-            await asyncio.sleep(_MORE_REASONS_S)
-        except (TimeoutError, NotConnectedError):
-            # It has nothing against it; or it is the list it holds already, which it does not judge again.
-            if self._rejected is not None and self._rejected[0] == items:
-                return self._rejected[1]
-        objections = said(self.state)
-        self._rejected = (items, objections) if objections else None
-        return objections
-
-    @property
-    def pending(self) -> bool:
-        """True while an upload's outcome waits for ``resolve_pending``."""
-        return self._pending is not None
-
-    async def resolve_pending(self) -> VerifiedUpload | None:
-        """Read back what an upload that ended as unknown left; None when there is nothing to resolve.
-
-        Raises
-        ------
-        BusyError, NotConnectedError
-            Not now; it stays pending.
-        """
-        if self._pending is None:
-            return None
-        self._driver.require_connected()
-        result = await resolve(self, self._pending)
-        if result.held is not None:
-            self._pending = None
-        return result
 
     async def command(self, command: int, parameters: Sequence[float] = ()) -> CommandOutcome:
         """Send a command (COMMAND_LONG) until it is answered. Raises NotConnectedError, CodecError."""

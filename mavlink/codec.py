@@ -17,7 +17,7 @@ from typing import Any, Final
 from pymavlink.dialects.v20 import ardupilotmega as dialect
 
 from mavlink.errors import CodecError
-from mavlink.extra_messages import EXTRA_MESSAGES, Definition
+from mavlink.extra_messages import EXTRA_FIELDS, EXTRA_MESSAGES, Definition
 from mavlink.messages import Message, Value
 
 _MAGIC_V1: Final = 0xFE
@@ -66,14 +66,21 @@ def _layout(message_id: int, definition: Any) -> _Layout:
         text_bytes = max(array_length, 1) if wire_type[name] == "char" else 0
         fields.append(_Field(name, first, length, text_bytes))
         first += length
+    payload = definition.unpacker
+    for kind, name in EXTRA_FIELDS.get(definition.msgname, ()):
+        if name not in wire_type:  # else pymavlink has it by now
+            fields.append(_Field(name, first, 1, 0))
+            first += 1
+            payload = struct.Struct(payload.format + kind)
+    names = tuple(field.name for field in fields)
     return _Layout(
         message_id,
         definition.msgname,
         bytes([definition.crc_extra]),
-        definition.unpacker,
+        payload,
         tuple(fields),
-        tuple(definition.ordered_fieldnames),
-        frozenset(wire_type),
+        names,
+        frozenset(names),
         all(field.length == 1 and not field.text_bytes for field in fields),
     )
 

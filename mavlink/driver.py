@@ -17,6 +17,7 @@ from mavlink.codec import Codec
 from mavlink.errors import BusyError, CodecError, LinkError, NotConnectedError, ReadOnlyError
 from mavlink.events import EVENT_MESSAGES, EventOrder
 from mavlink.link import DirectLink, Link, ReplayLink
+from mavlink.list_ids import ListIds
 from mavlink.messages import Message
 from mavlink.modes import GROUND_STATION_TYPE, NO_AUTOPILOT
 from mavlink.telemetry import VehicleState, updated
@@ -104,6 +105,7 @@ class Driver:
         self._watchers: set[asyncio.Event] = set()
         self._recorders: set[TrackRecorder] = set()
         self.events = EventOrder()
+        self.list_ids = ListIds()
 
     def start(self) -> None:
         """Begin to read and to send heartbeats; again is harmless."""
@@ -129,9 +131,7 @@ class Driver:
         self, machine: Machine[Outcome], progress: Callable[[Progress], None] | None = None
     ) -> Outcome:
         """Run a transfer to its end. Raises BusyError when another one is under way."""
-        self.require_connected()
-        if self._transfer is not None:
-            raise BusyError("another transfer with this vehicle is under way")
+        self.require_free()
         job = _Job(machine, progress)
         self._transfer, self._lingering = job, None
         self._send(machine.start(self._clock()), job)
@@ -165,6 +165,12 @@ class Driver:
         if len(queue) == 1:
             self._send(machine.start(self._clock()), job)
         return job
+
+    def require_free(self) -> None:
+        """Raise BusyError when a transfer is under way, and what ``require_connected`` raises."""
+        self.require_connected()
+        if self._transfer is not None:
+            raise BusyError("another transfer with this vehicle is under way")
 
     def require_connected(self) -> None:
         """Raise NotConnectedError unless the vehicle is there, ReadOnlyError when it is a recording."""
@@ -300,7 +306,7 @@ class Driver:
         self._heard_s = now_s
         if message.name in EVENT_MESSAGES and not self._event_is_new(message):
             return
-        state = updated(self.state, message, now_s)
+        state = self.list_ids.watched(updated(self.state, message, now_s), message, now_s)
         if not self.state.connected:
             self._set_state(replace(state, connected=True))
             self._on_connect()

@@ -8,6 +8,7 @@
     ├── VehicleNotFoundError no autopilot's heartbeat arrived in time
     ├── NotConnectedError    asked of a vehicle that is not connected, or whose client is closed
     │   └── ReadOnlyError    a transfer or command asked of a recording that is being replayed
+    ├── UnsupportedError     asked of an autopilot that does not do it; nothing was sent
     ├── BusyError            another transfer with this vehicle is under way
     └── TransferFailedError  a download ended without all items; carries the outcome
 
@@ -44,6 +45,10 @@ class NotConnectedError(MavlinkError):
 
 class ReadOnlyError(NotConnectedError):
     """The vehicle is a recording that is being replayed: nobody is there to answer."""
+
+
+class UnsupportedError(MavlinkError):
+    """The vehicle's autopilot does not do what was asked; nothing was sent."""
 
 
 class BusyError(MavlinkError):

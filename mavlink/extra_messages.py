@@ -1,7 +1,8 @@
-"""Messages that pymavlink's dialects leave out, by their definitions.
+"""Messages and fields that pymavlink's dialects leave out, by their definitions.
 
-Source: MAVLink ``common.xml`` (events interface, https://mavlink.io/en/services/events.html). Fields are in
-the order of the wire: the largest types first, as the checksum of the definition demands.
+Source: MAVLink ``common.xml`` (events interface, https://mavlink.io/en/services/events.html; ids of lists,
+https://mavlink.io/en/services/mission.html). A message's fields are in the order of the wire: the largest
+types first, as the checksum of the definition demands.
 """
 
 from __future__ import annotations
@@ -73,3 +74,10 @@ EXTRA_MESSAGES: Final = (
         ),
     ),
 )
+
+#: Extension fields, which stand behind all others and are no part of the checksum: struct format and name.
+EXTRA_FIELDS: Final[dict[str, tuple[tuple[str, str], ...]]] = {
+    "MISSION_CURRENT": (("I", "mission_id"), ("I", "fence_id"), ("I", "rally_points_id")),
+    "MISSION_COUNT": (("I", "opaque_id"),),
+    "MISSION_ACK": (("I", "opaque_id"),),
+}

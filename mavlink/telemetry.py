@@ -17,7 +17,8 @@ from mavlink.messages import Message
 from mavlink.modes import Autopilot, VehicleType, autopilot_name, mode_name, vehicle_type_name
 
 _ARMED: Final = 0x80
-_KEPT_TEXTS: Final = 20
+#: Texts of the vehicle that its state keeps.
+KEPT_TEXTS: Final = 20
 _MISSION_STATES: Final = {1: "none", 2: "not_started", 3: "active", 4: "paused", 5: "complete"}
 _GPS_FIXES: Final = {0: "none", 1: "none", 2: "2d", 3: "3d", 4: "dgps", 5: "rtk_float", 6: "rtk_fixed"}
 
@@ -64,6 +65,8 @@ class VehicleState:
         ``none`` ``not_started`` ``active`` ``paused`` ``complete``.
     mission_reached
         The last item reached.
+    mission_id, fence_id, rally_points_id
+        The vehicle's own ids of the lists it holds; None where it holds or gives none.
     sensor_on
         The payload's switch as reported: NAMED_VALUE_INT ``SAR_ON``.
     relays_on
@@ -104,6 +107,9 @@ class VehicleState:
     mission_total: int | None = None
     mission_state: str | None = None
     mission_reached: int | None = None
+    mission_id: int | None = None
+    fence_id: int | None = None
+    rally_points_id: int | None = None
     sensor_on: bool | None = None
     relays_on: int | None = None
     texts: tuple[StatusText, ...] = ()
@@ -208,6 +214,9 @@ def _mission_current(state: VehicleState, message: Message) -> VehicleState:
         mission_current=message.integer("seq"),
         mission_total=rows,
         mission_state=_MISSION_STATES.get(message.integer("mission_state")),
+        mission_id=message.integer("mission_id") or None,
+        fence_id=message.integer("fence_id") or None,
+        rally_points_id=message.integer("rally_points_id") or None,
     )
 
 
@@ -236,7 +245,7 @@ def _status_text(state: VehicleState, message: Message) -> VehicleState:
         return replace(state, texts=(*texts[:-1], replace(texts[-1], text=texts[-1].text + text)))
     # PX4 ends texts that an event says again with a tab.
     entry = StatusText(heard_s, message.integer("severity"), text.removesuffix("\t"), identity)
-    return replace(state, texts=(*texts[1 - _KEPT_TEXTS :], entry))
+    return replace(state, texts=(*texts[1 - KEPT_TEXTS :], entry))
 
 
 def _event(state: VehicleState, message: Message) -> VehicleState:
@@ -245,7 +254,7 @@ def _event(state: VehicleState, message: Message) -> VehicleState:
         return state
     heard_s = state.heard_s or 0.0
     entry = StatusText(heard_s, event.severity, event.text, against_mission=event.against_mission)
-    return replace(state, texts=(*state.texts[1 - _KEPT_TEXTS :], entry))
+    return replace(state, texts=(*state.texts[1 - KEPT_TEXTS :], entry))
 
 
 def finite(message: Message, name: str) -> float | None:

@@ -92,6 +92,11 @@ class Transfers(Protocol):
     ) -> Outcome:
         """Upload without reading back."""
 
+    async def update(
+        self, items: Sequence[MissionItem], progress: Callable[[Progress], None] | None = None
+    ) -> Outcome:
+        """Replace some items of the mission without reading back."""
+
     async def download(self, mission_type: MissionType) -> tuple[MissionItem, ...]:
         """What the vehicle holds."""
 
@@ -120,6 +125,18 @@ async def upload_and_verify(
             await asyncio.sleep(_CLEARED_PAUSE_S)
     outcome = await vehicle.upload(items, mission_type, progress)
     return await resolve(vehicle, Pending(tuple(items), mission_type, compare, outcome))
+
+
+async def update_and_verify(
+    vehicle: Transfers,
+    items: Sequence[MissionItem],
+    changed: range,
+    compare: Compare,
+    progress: Callable[[Progress], None] | None,
+) -> VerifiedUpload:
+    """Replace the items of a range by those of a mission, read the whole mission back and compare."""
+    outcome = await vehicle.update(items[changed.start : changed.stop], progress)
+    return await resolve(vehicle, Pending(tuple(items), MissionType.MISSION, compare, outcome))
 
 
 async def resolve(vehicle: Transfers, pending: Pending) -> VerifiedUpload:

@@ -247,4 +247,5 @@ class SimulatedAircraft:
             current=pilot.current,
             total=len(self.missions.items()),
             mission_complete=pilot.mission_complete,
+            list_ids=tuple(self.missions.opaque_id(kind) for kind in MissionType),
         )

@@ -48,6 +48,9 @@ class Fault(StrEnum):
     LOST_DOWNLOAD_ITEMS = "lost_download_items"
     """Every third item sent on a download is lost and has to be asked for again."""
 
+    WRONG_OPAQUE_ID = "wrong_opaque_id"
+    """The last MISSION_ACK gives the list another id than MISSION_COUNT and MISSION_CURRENT do."""
+
     NO_COMMAND_ACK = "no_command_ack"
     """Commands are carried out and never acknowledged."""
 

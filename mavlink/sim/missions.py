@@ -2,12 +2,14 @@
 
 Source: MAVLink mission protocol; the manners of each autopilot as measured on ArduPlane 4.6 and PX4 1.16
 simulators. ArduPilot writes mission items as they come (a failed upload leaves new items in front, old ones
-behind) and asks with MISSION_REQUEST; PX4 stores a list whole or not at all and asks with
-MISSION_REQUEST_INT. Fence and rally lists are stored whole by both.
+behind) and asks with MISSION_REQUEST; PX4 stores a list whole or not at all, asks with MISSION_REQUEST_INT,
+gives every list an id and is deaf to MISSION_WRITE_PARTIAL_LIST. Both store fences and rally points whole.
 """
 
 from __future__ import annotations
 
+import struct
+import zlib
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
@@ -34,6 +36,7 @@ _ALL_TYPES = 255
 _HANDLED = frozenset(
     {
         "MISSION_COUNT",
+        "MISSION_WRITE_PARTIAL_LIST",
         "MISSION_ITEM_INT",
         "MISSION_ITEM",
         "MISSION_REQUEST_LIST",
@@ -54,6 +57,14 @@ class _Upload:
     asked_s: float
     items: list[MissionItem] = field(default_factory=list)
     misled: bool = False
+    first: int = 0
+    partial: bool = False
+    checksum: int = 0
+
+    @property
+    def wanted(self) -> int:
+        """The number of the item to ask for."""
+        return self.first + len(self.items)
 
 
 @dataclass(slots=True)
@@ -93,9 +104,11 @@ class MissionServer:
         self._vanish_after_items = vanish_after_items
         self._vanish_for_s = vanish_for_s
         self._stores: dict[MissionType, list[MissionItem]] = {kind: [] for kind in MissionType}
+        self._ids: dict[MissionType, int] = dict.fromkeys(MissionType, 0)
         self._upload: _Upload | None = None
         self._download: _Download | None = None
         self._last_stored: tuple[MissionType, int] | None = None
+        self._last_checksum = 0
         self._silent_until_s: float | None = None
         self._vanished = False
         self._counters: dict[Fault, int] = {}
@@ -108,6 +121,10 @@ class MissionServer:
         if kind is MissionType.MISSION and self._flavour is Flavour.ARDUPILOT and stored:
             return (home_item(self.home), *stored[1:])
         return tuple(stored)
+
+    def opaque_id(self, kind: MissionType) -> int:
+        """PX4's checksum of the items held, as they were sent; 0 for none, and from ArduPilot."""
+        return self._ids[kind]
 
     @property
     def receiving(self) -> bool:
@@ -132,6 +149,8 @@ class MissionServer:
         match message.name:
             case "MISSION_COUNT":
                 answers = self._count(message, kind, now_s)
+            case "MISSION_WRITE_PARTIAL_LIST":
+                answers = self._partial(message, kind, now_s)
             case "MISSION_ITEM_INT" | "MISSION_ITEM":
                 answers = self._item(message, kind, now_s)
             case "MISSION_REQUEST_LIST":
@@ -194,6 +213,23 @@ class MissionServer:
         self._upload = _Upload(partner, kind, count, now_s, now_s)
         return self._ask(self._upload)
 
+    def _partial(self, message: Message, kind: MissionType, now_s: float) -> list[Message]:
+        if self._flavour is Flavour.PX4 or Fault.NO_RESPONSE_TO_COUNT in self._faults:
+            return []
+        if self._upload is not None:
+            return [self._ack(message, kind, MissionResult.DENIED)]
+        if Fault.ERROR_ACK_AT_0 in self._faults:
+            return [self._ack(message, kind, MissionResult.ERROR)]
+        first, last, held = message.integer("start_index"), message.integer("end_index"), self._stores[kind]
+        if not 0 <= first <= last <= len(held):
+            text = status_text(4, "Flight plan update rejected")
+            return [text, self._ack(message, kind, MissionResult.ERROR)]
+        self._download = None
+        self._upload = _Upload(
+            _sender(message), kind, last - first + 1, now_s, now_s, first=first, partial=True
+        )
+        return self._ask(self._upload)
+
     def _item(self, message: Message, kind: MissionType, now_s: float) -> list[Message]:
         upload, partner = self._upload, _sender(message)
         item = received_item(message, kind)
@@ -201,33 +237,39 @@ class MissionServer:
             again = self._flavour is Flavour.PX4 and self._last_stored == (kind, item.seq)
             if again:
                 # PX4 takes it for a lost acknowledgement, also after an abort that stored nothing.
-                return [self._ack(message, kind, MissionResult.ACCEPTED)]
+                return [self._ack(message, kind, MissionResult.ACCEPTED, self._last_checksum)]
             return [self._ack(message, kind, MissionResult.ERROR)]
         if self._lost(Fault.LOST_ITEMS):
             return []
         upload.heard_s = now_s
-        if item.seq != len(upload.items):
+        if item.seq != upload.wanted:
             if self._flavour is Flavour.ARDUPILOT:
                 return [self._ack(message, kind, MissionResult.INVALID_SEQUENCE)]
             upload.asked_s = now_s
             return self._ask(upload)
-        if Fault.ERROR_ACK_AT_1 in self._faults and item.seq == 0:
+        if Fault.ERROR_ACK_AT_1 in self._faults and not upload.items:
             self._upload = None
             return [self._ack(message, kind, MissionResult.ERROR)]
-        refused = refusal(self._flavour, item, upload.count, self._sensor_command)
+        refused = refusal(
+            self._flavour,
+            item,
+            max(upload.first + upload.count, len(self._stores[kind])),
+            self._sensor_command,
+        )
         if refused is not None:
             self._upload = None
             text = status_text(4, f"Mission item {item.seq}: {refused.name}")
             return [text, self._ack(message, kind, refused)]
         upload.items.append(as_stored(self._flavour, item, self.home))
+        upload.checksum = _checksum(message, upload.checksum)
         upload.asked_s = now_s
         if self._in_place(kind):
-            self._store(kind, [*upload.items, *self._stores[kind][len(upload.items) :]])
-        self._last_stored = (kind, upload.count - 1)
+            self._store(kind, self._merged(upload))
+        self._last_stored, self._last_checksum = (kind, upload.first + upload.count - 1), upload.checksum
         if Fault.EARLY_ACK in self._faults and upload.count > 1:
             self._upload = None
-            self._store(kind, upload.items)
-            return [self._ack(message, kind, MissionResult.ACCEPTED)]
+            self._store(kind, self._merged(upload) if upload.partial else upload.items, upload.checksum)
+            return [self._ack(message, kind, MissionResult.ACCEPTED, upload.checksum)]
         if (
             Fault.VANISH_MID_UPLOAD in self._faults
             and not self._vanished
@@ -242,25 +284,33 @@ class MissionServer:
 
     def _complete(self, upload: _Upload) -> list[Message]:
         self._upload = None
-        items, reason = upload.items, ""
+        items, reason = self._merged(upload) if upload.partial else upload.items, ""
         if upload.kind is not MissionType.MISSION:
-            items, reason = finished_list(self._flavour, upload.items, self._stores[upload.kind])
+            items, reason = finished_list(self._flavour, items, self._stores[upload.kind])
         if reason:
             return [status_text(4, reason), _ack_to(upload.partner, upload.kind, MissionResult.ERROR)]
         if Fault.ALTERED_ITEM in self._faults:
             items = _altered(items)
-        self._store(upload.kind, items)
+        self._store(upload.kind, items, upload.checksum)
         if Fault.NO_FINAL_ACK in self._faults:
             return []
-        return [_ack_to(upload.partner, upload.kind, MissionResult.ACCEPTED)]
+        opaque_id = self._ids[upload.kind]
+        if opaque_id and Fault.WRONG_OPAQUE_ID in self._faults:
+            opaque_id ^= 1
+        return [_ack_to(upload.partner, upload.kind, MissionResult.ACCEPTED, opaque_id)]
+
+    def _merged(self, upload: _Upload) -> list[MissionItem]:
+        """The list held, with what has come so far in its place."""
+        stored = self._stores[upload.kind]
+        return [*stored[: upload.first], *upload.items, *stored[upload.wanted :]]
 
     def _ask(self, upload: _Upload) -> list[Message]:
         if self._lost(Fault.LOST_REQUESTS):
             return []
-        seq = len(upload.items)
-        if Fault.WRONG_SEQUENCE_REQUEST in self._faults and seq == 1 and not upload.misled:
+        seq = upload.wanted
+        if Fault.WRONG_SEQUENCE_REQUEST in self._faults and len(upload.items) == 1 and not upload.misled:
             upload.misled = True
-            seq = 2
+            seq += 1
         name = "MISSION_REQUEST" if self._flavour is Flavour.ARDUPILOT else "MISSION_REQUEST_INT"
         system, component = upload.partner
         fields = {
@@ -282,6 +332,7 @@ class MissionServer:
             "target_component": message.component_id,
             "count": len(self.items(kind)),
             "mission_type": int(kind),
+            "opaque_id": self._ids[kind],
         }
         return [Message("MISSION_COUNT", fields)]
 
@@ -308,7 +359,8 @@ class MissionServer:
             self._store(each, [])
         return [self._ack(message, kind, MissionResult.ACCEPTED)]
 
-    def _store(self, kind: MissionType, items: Sequence[MissionItem]) -> None:
+    def _store(self, kind: MissionType, items: Sequence[MissionItem], checksum: int = 0) -> None:
+        self._ids[kind] = checksum if self._flavour is Flavour.PX4 else 0
         self._stores[kind] = [replace(item, seq=seq) for seq, item in enumerate(items)]
         if kind is MissionType.MISSION:
             self.revision += 1
@@ -328,20 +380,31 @@ class MissionServer:
         self._counters[fault] = self._counters.get(fault, 0) + 1
         return self._counters[fault] % 3 == 0
 
-    def _ack(self, message: Message, kind: MissionType, result: MissionResult) -> Message:
-        return _ack_to(_sender(message), kind, result)
+    def _ack(self, message: Message, kind: MissionType, result: MissionResult, checksum: int = 0) -> Message:
+        opaque_id = checksum if self._flavour is Flavour.PX4 else 0
+        return _ack_to(_sender(message), kind, result, opaque_id)
 
 
 def _sender(message: Message) -> tuple[int, int]:
     return message.system_id, message.component_id
 
 
-def _ack_to(partner: tuple[int, int], kind: MissionType, result: MissionResult) -> Message:
+def _checksum(message: Message, before: int) -> int:
+    """PX4's: of frame, command, autocontinue, parameters and place, as sent."""
+    whole = struct.pack("<BHB", *(message.integer(name) for name in ("frame", "command", "autocontinue")))
+    numbers = (message.number(name) for name in ("param1", "param2", "param3", "param4", "x", "y", "z"))
+    return zlib.crc32(whole + struct.pack("<7d", *numbers), before)
+
+
+def _ack_to(
+    partner: tuple[int, int], kind: MissionType, result: MissionResult, opaque_id: int = 0
+) -> Message:
     fields = {
         "target_system": partner[0],
         "target_component": partner[1],
         "type": int(result),
         "mission_type": int(kind),
+        "opaque_id": opaque_id,
     }
     return Message("MISSION_ACK", fields)
 

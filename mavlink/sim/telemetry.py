@@ -50,7 +50,7 @@ NAMES = {number: name for name, (number, _) in STREAMS.items()}
 
 @dataclass(frozen=True, slots=True)
 class Snapshot:
-    """What telemetry is built from."""
+    """What telemetry is built from; ``list_ids`` are those of mission, fence and rally points."""
 
     state: AircraftState
     home: Place
@@ -60,6 +60,7 @@ class Snapshot:
     current: int
     total: int
     mission_complete: bool
+    list_ids: tuple[int, ...] = (0, 0, 0)
 
 
 class Streams:
@@ -246,6 +247,9 @@ def _mission_current(snapshot: Snapshot, settings: SimSettings) -> Message:
             "total": total,
             "mission_state": mission_state,
             "mission_mode": 1 if snapshot.mode is Mode.AUTO else 2,
+            "mission_id": snapshot.list_ids[0],
+            "fence_id": snapshot.list_ids[1],
+            "rally_points_id": snapshot.list_ids[2],
         },
     )
 

@@ -11,7 +11,7 @@ from typing import Final
 
 from mavlink.items import MissionItem, MissionResult, MissionType
 from mavlink.messages import Message
-from mavlink.transfer.items_wire import ITEM_NAMES, message_item
+from mavlink.transfer.items_wire import ITEM_NAMES, message_item, opaque_id_of
 from mavlink.transfer.machine import DEFAULT_SETTINGS, Machine, Progress, TransferSettings
 from mavlink.transfer.outcome import Accepted, Outcome, Refused, Unknown
 
@@ -50,7 +50,7 @@ TRANSITIONS: Final[dict[tuple[State, Event], State]] = {
     (State.LISTING, Event.TIMEOUT): State.LISTING,
     (State.LISTING, Event.GIVES_UP): State.UNKNOWN,
     (State.LISTING, Event.CANCEL): State.UNKNOWN,
-    (State.FETCHING, Event.COUNTED): State.FETCHING,  # another count: the list changed, begin again
+    (State.FETCHING, Event.COUNTED): State.FETCHING,  # another count or id: the list changed, begin again
     (State.FETCHING, Event.EMPTY): State.COMPLETE,
     (State.FETCHING, Event.ITEM): State.FETCHING,
     (State.FETCHING, Event.LAST_ITEM): State.COMPLETE,
@@ -64,7 +64,13 @@ TRANSITIONS: Final[dict[tuple[State, Event], State]] = {
 
 
 class DownloadMachine(Machine[Outcome]):
-    """One download; ``items`` is what the vehicle holds once the outcome is accepted."""
+    """One download; ``items`` is what the vehicle holds once the outcome is accepted.
+
+    Attributes
+    ----------
+    opaque_id
+        The vehicle's id of the list (MISSION_COUNT); None where it gives none.
+    """
 
     def __init__(
         self,
@@ -75,6 +81,7 @@ class DownloadMachine(Machine[Outcome]):
     ) -> None:
         super().__init__(mission_type, target_system, target_component, settings)
         self.state = State.IDLE
+        self.opaque_id: int | None = None
         self._items: list[MissionItem] = []
         self._total: int | None = None
         self._tries = 0
@@ -99,7 +106,7 @@ class DownloadMachine(Machine[Outcome]):
         if not self._concerns(message):
             return []
         if message.name == "MISSION_COUNT":
-            return self._take_count(message.integer("count"), now_s)
+            return self._take_count(message.integer("count"), opaque_id_of(message), now_s)
         if message.name in ITEM_NAMES:
             return self._take_item(message, now_s)
         if message.name == "MISSION_ACK":
@@ -126,12 +133,12 @@ class DownloadMachine(Machine[Outcome]):
         self._end(Unknown("cancelled", self._wanted()))
         return [self._acknowledgement(MissionResult.OPERATION_CANCELLED)]
 
-    def _take_count(self, count: int, now_s: float) -> list[Message]:
-        if count == self._total:
+    def _take_count(self, count: int, opaque_id: int | None, now_s: float) -> list[Message]:
+        if (count, opaque_id) == (self._total, self.opaque_id):
             return self._take_repeated(last=count == 0)
         if not self._move(Event.COUNTED if count else Event.EMPTY):
             return []
-        self._total = count
+        self._total, self.opaque_id = count, opaque_id
         self._items.clear()
         return self._ask(now_s, first=True) if count else self._complete()
 

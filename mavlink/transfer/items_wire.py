@@ -72,6 +72,11 @@ def message_item(message: Message) -> MissionItem:
     )
 
 
+def opaque_id_of(message: Message) -> int | None:
+    """The vehicle's id of a list, in its MISSION_ACK or MISSION_COUNT; None where it gives none (0)."""
+    return message.integer("opaque_id") or None if "opaque_id" in message.fields else None
+
+
 def _float_place(value: float, frame: int) -> int:
     if not math.isfinite(value):
         raise ValueError(f"a MISSION_ITEM is placed at {value}")

@@ -93,18 +93,34 @@ class Refused:
         return f"refused{where}: {self.meaning} ({self.code})"
 
 
+#: What the vehicle's id of the list (MISSION_CURRENT) did since the upload began.
+Sign = Literal["changed", "unchanged"]
+
+_SIGN_WORDS: Final[dict[Sign, str]] = {
+    "changed": "; its id has changed since, so it seems to hold a new list",
+    "unchanged": "; its id has not changed, so it seems to hold the list it held before",
+}
+
+
 @dataclass(frozen=True, slots=True)
 class Unknown:
-    """Nobody on this side can tell what the vehicle holds; reading back will."""
+    """Nobody on this side can tell what the vehicle holds; reading back will.
+
+    Parameters
+    ----------
+    sign
+        A first sign, from vehicles that number their lists; it decides nothing.
+    """
 
     reason: UnknownReason
     seq: int | None = None
     kind: Literal["unknown"] = "unknown"
+    sign: Sign | None = None
 
     @property
     def meaning(self) -> str:
         """The reason in words."""
-        return _UNKNOWN_WORDS[self.reason]
+        return _UNKNOWN_WORDS[self.reason] + ("" if self.sign is None else _SIGN_WORDS[self.sign])
 
     def __str__(self) -> str:
         where = "" if self.seq is None else f" at item {self.seq}"

@@ -10,11 +10,11 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from enum import Enum, auto
-from typing import Final
+from typing import ClassVar, Final
 
 from mavlink.items import MissionItem, MissionResult, MissionType
 from mavlink.messages import Message
-from mavlink.transfer.items_wire import item_message
+from mavlink.transfer.items_wire import item_message, opaque_id_of
 from mavlink.transfer.machine import DEFAULT_SETTINGS, Machine, Progress, TransferSettings
 from mavlink.transfer.outcome import Accepted, Outcome, Refused, Unknown, UnknownReason
 
@@ -39,7 +39,7 @@ class Event(Enum):
     ASKS_LAST = auto()  # asks for an item, and with it every item was asked for
     ACCEPTS = auto()  # ACCEPTED, and every item was asked for
     ACCEPTS_EARLY = auto()  # ACCEPTED, though some item was never asked for
-    COMPLAINS = auto()  # INVALID_SEQUENCE: ArduPilot's word on a duplicate, while it goes on
+    COMPLAINS = auto()  # ArduPilot's word on a duplicate (INVALID_SEQUENCE), while it goes on
     ERRS_AT_END = auto()  # ERROR when every item was asked for: also ArduPilot's word on a late duplicate
     REFUSES = auto()  # any other result
     TIMEOUT = auto()  # time to announce again
@@ -85,11 +85,21 @@ class UploadMachine(Machine[Outcome]):
     items
         Numbered 0, 1, 2 … and all of ``mission_type``.
 
+    Attributes
+    ----------
+    opaque_id
+        The vehicle's id of the new list (MISSION_ACK), once it has accepted; None where it gives none.
+
     Raises
     ------
     ValueError
         The items are not numbered so, are of another type, or are more than the wire can count.
     """
+
+    #: The most that can be announced.
+    most: ClassVar[int] = 0xFFFF
+    #: Answers a vehicle may give to a duplicate while the upload goes on: final only when silence follows.
+    _complaints: ClassVar[frozenset[int]] = frozenset({MissionResult.INVALID_SEQUENCE})
 
     def __init__(
         self,
@@ -98,24 +108,27 @@ class UploadMachine(Machine[Outcome]):
         target_system: int,
         target_component: int,
         settings: TransferSettings = DEFAULT_SETTINGS,
+        first: int = 0,
     ) -> None:
         super().__init__(mission_type, target_system, target_component, settings)
-        for index, item in enumerate(items):
-            if item.seq != index or item.mission_type != mission_type:
-                raise ValueError(f"item {index} is numbered {item.seq} and of type {item.mission_type.name}")
+        for seq, item in enumerate(items, first):
+            if item.seq != seq or item.mission_type != mission_type:
+                raise ValueError(f"item {seq} is numbered {item.seq} and of type {item.mission_type.name}")
             if mission_type is MissionType.FENCE and math.isnan(item.param1):
-                raise ValueError(f"fence item {index} has no number in param1, which crashes autopilots")
-        if len(items) > 0xFFFF:
-            raise ValueError(f"{len(items)} items; the protocol counts to 65535")
+                raise ValueError(f"fence item {seq} has no number in param1, which crashes autopilots")
+        if first + len(items) > self.most:
+            raise ValueError(f"{first + len(items)} items; the protocol counts to {self.most}")
         self.items = tuple(items)
         self.state = State.IDLE
-        self._never_asked = set(range(len(items)))
+        self.opaque_id: int | None = None
+        self._first = first
+        self._never_asked = set(range(first, first + len(items)))
         self._reached = 0
         self._last_asked: int | None = None
         self._repeats = 0
         self._retries_left = settings.retries
         self._accepted_early = False
-        self._complained = False
+        self._complained: int | None = None
 
     @property
     def progress(self) -> Progress:
@@ -127,7 +140,7 @@ class UploadMachine(Machine[Outcome]):
         """Announce the count."""
         self._move(Event.START)
         self.deadline_s = now_s + self.settings.timeout_s
-        return [self._count()]
+        return [self._announcement()]
 
     def receive(self, message: Message, now_s: float) -> list[Message]:
         """Answer requests; take acknowledgements."""
@@ -136,7 +149,7 @@ class UploadMachine(Machine[Outcome]):
         if message.name in ("MISSION_REQUEST", "MISSION_REQUEST_INT"):
             return self._answer(message.integer("seq"), now_s)
         if message.name == "MISSION_ACK":
-            self._acknowledge(message.integer("type"), now_s)
+            self._acknowledge(message.integer("type"), opaque_id_of(message))
         return []
 
     def tick(self, now_s: float) -> list[Message]:
@@ -147,7 +160,7 @@ class UploadMachine(Machine[Outcome]):
             self._retries_left -= 1
             self._move(Event.TIMEOUT)
             self.deadline_s = now_s + self.settings.timeout_s
-            return [self._count()]
+            return [self._announcement()]
         self._give_up()
         return []
 
@@ -160,34 +173,35 @@ class UploadMachine(Machine[Outcome]):
         return [self._typed("MISSION_ACK", type=int(MissionResult.OPERATION_CANCELLED))]
 
     def _answer(self, seq: int, now_s: float) -> list[Message]:
-        if seq >= len(self.items):
+        if not 0 <= seq - self._first < len(self.items):
             return []
         left = len(self._never_asked) - (seq in self._never_asked)
         if not self._move(Event.ASKS if left else Event.ASKS_LAST):
             return []
         self._never_asked.discard(seq)
         if self.state is not State.ACCEPTED:
-            self._reached = max(self._reached, seq)
-            self._complained = False
+            self._reached = max(self._reached, seq - self._first)
+            self._complained = None
             self._repeats = self._repeats + 1 if seq == self._last_asked else 0
             self._last_asked = seq
             if self._repeats >= self.settings.most_repeats:
                 self._give_up()
                 return []
             self._wait_for_vehicle(now_s)
-        return [item_message(self.items[seq], self.target_system, self.target_component)]
+        return [item_message(self.items[seq - self._first], self.target_system, self.target_component)]
 
-    def _acknowledge(self, result: int, now_s: float) -> None:
+    def _acknowledge(self, result: int, opaque_id: int | None) -> None:
         if result == MissionResult.ACCEPTED:
             early = bool(self._never_asked)
             if self._move(Event.ACCEPTS_EARLY if early else Event.ACCEPTS):
                 if early:
                     self._accepted_early = True
                 else:
+                    self.opaque_id = opaque_id
                     self._end(Accepted())
-        elif result == MissionResult.INVALID_SEQUENCE:
+        elif result in self._complaints:
             if self._move(Event.COMPLAINS):
-                self._complained = True
+                self._complained = result
         elif result == MissionResult.ERROR and self._move(Event.ERRS_AT_END):
             self._end_unknown("error-at-end")
         elif self._move(Event.REFUSES):
@@ -206,10 +220,10 @@ class UploadMachine(Machine[Outcome]):
             self._end_unknown("lost-acknowledgement")
         elif self._accepted_early:
             self._end_unknown("early-acceptance")
-        elif self._complained:
-            # It complained of the sequence, never asked again and lacks items: that was its last word.
+        elif self._complained is not None:
+            # It complained, never asked again and lacks items: that was its last word.
             self.state = State.REFUSED
-            self._end(Refused(MissionResult.INVALID_SEQUENCE, self._last_asked))
+            self._end(Refused(self._complained, self._last_asked))
         else:
             self._end_unknown("timeout")
 
@@ -224,5 +238,5 @@ class UploadMachine(Machine[Outcome]):
         self.state = following
         return True
 
-    def _count(self) -> Message:
+    def _announcement(self) -> Message:
         return self._typed("MISSION_COUNT", count=len(self.items))

@@ -2,12 +2,14 @@
 
 Two manners, as measured on simulators. ArduPilot stores item by item, asks every second, gives up after 8 s,
 says INVALID_SEQUENCE to duplicates and ERROR to items nobody asked for. PX4 stores at the end, asks every
-0.25 s, gives up after 5 s, and acknowledges the last item whenever it comes again.
+0.25 s, gives up after 5 s, acknowledges the last item whenever it comes again, gives every list an id, and is
+deaf to partial updates.
 """
 
 from __future__ import annotations
 
 import math
+import zlib
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
@@ -67,6 +69,12 @@ class _Upload:
     asked_s: float
     heard_s: float
     items: list[MissionItem] = field(default_factory=list)
+    first: int = 0
+    partial: bool = False
+
+    @property
+    def wanted(self) -> int:
+        return self.first + len(self.items)
 
 
 class StubVehicle:
@@ -82,6 +90,8 @@ class StubVehicle:
         Every result it ever sent.
     refuse_item
         The result an item draws instead of being taken, by number.
+    ids
+        What it says of its lists in MISSION_COUNT and MISSION_ACK, by type; 0 where it has no ids.
     """
 
     def __init__(
@@ -93,6 +103,7 @@ class StubVehicle:
         self.stored: list[tuple[MissionItem, ...]] = []
         self.said: list[int] = []
         self.lose_final = False
+        self.ids: dict[int, int] = {0: 0, 1: 0, 2: 0}
         self._ask_every_s, self._give_up_s = (1.0, 8.0) if manner == "ardupilot" else (0.25, 5.0)
         self._uploads: dict[int, _Upload] = {}
 
@@ -111,14 +122,18 @@ class StubVehicle:
         match message.name:
             case "MISSION_COUNT":
                 return self._count(message.integer("count"), kind, now_s)
+            case "MISSION_WRITE_PARTIAL_LIST" if self.manner == "ardupilot":
+                return self._partial(message, kind, now_s)
             case "MISSION_ITEM_INT":
                 return self._item(item_of(message), kind, now_s)
             case "MISSION_REQUEST_LIST":
-                return [from_vehicle("MISSION_COUNT", count=len(self.held[kind]), mission_type=kind)]
+                count, opaque_id = len(self.held[kind]), self.ids[kind]
+                return [from_vehicle("MISSION_COUNT", count=count, mission_type=kind, opaque_id=opaque_id)]
             case "MISSION_REQUEST_INT":
                 return self._give(message.integer("seq"), kind)
             case "MISSION_CLEAR_ALL":
                 self.held[kind] = ()
+                self.ids[kind] = 0
                 return [self._ack(MissionResult.ACCEPTED, kind)]
             case "MISSION_ACK" if message.integer("type") != 0:
                 self._uploads.pop(kind, None)
@@ -144,6 +159,15 @@ class StubVehicle:
             self.held[kind] = self.held[kind][:count]
         return [self._ask(kind, now_s)]
 
+    def _partial(self, message: Message, kind: int, now_s: float) -> list[Message]:
+        first, last = message.integer("start_index"), message.integer("end_index")
+        if kind in self._uploads:
+            return [self._ack(MissionResult.DENIED, kind)]
+        if not 0 <= first <= last <= len(self.held[kind]):
+            return [self._ack(MissionResult.ERROR, kind)]
+        self._uploads[kind] = _Upload(last - first + 1, now_s, now_s, first=first, partial=True)
+        return [self._ask(kind, now_s)]
+
     def _item(self, item: MissionItem, kind: int, now_s: float) -> list[Message]:
         upload = self._uploads.get(kind)
         if upload is None:
@@ -151,21 +175,23 @@ class StubVehicle:
                 return [self._ack(MissionResult.ERROR, kind)]
             return [self._ack(MissionResult.ACCEPTED, kind)] if item.seq + 1 == len(self.held[kind]) else []
         upload.heard_s = now_s
-        if item.seq != len(upload.items):
+        if item.seq != upload.wanted:
             return [self._ack(MissionResult.INVALID_SEQUENCE, kind)] if self.manner == "ardupilot" else []
         if item.seq in self.refuse_item:
             del self._uploads[kind]
             return [self._ack(self.refuse_item[item.seq], kind)]
         upload.items.append(item)
         if self.manner == "ardupilot":
-            self.held[kind] = (*upload.items, *self.held[kind][len(upload.items) :])
+            held = self.held[kind]
+            self.held[kind] = (*held[: upload.first], *upload.items, *held[upload.wanted :])
         if len(upload.items) == upload.count:
             del self._uploads[kind]
-            return self._commit(tuple(upload.items), kind)
+            return self._commit(self.held[kind] if upload.partial else tuple(upload.items), kind)
         return [self._ask(kind, now_s)]
 
     def _commit(self, items: Sequence[MissionItem], kind: int) -> list[Message]:
         self.held[kind] = tuple(items)
+        self.ids[kind] = zlib.crc32(repr(items).encode()) if self.manner == "px4" and items else 0
         self.stored.append(tuple(items))
         acknowledgement = self._ack(MissionResult.ACCEPTED, kind)
         return [] if self.lose_final else [acknowledgement]
@@ -174,7 +200,7 @@ class StubVehicle:
         upload = self._uploads[kind]
         upload.asked_s = now_s
         name = "MISSION_REQUEST" if self.manner == "ardupilot" else "MISSION_REQUEST_INT"
-        return from_vehicle(name, seq=len(upload.items), mission_type=kind)
+        return from_vehicle(name, seq=upload.wanted, mission_type=kind)
 
     def _give(self, seq: int, kind: int) -> list[Message]:
         if seq >= len(self.held[kind]):
@@ -187,4 +213,5 @@ class StubVehicle:
 
     def _ack(self, result: MissionResult, kind: int) -> Message:
         self.said.append(int(result))
-        return from_vehicle("MISSION_ACK", type=int(result), mission_type=kind)
+        opaque_id = self.ids[kind] if result == MissionResult.ACCEPTED else 0
+        return from_vehicle("MISSION_ACK", type=int(result), mission_type=kind, opaque_id=opaque_id)
