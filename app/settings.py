@@ -5,10 +5,10 @@ from __future__ import annotations
 import ipaddress
 import os
 from pathlib import Path
-from typing import Literal, Self
+from typing import Annotated, Any, Literal, Self
 
-from pydantic import Field, model_validator
-from pydantic_settings import BaseSettings, SettingsConfigDict
+from pydantic import Field, field_validator, model_validator
+from pydantic_settings import BaseSettings, NoDecode, SettingsConfigDict
 
 PACKAGE = Path(__file__).resolve().parent
 
@@ -27,10 +27,23 @@ def is_loopback(host: str) -> bool:
         return False
 
 
+#: What the names of environment variables begin with.
+PREFIX = "SWATHPLAN_"
+#: Variables of the tests, which are no settings of the service.
+_OF_TESTS = ("SWATHPLAN_TEST_", "SWATHPLAN_ARDU", "SWATHPLAN_PX4", "SWATHPLAN_SCREENSHOT")
+
+
+def unknown_variables() -> tuple[str, ...]:
+    """Environment variables that look like settings and are none: most often a slip."""
+    known = {PREFIX + name.upper() for name in Settings.model_fields}
+    given = (name.upper() for name in os.environ if name.upper().startswith(PREFIX))
+    return tuple(sorted(name for name in given if name not in known and not name.startswith(_OF_TESTS)))
+
+
 class Settings(BaseSettings):
     """How one service runs. Built by the caller and handed to ``create_app``; never a global."""
 
-    model_config = SettingsConfigDict(env_prefix="SWATHPLAN_", extra="ignore", frozen=True)
+    model_config = SettingsConfigDict(env_prefix=PREFIX, extra="ignore", frozen=True)
 
     host: str = Field(default="127.0.0.1", description="Address to listen on.")
     port: int = Field(default=8000, ge=0, le=65535, description="TCP port to listen on; 0 takes a free one.")
@@ -39,22 +52,36 @@ class Settings(BaseSettings):
         description="Listen beyond this machine although the service knows no users: whoever reaches it "
         "commands the vehicles.",
     )
-    allowed_hosts: tuple[str, ...] = Field(
-        default=(), description="Host names, beyond this machine's own, that requests may be addressed to."
+    allowed_hosts: Annotated[tuple[str, ...], NoDecode] = Field(
+        default=(),
+        description="Host names, beyond this machine's own, that requests may be addressed to; with commas "
+        "between them.",
     )
-    database: Path = Field(default=Path("var/swathplan.db"), description="Database file.")
-    workers: int = Field(default_factory=_spare_cores, ge=1, le=256, description="Planning processes.")
+    database: Path = Field(default=Path("var/swathplan.db"), description="Database file; made when absent.")
+    workers: int = Field(
+        default_factory=_spare_cores,
+        ge=1,
+        le=256,
+        description="Planning processes; the cores but one when unset.",
+    )
     plan_time_limit_s: float = Field(default=600.0, gt=0, description="Longest time one plan may take.")
-    max_queued_plans: int = Field(default=200, ge=1, description="Plans waiting; more are refused with 429.")
-    max_wait_s: float = Field(default=300.0, ge=0, description="Longest ``?wait=``.")
+    max_queued_plans: int = Field(
+        default=200, ge=1, description="Plans that may wait; more are refused with 429."
+    )
+    max_wait_s: float = Field(
+        default=300.0, ge=0, description="Longest `?wait=` of a request; longer ones are cut to it."
+    )
     max_body_bytes: int = Field(default=5_000_000, ge=1024, description="Largest request body.")
     max_terrain_bytes: int = Field(default=100_000_000, ge=1024, description="Largest elevation file.")
-    static_dir: Path | None = Field(default=None, description="The built web map; found when unset.")
-    log_level: Literal["debug", "info", "warning", "error"] = "info"
+    static_dir: Path | None = Field(
+        default=None, description="Folder of the built web map; found by itself when unset."
+    )
+    log_level: Literal["debug", "info", "warning", "error"] = Field(
+        default="info", description="Messages of less weight are not logged."
+    )
     track_interval_s: float = Field(
         default=0.2, gt=0, description="Vehicle time between two recorded points of a track."
     )
-
     record_links: bool = Field(default=True, description="Record every vehicle's link as .tlog files.")
     log_dir: Path | None = Field(
         default=None, description="Folder of the recordings; `logs` beside the database when unset."
@@ -63,6 +90,15 @@ class Settings(BaseSettings):
     log_total_bytes: int = Field(
         default=2_000_000_000, ge=1_000_000, description="Size of all recordings; the oldest go first."
     )
+
+    @field_validator("allowed_hosts", mode="before")
+    @classmethod
+    def _split(cls, value: Any) -> Any:
+        return (
+            tuple(filter(None, (host.strip() for host in value.split(","))))
+            if isinstance(value, str)
+            else value
+        )
 
     @model_validator(mode="after")
     def _refuse_unsafe(self) -> Self:

@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
-from app.cli.output import CommandError, Exit, Json, emit, read_document
+from app.cli.output import CommandError, Exit, Json, emit, read_document, say
 
 
 def serve(
@@ -31,11 +31,11 @@ def serve(
 ) -> None:
     """Serve the map and the HTTP interface.
 
-    Further settings come from environment variables with the prefix SWATHPLAN_; see the documentation.
+    Further settings come from environment variables with the prefix SWATHPLAN_; docs/settings.md lists them.
     """
     from pydantic import ValidationError
 
-    from app.settings import Settings
+    from app.settings import Settings, unknown_variables
 
     given: dict[str, Any] = {"host": host, "port": port, "database": database, "workers": workers}
     document = None if scenario is None else read_document(scenario)
@@ -47,6 +47,8 @@ def serve(
         )
         raise CommandError(reasons, Exit.BAD_INPUT) from error
 
+    for variable in unknown_variables():
+        say(f"warning: {variable} is no setting and does nothing; docs/settings.md lists them")
     _check_wishes(document, settings.database, sim_url)
 
     from app.server import StartError, Welcome, run_server
