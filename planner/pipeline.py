@@ -19,6 +19,7 @@ from planner.publish import Leg, assemble, uncovered, whole_path
 from planner.route import Anchor, CollectPass, Route
 from planner.routing.bounds import bounded, lower_bound_m
 from planner.routing.greedy import greedy
+from planner.routing.hidden import hidden_findings
 from planner.routing.joint import joint_route, sides_of
 from planner.routing.legs import TRANSIT_MARGIN_M as TRANSIT_MARGIN_M
 from planner.scenario import Method, Scenario
@@ -93,6 +94,7 @@ def make_plan(
     with watch.stage("transit"):
         legs, notes = _connect(scenario, aircraft, methods, route, _part(progress, 0.5, 0.9), stop)
     crab_findings = drift(scenario, aircraft, route.passes)
+    dropped += hidden_findings(scenario, route.passes, by_paper=methods["coverage"] == "li2018")
     with watch.stage("publish"):
         path = whole_path(legs, route.passes)
         draft = assemble(

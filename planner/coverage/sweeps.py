@@ -43,10 +43,13 @@ _SAME_ANGLE_RAD = math.radians(0.01)
 class Judge(Protocol):
     """Says what lanes cost."""
 
-    def __call__(self, lines: Floats, headings_rad: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+    def __call__(
+        self, lines: Floats, headings_rad: Floats, looks: tuple[Look, ...]
+    ) -> tuple[Floats, Floats, Floats, Floats]:
         """Cost (inf where not to be flown), entry and exit poses, and what want of room costs there.
 
-        Lines are (N, 2, 2); the results (N,), (N, 3), (N, 3) and (N, 2).
+        Lines are (N, 2, 2), of which line n looks to ``looks[n % len(looks)]``; the results (N,), (N, 3),
+        (N, 3) and (N, 2).
         """
 
 
@@ -270,7 +273,7 @@ def _solve(
     lanes = lanes_at(sweep, angles_rad, etas, count)
     shape = lanes.lines.shape[:4]
     headings_rad = np.broadcast_to(lanes.headings_rad[:, None, None, :], shape).ravel()
-    cost_m, entries, exits, cramped_m = judge(lanes.lines.reshape(-1, 2, 2), headings_rad)
+    cost_m, entries, exits, cramped_m = judge(lanes.lines.reshape(-1, 2, 2), headings_rad, lanes.looks)
     cost_m = np.where(_allowed(sweep, headings_rad), cost_m, np.inf)
     problems = (shape[0] * shape[1], *shape[2:])
     costs, orders = kernels.lane_orders(

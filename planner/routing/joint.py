@@ -9,7 +9,8 @@ the tour takes one of each at the least whole length, exactly over the order for
    shortest path through the layers of options.
 3. Costs between options are estimates where discs or zones are in the way: the legs of the tours found are
    flown in earnest, their true costs fed back (``chain``), and the tours compared by true cost.
-4. Passes of one region are parted where others fit between (``split``).
+4. Passes of one region are parted where others fit between (``split``), and passes added for ground that
+   terrain hides from all of them (``hidden``).
 """
 
 from __future__ import annotations
@@ -30,6 +31,7 @@ from planner.route import CollectPass, Route
 from planner.routing import joint_kernels as kernels
 from planner.routing import tour
 from planner.routing.chain import Layers, from_start, layers_of, to_end, true_choice
+from planner.routing.hidden import see_hidden
 from planner.routing.large import large_order
 from planner.routing.legs import Legs
 from planner.routing.options import Options, Surroundings, collect_passes, make_options
@@ -155,6 +157,10 @@ def joint_route(
     legs = Legs(scenario, aircraft, stop)
     cost_m, passes = _truest(scenario, around, regions, sides, refined, legs, progress, stop, enough)
     cost_m, passes = split_passes(cost_m, passes, legs, stop)
+    if scenario.terrain is not None and scenario.method.coverage != "li2018":
+        more = see_hidden(scenario, around, passes, legs, stop)
+        if more is not passes:
+            passes, cost_m = more, legs.tour_m(more)
     return JointRoute(Route(passes), dropped, cost_m, tuple(sides))
 
 

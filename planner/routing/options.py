@@ -13,6 +13,7 @@ from shapely.geometry import Polygon
 
 from planner.coverage.alternatives import of_visit
 from planner.coverage.classify import fits, hull_points, spans_at
+from planner.coverage.merge import GRID_M
 from planner.coverage.neighbourhood import complementary, inside
 from planner.coverage.segments import Neighbourhood
 from planner.coverage.sweeps import VARIANTS, Judge, Side, Sweep, Swept, best_sweeps, sweep_passes
@@ -21,6 +22,7 @@ from planner.environment.kernels import length_in_discs
 from planner.environment.terrain import Ground
 from planner.route import CollectPass
 from planner.scenario import Wind
+from planner.sensors.sar import Look
 from planner.sensors.view import shadow_cost
 from planner.vehicle.wind import STILL_AIR, still_air_factor
 
@@ -30,6 +32,8 @@ Floats = NDArray[np.float64]
 INSIDE_FACTOR = 20.0
 #: An option without room for a full turn at one of its ends is taken only where all others are worse.
 NO_ROOM_M = 5_000.0
+#: Places of a region looked at for what terrain hides, in each strip and in all.
+PLACES, MOST_PLACES = 60, 400
 
 
 @dataclass(frozen=True, slots=True)
@@ -157,7 +161,7 @@ def _of_side(
         return None
     first = here.lines(etas)
     good_first, cost_first = _judge(first, around)
-    cost_first += _hidden_m(here, first, around)
+    cost_first += _hidden_m(here, here.look, first, around)
     if side.turns == 0:
         rows = np.argwhere(good_first)
         if len(rows) == 0:
@@ -170,7 +174,7 @@ def _of_side(
         )
     second = here.lines(etas, opposite=True)
     good_second, cost_second = _judge(second, around)
-    cost_second += _hidden_m(here, second, around)
+    cost_second += _hidden_m(here, here.look, second, around)
     both = good_first[:, :, None] & good_second[:, None, :] & complementary(etas)
     rows = np.argwhere(both)
     if len(rows) == 0:
@@ -210,7 +214,8 @@ def _of_sweeps(
             families.setdefault(side.extra, []).append((index, side))
     found = []
     for family in families.values():
-        best = best_sweeps(family[0][1], angles_rad, etas, _lane_judge(around), around.radius_m, around.discs)
+        judge = _lane_judge(family[0][1], around)
+        best = best_sweeps(family[0][1], angles_rad, etas, judge, around.radius_m, around.discs)
         number = np.full(VARIANTS, -1, dtype=np.int64)
         for index, side in family:
             number[side.variant] = index
@@ -248,12 +253,18 @@ def _worth(best: Swept, cost_m: Floats, radius_m: float) -> NDArray[np.bool_]:
     return np.asarray(np.isfinite(cost_m) & (cost_m <= cost_m[least] + away_m), dtype=np.bool_)
 
 
-def _lane_judge(around: Surroundings) -> Judge:
-    """What lanes cost among these surroundings."""
+def _lane_judge(sweep: Sweep, around: Surroundings) -> Judge:
+    """What lanes of a sweep cost among these surroundings."""
 
-    def judge(lines: Floats, headings_rad: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+    def judge(
+        lines: Floats, headings_rad: Floats, looks: tuple[Look, ...]
+    ) -> tuple[Floats, Floats, Floats, Floats]:
         good, cost_m = _judge(lines[:, None], around)
         cost_m = np.where(good, cost_m, np.inf)[:, 0]
+        for state, look in enumerate(looks):
+            rows = np.arange(state, len(lines), len(looks))
+            rows = rows[np.isfinite(cost_m[rows])]
+            cost_m[rows] += _hidden_m(sweep, look, lines[rows], around)
         entries, exits = _poses(lines, headings_rad, around.settle_m)
         cramped = ~np.stack([_roomy(entries, around), _roomy(exits, around)], axis=1)
         return cost_m, entries, exits, NO_ROOM_M * cramped.astype(np.float64)
@@ -261,11 +272,19 @@ def _lane_judge(around: Surroundings) -> Judge:
     return judge
 
 
-def _hidden_m(side: Neighbourhood, lines: Floats, around: Surroundings) -> Floats | float:
-    """What the lines cost for ground of the region that terrain hides from them."""
-    if around.ground is None:
+def _hidden_m(side: Side, look: Look, lines: Floats, around: Surroundings) -> Floats | float:
+    """What the lines cost for ground of the region that terrain hides from them.
+
+    Each line answers for what lies in its own beam alone, so that lanes add up.
+    """
+    if around.ground is None or len(lines) == 0:
         return 0.0
-    return shadow_cost(lines, side.look, side.sensor, around.level_m, side.region.area, around.ground)
+    swath_m = side.sensor.swath_m(side.height_m)
+    # As many places to a strip as a region seen at once has.
+    strips = math.ceil(math.sqrt(side.region.area.area) / swath_m)
+    places = min(PLACES * max(strips, 1), MOST_PLACES)
+    wanted = shapely.union_all(side.region.originals, grid_size=GRID_M)
+    return shadow_cost(lines, look, side.sensor, around.level_m, wanted, around.ground, places)
 
 
 def _judge(lines: Floats, around: Surroundings) -> tuple[NDArray[np.bool_], Floats]:

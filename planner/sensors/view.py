@@ -16,6 +16,7 @@ import shapely
 from numpy.typing import ArrayLike, NDArray
 from shapely.affinity import affine_transform
 from shapely.geometry import MultiPolygon, Polygon
+from shapely.geometry.base import BaseGeometry
 
 from planner.environment.terrain import Ground
 from planner.scenario import Scenario
@@ -162,7 +163,7 @@ def shadow_cost(
     look: Look,
     sensor: SarSensor,
     level_m: float,
-    area: Polygon | MultiPolygon,
+    area: BaseGeometry,
     ground: Ground,
     places: int = 60,
 ) -> Floats:
@@ -181,7 +182,10 @@ def shadow_cost(
         float64 (...), metres: 0 where all of them are seen.
     """
     flat = np.asarray(lines_m, dtype=np.float64).reshape(-1, 2, 2)
-    poses = np.array([_Axes.of(line, look).pose for line in flat]).reshape(-1, 6)
+    ahead = flat[:, 1] - flat[:, 0]
+    ahead = ahead / np.hypot(ahead[:, 0], ahead[:, 1])[:, None]
+    sign = 1.0 if look == "right" else -1.0
+    poses = np.column_stack([flat[:, 0], ahead, sign * ahead[:, 1], -sign * ahead[:, 0]])
     half_rad = sensor.elevation_beamwidth_rad / 2.0
     hidden = view_kernels.line_visibility(
         ground.heights_m,
@@ -201,7 +205,7 @@ def shadow_cost(
     return cost_m.reshape(lines_m.shape[:-2])
 
 
-def spread(area: Polygon | MultiPolygon, count: int) -> Floats:
+def spread(area: BaseGeometry, count: int) -> Floats:
     """About ``count`` places on a square grid over an area, its corners besides; float64 (N, 2)."""
     west, south, east, north = area.bounds
     step_m = math.sqrt(max(area.area, 1e-6) / count)
