@@ -15,8 +15,8 @@ from contextlib import asynccontextmanager, contextmanager
 from pathlib import Path
 
 from mavlink.client import VehicleClient
-from mavlink.codec import Codec
 from mavlink.link import open_link
+from mavlink.payload import RelayPayload
 from tests.flows.flying import Flight, until_disarmed
 
 BINARY = os.environ.get("SWATHPLAN_PX4", "")
@@ -31,11 +31,9 @@ PARAMETERS: Mapping[str, float] = {
     "PWM_MAIN_FUNC5": 301,
     "SDLOG_MODE": -1,
 }
-SENSOR_OUTPUT = "servo5_raw"
-OUTPUT_MIDDLE_US = 1500
 #: Sent up to fifty times a second of the simulator's time, which runs fast; nobody here reads them.
 NOT_NEEDED = (31, 32, 62, 83, 85, 105, 132, 141, 331)
-SET_INTERVAL, SERVO_OUTPUT_RAW = 511, 36
+SET_INTERVAL = 511
 #: Until position and attitude have settled.
 READY_S = 60.0
 
@@ -93,50 +91,30 @@ def px4(
                 process.wait()
 
 
-class SensorWatch:
-    """When the sensor's output was switched, in the simulator's time; fed with the link's frames."""
-
-    def __init__(self) -> None:
-        self.switches: list[tuple[float, bool]] = []
-        self._codec = Codec()
-
-    def __call__(self, frame: bytes) -> None:
-        for message in self._codec.feed(frame):
-            if message.name != "SERVO_OUTPUT_RAW" or message.integer("port") != 0:
-                continue
-            on = message.integer(SENSOR_OUTPUT) > OUTPUT_MIDDLE_US
-            if on != (self.switches[-1][1] if self.switches else False):
-                self.switches.append((message.integer("time_usec") / 1e6, on))
-
-    def on_at(self, time_s: float) -> bool:
-        """Whether it was on then."""
-        return next((on for since_s, on in reversed(self.switches) if since_s <= time_s), False)
-
-
 @asynccontextmanager
 async def aeroplane(
     folder: Path,
     home: tuple[float, float],
     speedup: float,
     parameters: Mapping[str, float] = PARAMETERS,
-    watch: SensorWatch | None = None,
 ) -> AsyncIterator[VehicleClient]:
     """A simulator that is ready to fly, and a client of it."""
     instance = free_instance()
     link = await open_link(f"udpin:127.0.0.1:{FIRST_PORT + instance}")
-    async with VehicleClient(link, tap=watch) as client:
+    async with VehicleClient(link) as client:
         with px4(folder, instance, home, speedup, parameters):
             await client.connect(30.0)
             await client.wait_for(lambda state: state.home_lat_deg is not None, READY_S)
             for message_id in NOT_NEEDED:
                 await client.command(SET_INTERVAL, (float(message_id), -1.0))
-            await client.command(SET_INTERVAL, (float(SERVO_OUTPUT_RAW), 1e5))
             yield client
 
 
 async def fly(client: VehicleClient) -> Flight:
     """Start the mission, which arms PX4, and wait until the vehicle has landed and disarmed."""
-    recorder = client.start_recording()
+    output = await client.sensor_output(RelayPayload())
+    assert output is not None
+    recorder = client.start_recording(output)
     for _ in range(120):
         started = await client.start_mission()
         if started.accepted:

@@ -28,7 +28,7 @@ from planner.pipeline import make_plan
 from planner.plan import Plan
 from planner.scenario import Scenario
 from tests.flows.flying import CASES, Figures, case_document, figures, from_end_m, inside_fence, store
-from tests.flows.px4 import BINARY, ROMFS, SensorWatch, aeroplane, fly
+from tests.flows.px4 import BINARY, ROMFS, aeroplane, fly
 
 pytestmark = [
     pytest.mark.px4,
@@ -62,11 +62,10 @@ def compare(meant: tuple[MissionItem, ...], held: tuple[MissionItem, ...]) -> Se
 async def flown(folder: Path, scenario: Scenario, plan: Plan) -> Figures:
     """Store a plan, fly it, and judge it: inside the fence, at its height, sensor on, landed at its end."""
     mission = encode(plan, autopilot="px4")
-    watch = SensorWatch()
-    async with aeroplane(folder, plan.home, SPEEDUP, watch=watch) as client:
+    async with aeroplane(folder, plan.home, SPEEDUP) as client:
         await store(client, mission)
         flight = await fly(client)
-    samples = tuple(replace(sample, sensor_on=watch.on_at(sample.time_s)) for sample in flight.samples())
+    samples = flight.samples()
     assert inside_fence(scenario, plan, samples)
     # It rolls out along the runway that the land item stands for.
     assert from_end_m(scenario, plan, flight.final) < 200.0
