@@ -49,10 +49,7 @@ def at_random(rng: np.random.Generator, sizes: list[int], *, blocked: float = 0.
     places = []
     for size in sizes:
         poses = np.column_stack([rng.uniform(0, 1e6, (size, 2)), rng.uniform(-3, 3, size)])
-        zeros, none = np.zeros(size), np.empty((size, 0), dtype=np.int64)
-        side = np.zeros(size, dtype=np.int64)
-        exits = poses + np.array([500.0, 0.0, 0.0])
-        places.append(Options(side, zeros, zeros, zeros, poses, exits, zeros, none))
+        places.append(bare(poses))
     between = tuple(costs(a, b) for a, b in itertools.pairwise(sizes))
     return Layers(tuple(places), costs(sizes[0]), between, costs(sizes[-1]))
 
@@ -77,14 +74,23 @@ class Table(Legs):
         return float(self._truth.between[place][option, self._entries[tuple(arriving)][1]])
 
     def inner_m(self, passes: object) -> float:
-        """Nothing: the tables have it all."""
-        return 0.0
+        """What the option costs by itself, of ``truth``'s options."""
+        place, option = passes
+        return float(self._truth.options[place].inner_m[option])
 
 
 @pytest.fixture
 def without_passes(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Options at random see nothing: they have no passes."""
-    monkeypatch.setattr("planner.routing.chain.collect_passes", lambda *_: ())
+    """Options at random see nothing: in the place of passes their place and number, the sides being that."""
+    monkeypatch.setattr("planner.routing.chain.collect_passes", lambda place, _, option: (place, option))
+
+
+def bare(entries: np.ndarray, inner_m: np.ndarray | None = None) -> Options:
+    """Options at places, that end where they begin, and cost nothing by themselves but what is said."""
+    zeros, none = np.zeros(len(entries)), np.empty((len(entries), 0), dtype=np.int64)
+    inner_m = zeros if inner_m is None else inner_m
+    exits = entries + np.array([1.0, 0.0, 0.0])
+    return Options(none.sum(axis=1), zeros, zeros, zeros, entries, exits, inner_m, none)
 
 
 @settings(deadline=None, max_examples=80)
@@ -159,7 +165,7 @@ def test_true_costs_lead_to_the_true_best(seed: int) -> None:
     layers = Layers(truth.options, low[0], (low[1], low[2]), low[3])
     kept = [leg.copy() for leg in low]
     every = all_ways(truth.first, list(truth.between), truth.last)
-    found_m, chosen = true_choice(layers, [()] * 3, Table(truth.options, truth), 5000, never)
+    found_m, chosen = true_choice(layers, range(3), Table(truth.options, truth), 5000, never)
     assert every.min() - 1e-9 <= found_m <= every.min() + TRUE_WITHIN_M
     assert every[tuple(chosen)] == pytest.approx(found_m)
     for before, after in zip(kept, low, strict=True):
@@ -181,8 +187,8 @@ def test_more_solves_are_never_worse(solves: int) -> None:
     layers = Layers(truth.options, low[0], (low[1], low[2]), low[3])
     every = all_ways(truth.first, list(truth.between), truth.last)
     legs = Table(truth.options, truth)
-    one_m, _ = true_choice(layers, [()] * 3, Table(truth.options, truth), 1, never)
-    found_m, chosen = true_choice(layers, [()] * 3, legs, solves, never)
+    one_m, _ = true_choice(layers, range(3), Table(truth.options, truth), 1, never)
+    found_m, chosen = true_choice(layers, range(3), legs, solves, never)
     assert every[tuple(chosen)] == pytest.approx(found_m)
     assert found_m <= one_m
     assert legs.asked <= 4 * solves
@@ -192,18 +198,43 @@ def test_more_solves_are_never_worse(solves: int) -> None:
 def test_an_error_is_put_on_legs_close_by() -> None:
     """A wall between two places is met once: the other options behind it are thought as dear, and avoided."""
     near = np.array([[10.0 * k, 0.0, 0.0] for k in range(10)] + [[0.0, 9000.0, 0.0]])
-    count = len(near)
-    zeros, none = np.zeros(count), np.empty((count, 0), dtype=np.int64)
-    options = Options(
-        np.zeros(count, dtype=np.int64), zeros, zeros, zeros, near, near + np.array([1.0, 0, 0]), zeros, none
-    )
+    count, zeros, options = len(near), np.zeros(len(near)), bare(near)
     thought, true = np.full(count, 100.0), np.full(count, 400.0)
     thought[-1] = true[-1] = 350.0
     layers = Layers((options,), thought, (), zeros)
     legs = Table((options,), Layers((options,), true, (), zeros))
-    found_m, chosen = true_choice(layers, [()], legs, 4, never)
+    found_m, chosen = true_choice(layers, range(1), legs, 4, never)
     assert (found_m, chosen) == (350.0, [count - 1])
     assert 10.0 * count < FADE_M
+
+
+@pytest.mark.usefixtures("without_passes")
+def test_what_is_known_is_not_overwritten_by_an_error_close_by() -> None:
+    """Of two options at one place the first keeps its true cost when the second turns out dearer."""
+    here = bare(np.array([[0.0, 0.0, 0.0], [0.0, 1.0, 0.0]]))
+    there = bare(np.array([[5000.0, 0.0, 0.0], [0.0, 5000.0, 0.0]]))
+    nothing = np.zeros(2)
+    layers = Layers(
+        (here, there), np.array([100.0, 101.0]), (np.array([[0.0, 350.0], [0.0, 200.0]]),), nothing
+    )
+    truth = Layers(
+        (here, there), np.array([300.0, 600.0]), (np.array([[500.0, 350.0], [500.0, 200.0]]),), nothing
+    )
+    # First 0 and 0, for 800 in truth; then 1 and 1, also 800, and an error put on all that begins nearby.
+    assert true_choice(layers, range(2), Table((here, there), truth), 9, never) == (650.0, [0, 1])
+
+
+@pytest.mark.usefixtures("without_passes")
+def test_what_an_option_costs_by_itself_holds_from_wherever_it_is_flown_to() -> None:
+    """An option dearer inside than thought is tried once, not once from each option before it."""
+    rows = bare(np.array([[9000.0 * k, 0.0, 0.0] for k in range(10)]))
+    ends = np.array([[0.0, 5000.0, 0.0], [90_000.0, 5000.0, 0.0]])
+    thought, true = bare(ends, np.array([10.0, 10.0])), bare(ends, np.array([1000.0, 10.0]))
+    first, last = np.arange(10.0), np.zeros(2)
+    legs_m = np.tile([100.0, 300.0], (10, 1))
+    layers = Layers((rows, thought), first, (legs_m + 10.0,), last)
+    legs = Table((rows, thought), Layers((rows, true), first, (legs_m,), last))
+    assert true_choice(layers, range(2), legs, 2, never) == (310.0, [0, 1])
 
 
 @pytest.mark.usefixtures("without_passes")
@@ -211,7 +242,7 @@ def test_stops_when_told() -> None:
     """The stop is asked before each solve."""
     truth = at_random(np.random.default_rng(0), [2, 2])
     with pytest.raises(CancelledError):
-        true_choice(truth, [()] * 2, Table(truth.options, truth), 3, lambda: True)
+        true_choice(truth, range(2), Table(truth.options, truth), 3, lambda: True)
 
 
 def test_a_threat_in_the_way_is_flown_in_earnest() -> None:

@@ -16,7 +16,7 @@ from planner.geojson import read_scenario
 from planner.progress import never
 from planner.route import CollectPass
 from planner.routing.legs import Legs
-from planner.routing.split import LEAST_GAIN_M, LONGEST, split_passes
+from planner.routing.split import LEAST_GAIN_M, split_passes
 from tests.planner.scenarios import small
 
 Passes = tuple[CollectPass, ...]
@@ -61,7 +61,7 @@ def one_move_away(passes: Passes) -> list[Passes]:
         for first, last in itertools.combinations(range(len(passes) + 1), 2):
             run = list(range(first, last))
             rest = [k for k in range(len(passes)) if k not in run]
-            if last - first > LONGEST or [k for k in order if k not in run] != rest:
+            if last - first > 3 or [k for k in order if k not in run] != rest:
                 continue
             at = order.index(first)
             if list(order[at : at + len(run)]) != run:
@@ -116,6 +116,14 @@ def test_two_passes_are_parted_by_what_lies_between() -> None:
     assert [p.regions[0] for p in found] == ["A", "B", "A"]
     assert cost_m == min(legs.tour_m(order) for order in itertools.permutations(passes))
     assert cost_m < legs.tour_m(passes) - 1000.0
+
+
+def test_passes_move_together_where_one_alone_does_not_pay() -> None:
+    """Two passes far off, flown between regions close to each other, are put last, both at once."""
+    rows = [(0.0, 0.0, "A"), (6000.0, 0.0, "B"), (6000.0, 50.0, "B"), (0.0, 50.0, "C"), (5000.0, 0.0, "D")]
+    passes = made([(east_m, north_m, 0.0, region) for east_m, north_m, region in rows])
+    _, found = split_passes(straight_m(passes), passes, Straight(), never)
+    assert [p.regions[0] for p in found] == ["A", "C", "D", "B", "B"]
 
 
 def test_the_guess_does_not_decide() -> None:
