@@ -34,7 +34,8 @@ async def test_a_flight_is_recorded_and_flown_again_from_its_recording(
     vehicle = await fly(client, plan_id)
     logs = (await client.get(vehicle + "/logs")).json()["logs"]
     data = b"".join([(await client.get(log["url"])).content for log in logs])
-    assert len(data) == sum(log["size_bytes"] for log in logs) > 10_000
+    # The link goes on, and its recording grows.
+    assert len(data) >= sum(log["size_bytes"] for log in logs) > 10_000
     path = tmp_path / "downloaded.tlog"
     path.write_bytes(data)
     log = mavutil.mavlogfile(str(path))

@@ -54,14 +54,24 @@ async def faulty_vehicle(client: httpx.AsyncClient, settings: SimSettings) -> As
         await asyncio.gather(simulator, return_exceptions=True)
 
 
-async def test_whole_journey(client: httpx.AsyncClient) -> None:
-    """Plan, connect, upload, fly, and see as flown what was planned to be seen."""
+@pytest.mark.parametrize(
+    ("aircraft", "payload"),
+    [
+        ("autopilot=ardupilot", None),
+        ("autopilot=ardupilot&sensor_reports=no", "servo:9:1100:1900"),
+        ("autopilot=px4&sensor_reports=no", None),
+    ],
+    ids=["reported", "servo", "actuator"],
+)
+async def test_whole_journey(client: httpx.AsyncClient, aircraft: str, payload: str | None) -> None:
+    """Plan, connect, upload, fly, and see as flown what was planned, wherever its sensor shows."""
     record = (await client.post("/api/v1/plans", json=EXAMPLE, params={"wait": 60})).json()
     assert record["state"] == "done", record
     plan_id = record["id"]
-    vehicle = await connected(client, "sim:?speedup=300")
+    vehicle = await connected(client, f"sim:?speedup=300&{aircraft}")
     answer = await client.post(
-        vehicle + "/mission", json={"plan_id": plan_id, "parts": ["mission", "fence", "rally"]}
+        vehicle + "/mission",
+        json={"plan_id": plan_id, "parts": ["mission", "fence", "rally"], "payload": payload},
     )
     report = answer.json()
     assert answer.status_code == 200, report

@@ -2,10 +2,18 @@
 
 from __future__ import annotations
 
+import asyncio
+import contextlib
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from mavlink.client import VehicleClient
+from mavlink.codec import Codec
+from mavlink.link import memory_pair
 from mavlink.messages import Message
 from mavlink.outputs import (
     CameraOutput,
@@ -17,7 +25,10 @@ from mavlink.outputs import (
     pulse_parameters,
     switched_by,
 )
-from mavlink.payload import ActuatorPayload, Payload, parse_payload
+from mavlink.payload import ActuatorPayload, Payload, parse_payload, switch_items
+from mavlink.sim.modes import Flavour
+from mavlink.sim.run import serve_link
+from mavlink.sim.settings import SimSettings
 from mavlink.telemetry import VehicleState, updated
 from mavlink.track import Track, TrackRecorder, unwrapped_s
 from tests.mavlink.test_telemetry import at, received
@@ -163,3 +174,68 @@ def test_without_a_report_nothing_is_claimed(payload: Payload) -> None:
     output = output_of(payload, "ardupilot", {"PWM_MAIN_FUNC1": 301.0})
     assert output is not None
     assert [point.sensor_on for point in recorded(output, at(0), at(1000)).points] == [None, None]
+
+
+@asynccontextmanager
+async def simulated(settings: SimSettings) -> AsyncIterator[VehicleClient]:
+    """A client of a simulated aircraft that stands on the ground."""
+    here, there = memory_pair()
+    flying = asyncio.create_task(serve_link(there, settings))
+    try:
+        async with VehicleClient(here) as client:
+            await client.connect(5.0)
+            yield client
+    finally:
+        flying.cancel()
+        with contextlib.suppress(asyncio.CancelledError):
+            await flying
+
+
+@pytest.mark.parametrize(
+    ("flavour", "text", "expected"),
+    [
+        (Flavour.ARDUPILOT, "relay:3", RelayOutput(3)),
+        (Flavour.ARDUPILOT, "servo:9:1100:1900", ServoOutput(0, 9, 1100.0, 1900.0)),
+        (Flavour.ARDUPILOT, "servo:20", ServoOutput(1, 4, 1900.0, 1100.0)),
+        (Flavour.ARDUPILOT, "image:interval=1", CameraOutput()),
+        (Flavour.PX4, "relay:1", ServoOutput(0, 6, 2000.0, 1000.0)),
+        (Flavour.PX4, "actuator:1:-0.5:0.5", ServoOutput(0, 5, 1250.0, 1750.0)),
+    ],
+)
+async def test_the_track_follows_the_orders_of_every_payload(
+    flavour: Flavour, text: str, expected: SensorOutput
+) -> None:
+    """Parameters, message intervals and reports come from the vehicle; the sensor itself says nothing."""
+    payload = parse_payload(text)
+    async with simulated(SimSettings(autopilot=flavour, sensor_reports=False)) as client:
+        output = await client.sensor_output(payload)
+        assert output == expected
+        recorder = client.start_recording(output)
+        on, off = switch_items(switched_by(payload, client.state.autopilot))
+        for item, wanted in ((on, True), (off, False), (on, True)):
+            parameters = (item.param1, item.param2, item.param3, item.param4)
+            assert (await client.command(item.command, parameters)).accepted
+            async with asyncio.timeout(5.0):
+                while [point.sensor_on for point in recorder.track().points[-1:]] != [wanted]:
+                    await asyncio.sleep(0.02)
+        kinds = [event.kind for event in recorder.track().events if event.kind != "photo"]
+        assert kinds[-2:] == ["off", "on"]
+
+
+async def test_cameras_beside_the_autopilot_are_heard() -> None:
+    """Photos of another component of the same system are in the track; those of another system are not."""
+    here, there = memory_pair()
+    photo = Message("CAMERA_IMAGE_CAPTURED", {"image_index": 1, "capture_result": 1, "lat": 1, "lon": 1})
+    heartbeat = Message("HEARTBEAT", {"autopilot": 3, "type": 1, "mavlink_version": 3})
+    async with VehicleClient(here) as client:
+        connecting = asyncio.create_task(client.connect(5.0))
+        await there.send(Codec(7, 1).pack(heartbeat))
+        await connecting
+        recorder = client.start_recording()
+        for system, component in ((8, 100), (7, 100), (7, 101)):
+            await there.send(Codec(system, component).pack(photo))
+        async with asyncio.timeout(5.0):
+            while len(recorder.track().events) < 2:
+                await asyncio.sleep(0.01)
+    assert [event.kind for event in recorder.track().events] == ["photo", "photo"]
+    await there.close()

@@ -409,9 +409,9 @@ class Fleet:
         assert report is not None
         mission = report.parts.get("mission")
         if mission is not None:
-            if mission.verified:
-                vehicle.held = HeldPlan(report.plan_id, report.plan_vehicle)
             held = HeldMission(report.plan_id, report.plan_vehicle, report.payload)
+            if mission.verified:
+                await vehicle.hold(held)
             await self._kept.hold(vehicle.id, held if mission.verified else None)
         outcome = "unknown" if report.outcome == "not_attempted" else report.outcome
         UPLOADS.labels(outcome=outcome).inc()

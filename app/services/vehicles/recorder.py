@@ -9,6 +9,7 @@ import structlog
 from app.services.records import FlightState, TrackSample
 from app.services.store.flights import FlightStore
 from mavlink.client import VehicleClient
+from mavlink.outputs import SensorOutput
 from mavlink.telemetry import VehicleState
 from mavlink.track import Track, TrackPoint, TrackRecorder
 
@@ -29,10 +30,20 @@ def is_flying(state: VehicleState) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class HeldPlan:
-    """The plan a vehicle holds, and its name there."""
+    """The plan a vehicle holds, and its name there.
+
+    Parameters
+    ----------
+    payload
+        How the sensor is switched, as the upload said it; None for the default.
+    output
+        Where the vehicle shows that; None where it shows it nowhere.
+    """
 
     plan_id: str
     plan_vehicle: str
+    payload: str | None = None
+    output: SensorOutput | None = None
 
 
 class FlightRecorder:
@@ -50,11 +61,15 @@ class FlightRecorder:
         self._vehicle_name = vehicle_name
         self._interval_s = interval_s
         self._recorder: TrackRecorder | None = None
+        self._plan: HeldPlan | None = None
         self._thinner = Thinner(interval_s)
         self.flight_id: str | None = None
 
     async def look(self, client: VehicleClient, plan: HeldPlan | None) -> None:
-        """Begin, go on with or end a flight, as the vehicle's state says; call about once a second."""
+        """Begin, go on with or end a flight, as the vehicle's state says; call about once a second.
+
+        A plan uploaded in flight ends one flight and begins another: each is judged by the plan it followed.
+        """
         state = client.state
         flying = is_flying(state)
         if self.flight_id is None:
@@ -66,9 +81,13 @@ class FlightRecorder:
             await self.end(client, "interrupted")
         elif state.connected and not flying:
             await self.end(client, "ended")
+        elif state.connected and plan is not None and plan != self._plan:
+            await self.end(client, "ended")
+            await self._begin(client, plan)
 
     async def _begin(self, client: VehicleClient, plan: HeldPlan | None) -> None:
-        self._recorder = client.start_recording()
+        self._plan = plan
+        self._recorder = client.start_recording(plan.output if plan else None)
         self._thinner = Thinner(self._interval_s)
         self.flight_id = await self._store.begin(
             self._vehicle_id,
@@ -91,7 +110,7 @@ class FlightRecorder:
             client.stop_recording(self._recorder)
         await self._store.end(self.flight_id, state)
         log.info("flight ended", vehicle=self._vehicle_name, flight_id=self.flight_id, state=state)
-        self.flight_id = self._recorder = None
+        self.flight_id = self._recorder = self._plan = None
 
 
 class Thinner:

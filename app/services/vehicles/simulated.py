@@ -34,6 +34,7 @@ _NUMBERS = {
 _WORDS = {
     "autopilot": ("ardupilot", "px4"),
     "dynamics": ("auto", "kinematic", "jsbsim"),
+    "sensor_reports": ("yes", "no"),
     "fault": tuple(fault.value for fault in Fault),
 }
 FORM = "sim:?speedup=20&home=33.48,-117.75&autopilot=px4&airspeed=20&turn_radius=100&wind=8,270"
@@ -98,7 +99,7 @@ def parse_simulated(url: str) -> SimulatedAircraft:
         elif name in _WORDS:
             if text not in _WORDS[name]:
                 _refuse(f"{name}={text}: {' or '.join(_WORDS[name])} is meant")
-            arguments += [f"--{name}", text]
+            arguments += [f"--{name.replace('_', '-')}", text]
         else:
             _refuse(f"a simulated aircraft has no option {name}")
     return SimulatedAircraft(home, tuple(arguments))

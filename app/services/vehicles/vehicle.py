@@ -20,6 +20,8 @@ from app.services.vehicles.simulated import SimulatedAircraft
 from app.services.vehicles.uploads import UploadReport, read_back
 from mavlink import errors as mavlink_errors
 from mavlink.client import VehicleClient
+from mavlink.encoding.options import DEFAULT_PAYLOAD
+from mavlink.payload import parse_payload
 from mavlink.recording import TlogWriter
 from mavlink.telemetry import VehicleState
 
@@ -247,7 +249,7 @@ class Vehicle:
         try:
             async with self.busy("reading back the mission held before the restart"):
                 if await self._still_holds(self, held):
-                    self.held = HeldPlan(held.plan_id, held.plan_vehicle)
+                    await self.hold(held)
         except (ServiceError, mavlink_errors.TransferFailedError) as error:
             log.warning("mission not read back", vehicle=self.name, reason=str(error))
             if not last:
@@ -255,6 +257,16 @@ class Vehicle:
         log.info("mission read back", vehicle=self.name, plan_id=self.held and self.held.plan_id)
         self._believed = None
         self._publish(self)
+
+    async def hold(self, held: HeldMission) -> None:
+        """Take it that the vehicle holds a plan, and find out where it shows its payload."""
+        payload = DEFAULT_PAYLOAD if held.payload is None else parse_payload(held.payload)
+        output = None
+        try:
+            output = await self.client.sensor_output(payload)
+        except (mavlink_errors.BusyError, mavlink_errors.NotConnectedError) as error:
+            log.warning("output of the payload not known", vehicle=self.name, reason=str(error))
+        self.held = HeldPlan(held.plan_id, held.plan_vehicle, held.payload, output)
 
     async def _resolve(self, client: VehicleClient) -> None:
         """Read back what an upload left whose outcome is unknown."""
