@@ -8,8 +8,6 @@ gives every list an id and is deaf to MISSION_WRITE_PARTIAL_LIST. Both store fen
 
 from __future__ import annotations
 
-import struct
-import zlib
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
@@ -18,8 +16,16 @@ from mavlink.messages import Message
 from mavlink.sim.acceptance import PLACED, as_stored, finished_list, home_item, refusal
 from mavlink.sim.faults import Fault
 from mavlink.sim.geodesy import Place
+from mavlink.sim.meddling import Meddler
 from mavlink.sim.modes import Flavour
-from mavlink.sim.replies import item_message, received_item, status_text
+from mavlink.sim.replies import (
+    acknowledgement,
+    checksum,
+    item_message,
+    received_item,
+    sender,
+    status_text,
+)
 
 _ASK_AGAIN_S = {Flavour.ARDUPILOT: 1.0, Flavour.PX4: 0.25}
 _GIVE_UP_S = {Flavour.ARDUPILOT: 8.0, Flavour.PX4: 5.0}
@@ -111,7 +117,7 @@ class MissionServer:
         self._last_checksum = 0
         self._silent_until_s: float | None = None
         self._vanished = False
-        self._counters: dict[Fault, int] = {}
+        self._meddler = Meddler(faults)
         self.revision = 0
         self.flying = False
 
@@ -140,6 +146,8 @@ class MissionServer:
         if message.name not in _HANDLED or self.silent(now_s):
             return []
         expired = self.advance(now_s)
+        if not self._meddler.hears(message):
+            return expired
         number = message.integer("mission_type") if "mission_type" in message.fields else 0
         if message.name == "MISSION_CLEAR_ALL" and number == _ALL_TYPES:
             return expired + self._clear(message, list(MissionType))
@@ -161,12 +169,12 @@ class MissionServer:
                 answers = self._clear(message, [kind])
             case _:
                 answers = []
-                if self._download is not None and self._download.partner == _sender(message):
+                if self._download is not None and self._download.partner == sender(message):
                     self._download = None
-                elif self._upload is not None and self._upload.partner == _sender(message):
+                elif self._upload is not None and self._upload.partner == sender(message):
                     # A ground station ends an upload early with an acknowledgement of its own.
                     self._upload = None
-        return expired + answers
+        return expired + self._meddler.said(answers)
 
     def advance(self, now_s: float) -> list[Message]:
         """What is due by the clock: repeated requests, giving up."""
@@ -184,17 +192,15 @@ class MissionServer:
             text = status_text(4, "Mission upload timeout")
             if self._flavour is Flavour.PX4:
                 return [text]
-            return [text, _ack_to(upload.partner, upload.kind, MissionResult.OPERATION_CANCELLED)]
+            return [text, acknowledgement(upload.partner, upload.kind, MissionResult.OPERATION_CANCELLED)]
         if now_s - upload.asked_s >= _ASK_AGAIN_S[self._flavour]:
             upload.asked_s = now_s
-            return self._ask(upload)
+            return self._meddler.said(self._ask(upload))
         return []
 
     def _count(self, message: Message, kind: MissionType, now_s: float) -> list[Message]:
-        if Fault.NO_RESPONSE_TO_COUNT in self._faults:
-            return []
-        partner, count = _sender(message), message.integer("count")
-        if self._upload is not None and self._upload.partner != partner:
+        partner, count = sender(message), message.integer("count")
+        if self._occupied and (self._upload is None or self._upload.partner != partner):
             return [self._ack(message, kind, MissionResult.DENIED)]
         if self._flavour is Flavour.PX4 and self._download is not None:
             return [self._ack(message, kind, MissionResult.ERROR)]
@@ -214,9 +220,9 @@ class MissionServer:
         return self._ask(self._upload)
 
     def _partial(self, message: Message, kind: MissionType, now_s: float) -> list[Message]:
-        if self._flavour is Flavour.PX4 or Fault.NO_RESPONSE_TO_COUNT in self._faults:
+        if self._flavour is Flavour.PX4:
             return []
-        if self._upload is not None:
+        if self._occupied:
             return [self._ack(message, kind, MissionResult.DENIED)]
         if Fault.ERROR_ACK_AT_0 in self._faults:
             return [self._ack(message, kind, MissionResult.ERROR)]
@@ -226,12 +232,12 @@ class MissionServer:
             return [text, self._ack(message, kind, MissionResult.ERROR)]
         self._download = None
         self._upload = _Upload(
-            _sender(message), kind, last - first + 1, now_s, now_s, first=first, partial=True
+            sender(message), kind, last - first + 1, now_s, now_s, first=first, partial=True
         )
         return self._ask(self._upload)
 
     def _item(self, message: Message, kind: MissionType, now_s: float) -> list[Message]:
-        upload, partner = self._upload, _sender(message)
+        upload, partner = self._upload, sender(message)
         item = received_item(message, kind)
         if upload is None or upload.partner != partner or upload.kind is not kind:
             again = self._flavour is Flavour.PX4 and self._last_stored == (kind, item.seq)
@@ -239,8 +245,6 @@ class MissionServer:
                 # PX4 takes it for a lost acknowledgement, also after an abort that stored nothing.
                 return [self._ack(message, kind, MissionResult.ACCEPTED, self._last_checksum)]
             return [self._ack(message, kind, MissionResult.ERROR)]
-        if self._lost(Fault.LOST_ITEMS):
-            return []
         upload.heard_s = now_s
         if item.seq != upload.wanted:
             if self._flavour is Flavour.ARDUPILOT:
@@ -261,7 +265,7 @@ class MissionServer:
             text = status_text(4, f"Mission item {item.seq}: {refused.name}")
             return [text, self._ack(message, kind, refused)]
         upload.items.append(as_stored(self._flavour, item, self.home))
-        upload.checksum = _checksum(message, upload.checksum)
+        upload.checksum = checksum(message, upload.checksum)
         upload.asked_s = now_s
         if self._in_place(kind):
             self._store(kind, self._merged(upload))
@@ -288,16 +292,18 @@ class MissionServer:
         if upload.kind is not MissionType.MISSION:
             items, reason = finished_list(self._flavour, items, self._stores[upload.kind])
         if reason:
-            return [status_text(4, reason), _ack_to(upload.partner, upload.kind, MissionResult.ERROR)]
+            return [status_text(4, reason), acknowledgement(upload.partner, upload.kind, MissionResult.ERROR)]
         if Fault.ALTERED_ITEM in self._faults:
             items = _altered(items)
+        if Fault.ERROR_ACK_AT_END in self._faults:
+            return [acknowledgement(upload.partner, upload.kind, MissionResult.ERROR)]
         self._store(upload.kind, items, upload.checksum)
         if Fault.NO_FINAL_ACK in self._faults:
             return []
         opaque_id = self._ids[upload.kind]
         if opaque_id and Fault.WRONG_OPAQUE_ID in self._faults:
             opaque_id ^= 1
-        return [_ack_to(upload.partner, upload.kind, MissionResult.ACCEPTED, opaque_id)]
+        return [acknowledgement(upload.partner, upload.kind, MissionResult.ACCEPTED, opaque_id)]
 
     def _merged(self, upload: _Upload) -> list[MissionItem]:
         """The list held, with what has come so far in its place."""
@@ -305,8 +311,6 @@ class MissionServer:
         return [*stored[: upload.first], *upload.items, *stored[upload.wanted :]]
 
     def _ask(self, upload: _Upload) -> list[Message]:
-        if self._lost(Fault.LOST_REQUESTS):
-            return []
         seq = upload.wanted
         if Fault.WRONG_SEQUENCE_REQUEST in self._faults and len(upload.items) == 1 and not upload.misled:
             upload.misled = True
@@ -322,11 +326,9 @@ class MissionServer:
         return [Message(name, fields)]
 
     def _list(self, message: Message, kind: MissionType, now_s: float) -> list[Message]:
-        if Fault.NO_RESPONSE_TO_LIST in self._faults:
-            return []
-        if self._upload is not None:
+        if self._occupied:
             return [self._ack(message, kind, MissionResult.DENIED)]
-        self._download = _Download(_sender(message), kind, now_s)
+        self._download = _Download(sender(message), kind, now_s)
         fields = {
             "target_system": message.system_id,
             "target_component": message.component_id,
@@ -337,21 +339,19 @@ class MissionServer:
         return [Message("MISSION_COUNT", fields)]
 
     def _request(self, message: Message, kind: MissionType, now_s: float) -> list[Message]:
-        if self._upload is not None:
+        if self._occupied:
             return [self._ack(message, kind, MissionResult.DENIED)]
         stored, seq = self.items(kind), message.integer("seq")
         if seq >= len(stored):
             return [self._ack(message, kind, MissionResult.INVALID_SEQUENCE)]
         if self._download is not None:
             self._download.heard_s = now_s
-        if self._lost(Fault.LOST_DOWNLOAD_ITEMS):
-            return []
         item = replace(stored[seq], seq=seq, mission_type=kind)
-        return [item_message(item, _sender(message), integer=message.name == "MISSION_REQUEST_INT")]
+        return [item_message(item, sender(message), integer=message.name == "MISSION_REQUEST_INT")]
 
     def _clear(self, message: Message, kinds: list[MissionType]) -> list[Message]:
         kind = kinds[0]
-        if self._upload is not None:
+        if self._occupied:
             return [self._ack(message, kind, MissionResult.ERROR)]
         if self._flavour is Flavour.ARDUPILOT and self.flying and MissionType.MISSION in kinds:
             return [self._ack(message, kind, MissionResult.ERROR)]
@@ -359,11 +359,15 @@ class MissionServer:
             self._store(each, [])
         return [self._ack(message, kind, MissionResult.ACCEPTED)]
 
-    def _store(self, kind: MissionType, items: Sequence[MissionItem], checksum: int = 0) -> None:
-        self._ids[kind] = checksum if self._flavour is Flavour.PX4 else 0
+    def _store(self, kind: MissionType, items: Sequence[MissionItem], opaque_id: int = 0) -> None:
+        self._ids[kind] = opaque_id if self._flavour is Flavour.PX4 else 0
         self._stores[kind] = [replace(item, seq=seq) for seq, item in enumerate(items)]
         if kind is MissionType.MISSION:
             self.revision += 1
+
+    @property
+    def _occupied(self) -> bool:
+        return self._upload is not None or Fault.COMPETING_STATION in self._faults
 
     def _in_place(self, kind: MissionType) -> bool:
         return self._flavour is Flavour.ARDUPILOT and kind is MissionType.MISSION
@@ -373,40 +377,9 @@ class MissionServer:
             return self._max_items
         return _CAPACITY[self._flavour, kind]
 
-    def _lost(self, fault: Fault) -> bool:
-        """Whether a fault that loses every third message strikes now."""
-        if fault not in self._faults:
-            return False
-        self._counters[fault] = self._counters.get(fault, 0) + 1
-        return self._counters[fault] % 3 == 0
-
     def _ack(self, message: Message, kind: MissionType, result: MissionResult, checksum: int = 0) -> Message:
         opaque_id = checksum if self._flavour is Flavour.PX4 else 0
-        return _ack_to(_sender(message), kind, result, opaque_id)
-
-
-def _sender(message: Message) -> tuple[int, int]:
-    return message.system_id, message.component_id
-
-
-def _checksum(message: Message, before: int) -> int:
-    """PX4's: of frame, command, autocontinue, parameters and place, as sent."""
-    whole = struct.pack("<BHB", *(message.integer(name) for name in ("frame", "command", "autocontinue")))
-    numbers = (message.number(name) for name in ("param1", "param2", "param3", "param4", "x", "y", "z"))
-    return zlib.crc32(whole + struct.pack("<7d", *numbers), before)
-
-
-def _ack_to(
-    partner: tuple[int, int], kind: MissionType, result: MissionResult, opaque_id: int = 0
-) -> Message:
-    fields = {
-        "target_system": partner[0],
-        "target_component": partner[1],
-        "type": int(result),
-        "mission_type": int(kind),
-        "opaque_id": opaque_id,
-    }
-    return Message("MISSION_ACK", fields)
+        return acknowledgement(sender(message), kind, result, opaque_id)
 
 
 def _altered(items: list[MissionItem]) -> list[MissionItem]:

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from mavlink.items import MissionItem, MissionType
+import struct
+import zlib
+
+from mavlink.items import MissionItem, MissionResult, MissionType
 from mavlink.messages import Message
 
 _TEXT_BYTES = 50
@@ -55,3 +58,29 @@ def item_message(item: MissionItem, target: tuple[int, int], *, integer: bool) -
         "mission_type": int(item.mission_type),
     }
     return Message("MISSION_ITEM_INT" if integer else "MISSION_ITEM", dict(fields))
+
+
+def sender(message: Message) -> tuple[int, int]:
+    """System and component to answer."""
+    return message.system_id, message.component_id
+
+
+def checksum(message: Message, before: int) -> int:
+    """PX4's of the items so far: of frame, command, autocontinue, parameters and place, as sent."""
+    whole = struct.pack("<BHB", *(message.integer(name) for name in ("frame", "command", "autocontinue")))
+    numbers = (message.number(name) for name in ("param1", "param2", "param3", "param4", "x", "y", "z"))
+    return zlib.crc32(whole + struct.pack("<7d", *numbers), before)
+
+
+def acknowledgement(
+    partner: tuple[int, int], kind: MissionType, result: MissionResult, opaque_id: int = 0
+) -> Message:
+    """MISSION_ACK to a ground station."""
+    fields = {
+        "target_system": partner[0],
+        "target_component": partner[1],
+        "type": int(result),
+        "mission_type": int(kind),
+        "opaque_id": opaque_id,
+    }
+    return Message("MISSION_ACK", fields)

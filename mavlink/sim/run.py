@@ -106,8 +106,10 @@ class _Session:
         """Pack many frames into few datagrams: fast flights would else spend their time in system calls."""
         batch = bytearray()
         for message in messages:
+            foreign = message.system_id not in (0, self._codec.system_id)
+            codec = Codec(message.system_id, message.component_id) if foreign else self._codec
             try:
-                frame = self._codec.pack(message)
+                frame = codec.pack(message)
             except CodecError as error:
                 _say(f"{message.name} not sent: {error}")
                 continue

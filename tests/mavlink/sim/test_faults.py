@@ -155,6 +155,108 @@ def test_sensor_dead(flavour: Flavour) -> None:
     assert not s.aircraft.payload.sensor_on
 
 
+@pytest.mark.parametrize(
+    ("fault", "opening"),
+    [
+        (Fault.NO_RESPONSE_TO_FIRST_COUNT, "MISSION_COUNT"),
+        (Fault.NO_RESPONSE_TO_FIRST_LIST, "MISSION_REQUEST_LIST"),
+    ],
+)
+def test_no_response_the_first_time(flavour: Flavour, fault: Fault, opening: str) -> None:
+    """The first opening of a transfer is lost, the second answered."""
+    s = station(flavour, fault)
+    message = from_ground(opening, count=3, mission_type=0)
+    assert s.say(message) == []
+    assert s.say(message) != []
+
+
+@pytest.mark.parametrize(
+    ("fault", "asked"),
+    [
+        (Fault.NO_REQUEST_0, []),
+        (Fault.NO_REQUEST_1, [0]),
+        (Fault.WRONG_REQUEST_AT_0, [60_000]),
+        (Fault.WRONG_REQUEST_AT_1, [0, 60_001]),
+    ],
+)
+def test_requests_missing_or_misnumbered(flavour: Flavour, fault: Fault, asked: list[int]) -> None:
+    """What is asked for before the upload comes to a halt, and that it is given up by the clock."""
+    s = station(flavour, fault)
+    rows = numbered(sample(flavour))
+    s.say(from_ground("MISSION_COUNT", count=len(rows), mission_type=0))
+    if 0 in asked:
+        s.say(item_message(rows[0]))
+    assert [m.integer("seq") for m in s.heard if m.name.startswith("MISSION_REQUEST")] == asked
+    s.wait(9.0)
+    assert any("timeout" in text for text in s.texts())
+
+
+def test_error_ack_at_end(flavour: Flavour) -> None:
+    """All is taken, ERROR is said; ArduPilot has written it all the same."""
+    s = station(flavour, Fault.ERROR_ACK_AT_END)
+    sent = sample(flavour)
+    assert s.upload(sent) == 1
+    assert len(s.download()) == (len(sent) if flavour is Flavour.ARDUPILOT else 0)
+
+
+@pytest.mark.parametrize(
+    ("fault", "said"),
+    [
+        (Fault.NO_ITEM_0, {0: []}),
+        (Fault.NO_ITEM_1, {1: []}),
+        (Fault.WRONG_ITEM_AT_0, {0: [("MISSION_ITEM_INT", 60_000)]}),
+        (Fault.WRONG_ITEM_AT_1, {1: [("MISSION_ITEM_INT", 60_001)]}),
+        (Fault.ERROR_ACK_FOR_ITEM_0, {0: [("MISSION_ACK", 1)]}),
+        (Fault.ERROR_ACK_FOR_ITEM_1, {1: [("MISSION_ACK", 1)]}),
+    ],
+)
+def test_items_missing_or_misnumbered(
+    flavour: Flavour, fault: Fault, said: dict[int, list[tuple[str, int]]]
+) -> None:
+    """The one item is not given, given with another number, or refused; all others are given."""
+    s = station(flavour, fault)
+    assert s.upload(sample(flavour)) == 0
+    for seq in range(3):
+        answers = s.say(from_ground("MISSION_REQUEST_INT", seq=seq, mission_type=0))
+        words = [(m.name, m.integer("seq" if "seq" in m.fields else "type")) for m in answers]
+        assert words == said.get(seq, [("MISSION_ITEM_INT", seq)])
+
+
+@pytest.mark.parametrize("fault", [Fault.WRONG_TYPE_ACK, Fault.FOREIGN_ACK])
+def test_stray_acknowledgements(flavour: Flavour, fault: Fault) -> None:
+    """A refusal of another list, or of another system, comes in the middle; the upload goes on."""
+    s = station(flavour, fault)
+    rows = numbered(sample(flavour))
+    s.say(from_ground("MISSION_COUNT", count=len(rows), mission_type=0))
+    stray, request = s.say(item_message(rows[0]))
+    assert (stray.name, stray.integer("type"), request.integer("seq")) == ("MISSION_ACK", 14, 1)
+    foreign = fault is Fault.FOREIGN_ACK
+    assert (stray.system_id, stray.integer("mission_type")) == ((99, 0) if foreign else (0, 1))
+    for each in rows[1:]:
+        (last, *_) = s.say(item_message(each))
+    assert (last.name, last.integer("type")) == ("MISSION_ACK", 0)
+
+
+def test_competing_station(flavour: Flavour) -> None:
+    """Somebody else is uploading: nothing of ours begins."""
+    s = station(flavour, Fault.COMPETING_STATION)
+    assert s.upload(sample(flavour)) == 14
+    (answer,) = s.say(from_ground("MISSION_REQUEST_LIST", mission_type=0))
+    assert answer.integer("type") == 14
+    (answer,) = s.say(from_ground("MISSION_CLEAR_ALL", mission_type=0))
+    assert answer.integer("type") == 1
+
+
+def test_wrong_opaque_id(flavour: Flavour) -> None:
+    """PX4's acknowledgement names another list than its count does; ArduPilot names none."""
+    s = station(flavour, Fault.WRONG_OPAQUE_ID)
+    assert s.upload(sample(flavour)) == 0
+    said = [m for m in s.heard if m.name == "MISSION_ACK"][-1].integer("opaque_id")
+    (count,) = s.say(from_ground("MISSION_REQUEST_LIST", mission_type=0))
+    assert (said == count.integer("opaque_id") == 0) is (flavour is Flavour.ARDUPILOT)
+    assert (said != count.integer("opaque_id")) is (flavour is Flavour.PX4)
+
+
 def test_unknown_faults_are_refused(flavour: Flavour) -> None:
     """A misspelt fault names those there are."""
     with pytest.raises(ValueError, match="no_final_ack"):

@@ -13,11 +13,12 @@ from mavlink.items import Command, Frame, MissionItem, MissionType
 from mavlink.messages import Message
 from mavlink.sim.acceptance import as_stored
 from mavlink.sim.autopilot import SimulatedAircraft
-from mavlink.sim.modes import Flavour
+from mavlink.sim.modes import Flavour, Mode
 from mavlink.sim.settings import SimSettings
 from tests.mavlink.sim.helpers import (
     HOME,
     Station,
+    east_north_m,
     from_ground,
     item,
     item_message,
@@ -262,3 +263,136 @@ def test_items_in_floating_point_are_understood() -> None:
     (answer,) = s.say(from_ground("MISSION_REQUEST", seq=2, mission_type=0))
     assert answer.name == "MISSION_ITEM"
     assert answer.number("x") == pytest.approx(rows[2].x / 1e7)
+
+
+def partial(s: Station, first: int, last: int, kind: int = 0) -> list[Message]:
+    return s.say(
+        from_ground("MISSION_WRITE_PARTIAL_LIST", start_index=first, end_index=last, mission_type=kind)
+    )
+
+
+def test_ardupilot_takes_items_in_their_places() -> None:
+    """It asks for the range alone, stores each as it comes, and leaves the others as they were."""
+    s = station(Flavour.ARDUPILOT)
+    rows = numbered(sample(Flavour.ARDUPILOT))
+    assert s.upload(rows) == 0
+    before = s.download()
+    moved = [replace(each, z=33.0) for each in rows]
+    (request,) = partial(s, 3, 4)
+    assert (request.name, request.integer("seq")) == ("MISSION_REQUEST", 3)
+    (request,) = s.say(item_message(moved[3]))
+    assert request.integer("seq") == 4
+    assert s.aircraft.missions.items()[3].z == 33.0
+    assert acks(s.say(item_message(moved[4]))) == [0]
+    held = s.download()
+    assert [each.z for each in held[3:5]] == [33.0, 33.0]
+    assert [*held[:3], *held[5:]] == [*before[:3], *before[5:]]
+
+
+def test_ardupilot_refuses_ranges_it_does_not_hold() -> None:
+    """ERROR and a text for a range past the end or the wrong way round; one past the end itself appends."""
+    s = station(Flavour.ARDUPILOT)
+    rows = numbered(sample(Flavour.ARDUPILOT))
+    assert s.upload(rows) == 0
+    count = len(rows)
+    for first, last in ((count + 1, count + 1), (4, 3), (-1, 2), (2, count + 1)):
+        assert acks(partial(s, first, last)) == [1]
+    assert s.texts().count("Flight plan update rejected") == 4
+    partial(s, count, count)
+    assert acks(s.say(item_message(replace(rows[-1], seq=count)))) == [0]
+    assert len(s.download()) == count + 1
+
+
+def test_ardupilot_denies_a_partial_update_while_it_receives() -> None:
+    """Another's, and a repetition of our own; it goes on asking, and gives up by the clock."""
+    s = station(Flavour.ARDUPILOT)
+    assert s.upload(sample(Flavour.ARDUPILOT)) == 0
+    partial(s, 2, 3)
+    assert acks(partial(s, 2, 3)) == [14]
+    asked = [m.integer("seq") for m in s.wait(1.0) if m.name == "MISSION_REQUEST"]
+    assert asked == [2]
+    s.wait(8.0)
+    assert acks(s.heard)[-1] == 15
+
+
+def test_a_partial_update_in_flight_leaves_the_aircraft_on_its_way() -> None:
+    """The item flown stays the one flown, AUTO stays on, and the waypoint ahead is flown where it now is."""
+    s = Station(SimulatedAircraft(SimSettings(home=HOME, autopilot=Flavour.ARDUPILOT)))
+    body = [waypoint(0.0, 1000.0), waypoint(0.0, 2000.0), waypoint(0.0, 2500.0)]
+    rows = numbered(landing_mission(body, home_row=True))
+    assert s.upload(rows) == 0
+    s.start()
+    while 2 not in s.reached():
+        s.fly(1.0)
+    flown = s.aircraft.pilot.current
+    moved = numbered(landing_mission([*body[:2], waypoint(600.0, 2300.0)], home_row=True))[4]
+    partial(s, 4, 4)
+    assert acks(s.say(item_message(moved))) == [0]
+    s.wait(0.1)
+    assert (s.aircraft.pilot.current, s.aircraft.mode) == (flown, Mode.AUTO)
+    while 4 not in s.reached():
+        s.fly(1.0)
+    east_m, north_m = east_north_m(s.aircraft.state.lat_deg, s.aircraft.state.lon_deg)
+    assert (east_m, north_m) == pytest.approx((600.0, 2300.0), abs=150.0)
+
+
+def test_px4_is_deaf_to_partial_updates() -> None:
+    """No answer at all, and the mission stays."""
+    s = station(Flavour.PX4)
+    assert s.upload(sample(Flavour.PX4)) == 0
+    before = s.download()
+    assert partial(s, 1, 2) == []
+    assert s.download() == before
+
+
+@pytest.mark.parametrize("kind", MissionType)
+def test_px4_numbers_its_lists(kind: MissionType) -> None:
+    """The same id in acknowledgement, count and MISSION_CURRENT; another for other items, 0 for none."""
+    s = station(Flavour.PX4)
+    rally = item(Command.NAV_RALLY_POINT, place_at(0.0, 100.0))
+    circle = item(Command.NAV_FENCE_CIRCLE_INCLUSION, place_at(0.0, 0.0), (500.0,))
+    items = {0: sample(Flavour.PX4), 1: [circle], 2: [rally]}[kind]
+    field = ("mission_id", "fence_id", "rally_points_id")[kind]
+
+    def told() -> set[int]:
+        (count,) = s.say(from_ground("MISSION_REQUEST_LIST", mission_type=int(kind)))
+        s.say(from_ground("MISSION_ACK", type=0, mission_type=int(kind)))
+        current = s.aircraft.message("MISSION_CURRENT")
+        assert current is not None
+        return {count.integer("opaque_id"), current.integer(field)}
+
+    assert told() == {0}
+    assert s.upload(items, kind) == 0
+    first = [m for m in s.heard if m.name == "MISSION_ACK"][-1].integer("opaque_id")
+    assert first != 0
+    assert told() == {first}
+    assert s.upload([*items[:-1], replace(items[-1], z=44.0)], kind) == 0
+    assert told().isdisjoint({0, first})
+    assert s.upload(items, kind) == 0
+    assert told() == {first}
+    s.say(from_ground("MISSION_CLEAR_ALL", mission_type=int(kind)))
+    assert told() == {0}
+
+
+def test_px4s_trap_shows_in_the_id() -> None:
+    """ACCEPTED to the last item after an abort carries the id of a list that is not stored."""
+    s = station(Flavour.PX4)
+    rows = numbered(sample(Flavour.PX4))
+    s.say(from_ground("MISSION_COUNT", count=len(rows), mission_type=0))
+    s.say(item_message(rows[0]))
+    s.wait(6.0)
+    (answer,) = s.say(item_message(rows[-1]))
+    assert answer.integer("type") == 0
+    (count,) = s.say(from_ground("MISSION_REQUEST_LIST", mission_type=0))
+    assert answer.integer("opaque_id") != count.integer("opaque_id") == 0
+
+
+@pytest.mark.parametrize("flavour", FLAVOURS)
+def test_a_station_that_cancels_ends_its_upload(flavour: Flavour) -> None:
+    """OPERATION_CANCELLED stops the requests, and another station may begin at once."""
+    s = station(flavour)
+    s.say(from_ground("MISSION_COUNT", count=5, mission_type=0))
+    s.say(from_ground("MISSION_ACK", type=15, mission_type=0))
+    assert [m for m in s.wait(3.0) if m.name.startswith("MISSION_REQUEST")] == []
+    (request,) = s.say(from_ground("MISSION_COUNT", OTHER, count=2, mission_type=0))
+    assert request.name.startswith("MISSION_REQUEST")
