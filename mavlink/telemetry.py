@@ -124,6 +124,8 @@ def updated(state: VehicleState, message: Message, now_s: float) -> VehicleState
 def _heartbeat(state: VehicleState, message: Message) -> VehicleState:
     autopilot = autopilot_name(message.integer("autopilot"))
     vehicle_type = vehicle_type_name(message.integer("type"))
+    if vehicle_type == "fixed_wing" and state.type == "vtol":
+        vehicle_type = "vtol"  # ArduPlane's quadplanes say so in EXTENDED_SYS_STATE alone
     return replace(
         state,
         system_id=message.system_id,
@@ -226,7 +228,10 @@ def _mission_reached(state: VehicleState, message: Message) -> VehicleState:
 
 def _extended_state(state: VehicleState, message: Message) -> VehicleState:
     landed = message.integer("landed_state")  # MAV_LANDED_STATE: 0 undefined, 1 on ground
-    return replace(state, landed=None if landed == 0 else landed == 1)
+    # MAV_VTOL_STATE: 0 for all that have no transition to make. ArduPlane's quadplanes are fixed wings in
+    # their heartbeats unless Q_MAV_TYPE says otherwise.
+    vtol = message.integer("vtol_state") != 0 and state.type == "fixed_wing"
+    return replace(state, landed=None if landed == 0 else landed == 1, type="vtol" if vtol else state.type)
 
 
 def _named_int(state: VehicleState, message: Message) -> VehicleState:

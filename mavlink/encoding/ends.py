@@ -17,6 +17,12 @@ _HOME: Xy = (0.0, 0.0)
 _AIRSPEED = 0.0
 _GROUND_SPEED = 1.0
 _KEEP_THROTTLE = -1.0
+#: VTOLs hover down from the end of their approach: it need not be flat, only long enough to stop in.
+_VTOL_SLOPE_DEG = 45.0
+#: Q_TRANS_DECEL of ArduPlane and VT_B_DEC_MSS of PX4, by default.
+_VTOL_BRAKING_M_S2 = 2.0
+#: ArduPlane refuses to arm with an approach under 0.75 of the stopping distance.
+_VTOL_STOPS = 1.5
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,9 +101,7 @@ def ending(task: Task) -> End:
             f"{task.dialect.name} takes no mission without a landing (MIS_TKO_LAND_REQ), finish is {finish!r}"
         )
     if finish == "rtl":
-        circles = task.vehicle.type == "fixed_wing"
-        left = ("the return circles over home: the landing is left to the pilot",)
-        return End((unplaced(Command.NAV_RETURN_TO_LAUNCH),), left if circles else ())
+        return End((unplaced(Command.NAV_RETURN_TO_LAUNCH),), _return_notes(task))
     if finish == "loiter":
         radius_m = 0.0 if task.hovers else task.orbit_radius_m
         parameters = (0.0, 0.0, radius_m, task.any_yaw)
@@ -107,8 +111,23 @@ def ending(task: Task) -> End:
     notes: tuple[str, ...] = ()
     if away_m > task.options.near_home_m:
         notes = ("the ground at the end is taken to be as high as home",)
-    landed = _approach_and_land(task) if task.vehicle.type == "fixed_wing" else _land(task)
+    landed = _land(task) if task.hovers else _approach_and_land(task)
     return End(landed.items, notes + landed.notes)
+
+
+def _return_notes(task: Task) -> tuple[str, ...]:
+    """What becomes of an aircraft whose mission ends in a return."""
+    if not task.is_plane:
+        return ()
+    if task.vehicle.type == "vtol":
+        return (
+            "the return circles over home unless Q_RTL_MODE has it land there: else the landing is left to"
+            " the pilot; finish 'land' lands at the plan's end",
+        )
+    return (
+        "the return circles over home: the landing is left to the pilot; finish 'land' lands at the plan's"
+        " end",
+    )
 
 
 def _land(task: Task) -> End:
@@ -121,13 +140,17 @@ def _land(task: Task) -> End:
 
 
 def _approach_and_land(task: Task) -> End:
+    """Circle down, approach, and land: with wings on the ground, else hovering from over the place."""
+    vtol = task.vehicle.type == "vtol"
+    stop_m = task.vehicle.airspeed_m_s**2 / (2.0 * _VTOL_BRAKING_M_S2)
     way = landing(
         task.local.xy(task.plan.end),
         task.direction_rad(task.path.segments[-1], at_start=False),
         task.orbit_radius_m,
         min(task.options.approach_altitude_m, task.altitude_over_home_m),
-        task.options.approach_slope_deg,
+        _VTOL_SLOPE_DEG if vtol else task.options.approach_slope_deg,
         task.room,
+        _VTOL_STOPS * stop_m if vtol else 0.0,
     )
     relative = Frame.GLOBAL_RELATIVE_ALT
     approach = placed(

@@ -116,6 +116,7 @@ def landing(
     approach_altitude_m: float,
     slope_deg: float,
     room: Room,
+    least_run_m: float = 0.0,
 ) -> Landing:
     """A way down to a place: circle, then a straight approach whose slope is kept, preferably ahead.
 
@@ -125,12 +126,14 @@ def landing(
         Direction in which the aircraft arrives over the place.
     approach_altitude_m
         Height over the place at which the straight approach begins; lowered when there is no room.
+    slope_deg, least_run_m
+        The approach is no steeper and no shorter.
     """
 
     def landings() -> Iterator[Landing]:
         for part in (1.0, 0.75, 0.5):
             altitude_m = part * approach_altitude_m
-            run_m = altitude_m / math.tan(math.radians(slope_deg))
+            run_m = max(least_run_m, altitude_m / math.tan(math.radians(slope_deg)))
             for turn in sorted(range(_HEADINGS), key=lambda n: min(n, _HEADINGS - n)):
                 final_rad = angle_rad + turn * 2.0 * math.pi / _HEADINGS
                 for side in (1.0, -1.0):

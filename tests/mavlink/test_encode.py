@@ -436,6 +436,34 @@ def test_an_end_near_home_is_left_to_the_return() -> None:
     assert commands(encode(make_plan(ends_at_home=True), options=EncodeOptions(finish="loiter")))[-1] == 17
 
 
+@pytest.mark.parametrize("autopilot", ["ardupilot", "px4"])
+@pytest.mark.parametrize("airspeed_m_s", [15.0, 25.0, 35.0])
+def test_a_vtol_has_room_to_stop_before_it_lands(autopilot: Autopilot, airspeed_m_s: float) -> None:
+    """It circles down and comes in low, from farther than ArduPlane arms with: 0.75 v² / (2 · 2 m/s²)."""
+    plan = make_plan(autopilot=autopilot, vehicle_type="vtol")
+    fast = replace(plan.vehicles[0], airspeed_m_s=airspeed_m_s)
+    mission = encode(replace(plan, vehicles=(fast,)))
+    down, approach, land = mission.mission[-3:]
+    assert (mission.mission[-4].command == Command.DO_LAND_START) == (autopilot == "px4")
+    assert [i.command for i in (down, approach, land)] == [L, W, Command.NAV_VTOL_LAND]
+    assert down.z == approach.z == 40.0
+    assert math.dist(local(approach), local(land)) > 0.75 * airspeed_m_s**2 / 4.0 + 1.0
+    assert math.dist(local(land), FRAME.to_local(plan.end)) < 0.05
+
+
+@pytest.mark.parametrize(("kind", "words"), [("fixed_wing", "circles over home"), ("vtol", "Q_RTL_MODE")])
+def test_a_return_that_does_not_land_is_said(kind: VehicleType, words: str) -> None:
+    """ArduPlane's return ends in circles over home: the notes say who lands, and what else there is."""
+    (note,) = [
+        n for n in encode(make_plan(ends_at_home=True, vehicle_type=kind)).notes if n.startswith("the return")
+    ]
+    assert words in note
+    assert "left to the pilot" in note
+    assert "finish 'land'" in note
+    copter = encode(make_plan(ends_at_home=True, vehicle_type="multirotor"))
+    assert not [n for n in copter.notes if n.startswith("the return")]
+
+
 @pytest.mark.parametrize("finish", ["rtl", "loiter"])
 def test_px4_fixed_wings_are_not_sent_without_a_landing(finish: str) -> None:
     """RTL and circling at the end are refused before PX4 declares the mission invalid."""

@@ -47,6 +47,17 @@ def test_heartbeats_in_words(fields: dict[str, Value], autopilot: str, kind: str
     assert (state.system_id, state.component_id, state.heard_s) == (1, 1, 0.0)
 
 
+def test_a_quadplane_is_a_vtol_whatever_its_heartbeats_say() -> None:
+    """ArduPlane's say fixed wing; EXTENDED_SYS_STATE tells, and heartbeats after it take nothing back."""
+    heartbeat = received("HEARTBEAT", autopilot=3, type=1, custom_mode=10, base_mode=0x81)
+    assert after(heartbeat, received("EXTENDED_SYS_STATE", vtol_state=0, landed_state=1)).type == "fixed_wing"
+    hovering = received("EXTENDED_SYS_STATE", vtol_state=3, landed_state=2)
+    state = after(heartbeat, hovering, heartbeat)
+    assert (state.type, state.mode, state.landed) == ("vtol", "AUTO", False)
+    copter = received("HEARTBEAT", autopilot=3, type=2, custom_mode=3, base_mode=0x81)
+    assert after(copter, hovering).type == "multirotor"
+
+
 @pytest.mark.parametrize(
     ("autopilot", "kind", "number"),
     [
