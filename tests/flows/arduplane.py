@@ -1,7 +1,8 @@
 """An ArduPlane simulator, if the machine has one, and a flight in it.
 
 ``SWATHPLAN_ARDUPLANE`` names the binary, ``SWATHPLAN_ARDUPLANE_PARAMS`` its default parameters (else
-``plane.parm`` beside it). It calls this side over UDP on loopback and opens no port for others.
+``plane.parm`` beside it; ``quadplane.parm`` there for the VTOL). It calls this side over UDP on loopback and
+opens no port for others.
 """
 
 from __future__ import annotations
@@ -26,8 +27,14 @@ HOME_ALTITUDE_M = 30.0
 ARMING_TRIES = 240
 
 
-def default_parameters() -> Path:
+#: The quadplane's own parameter file; there need not be one.
+QUADPLANE = Path(BINARY or "arduplane").with_name("quadplane.parm")
+
+
+def default_parameters(model: str) -> Path:
     """The vehicle's own parameter file."""
+    if model == "quadplane":
+        return QUADPLANE
     named = os.environ.get("SWATHPLAN_ARDUPLANE_PARAMS")
     return Path(named) if named else Path(BINARY).with_name("plane.parm")
 
@@ -56,7 +63,7 @@ def arduplane(
         *("--model", model),
         *("--speedup", f"{speedup:g}"),
         *("--home", f"{home[1]:.7f},{home[0]:.7f},{HOME_ALTITUDE_M:g},0"),
-        *("--defaults", f"{default_parameters().resolve()},{own}"),
+        *("--defaults", f"{default_parameters(model).resolve()},{own}"),
         *("--serial0", f"udpclient:127.0.0.1:{port}"),
         *("--serial1", "none"),
         *("--serial2", "none"),

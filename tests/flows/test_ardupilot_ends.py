@@ -1,0 +1,93 @@
+"""How missions begin and end in a real ArduPlane: hovering up and down, and a return that does not land.
+
+Skipped unless ``SWATHPLAN_ARDUPLANE`` names the simulator's binary; see ``arduplane.py``.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import math
+from collections.abc import Sequence
+from pathlib import Path
+
+import pytest
+
+from mavlink.encode import EncodeOptions, encode
+from mavlink.items import Command
+from mavlink.track import TrackPoint
+from planner.frames import LocalFrame
+from planner.geojson import read_scenario
+from planner.pipeline import make_plan
+from tests.flows.arduplane import BINARY, QUADPLANE, aeroplane, arm, fly
+from tests.flows.flying import case_document, figures, from_end_m, inside_fence, store
+
+pytestmark = [
+    pytest.mark.ardupilot,
+    pytest.mark.skipif(not BINARY, reason="SWATHPLAN_ARDUPLANE names no simulator"),
+]
+
+SPEEDUP = 40.0
+MARGINS = {"pointing_margin_deg": 1.5, "position_margin_m": 5.0}
+#: What the simulator's quadplane is: AIRSPEED_CRUISE 25 m/s, and a bank of some 23° at 150 m.
+VTOL = {"type": "vtol", "airspeed_m_s": 25.0, "min_turn_radius_m": 150.0, "settle_m": 150.0}
+#: WP_LOITER_RAD 80 m, which it keeps within some metres.
+CIRCLES_WITHIN_M = 130.0
+
+
+def away_m(frame: LocalFrame, points: Sequence[TrackPoint], place: tuple[float, float]) -> list[float]:
+    """Distances of places of a track from another."""
+    (centre,) = frame.to_local([place])
+    places = frame.to_local([(point.lon_deg, point.lat_deg) for point in points])
+    return [math.dist(here, centre) for here in places]
+
+
+@pytest.mark.skipif(not QUADPLANE.is_file(), reason="no quadplane.parm beside the simulator")
+async def test_a_vtol_hovers_up_sees_its_regions_and_hovers_down(tmp_path: Path) -> None:
+    """It leaves the ground straight up, flies its passes on wings, and disarms where the plan ends."""
+    scenario = read_scenario(case_document(1, VTOL, MARGINS))
+    plan = make_plan(scenario)
+    mission = encode(plan, options=EncodeOptions(finish="land"))
+    async with aeroplane(tmp_path, plan.home, SPEEDUP, model="quadplane") as client:
+        await client.wait_for(lambda state: state.type == "vtol", 10.0)
+        await store(client, mission)
+        flight = await fly(client)
+
+    points = flight.track.points
+    top = next(n for n, point in enumerate(points) if point.relative_m > 45.0)
+    assert max(away_m(scenario.frame, points[:top], plan.home)) < 5.0
+    down = max(n for n, point in enumerate(points) if point.relative_m > 25.0)
+    assert max(away_m(scenario.frame, points[down:], plan.end)) < 5.0
+    assert from_end_m(scenario, plan, flight.final) < 2.0
+    samples = flight.samples()
+    assert inside_fence(scenario, plan, samples)
+    judged = figures(scenario, plan, mission, samples)
+    judged.tell("1", "ArduPlane, VTOL", "none")
+    assert max(judged.cross_track_p95_m) < 5.0
+    assert judged.least_seen > 0.995
+
+
+async def test_a_return_circles_over_home_and_stays_armed(tmp_path: Path) -> None:
+    """A plan that ends at home is left to the return, which does not land: as the mission's notes say."""
+    scenario = read_scenario(case_document(4, {}))
+    plan = make_plan(scenario)
+    mission = encode(plan)
+    assert mission.mission[-1].command == Command.NAV_RETURN_TO_LAUNCH
+    assert any("left to the pilot" in note for note in mission.notes)
+    async with aeroplane(tmp_path, plan.home, SPEEDUP) as client:
+        await store(client, mission)
+        await arm(client)
+        assert (await client.start_mission()).accepted
+        await client.wait_for(lambda state: (state.mission_current or 0) >= 5, 120.0)
+        assert (await client.goto_item(len(mission.mission) - 1)).kind == "accepted"
+        await client.wait_for(lambda state: state.mode == "RTL", 20.0)
+        # 100 s of flight to come home, then 200 s over it.
+        await asyncio.sleep(100.0 / SPEEDUP)
+        recorder = client.start_recording()
+        await asyncio.sleep(200.0 / SPEEDUP)
+        client.stop_recording(recorder)
+        points = recorder.track().points
+        assert points[-1].time_s - points[0].time_s > 100.0
+        assert max(away_m(scenario.frame, points, plan.home)) < CIRCLES_WITHIN_M
+        assert min(point.relative_m for point in points) > 50.0
+        assert client.state.armed
+        assert client.state.mode == "RTL"
