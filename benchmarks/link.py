@@ -24,7 +24,8 @@ from mavlink.client import VehicleClient
 from mavlink.items import Command, Frame, MissionItem, MissionType
 from mavlink.links.udp import open_udp
 
-ITEMS = 1000
+#: Items of a long mission, and of one longer than any autopilot holds.
+SIZES = (1000, 10_000)
 REPETITIONS = 5
 
 
@@ -126,9 +127,15 @@ async def theirs(items: tuple[MissionItem, ...]) -> Received:
         client.destroy()
 
 
-def run(items: int = ITEMS, repetitions: int = REPETITIONS) -> Iterator[dict[str, object]]:
-    """One line for each client and repetition, then the comparison of the medians."""
+def run(items: int | None = None, repetitions: int = REPETITIONS) -> Iterator[dict[str, object]]:
+    """Uploads of one size, or of each of ``SIZES``."""
     mavsdk_logging.log_subscribe(lambda *_: True)
+    for size in SIZES if items is None else (items,):
+        yield from compare(size, repetitions)
+
+
+def compare(items: int, repetitions: int) -> Iterator[dict[str, object]]:
+    """One line for each client and repetition, then the comparison of the medians."""
     meant = mission(items)
     expected = tuple(fields(item) for item in meant)
     clients: dict[str, Callable[[tuple[MissionItem, ...]], Awaitable[Received]]] = {

@@ -29,6 +29,8 @@ _HEADER_V2: Final = struct.Struct("<BBBBBBBHB")
 _SIGNED: Final = 0x01
 _SIGNATURE_BYTES: Final = 13
 _CRC_BYTES: Final = 2
+#: What pymavlink's own class calls where it is installed: CRC-16/MCRF4XX in one call.
+_FAST_CRC: Final[Callable[[bytes], int] | None] = getattr(dialect, "mcrf4xx", None)
 
 
 @dataclass(frozen=True, slots=True)
@@ -250,6 +252,8 @@ class Codec:
 
 
 def _crc(data: bytes) -> bytes:
+    if _FAST_CRC is not None:
+        return int(_FAST_CRC(data)).to_bytes(_CRC_BYTES, "little")
     return int(dialect.x25crc(data).crc).to_bytes(_CRC_BYTES, "little")
 
 

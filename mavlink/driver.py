@@ -44,10 +44,11 @@ class _Job(Generic[End]):
 
     def report(self) -> None:
         """Tell of progress made and of the end."""
-        progress = self.machine.progress
-        if self._progress is not None and progress != self._reported:
-            self._reported = progress
-            self._progress(progress)
+        if self._progress is not None:
+            progress = self.machine.progress
+            if progress != self._reported:
+                self._reported = progress
+                self._progress(progress)
         if self.machine.outcome is not None:
             self.finish(self.machine.outcome)
 
