@@ -1,6 +1,6 @@
 /** Drawing and reshaping with terra-draw: one shape at a time, handed to the scenario when it is done. */
 import type { Map as MapLibreMap } from "maplibre-gl";
-import { TerraDraw, TerraDrawCircleMode, TerraDrawPointMode, TerraDrawPolygonMode, TerraDrawSelectMode } from "terra-draw";
+import { TerraDraw, TerraDrawCircleMode, TerraDrawLineStringMode, TerraDrawPointMode, TerraDrawPolygonMode, TerraDrawSelectMode } from "terra-draw";
 import type { GeoJSONStoreFeatures } from "terra-draw";
 import { TerraDrawMapLibreGLAdapter } from "terra-draw-maplibre-gl-adapter";
 import type { Geometry, Polygon } from "geojson";
@@ -15,35 +15,42 @@ export interface Tool {
   id: string;
   label: string;
   role: Role;
-  mode: "polygon" | "circle" | "point";
+  mode: "polygon" | "linestring" | "circle" | "point";
   properties: Record<string, unknown>;
   hint: string;
 }
 
 const POLYGON_HINT = "Click the corners; click the first one again, or press Enter, to close. Esc gives up.";
 const CIRCLE_HINT = "Click the centre, then click where the circle ends. Esc gives up.";
+const LINE_HINT = "Click along the middle of the corridor; click the last point again, or press Enter, to end. Esc gives up.";
 const POINT_HINT = "Click the place. Esc gives up.";
 
 export const TOOLS: Tool[] = [
   { id: "roi", label: "Region", role: "roi", mode: "polygon", properties: {}, hint: POLYGON_HINT },
+  { id: "corridor", label: "Corridor", role: "roi", mode: "linestring", properties: { width_m: 200 }, hint: LINE_HINT },
+  { id: "target", label: "Target", role: "roi", mode: "point", properties: {}, hint: POINT_HINT },
   { id: "missile", label: "Missile", role: "threat", mode: "circle", properties: { model: "missile" }, hint: CIRCLE_HINT },
   { id: "radar", label: "Radar", role: "threat", mode: "circle", properties: { model: "radar" }, hint: CIRCLE_HINT },
   { id: "no_fly", label: "No-fly", role: "no_fly", mode: "polygon", properties: {}, hint: POLYGON_HINT },
+  { id: "obstacle", label: "Obstacle", role: "obstacle", mode: "polygon", properties: { height_m: 50 }, hint: POLYGON_HINT },
   { id: "area", label: "Area", role: "area", mode: "polygon", properties: {}, hint: POLYGON_HINT },
   { id: "start", label: "Start", role: "start", mode: "point", properties: {}, hint: POINT_HINT },
   { id: "end", label: "End", role: "end", mode: "point", properties: {}, hint: POINT_HINT },
 ];
 
-const EDIT_MODE: Record<Tool["mode"], string> = { polygon: "polygon", circle: "circle", point: "point" };
+const EDIT_MODE: Record<Tool["mode"], string> = { polygon: "polygon", linestring: "linestring", circle: "circle", point: "point" };
 const IDLE = "static";
 const SQUARE_SHARE = 0.12;
 const HANDLES = 24;
 const NEAR_PX = 4;
+// How near a click has to be to the first or last corner to end a shape.
+const CLOSE_PX = 16;
 // Small, so that a small shape can still be taken by its middle.
 const GRAB_PX = 11;
 
 function rounded(geometry: Geometry): Geometry {
   if (geometry.type === "Point") return { type: "Point", coordinates: geometry.coordinates.slice(0, 2).map(round7) };
+  if (geometry.type === "LineString") return { type: "LineString", coordinates: geometry.coordinates.map((p) => p.slice(0, 2).map(round7)) };
   if (geometry.type !== "Polygon") return geometry;
   return { type: "Polygon", coordinates: geometry.coordinates.map((ring) => ring.map((p) => p.slice(0, 2).map(round7))) };
 }
@@ -62,6 +69,9 @@ function editable(feature: ScenarioFeature): GeoJSONStoreFeatures | null {
   }
   if (geometry.type === "Point") {
     return { type: "Feature", geometry: rounded(geometry) as never, properties: { mode: EDIT_MODE.point } };
+  }
+  if (geometry.type === "LineString") {
+    return { type: "Feature", geometry: rounded(geometry) as never, properties: { mode: EDIT_MODE.linestring } };
   }
   if (geometry.type === "Polygon" && geometry.coordinates.length === 1) {
     return { type: "Feature", geometry: rounded(geometry) as never, properties: { mode: EDIT_MODE.polygon } };
@@ -83,7 +93,8 @@ export class Drawing {
       adapter: new TerraDrawMapLibreGLAdapter({ map, coordinatePrecision: 9 }),
       idStrategy: { isValidId: (id) => typeof id === "number", getId: () => (last += 1) },
       modes: [
-        new TerraDrawPolygonMode(),
+        new TerraDrawPolygonMode({ pointerDistance: CLOSE_PX }),
+        new TerraDrawLineStringMode({ pointerDistance: CLOSE_PX }),
         new TerraDrawCircleMode({ segments: 64 }),
         new TerraDrawPointMode(),
         new TerraDrawSelectMode({
@@ -91,6 +102,7 @@ export class Drawing {
           keyEvents: { deselect: "Escape", delete: null, rotate: null, scale: null },
           flags: {
             polygon: { feature: whole },
+            linestring: { feature: whole },
             circle: { feature: { draggable: true, coordinates: { resizable: "center-fixed" } } },
             point: { feature: { draggable: true } },
           },
@@ -137,6 +149,9 @@ export class Drawing {
       scenarios.add(tool.role, { type: "Point", coordinates: centre }, tool.properties);
     } else if (tool.mode === "circle") {
       this.#addCircle(tool, centre, Math.max(1, Math.round(side_m)));
+    } else if (tool.mode === "linestring") {
+      const line = [270, 90].map((heading) => ahead(centre, heading, side_m));
+      scenarios.add(tool.role, { type: "LineString", coordinates: line }, tool.properties);
     } else {
       const ring = [225, 135, 45, 315, 225].map((heading) => ahead(centre, heading, side_m * Math.SQRT2));
       scenarios.add(tool.role, { type: "Polygon", coordinates: [ring] }, tool.properties);

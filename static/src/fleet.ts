@@ -2,7 +2,7 @@
 import { connection, follow, get, list, post, remove } from "./api";
 import { attempt, report } from "./notices";
 import { Signal } from "./signal";
-import type { Upload, Vehicle } from "./types";
+import type { Preflight, Upload, Vehicle } from "./types";
 
 export type Command = "arm" | "disarm" | "start" | "pause" | "resume" | "rtl";
 
@@ -72,6 +72,11 @@ export async function letGo(id: string): Promise<void> {
 export function upload(id: string, planId: string, parts: string[], override: Override | null): Promise<Upload> {
   const excuse = override ? { override: true, reason: override.reason } : {};
   return post<Upload>(path(id, "/mission"), { plan_id: planId, parts, ...excuse });
+}
+
+/** Ask the vehicle whether it is ready to fly a plan; nothing in it is changed. */
+export function preflight(id: string, planId: string): Promise<Preflight> {
+  return post<Preflight>(path(id, "/preflight"), { plan_id: planId });
 }
 
 export function command(id: string, name: Command): Promise<CommandAnswer> {

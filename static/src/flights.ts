@@ -1,10 +1,10 @@
 /** What was flown: the list of flights, and the ground really seen by one of them. */
 import type { Feature, FeatureCollection, LineString } from "geojson";
-import { get, list } from "./api";
+import { apiUrl, get, list, post } from "./api";
 import { watched } from "./fleet";
 import { attempt } from "./notices";
 import { Signal } from "./signal";
-import type { Flight, SeenCollection } from "./types";
+import type { Flight, PlanRecord, SeenCollection } from "./types";
 
 export interface Flown {
   flight: Flight;
@@ -29,6 +29,13 @@ export async function showFlight(flight: Flight): Promise<void> {
     properties: { sensor_on: feature.properties?.["role"] === "sensor_on" },
   }));
   flown.set({ flight, seen, track: pieces });
+}
+
+export const flightUrl = (id: string, file: string): string => apiUrl(`/flights/${encodeURIComponent(id)}/${file}`);
+
+/** Have the service plan what a flight did not see. */
+export function refly(id: string): Promise<PlanRecord> {
+  return post<PlanRecord>(`/flights/${encodeURIComponent(id)}/refly`, null);
 }
 
 /** When the watched vehicle's flight ends, show what it saw. */

@@ -35,6 +35,24 @@ export function circleRing(centre: Position, radius_m: number, points = 96): Pos
   return ring;
 }
 
+/** Closed ring round a line at half a width to either side, with flat ends; corners are mitred up to twice the half. */
+export function corridorRing(line: GeoPosition[], width_m: number): Position[] {
+  const points = line.filter((p, i) => i === 0 || p[0] !== line[i - 1]?.[0] || p[1] !== line[i - 1]?.[1]) as Position[];
+  if (points.length < 2) return [];
+  const heading = (a: Position, b: Position): number =>
+    Math.atan2((b[0] - a[0]) * Math.cos(((a[1] + b[1]) / 2) * RAD), b[1] - a[1]) / RAD;
+  const side = (sign: number): Position[] =>
+    points.map((point, i) => {
+      const before = i > 0 ? heading(points[i - 1] as Position, point) : heading(point, points[1] as Position);
+      const after = i < points.length - 1 ? heading(point, points[i + 1] as Position) : before;
+      const half = ((((after - before) % 360) + 540) % 360) / 2 - 90;
+      const reach_m = (width_m / 2) * Math.min(2, 1 / Math.max(1e-6, Math.cos(half * RAD)));
+      return ahead(point, before + half + sign * 90, reach_m);
+    });
+  const ring = [...side(1), ...side(-1).reverse()];
+  return [...ring, ring[0] as Position];
+}
+
 export type Bounds = [number, number, number, number];
 
 function grow(bounds: Bounds, [lon, lat]: GeoPosition): void {

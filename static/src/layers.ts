@@ -3,7 +3,7 @@ import type { ExpressionSpecification, FilterSpecification, LayerSpecification, 
 import { FONT, repaint } from "./map";
 import { onThemeChange, palette, type Palette } from "./theme";
 
-export const SOURCES = ["scenario", "plan", "waypoints", "seen", "track"] as const;
+export const SOURCES = ["scenario", "plan", "compared", "waypoints", "seen", "track"] as const;
 
 export interface Group {
   id: string;
@@ -15,7 +15,7 @@ export interface Group {
 
 /** The legend's entries; each can be hidden. */
 export const GROUPS: Group[] = [
-  { id: "roi", label: "Region of interest", swatch: "area", colour: "roi", layers: ["roi-fill", "roi-line"] },
+  { id: "roi", label: "Region of interest", swatch: "area", colour: "roi", layers: ["roi-fill", "roi-line", "target"] },
   { id: "missile", label: "Missile threat", swatch: "area", colour: "missile", layers: ["missile-fill", "missile-line"] },
   { id: "radar", label: "Radar threat", swatch: "dashed", colour: "radar", layers: ["radar-fill", "radar-line"] },
   { id: "no_fly", label: "No-fly zone", swatch: "area", colour: "noFly", layers: ["no_fly-fill", "no_fly-line"] },
@@ -26,6 +26,7 @@ export const GROUPS: Group[] = [
   { id: "footprint", label: "Ground to be seen", swatch: "area", colour: "footprint", layers: ["footprint-fill", "footprint-line"] },
   { id: "uncovered", label: "Not covered", swatch: "area", colour: "uncovered", layers: ["uncovered-fill", "uncovered-line"] },
   { id: "path", label: "Path", swatch: "line", colour: "path", layers: ["path-line", "path-arrow"] },
+  { id: "compared", label: "Path compared with", swatch: "line", colour: "area", layers: ["compared-line"] },
   { id: "collect", label: "Collect (sensor on)", swatch: "thick", colour: "collect", layers: ["collect-line", "collect-label"] },
   { id: "waypoints", label: "Waypoints", swatch: "dot", colour: "path", layers: ["waypoint"] },
   { id: "track", label: "Flown track", swatch: "line", colour: "track", layers: ["track-off"] },
@@ -66,6 +67,11 @@ function layers(c: Palette): LayerSpecification[] {
     ...shape("obstacle", "scenario", kindIs("obstacle"), c.obstacle, 0.35, 1.4),
     ...shape("uncovered", "plan", roleIs("uncovered"), c.uncovered, 0.55, 1.5),
     {
+      id: "compared-line", type: "line", source: "compared",
+      layout: { "line-join": "round" },
+      paint: { "line-color": c.area, "line-width": 3.5, "line-opacity": 0.55, "line-dasharray": [2, 1.2] },
+    },
+    {
       id: "path-line", type: "line", source: "plan", filter: roleIs("path"),
       layout: { "line-join": "round" },
       paint: { "line-color": c.path, "line-width": 1.8, "line-opacity": 0.9 },
@@ -89,6 +95,11 @@ function layers(c: Palette): LayerSpecification[] {
       paint: { "circle-radius": 6, "circle-color": c.terminal, "circle-stroke-color": c.halo, "circle-stroke-width": 2 },
     },
     {
+      id: "target", type: "circle", source: "scenario",
+      filter: kindIs("target"),
+      paint: { "circle-radius": 5, "circle-color": c.halo, "circle-stroke-color": c.roi, "circle-stroke-width": 3 },
+    },
+    {
       id: "track-off", type: "line", source: "track", filter: ["!", ["get", "sensor_on"]],
       layout: { "line-join": "round" },
       paint: { "line-color": c.track, "line-width": 2.6 },
@@ -105,14 +116,14 @@ function layers(c: Palette): LayerSpecification[] {
     },
     {
       id: "scenario-label", type: "symbol", source: "scenario", filter: ["get", "label"],
-      layout: { "text-field": ["get", "name"], "text-font": FONT, "text-size": 13, "text-offset": ["match", ["get", "kind"], "terminal", ["literal", [0, -1.1]], ["literal", [0, 0]]] },
+      layout: { "text-field": ["get", "name"], "text-font": FONT, "text-size": 13, "text-offset": ["match", ["get", "kind"], "terminal", ["literal", [0, -1.1]], "target", ["literal", [0, -1.1]], ["literal", [0, 0]]] },
       paint: { "text-color": label, "text-halo-color": c.halo, "text-halo-width": 1.6 },
     },
   ];
 }
 
 /** The layers whose features a click selects. */
-export const SELECTABLE = ["terminal", "obstacle-fill", "no_fly-fill", "radar-fill", "missile-fill", "roi-fill", "importance-fill", "area-line"];
+export const SELECTABLE = ["terminal", "target", "obstacle-fill", "no_fly-fill", "radar-fill", "missile-fill", "roi-fill", "importance-fill", "area-line"];
 
 const ARROW_PX = 28;
 

@@ -18,12 +18,13 @@ import { planPanel } from "./panel/plan_panel";
 import { scenarioPanel } from "./panel/scenario_panel";
 import { tabs } from "./panel/tabs";
 import { vehiclePanel } from "./panel/vehicle_panel";
-import { open, openPlan, planFeatures, recent, refresh } from "./plans";
+import { compared, open, openPlan, planFeatures, recent, refresh } from "./plans";
 import { scenarios } from "./scenario";
 import { scenarioFeatures } from "./scenario_view";
+import { keepRasters } from "./terrain";
 import { buildToolbar } from "./toolbar";
 import type { Position } from "./types";
-import { keepJudging } from "./validation";
+import { judgement, keepJudging } from "./validation";
 
 const PLACE_ZOOM = 15;
 
@@ -42,9 +43,10 @@ async function start(): Promise<void> {
   const panel = tabs([
     { id: "scenario", label: "Scenario", content: scenarioPanel(view) },
     { id: "plan", label: "Plan", content: planPanel(view) },
-    { id: "fly", label: "Fly", content: vehiclePanel() },
+    { id: "fly", label: "Fly", content: vehiclePanel(() => panel.show("plan")) },
   ]);
   byId("panel").append(panel.element, ...panel.panels);
+  judgement.watch(({ state, findings }) => panel.mark("scenario", state === "refused" ? `${findings.filter(({ severity }) => severity !== "warning").length} refused` : ""));
   acceptDrops(() => {
     panel.show("scenario");
     view.zoomToAll();
@@ -55,8 +57,10 @@ async function start(): Promise<void> {
     const points = shown?.waypoints ?? [];
     setData(map, "waypoints", points.map((coordinates) => ({ type: "Feature", properties: {}, geometry: { type: "Point", coordinates } })));
   });
+  compared.watch((other) => setData(map, "compared", (other?.plan.features ?? []).filter((feature) => feature.properties?.["role"] === "path")));
   showAircraft(map);
   keepFlights();
+  keepRasters();
   keepVehicles();
   heartbeat();
   keepJudging();

@@ -5,10 +5,15 @@ import type { Finding } from "./types";
 
 const NEWS_MS = 6000;
 
-export function findingText(finding: Finding): string {
+/** A finding without the name of its feature, for where that stands already. */
+export function findingWords(finding: Finding): string {
   const fix = finding.fix ? ` ${finding.fix}` : "";
   const rule = finding.rule ? ` (${finding.rule})` : "";
-  return `${finding.feature}: ${finding.message}${rule}.${fix}`.replace(/\.\./g, ".");
+  return `${finding.message}${rule}.${fix}`.replace(/\.\./g, ".");
+}
+
+export function findingText(finding: Finding): string {
+  return `${finding.feature}: ${findingWords(finding)}`;
 }
 
 function show(kind: "error" | "news", title: string, lines: string[]): void {

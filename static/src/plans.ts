@@ -18,6 +18,8 @@ export interface OpenPlan {
 export const running = new Signal<PlanRecord | null>(null);
 export const open = new Signal<OpenPlan | null>(null);
 export const recent = new Signal<PlanRecord[]>([]);
+/** The plan beside which the one on the map is looked at. */
+export const compared = new Signal<{ record: PlanRecord; plan: PlanCollection } | null>(null);
 
 const ENDED: ReadonlySet<PlanState> = new Set(["done", "failed", "cancelled"]);
 const NAV_WAYPOINT = 16;
@@ -64,9 +66,18 @@ export async function openPlan(id: string, madeFrom: string | null = null, wante
   if (scenario) scenarios.load(scenario, false);
   const text = madeFrom ?? scenarios.text();
   running.set(done ? null : record);
+  if (compared.value?.record.id === id) compared.set(null);
   open.set(plan ? { record, plan, waypoints: waypointsOf(mission), madeFrom: text } : null);
   if (!ENDED.has(record.state)) watchPlan(record, text);
   return true;
+}
+
+/** Choose the plan to compare with; null for none. */
+export async function compareWith(id: string | null): Promise<void> {
+  if (id === null) return compared.set(null);
+  const path = `/plans/${encodeURIComponent(id)}`;
+  const [record, plan] = await Promise.all([get<PlanRecord>(path), get<PlanCollection>(`${path}/plan.geojson`)]);
+  compared.set({ record, plan });
 }
 
 let unwatch: (() => void) | null = null;

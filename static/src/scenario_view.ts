@@ -1,13 +1,25 @@
 /** From the scenario document to what the map draws of it. */
-import type { Feature } from "geojson";
-import { circleRing, labelPoint } from "./geo";
+import type { Feature, Geometry } from "geojson";
+import { circleRing, corridorRing, labelPoint } from "./geo";
 import { nameOf, radiusOf } from "./scenario";
 import type { Position, Scenario, ScenarioFeature } from "./types";
 
 function kindOf(feature: ScenarioFeature): string {
   const { role } = feature.properties;
   if (role === "threat") return feature.properties["model"] === "radar" ? "radar" : "missile";
+  if (role === "roi" && feature.geometry.type === "Point" && radiusOf(feature) === 0) return "target";
   return role === "start" || role === "end" || role === "base" ? "terminal" : role;
+}
+
+/** What a feature covers: discs become rings, corridors their strips. */
+function outline({ geometry, properties }: ScenarioFeature, radius_m: number): Geometry {
+  if (geometry.type === "Point" && radius_m > 0) return { type: "Polygon", coordinates: [circleRing(geometry.coordinates as Position, radius_m)] };
+  const width_m = Number(properties["width_m"]);
+  if (geometry.type === "LineString" && width_m > 0) {
+    const ring = corridorRing(geometry.coordinates, width_m);
+    if (ring.length > 0) return { type: "Polygon", coordinates: [ring] };
+  }
+  return geometry;
 }
 
 /** Shapes and, apart from them, one label point a feature; discs become rings. */
@@ -15,14 +27,7 @@ export function scenarioFeatures(scenario: Scenario): Feature[] {
   return scenario.features.flatMap((feature) => {
     const properties = { fid: nameOf(feature), kind: kindOf(feature), name: nameOf(feature), label: false };
     const radius_m = radiusOf(feature);
-    const shape: Feature = {
-      type: "Feature",
-      properties,
-      geometry:
-        radius_m > 0 && feature.geometry.type === "Point"
-          ? { type: "Polygon", coordinates: [circleRing(feature.geometry.coordinates as Position, radius_m)] }
-          : feature.geometry,
-    };
+    const shape: Feature = { type: "Feature", properties, geometry: outline(feature, radius_m) };
     const at = feature.properties.role === "area" ? null : labelPoint(feature.geometry);
     if (!at) return [shape];
     return [shape, { type: "Feature", properties: { ...properties, label: true }, geometry: { type: "Point", coordinates: at } }];

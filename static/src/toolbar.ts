@@ -16,8 +16,8 @@ export function buildToolbar(drawing: Drawing): void {
     byId("tools"),
     ...buttons.map(({ made }) => made),
     h("span", { class: "gap" }),
-    button("Undo", () => scenarios.undo(), { title: "Undo (Ctrl+Z)" }),
-    button("Redo", () => scenarios.redo(), { title: "Redo (Ctrl+Shift+Z)" }),
+    button("↶", () => scenarios.undo(), { title: "Undo (Ctrl+Z)", "aria-label": "Undo" }),
+    button("↷", () => scenarios.redo(), { title: "Redo (Ctrl+Shift+Z)", "aria-label": "Redo" }),
   );
   drawing.tool.watch((active) => {
     for (const { tool, made } of buttons) made.setAttribute("aria-pressed", String(tool === active));

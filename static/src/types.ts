@@ -70,6 +70,8 @@ export interface Metrics {
   energy_wh: number | null;
   coverage: Record<string, number>;
   planning_time_s: Record<string, number>;
+  lower_bound_m?: number | null;
+  gap?: number | null;
 }
 
 export interface PlanRecord {
@@ -127,7 +129,14 @@ export interface VehicleState {
   texts: { severity: number; text: string }[];
 }
 
-export type UploadOutcome = "accepted" | "refused" | "unknown" | "not_attempted";
+export interface Preflight {
+  plan_id: string;
+  ready: boolean;
+  checks: { name: string; status: "ok" | "warning" | "failed"; detail: string }[];
+  parameters: { name: string; value: number | null; advised: number | null; reason: string; severity: "error" | "warning" }[];
+}
+
+export type UploadOutcome = "accepted" | "different" | "refused" | "unknown" | "not_attempted";
 
 export interface Upload {
   number: number;
@@ -141,6 +150,7 @@ export interface Upload {
   findings: Finding[];
   notes: string[];
   override_reason: string | null;
+  preflight: Preflight | null;
 }
 
 export interface Vehicle {
@@ -148,7 +158,9 @@ export interface Vehicle {
   name: string;
   url: string;
   connected: boolean;
+  link_failure: string | null;
   simulated: boolean;
+  replay: boolean;
   operation: string | null;
   transfer: { part: string; done: number; total: number } | null;
   pending: boolean;

@@ -1,11 +1,13 @@
 /** The form of the selected feature: its name, what its role allows, and its coordinates. */
 import type { Geometry } from "geojson";
-import { button, h } from "../dom";
+import { button, fill, h } from "../dom";
 import { nameOf, scenarios } from "../scenario";
 import type { ScenarioFeature } from "../types";
+import { findingWords } from "../notices";
+import { judgement } from "../validation";
 import { areaField, choiceField, numberField, textField, tickField, type Field } from "./fields";
 
-const ROLE_WORDS: Record<string, string> = {
+export const ROLE_WORDS: Record<string, string> = {
   roi: "Region of interest",
   threat: "Threat",
   no_fly: "No-fly zone",
@@ -82,8 +84,10 @@ function roleFields(name: string, role: string, geometryType: string, model: unk
         ...(sensors.length > 1
           ? [choiceField({ id: "f-sensor", label: "Sensor", choices: [["", "the first"], ...sensors.map((s) => [s, s] as const)], get: get<string>("sensor"), set: (v) => scenarios.setProperty(name, "sensor", v || undefined) })]
           : []),
-        ...(geometryType === "LineString" ? [number("width_m", "Width", "m", { min: 0 })] : []),
-        ...(geometryType === "Point" ? [number("radius_m", "Radius", "m", { min: 0 })] : []),
+        number("min_resolution_m", "Resolution wanted", "m", { min: 0, placeholder: "any" }),
+        number("revisits", "Times to be seen", "", { min: 1, max: 50, placeholder: "1" }),
+        ...(geometryType === "LineString" ? [number("width_m", "Width", "m", { min: 0, required: true })] : []),
+        ...(geometryType === "Point" ? [number("radius_m", "Radius", "m", { min: 0, placeholder: "0" })] : []),
       ];
     case "threat":
       return [
@@ -137,11 +141,17 @@ export function featureForm(feature: ScenarioFeature, zoom: () => void): Field {
       }),
     );
   }
+  const said = h("ul", { class: "findings" });
+  const tell = (): void => {
+    const found = judgement.value.findings.filter((finding) => finding.feature === name);
+    fill(said, ...found.map((finding) => h("li", { class: finding.severity ?? "error" }, findingWords(finding))));
+  };
   const element = h(
     "fieldset",
     { class: "card selected" },
     h("legend", {}, `${ROLE_WORDS[role] ?? role} ${name}`),
     h("div", { class: "grid" }, ...fields.map((field) => field.element)),
+    said,
     byCoordinates ? null : h("p", { class: "quiet" }, "This shape has holes or several parts: its outline can be changed only in the file."),
     h(
       "div",
@@ -151,5 +161,11 @@ export function featureForm(feature: ScenarioFeature, zoom: () => void): Field {
       button("Done", () => scenarios.selection.set(null)),
     ),
   );
-  return { element, sync: () => fields.forEach((field) => field.sync()) };
+  return {
+    element,
+    sync: () => {
+      fields.forEach((field) => field.sync());
+      tell();
+    },
+  };
 }

@@ -16,7 +16,14 @@ interface Common<T> {
 }
 
 function labelled(id: string, label: string, control: HTMLElement, hint?: string): HTMLElement {
-  return h("div", { class: "field", title: hint }, h("label", { for: id }, label), control);
+  if (hint) control.setAttribute("aria-describedby", `${id}-hint`);
+  return h(
+    "div",
+    { class: "field", title: hint },
+    h("label", { for: id, class: hint ? "hinted" : "" }, label),
+    control,
+    hint ? h("span", { id: `${id}-hint`, class: "sr-only" }, hint) : null,
+  );
 }
 
 function sayInvalid(control: HTMLInputElement | HTMLTextAreaElement, message: string): void {

@@ -8,6 +8,7 @@ import { readFindings } from "../api";
 import type { PlanRecord, Position, Problem, Violation } from "../types";
 import { metres, number, percent, seconds } from "../units";
 import { judgement } from "../validation";
+import { comparison } from "./compare";
 import { operatingStrip } from "./strip";
 
 export interface PlanView {
@@ -105,6 +106,7 @@ function result({ record, plan }: OpenPlan, view: PlanView): HTMLElement {
         ["Collecting", metres(m.collection_length_m)],
         ["Duty cycle", percent(m.duty_cycle)],
         ["Path length ratio", number(m.path_length_ratio, 3)],
+        ...(typeof m.gap === "number" ? [["At most from the best", percent(m.gap)] as [string, string]] : []),
         ["Flight time", seconds(m.duration_s)],
         ["Turns", number(m.turns, 0)],
         ["Risk, missile", number(m.risk_missile, 2)],
@@ -158,6 +160,7 @@ export function planPanel(view: PlanView): HTMLElement {
   running.watch(update);
   judgement.watch(update);
   const box = h("div", {});
+  const beside = section("Compare", false, comparison());
   const stale = h("p", { class: "warning", hidden: true }, "The scenario was changed after this plan was made.");
   const compare = (): void => {
     stale.hidden = !open.value || open.value.madeFrom === scenarios.text();
@@ -165,7 +168,8 @@ export function planPanel(view: PlanView): HTMLElement {
   open.watch((plan) => {
     compare();
     fill(box, plan ? result(plan, view) : null);
+    beside.hidden = plan === null;
   });
   scenarios.document.watch(compare);
-  return h("div", {}, h("div", { class: "row" }, go), progress(view), stale, box, earlier());
+  return h("div", {}, h("div", { class: "row" }, go), progress(view), stale, box, beside, earlier());
 }

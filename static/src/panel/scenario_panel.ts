@@ -7,7 +7,7 @@ import { REGION_FILES } from "../regions";
 import { emptyScenario, nameOf, scenarios } from "../scenario";
 import type { Finding } from "../types";
 import { judge, judgement, type Judgement } from "../validation";
-import { featureForm, formKey } from "./feature_form";
+import { featureForm, formKey, ROLE_WORDS } from "./feature_form";
 import { textField, type Field } from "./fields";
 import { settingsForm, settingsKey } from "./settings_form";
 
@@ -26,7 +26,7 @@ const STATE_WORDS: Record<Judgement["state"], string> = {
 };
 
 function files(view: View): HTMLElement {
-  const input = h("input", { type: "file", id: "file", accept: `.geojson,.json,application/geo+json,application/json,${REGION_FILES}`, class: "sr-only", tabindex: "-1" });
+  const input = h("input", { type: "file", id: "file", accept: `.geojson,.json,application/geo+json,application/json,${REGION_FILES}`, class: "sr-only", tabindex: "-1", "aria-label": "File to open" });
   input.addEventListener("change", () => {
     const file = input.files?.[0];
     input.value = "";
@@ -104,17 +104,23 @@ function features(view: View): HTMLElement {
             scenarios.selection.set(name);
             view.zoomTo([name]);
           };
-          return button(name, select, { class: `chip ${feature.properties.role}`, title: feature.properties.role });
+          return button(name, select, { class: `chip ${feature.properties.role}`, "data-role": ROLE_WORDS[feature.properties.role] ?? feature.properties.role });
         }),
         sorted.length === 0 ? h("p", { class: "quiet" }, "No features. Use the tools over the map, or open a file.") : null,
       );
     }
     for (const chip of box.querySelectorAll("button")) {
-      chip.setAttribute("aria-pressed", String(chip.textContent === scenarios.selection.value));
+      const name = chip.textContent ?? "";
+      const worst = judgement.value.findings.filter((finding) => finding.feature === name).map(({ severity }) => severity ?? "error").sort()[0];
+      chip.setAttribute("aria-pressed", String(name === scenarios.selection.value));
+      chip.classList.toggle("wrong", worst === "error");
+      chip.classList.toggle("doubtful", worst === "warning");
+      chip.title = [chip.dataset["role"], worst === "error" ? "refused: see above" : worst === "warning" ? "a warning: see above" : ""].filter(Boolean).join("; ");
     }
   };
   scenarios.document.watch(draw);
   scenarios.selection.watch(draw);
+  judgement.watch(draw);
   return section("Features", true, box);
 }
 
@@ -134,6 +140,7 @@ function kept(key: () => string, build: () => Field | null): HTMLElement {
   };
   scenarios.document.watch(update);
   scenarios.selection.watch(update);
+  judgement.watch(update);
   return box;
 }
 

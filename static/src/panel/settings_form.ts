@@ -1,8 +1,9 @@
 /** Forms for what belongs to the whole scenario: aircraft, sensors, altitude, methods, weights. */
-import { h, section } from "../dom";
+import { button, h, section } from "../dom";
 import { scenarios } from "../scenario";
 import type { Member, Scenario } from "../types";
 import { choiceField, numberField, textField, type Field } from "./fields";
+import { terrainField } from "./terrain_field";
 
 type List = "vehicles" | "sensors";
 
@@ -58,9 +59,12 @@ function number(list: List, index: number, property: string, label: string, unit
   return numberField({ id: `${list}-${index}-${property}`, label, unit, min: 0, get: () => get<number>(), set, ...extra });
 }
 
-function choice(list: List, index: number, property: string, label: string, choices: readonly string[]): Field {
+/** A choice whose first entry is what holds when nothing is said. */
+function choice(list: List, index: number, property: string, label: string, choices: readonly (string | readonly [string, string])[]): Field {
   const { get, set } = member(list, index, property);
-  return choiceField({ id: `${list}-${index}-${property}`, label, choices, get: () => get<string>(), set });
+  const first = choices[0] as string | readonly [string, string];
+  const usual = typeof first === "string" ? first : first[0];
+  return choiceField({ id: `${list}-${index}-${property}`, label, choices, get: () => get<string>() ?? usual, set });
 }
 
 function name(list: List, index: number): Field {
@@ -74,16 +78,18 @@ function name(list: List, index: number): Field {
 function vehicle(index: number): Field[] {
   return [
     name("vehicles", index),
-    choice("vehicles", index, "autopilot", "Autopilot", ["ardupilot", "px4"]),
+    choice("vehicles", index, "type", "Type", [["fixed_wing", "fixed wing"], "multirotor", ["vtol", "VTOL"]]),
+    choice("vehicles", index, "autopilot", "Autopilot", [["ardupilot", "ArduPilot"], ["px4", "PX4"]]),
     number("vehicles", index, "airspeed_m_s", "Airspeed", "m/s", { required: true }),
-    number("vehicles", index, "min_turn_radius_m", "Least turn radius", "m"),
-    number("vehicles", index, "max_bank_deg", "Greatest bank", "°", { max: 89 }),
-    number("vehicles", index, "max_climb_deg", "Greatest climb", "°", { max: 89 }),
-    number("vehicles", index, "max_range_m", "Range", "m"),
-    number("vehicles", index, "max_flight_time_s", "Flight time", "s"),
-    number("vehicles", index, "energy_wh", "Energy", "Wh"),
+    number("vehicles", index, "settle_m", "Straight before a pass", "m", { placeholder: "0", hint: "Straight flight wanted before each pass, so that the aircraft is on its line when the sensor goes on; 150 m suits an ArduPlane of 20 m/s" }),
+    number("vehicles", index, "min_turn_radius_m", "Least turn radius", "m", { hint: "The widest of turn radius, bank and load factor counts" }),
+    number("vehicles", index, "max_bank_deg", "Greatest bank", "°", { max: 84.9 }),
+    number("vehicles", index, "max_load_factor", "Greatest load factor", "g", { min: 1 }),
+    number("vehicles", index, "max_climb_deg", "Greatest climb", "°", { max: 89, placeholder: "8" }),
+    number("vehicles", index, "max_range_m", "Range", "m", { placeholder: "no limit" }),
+    number("vehicles", index, "max_flight_time_s", "Flight time", "s", { placeholder: "no limit" }),
+    number("vehicles", index, "energy_wh", "Energy", "Wh", { placeholder: "no limit", hint: "Needs the cruise power" }),
     number("vehicles", index, "cruise_power_w", "Cruise power", "W"),
-    number("vehicles", index, "settle_m", "Settle before a collect", "m"),
   ];
 }
 
@@ -91,12 +97,19 @@ function sensor(index: number): Field[] {
   return [
     name("sensors", index),
     choice("sensors", index, "look", "Looks", ["right", "left", "both"]),
-    number("sensors", index, "incidence_deg", "Incidence", "°", { max: 90 }),
-    number("sensors", index, "elevation_beamwidth_deg", "Beam, elevation", "°", { max: 180 }),
-    number("sensors", index, "azimuth_beamwidth_deg", "Beam, azimuth", "°", { max: 180 }),
+    choice("sensors", index, "mode", "Mode", ["stripmap", "spotlight", ["scansar", "ScanSAR"]]),
+    number("sensors", index, "incidence_deg", "Incidence", "°", { max: 90, required: true }),
+    number("sensors", index, "elevation_beamwidth_deg", "Beam, elevation", "°", { max: 180, required: true }),
+    number("sensors", index, "azimuth_beamwidth_deg", "Beam, azimuth", "°", { max: 180, placeholder: "from the aperture" }),
     number("sensors", index, "aperture_length_m", "Aperture length", "m"),
     number("sensors", index, "wavelength_m", "Wavelength", "m"),
     number("sensors", index, "resolution_m", "Resolution", "m"),
+    number("sensors", index, "squint_deg", "Squint", "°", { min: -60, max: 60, placeholder: "0", hint: "Forward is positive" }),
+    ...(scenarios.document.value.sensors?.[index]?.["mode"] === "scansar"
+      ? [number("sensors", index, "sub_swaths", "Sub-swaths", "", { min: 1, placeholder: "3" })]
+      : []),
+    number("sensors", index, "pointing_margin_deg", "Pointing margin", "°", { max: 15, placeholder: "0", hint: "Planned with this much less of the beam at every edge, because the aircraft sways; 1.5° to 2° made real autopilots see every region whole" }),
+    number("sensors", index, "position_margin_m", "Position margin", "m", { placeholder: "0", hint: "Planned with this much less of the swath at every edge, because the aircraft is not quite on its line" }),
   ];
 }
 
@@ -105,12 +118,16 @@ function mission(): Field[] {
   const reference = top("altitude_reference");
   const seed = top("seed");
   const budget = top("time_budget_s");
+  const clearance = top("clearance_m");
   return [
     numberField({ id: "s-altitude_m", label: "Altitude", unit: "m", min: 0, required: true, get: () => altitude.get<number>(), set: altitude.set }),
     choiceField({
       id: "s-altitude_reference", label: "Altitude over", get: () => reference.get<string>(), set: reference.set,
       choices: [["terrain", "terrain"], ["home", "home"], ["amsl", "mean sea level"]],
     }),
+    terrainField(),
+    numberField({ id: "s-clearance_m", label: "Clearance", unit: "m", min: 0, placeholder: "0", hint: "Kept from the ground, obstacles and zones", get: () => clearance.get<number>(), set: clearance.set }),
+    ...wind(),
     numberField({ id: "s-seed", label: "Seed", min: 0, placeholder: "0", get: () => seed.get<number>(), set: seed.set }),
     numberField({ id: "s-time_budget_s", label: "Time for planning", unit: "s", min: 0, placeholder: "no limit", get: () => budget.get<number>(), set: budget.set }),
   ];
@@ -126,6 +143,35 @@ function methods(): Field[] {
   });
 }
 
+function wind(): Field[] {
+  const get = (property: string) => () => (scenarios.document.value["wind"] as Member | undefined)?.[property] as number | undefined;
+  const set = (property: string, value: unknown): void =>
+    scenarios.change((draft) => {
+      const target: Member = { from_deg: 0, ...(draft["wind"] as Member | undefined), [property]: value };
+      if (target["speed_m_s"] === undefined) delete draft["wind"];
+      else draft["wind"] = { ...target, from_deg: target["from_deg"] ?? 0 };
+    });
+  return [
+    numberField({ id: "wind-speed_m_s", label: "Wind speed", unit: "m/s", min: 0, max: 100, placeholder: "still air", get: get("speed_m_s"), set: (value) => set("speed_m_s", value) }),
+    numberField({ id: "wind-from_deg", label: "Wind from", unit: "°", min: 0, max: 360, placeholder: "0", hint: "Clockwise from north; needs a speed", get: get("from_deg"), set: (value) => set("from_deg", value) }),
+  ];
+}
+
+/** One more sensor, a copy of the last; and the nth taken away. */
+function addSensor(): void {
+  scenarios.change((draft) => {
+    const sensors = draft.sensors ?? [];
+    const taken = new Set(sensors.map((each) => String(each["name"])));
+    let number = sensors.length + 1;
+    while (taken.has(`sar-${number}`)) number += 1;
+    draft.sensors = [...sensors, { ...structuredClone(sensors.at(-1) ?? { type: "sar" }), name: `sar-${number}` }];
+  });
+}
+
+function removeSensor(index: number): void {
+  scenarios.change((draft) => void draft.sensors?.splice(index, 1));
+}
+
 function weights(): Field[] {
   return WEIGHTS.map((weight) => {
     const { get, set } = nested("objective", weight);
@@ -138,7 +184,7 @@ function weights(): Field[] {
 
 /** What decides which fields there are. */
 export function settingsKey(scenario: Scenario): string {
-  return `${scenario.vehicles?.length ?? 0}|${scenario.sensors?.length ?? 0}`;
+  return `${scenario.vehicles?.length ?? 0}|${(scenario.sensors ?? []).map((sensor) => sensor["mode"] === "scansar").join()}`;
 }
 
 export function settingsForm(scenario: Scenario): Field {
@@ -153,9 +199,21 @@ export function settingsForm(scenario: Scenario): Field {
   const element = h(
     "div",
     {},
-    section("Altitude and planning", true, grid(mission())),
+    section("Altitude, ground and wind", true, grid(mission())),
     ...vehicles.map((_, index) => section(numbered("Aircraft", vehicles.length, index), false, grid(vehicle(index)))),
-    ...sensors.map((_, index) => section(numbered("Sensor", sensors.length, index), false, grid(sensor(index)))),
+    ...sensors.map((_, index) =>
+      section(
+        numbered("Sensor", sensors.length, index),
+        false,
+        grid(sensor(index)),
+        h(
+          "div",
+          { class: "row" },
+          index === sensors.length - 1 ? button("Add a sensor", addSensor) : null,
+          sensors.length > 1 ? button("Remove", () => removeSensor(index), { class: "danger", "aria-label": `Remove sensor ${index + 1}` }) : null,
+        ),
+      ),
+    ),
     section("Methods", false, grid(methods())),
     section("Weights", false, grid(weights())),
   );

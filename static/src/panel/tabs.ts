@@ -1,5 +1,5 @@
 /** Tabs as the ARIA practice has them: arrow keys move, one panel shows. */
-import { h } from "../dom";
+import { fill, h } from "../dom";
 
 export interface Tab {
   id: string;
@@ -13,6 +13,8 @@ export interface Tabs {
   show(id: string): void;
   /** Show a tab unless the operator has chosen one. */
   suggest(id: string): void;
+  /** Put a few words behind a tab's label; none takes them away. */
+  mark(id: string, words: string): void;
 }
 
 export function tabs(all: Tab[]): Tabs {
@@ -44,5 +46,10 @@ export function tabs(all: Tab[]): Tabs {
     choose((all[next] as Tab).id);
   });
   show((all[0] as Tab).id);
-  return { element, panels, show, suggest: (id) => (chosen ? undefined : show(id)) };
+  const mark = (id: string, words: string): void => {
+    const at = all.findIndex((tab) => tab.id === id);
+    const tab = all[at];
+    if (tab && heads[at]) fill(heads[at], tab.label, words ? h("span", { class: "badge" }, words) : null);
+  };
+  return { element, panels, show, mark, suggest: (id) => (chosen ? undefined : show(id)) };
 }

@@ -1,15 +1,17 @@
 /** Sending the plan on the map to the vehicle, and what the vehicle answered. */
 import { ApiError } from "../api";
 import { ask } from "../dialog";
-import { button, fill, h } from "../dom";
-import { upload, watched, type Override } from "../fleet";
-import { findingText, report } from "../notices";
+import { button, fill, h, section } from "../dom";
+import { preflight, upload, watched, type Override } from "../fleet";
+import { attempt, findingText, report } from "../notices";
 import { open } from "../plans";
-import type { Upload, Vehicle } from "../types";
+import type { Preflight, Upload, Vehicle } from "../types";
+import { number } from "../units";
 
 const DIFFERENCES_SHOWN = 8;
 const WORDS: Record<Upload["outcome"], string> = {
   accepted: "The vehicle accepted it",
+  different: "The vehicle never answered, and holds something else than was meant",
   refused: "The vehicle refused it",
   unknown: "Outcome unknown: the vehicle did not answer to the end. It is read back as soon as it is heard again",
   not_attempted: "Not attempted",
@@ -31,6 +33,30 @@ function partLine(name: string, part: Upload["parts"][string]): HTMLElement {
   );
 }
 
+/** The check before flight: its verdict open to see, what is in order folded away. */
+function readiness(found: Preflight): HTMLElement {
+  const line = ({ name, status, detail }: Preflight["checks"][number]): HTMLElement =>
+    h("li", { class: status === "failed" ? "error" : status === "warning" ? "warning" : "sound" }, h("strong", {}, name.replaceAll("_", " ")), `: ${detail}`);
+  const open = found.checks.filter(({ status }) => status !== "ok");
+  const sound = found.checks.filter(({ status }) => status === "ok");
+  return h(
+    "div",
+    { class: "card", "data-ready": String(found.ready) },
+    h("p", { class: found.ready ? "good" : "error" }, found.ready ? (open.length > 0 ? "Ready to fly; for the pilot to weigh:" : "Ready to fly: every check is in order.") : "Not ready to fly:"),
+    open.length > 0 ? h("ul", { class: "findings" }, ...open.map(line)) : null,
+    found.parameters.length > 0
+      ? h(
+          "ul",
+          { class: "findings" },
+          ...found.parameters.map((p) =>
+            h("li", { class: p.severity }, h("strong", {}, p.name), ` is ${number(p.value, 2)}${p.advised === null ? "" : `, ${number(p.advised, 2)} would do`}: ${p.reason}`),
+          ),
+        )
+      : null,
+    sound.length > 0 ? section(`${sound.length} checks in order`, false, h("ul", { class: "findings" }, ...sound.map(line))) : null,
+  );
+}
+
 function answer(result: Upload): HTMLElement {
   return h(
     "div",
@@ -39,17 +65,28 @@ function answer(result: Upload): HTMLElement {
     h("ul", { class: "findings" }, ...Object.entries(result.parts).map(([name, part]) => partLine(name, part))),
     result.findings.length > 0 ? h("ul", { class: "findings" }, ...result.findings.map((finding) => h("li", { class: finding.severity ?? "warning" }, findingText(finding)))) : null,
     ...result.notes.map((note) => h("p", { class: "quiet" }, note)),
+    result.preflight ? readiness(result.preflight) : null,
     result.override_reason ? h("p", { class: "warning" }, `Sent against the check's verdict: ${result.override_reason}`) : null,
   );
 }
 
 export function uploadBox(): HTMLElement {
-  const part = (name: string): HTMLInputElement => h("input", { type: "checkbox", id: `part-${name}`, checked: true, disabled: name === "mission" });
-  const parts = { mission: part("mission"), fence: part("fence") };
+  const part = (name: string, checked = true): HTMLInputElement => h("input", { type: "checkbox", id: `part-${name}`, checked, disabled: name === "mission" });
+  const parts = { mission: part("mission"), fence: part("fence"), rally: part("rally", false) };
   const result = h("div", { id: "upload-result", "aria-live": "polite" });
   const moving = h("div", {});
   const go = button("Upload the plan", () => void send(null), { class: "primary", id: "upload" });
   const why = h("p", { class: "quiet" });
+  const check = button("Check before flight", () => void inquire(), { id: "preflight", title: "Reads the vehicle and changes nothing in it" });
+  const checked = h("div", { id: "preflight-result", "aria-live": "polite" });
+  const inquire = async (): Promise<void> => {
+    const vehicle = watched.value;
+    const plan = open.value;
+    if (!vehicle || !plan) return;
+    fill(checked, h("p", {}, `Asking ${vehicle.name} …`));
+    const found = await attempt(`${vehicle.name} was not checked`, () => preflight(vehicle.id, plan.record.id));
+    fill(checked, found ? readiness(found) : null);
+  };
 
   const send = async (override: Override | null): Promise<void> => {
     const vehicle = watched.value;
@@ -85,8 +122,8 @@ export function uploadBox(): HTMLElement {
   const update = (): void => {
     const vehicle: Vehicle | null = watched.value;
     const busy = vehicle?.operation ?? null;
-    go.disabled = !vehicle?.connected || !open.value || busy !== null;
-    fill(why, !vehicle ? "No vehicle is chosen." : !vehicle.connected ? "The vehicle is not heard." : !open.value ? "No plan is on the map." : busy ? `At work: ${busy}` : "");
+    go.disabled = check.disabled = !vehicle?.connected || vehicle.replay || !open.value || busy !== null;
+    fill(why, !vehicle ? "No vehicle is chosen." : !vehicle.connected ? "The vehicle is not heard." : vehicle.replay ? "A recording takes no uploads." : !open.value ? "No plan is on the map." : busy ? `At work: ${busy}` : "");
     fill(moving, vehicle?.transfer ? h("progress", { max: Math.max(1, vehicle.transfer.total), value: vehicle.transfer.done, "aria-label": "Upload progress" }) : null);
     const number = vehicle?.upload ? `${vehicle.id}/${vehicle.upload.number}/${vehicle.upload.outcome}/${vehicle.upload.verified}` : null;
     if (number !== shownNumber && busy === null) {
@@ -97,5 +134,5 @@ export function uploadBox(): HTMLElement {
   watched.watch(update);
   open.watch(update);
   const tick = (name: keyof typeof parts, label: string): HTMLElement => h("span", { class: "field tick" }, parts[name], h("label", { for: `part-${name}` }, label));
-  return h("div", {}, h("div", { class: "row" }, go, tick("mission", "mission"), tick("fence", "fence")), why, moving, result);
+  return h("div", {}, h("div", { class: "row" }, go, tick("mission", "mission"), tick("fence", "fence"), tick("rally", "rally"), check), why, moving, result, checked);
 }

@@ -2,7 +2,8 @@
 import { ask } from "../dialog";
 import { button, fill, h, section } from "../dom";
 import { command, connectVehicle, letGo, refreshVehicles, stream, vehicles, watched, watchVehicle, type Command } from "../fleet";
-import { flights, flown, refreshFlights, showFlight, type Flown } from "../flights";
+import { flights, flightUrl, flown, refly, refreshFlights, showFlight, type Flown } from "../flights";
+import { openPlan } from "../plans";
 import { attempt, news, warn } from "../notices";
 import type { Vehicle } from "../types";
 import { metres, number, percent } from "../units";
@@ -15,6 +16,7 @@ const COMMANDS: { name: Command; label: string; says: string }[] = [
   { name: "pause", label: "Pause", says: "The aircraft leaves its line and waits in a circle." },
   { name: "resume", label: "Resume", says: "The aircraft goes on with the mission." },
   { name: "rtl", label: "Return", says: "The aircraft gives up the mission and returns to launch." },
+  { name: "disarm", label: "Disarm", says: "The motors stop; an aircraft in flight refuses it." },
 ];
 const TEXTS_SHOWN = 4;
 const ERROR_SEVERITY = 3;
@@ -33,7 +35,7 @@ function connectForm(): HTMLElement {
       h("div", { class: "field" }, h("label", { for: "v-name" }, "Name"), name),
       h("div", { class: "field" }, h("label", { for: "v-url" }, "Address"), url),
     ),
-    h("p", { class: "quiet" }, "udpin:host:port, udpout:host:port, tcp:host:port, serial:device:baud, or sim: for a simulated aircraft"),
+    h("p", { class: "quiet" }, "udpin:host:port, udpout:host:port, tcp:host:port, serial:device:baud, sim: for a simulated aircraft, or replay:file for a recording"),
     h("div", { class: "row" }, go),
   );
   form.addEventListener("submit", (event) => {
@@ -52,7 +54,7 @@ function vehicleList(): HTMLElement {
   const items = h("div", { role: "radiogroup", "aria-label": "Vehicles", id: "vehicles" });
   let shown = "";
   const draw = (): void => {
-    const key = JSON.stringify([watched.value?.id, vehicles.value.map((vehicle) => [vehicle.id, vehicle.connected, vehicle.name])]);
+    const key = JSON.stringify([watched.value?.id, vehicles.value.map((vehicle) => [vehicle.id, vehicle.connected, vehicle.name, vehicle.link_failure])]);
     if (key === shown) return;
     shown = key;
     fill(
@@ -62,7 +64,7 @@ function vehicleList(): HTMLElement {
           "div",
           { class: "row" },
           h("input", { type: "radio", name: "vehicle", id: `v-${vehicle.id}`, checked: vehicle.id === watched.value?.id, onchange: () => watchVehicle(vehicle.id) }),
-          h("label", { for: `v-${vehicle.id}` }, `${vehicle.name} – ${vehicle.url}${vehicle.connected ? "" : " (not heard)"}`),
+          h("label", { for: `v-${vehicle.id}` }, `${vehicle.name} – ${vehicle.url}${vehicle.connected ? "" : vehicle.link_failure ? " (no link)" : " (not heard)"}`),
           button("Let go", () => void release(vehicle), { class: "link", "aria-label": `Let ${vehicle.name} go` }),
         ),
       ),
@@ -91,7 +93,7 @@ async function give(vehicle: Vehicle, wanted: (typeof COMMANDS)[number]): Promis
 function commands(): HTMLElement {
   const buttons = COMMANDS.map((wanted) => button(wanted.label, () => watched.value && void give(watched.value, wanted), { "data-command": wanted.name }));
   watched.watch((vehicle) => {
-    const possible = vehicle !== null && vehicle.connected;
+    const possible = vehicle !== null && vehicle.connected && !vehicle.replay;
     for (const made of buttons) made.disabled = !possible;
   });
   return h("div", { class: "row", role: "group", "aria-label": "Flight commands" }, ...buttons);
@@ -118,7 +120,7 @@ function gauges(): HTMLElement {
     const loud = s.texts.slice(-TEXTS_SHOWN).reverse();
     fill(
       box,
-      vehicle.connected ? null : h("p", { class: "error" }, "The vehicle is not heard."),
+      vehicle.connected ? null : h("p", { class: "error" }, vehicle.link_failure ? `No link: ${vehicle.link_failure}; trying again …` : "The vehicle is not heard."),
       stream.value === "broken" ? h("p", { class: "error" }, "The telemetry is interrupted; trying again …") : null,
       vehicle.pending ? h("p", { class: "warning" }, "The last upload's outcome is unknown; it is read back when the vehicle is heard.") : null,
       h("dl", { class: "gauges" }, ...rows.map(([name, value, on]) => h("div", { class: on ? "gauge on" : "gauge" }, h("dt", {}, name), h("dd", { title: value }, value)))),
@@ -130,7 +132,16 @@ function gauges(): HTMLElement {
   return box;
 }
 
-function flownTable({ flight, seen }: Flown): HTMLElement {
+const SEEN = 0.9995;
+
+function flownTable({ flight, seen }: Flown, planned: () => void): HTMLElement {
+  const missing = Object.values(seen.coverage).some((fraction) => fraction < SEEN);
+  const again = async (): Promise<void> => {
+    const lines = ["A new scenario is made of what was not seen, and planned. It takes the place of the one on the page; Undo brings that back."];
+    if ((await ask({ title: "Plan the gaps?", lines, go: "Plan the gaps" })) === null) return;
+    const record = await attempt("The gaps were not planned", () => refly(flight.id));
+    if (record && (await attempt("The plan of the gaps was not opened", () => openPlan(record.id)))) planned();
+  };
   return h(
     "div",
     { class: "card", id: "flown" },
@@ -147,11 +158,19 @@ function flownTable({ flight, seen }: Flown): HTMLElement {
         ),
       ),
     ),
+    h(
+      "div",
+      { class: "row files" },
+      button("Plan the gaps …", () => void again(), { id: "refly", class: missing ? "primary" : "", title: "Plan a flight over what was not seen" }),
+      h("a", { href: flightUrl(flight.id, "report.html"), target: "_blank", rel: "noopener" }, "Report"),
+      h("a", { href: flightUrl(flight.id, "track.gpx"), download: `${flight.vehicle_name}.gpx` }, "Track (GPX)"),
+      h("a", { href: flightUrl(flight.id, "coverage.geojson"), download: `${flight.vehicle_name}-coverage.geojson` }, "Coverage (GeoJSON)"),
+    ),
     h("p", { class: "quiet" }, `Furthest from the line while the sensor was on: ${number(Math.max(0, ...seen.collects.map((c) => c.cross_track_max_m)), 1, "m")}`),
   );
 }
 
-function flightList(): HTMLElement {
+function flightList(planned: () => void): HTMLElement {
   const items = h("ul", { class: "plain", id: "flights" });
   const shown = h("div", {});
   flights.watch((all) =>
@@ -168,12 +187,13 @@ function flightList(): HTMLElement {
       all.length === 0 ? h("li", { class: "quiet" }, "None yet.") : null,
     ),
   );
-  flown.watch((result) => fill(shown, result ? flownTable(result) : null));
+  flown.watch((result) => fill(shown, result ? flownTable(result, planned) : null));
   return section("Flights", true, shown, items, button("Refresh", () => void attempt("The flights were not listed", refreshFlights)));
 }
 
-export function vehiclePanel(): HTMLElement {
+/** `planned` is called when a plan of a flight's gaps is on the map. */
+export function vehiclePanel(planned: () => void): HTMLElement {
   const title = h("h2", {});
   watched.watch((vehicle) => fill(title, vehicle ? vehicle.name : "No vehicle"));
-  return h("div", {}, vehicleList(), title, uploadBox(), commands(), gauges(), flightChart(), flightList());
+  return h("div", {}, vehicleList(), title, uploadBox(), commands(), gauges(), flightChart(), flightList(planned));
 }

@@ -101,6 +101,46 @@ def test_the_plan_is_uploaded_and_flown(page: Page, planned: str, service: Servi
         row = page.locator("#flown tr", has_text=region)
         expect(row).to_contain_text(f"{fraction * 100:.2f} %")
     await_hook(page, "rendered()['seen-fill'] > 0")
+    report = page.locator("#flown a", has_text="Report").evaluate("a => a.href")
+    assert flight in report
+    assert httpx.get(report, timeout=20.0).status_code == 200
+
+
+def test_readiness_is_asked_of_the_vehicle(page: Page, planned: str) -> None:
+    """The check before flight is shown with the upload, and again on its own button, check by check."""
+    page.get_by_role("tab", name="Fly").click()
+    expect(page.locator("#upload-result [data-ready]")).to_have_count(1)
+    page.click("#preflight")
+    asked = page.locator("#preflight-result [data-ready]")
+    expect(asked).to_have_count(1, timeout=20_000)
+    expect(asked).to_contain_text("mission")
+
+
+def test_two_plans_are_compared(page: Page, planned: str, service: Service) -> None:
+    """Figures of another plan stand beside those of the one on the map, and its path is drawn."""
+    other = CASE_1 | {"name": "other", "method": {"routing": "li2018"}}
+    record = httpx.post(f"{service.address}/api/v1/plans?wait=60", json=other, timeout=90.0).json()
+    assert record["state"] == "done"
+    page.get_by_role("tab", name="Plan").click()
+    page.get_by_role("button", name="Refresh").first.click()
+    page.locator("summary", has_text="Compare").click()
+    page.select_option("#compare", record["id"])
+    table = page.locator("#comparison")
+    expect(table).to_contain_text(f"{record['metrics']['length_m'] / 1000:.2f} km")
+    await_hook(page, "rendered()['compared-line'] > 0")
+    page.select_option("#compare", "")
+    expect(table).to_have_count(0)
+
+
+def test_the_gaps_of_a_flight_are_planned(page: Page, planned: str) -> None:
+    """One button makes a plan of what a flight did not see, or the service's words why there is none."""
+    page.get_by_role("tab", name="Fly").click()
+    page.click("#refly")
+    page.click("#dialog-go")
+    page.wait_for_function(
+        "() => window.swathplan.scenario().name.endsWith('-refly')"
+        " || document.querySelector('#notices').textContent.includes('gaps were not planned')"
+    )
 
 
 def test_an_unsafe_plan_needs_a_reason(page: Page, planned: str, tmp_path: Path) -> None:

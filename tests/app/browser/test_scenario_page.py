@@ -166,3 +166,92 @@ def test_the_methods_offered_are_those_the_planner_knows(page: Page) -> None:
     for stage, names in METHODS.items():
         if stage != "search":
             assert page.locator(f"#m-{stage} option").evaluate_all("o => o.map(e => e.value)") == list(names)
+
+
+def test_a_corridor_is_drawn_as_its_strip(page: Page) -> None:
+    """A line drawn by three clicks is a corridor; the map shows the ground within half its width."""
+    open_scenario(page)
+    page.click("[data-tool=corridor]")
+    for corner in ((-117.70, 33.535), (-117.69, 33.535), (-117.685, 33.531)):
+        click_place(page, *corner)
+    page.keyboard.press("Enter")
+    await_hook(page, "selected() === 'R7'")
+    page.get_by_label("Width (m)").fill("300")
+    page.keyboard.press("Tab")
+    drawn = feature(page, "R7")
+    assert drawn is not None
+    assert drawn["geometry"]["type"] == "LineString"
+    assert len(drawn["geometry"]["coordinates"]) == 3
+    assert drawn["properties"]["width_m"] == 300
+    page.get_by_role("button", name="Done").click()
+    lon, lat = drawn["geometry"]["coordinates"][0]
+    inside = WGS84.fwd(lon, lat, 45.0, 150.0)[:2]
+    page.wait_for_timeout(400)
+    click_place(page, *inside)
+    await_hook(page, "selected() === 'R7'")
+
+
+def test_a_point_target_can_be_seen_and_chosen(page: Page) -> None:
+    """A target of no extent is a sign on the map, and a click on it selects it."""
+    open_scenario(page)
+    page.click("[data-tool=target]")
+    click_place(page, -117.70, 33.535)
+    await_hook(page, "selected() === 'R7'")
+    page.get_by_role("button", name="Done").click()
+    await_hook(page, "rendered()['target'] === 1")
+    click_place(page, -117.70, 33.535)
+    await_hook(page, "selected() === 'R7'")
+
+
+def test_margins_and_wind_reach_the_document(page: Page) -> None:
+    """What the forms take stands in the scenario under the contract's names, and goes when it is emptied."""
+    open_scenario(page)
+    for heading in ("Aircraft", "Sensor"):
+        page.locator("summary", has_text=heading).click()
+    entries = {
+        "#sensors-0-pointing_margin_deg": "1.5",
+        "#sensors-0-position_margin_m": "5",
+        "#sensors-0-squint_deg": "-10",
+        "#vehicles-0-settle_m": "150",
+        "#vehicles-0-max_load_factor": "1.2",
+        "#s-clearance_m": "50",
+        "#wind-speed_m_s": "6",
+        "#wind-from_deg": "270",
+    }
+    for field, text in entries.items():
+        page.locator(field).fill(text)
+        page.keyboard.press("Tab")
+    page.select_option("#vehicles-0-type", "vtol")
+    made = ask(page, "scenario()")
+    sensor, vehicle = made["sensors"][0], made["vehicles"][0]
+    assert (sensor["pointing_margin_deg"], sensor["position_margin_m"], sensor["squint_deg"]) == (1.5, 5, -10)
+    assert (vehicle["settle_m"], vehicle["max_load_factor"], vehicle["type"]) == (150, 1.2, "vtol")
+    assert (made["clearance_m"], made["wind"]) == (50, {"speed_m_s": 6, "from_deg": 270})
+    page.locator("#wind-speed_m_s").fill("")
+    page.keyboard.press("Tab")
+    assert "wind" not in ask(page, "scenario()")
+
+
+def test_a_finding_is_shown_where_the_feature_is(page: Page) -> None:
+    """A refused feature is marked in the list and on the tab, and its form says what is wrong with it."""
+    open_scenario(page)
+    page.get_by_role("button", name="R5", exact=True).click()
+    page.locator("#f-coordinates").fill("-117.60, 33.40\n-117.59, 33.40\n-117.59, 33.41")
+    page.keyboard.press("Tab")
+    expect(page.locator("fieldset.selected .findings")).to_contain_text("outside")
+    expect(page.locator(".chip.wrong")).to_have_text("R5")
+    expect(page.get_by_role("tab", name="Scenario")).to_contain_text("1 refused")
+    page.keyboard.press("Control+z")
+    expect(page.locator(".chip.wrong")).to_have_count(0)
+
+
+def test_every_control_has_a_name(page: Page) -> None:
+    """No field, list or button of the page is without an accessible name."""
+    open_scenario(page)
+    page.evaluate("document.querySelectorAll('details').forEach(d => d.open = true)")
+    nameless = page.evaluate(
+        """() => [...document.querySelectorAll('input, select, textarea, button')].filter(
+            (e) => !(e.labels?.length || e.getAttribute('aria-label') || e.title || e.textContent.trim())
+        ).map((e) => e.outerHTML)"""
+    )
+    assert nameless == []
