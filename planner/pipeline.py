@@ -26,7 +26,7 @@ from planner.scenario import Method, Scenario
 from planner.transit import ssas_connector
 from planner.transit.refine import Risk, connect_by_cost
 from planner.vehicle.aircraft import Aircraft
-from planner.vehicle.wind import drift, in_wind
+from planner.vehicle.wind import in_wind
 from planner.version import __version__
 
 Clock = Callable[[], float]
@@ -93,7 +93,6 @@ def make_plan(
         route, dropped, sides = _route(scenario, aircraft, methods, _part(progress, 0.0, 0.5), stop, enough)
     with watch.stage("transit"):
         legs, notes = _connect(scenario, aircraft, methods, route, _part(progress, 0.5, 0.9), stop)
-    crab_findings = drift(scenario, aircraft, route.passes)
     dropped += hidden_findings(scenario, route.passes, by_paper=methods["coverage"] == "li2018")
     with watch.stage("publish"):
         path = whole_path(legs, route.passes)
@@ -105,7 +104,7 @@ def make_plan(
             metrics=measure(scenario, aircraft, path, route.passes, {}, {}),
             methods=methods,
             planner_version=__version__,
-            warnings=tuple(str(f) for f in (*scenario.warnings, *dropped, *crab_findings)) + notes,
+            warnings=tuple(str(f) for f in (*scenario.warnings, *dropped)) + notes,
         )
     with watch.stage("bound"):
         bound_m = _bound_m(scenario, aircraft, sides, path.length_m, stop)
@@ -157,7 +156,7 @@ def _bound_m(
     stop: Stop,
 ) -> float | None:
     """What no plan is shorter than; None for sensors whose passes the bound does not know."""
-    if not bounded(scenario):
+    if not bounded(scenario) or any(sensor.crabs for sensor in scenario.sensors):
         return None
     if sides is None:
         # The paper's choices are among its own neighbourhoods.

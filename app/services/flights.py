@@ -154,6 +154,7 @@ def seen_by(scenario: Scenario, plan: Plan, samples: tuple[TrackSample, ...]) ->
             height_m=sample.altitude_home_m or 0.0,
             roll_deg=sample.roll_deg or 0.0,
             sensor_on=sample.sensor_on,
+            heading_deg=sample.heading_deg,
         )
         for sample in samples
     ]

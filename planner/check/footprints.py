@@ -5,11 +5,18 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 from shapely.geometry import MultiPolygon, Polygon
 
 from planner.plan import Collect
 from planner.scenario import Scenario
+from planner.sensors.sar import SarSensor
 from planner.sensors.view import seen_on_flat, seen_on_terrain
+
+Floats = NDArray[np.float64]
+
+#: Rays from the near to the far edge of a beam that crabs; an odd number, so that one is its middle.
+RAYS = 129
 
 
 def footprint(scenario: Scenario, collect: Collect) -> Polygon | MultiPolygon:
@@ -20,7 +27,10 @@ def footprint(scenario: Scenario, collect: Collect) -> Polygon | MultiPolygon:
     """
     sensor = next(s for s in scenario.sensors if s.name == collect.sensor)
     line_m = scenario.frame.to_local([place[:2] for place in collect.line])
+    airspeed_m_s = next(a.airspeed_m_s for a in scenario.aircraft if a.name == collect.vehicle)
     if scenario.terrain is not None:
+        wind = scenario.wind
+        sensor = sensor.in_wind(wind.speed_m_s / airspeed_m_s, wind.toward_rad)
         level_m = collect.line[0][2]
         return seen_on_terrain(sensor, line_m, collect.look, level_m, scenario.terrain).area
     (east0, north0), (east1, north1) = line_m
@@ -28,6 +38,8 @@ def footprint(scenario: Scenario, collect: Collect) -> Polygon | MultiPolygon:
     along = np.array([east1 - east0, north1 - north0]) / length_m
     side = np.array([along[1], -along[0]]) * (1.0 if collect.look == "right" else -1.0)
     height_m = scenario.height_m
+    if scenario.wind.speed_m_s > 0.0 and not sensor.stabilised and sensor.mode != "spotlight":
+        return _crabbing(scenario, sensor, airspeed_m_s, line_m, along, side)
     if sensor.squint_rad != 0.0 or sensor.mode == "spotlight":
         return seen_on_flat(sensor, line_m, collect.look, height_m)
     half_beam_rad = sensor.elevation_beamwidth_rad / 2.0
@@ -39,3 +51,37 @@ def footprint(scenario: Scenario, collect: Collect) -> Polygon | MultiPolygon:
     first = np.array([east0, north0]) + along * half_aperture_m
     last = np.array([east1, north1]) - along * half_aperture_m
     return Polygon([first + side * near_m, last + side * near_m, last + side * far_m, first + side * far_m])
+
+
+def _crabbing(
+    scenario: Scenario, sensor: SarSensor, airspeed_m_s: float, line_m: Floats, along: Floats, side: Floats
+) -> Polygon:
+    """The same with an antenna fixed to an aircraft that crabs: where its rays meet the ground, swept along.
+
+    The nose points along the velocity through the air, which is that over the ground less the wind. Rays lie
+    on the antenna's cone of squint, from the near to the far edge of the beam.
+    """
+    wind_m_s = scenario.wind.speed_m_s * np.array(
+        [math.cos(scenario.wind.toward_rad), math.sin(scenario.wind.toward_rad)]
+    )
+    # |v·along − wind| = airspeed, for the ground speed v.
+    tail_m_s = float(along @ wind_m_s)
+    ground_m_s = tail_m_s + math.sqrt(tail_m_s**2 + airspeed_m_s**2 - float(wind_m_s @ wind_m_s))
+    nose = (ground_m_s * along - wind_m_s) / airspeed_m_s
+    out = np.array([nose[1], -nose[0]]) * math.copysign(1.0, float(side @ [along[1], -along[0]]))
+    half_rad = sensor.elevation_beamwidth_rad / 2.0
+    look_rad = np.linspace(sensor.incidence_rad - half_rad, sensor.incidence_rad + half_rad, RAYS)[:, None]
+    height_m, squint_tan = scenario.height_m, math.tan(sensor.squint_rad)
+    rays_m = height_m * (np.tan(look_rad) * out + squint_tan / np.cos(look_rad) * nose)
+    # The antenna passes the ray's place at the rate of the angle between its axis and the way to the place.
+    middle = np.array([*(rays_m[RAYS // 2]), -height_m])
+    range_m = float(np.hypot(np.hypot(middle[0], middle[1]), height_m))
+    toward = middle / range_m
+    axis, flown = np.array([*nose, 0.0]), np.array([*along, 0.0])
+    sine = float(axis @ toward)
+    rate = float(axis @ flown - sine * (flown @ toward)) / (range_m * math.sqrt(1.0 - sine**2))
+    half_m = 0.5 * sensor.azimuth_beamwidth_rad / rate
+    if math.dist(*line_m) <= 2.0 * half_m:
+        return Polygon()
+    first, last = line_m[0] + half_m * along + rays_m, line_m[1] - half_m * along + rays_m
+    return Polygon([*first, *last[::-1]])

@@ -130,6 +130,8 @@ def classify(area: BaseGeometry, swath_m: float, step_rad: float = STEP_RAD) -> 
     return Classification(kind, turns, angles_rad, long_m, short_m, feasible_rad)
 
 
-def fits(across_m: NDArray[np.float64], swath_m: float, turns: int) -> NDArray[np.bool_]:
+def fits(
+    across_m: NDArray[np.float64], swath_m: float | NDArray[np.float64], turns: int
+) -> NDArray[np.bool_]:
     """Which spans across the flight direction k_t + 1 swaths see whole (Definition 1)."""
     return across_m <= (turns + 1) * swath_m + ROUNDING_M

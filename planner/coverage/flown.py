@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,16 +12,10 @@ from shapely import difference, intersection, union_all
 from shapely.geometry import LineString, MultiPoint, Polygon
 from shapely.geometry.base import BaseGeometry
 
-from planner.environment.terrain import Ground
+from planner.coverage.flown_ground import Flown, ground_seen
 from planner.plan import Collect, Plan
 from planner.scenario import Scenario
-from planner.sensors.sar import SarSensor
-from planner.sensors.view import seen_beside
 
-#: A beam lifted to within this of the horizon by bank sees no farther.
-MAX_LOOK_RAD = math.radians(85.0)
-#: Footprints are built of slices this long along the track.
-SLICE_M = 10.0
 #: Overlays are done on a grid: without one, outlines equal but for rounding can be taken for disjoint.
 GRID_M = 1e-6
 
@@ -31,7 +24,8 @@ GRID_M = 1e-6
 class TrackSample:
     """Where the aircraft was, and whether the sensor was on.
 
-    ``height_m`` is over the ground, on terrain over home; ``roll_deg`` is positive with the right wing down.
+    ``height_m`` is over the ground, on terrain over home; ``roll_deg`` is positive with the right wing down;
+    ``heading_deg`` is where the nose points, clockwise from true north, None where unknown.
     """
 
     time_s: float
@@ -40,6 +34,7 @@ class TrackSample:
     height_m: float
     roll_deg: float
     sensor_on: bool
+    heading_deg: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,7 +63,8 @@ def flown_coverage(scenario: Scenario, plan: Plan, track: Sequence[TrackSample])
 
     A point is seen at full resolution when the beam lay on it over a whole synthetic aperture (eqs 4 and 5 of
     Li et al. 2018): half an aperture after sensor on to half an aperture before sensor off. The beam's edges
-    move with the aircraft's height and bank.
+    move with the aircraft's height and bank, and with its nose where the antenna is fixed to it. In spotlight
+    the spot is seen where the line of sight to it turned as far as its resolution asks.
     """
     strips: dict[str, list[Polygon]] = {}
     passes: list[FlownPass] = []
@@ -77,10 +73,7 @@ def flown_coverage(scenario: Scenario, plan: Plan, track: Sequence[TrackSample])
         collect = _nearest_collect(scenario, plan, places)
         if collect is None:
             continue
-        sensor = next(s for s in scenario.sensors if s.name == collect.sensor)
-        strips.setdefault(collect.sensor, []).extend(
-            _strip(sensor, collect.look, places, interval, scenario.terrain, scenario.home_amsl_m or 0.0)
-        )
+        strips.setdefault(collect.sensor, []).extend(ground_seen(_flown(scenario, collect, places, interval)))
         passes.append(_pass(scenario, collect, places))
     seen_by = {name: union_all(parts, grid_size=GRID_M) for name, parts in strips.items()}
     fraction, seen, unseen = {}, {}, {}
@@ -123,74 +116,28 @@ def _nearest_collect(scenario: Scenario, plan: Plan, places: NDArray[np.float64]
     return None if best is None else best[1]
 
 
-def _strip(
-    sensor: SarSensor,
-    look: str,
-    places: NDArray[np.float64],
-    samples: Sequence[TrackSample],
-    ground: Ground | None,
-    home_amsl_m: float,
-) -> Iterable[Polygon]:
-    """Slices of ground seen at full resolution, each between two places of the track."""
-    along_m = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(places, axis=0).T))])
-    mean_height_m = float(np.mean([s.height_m for s in samples]))
-    half_m = sensor.aperture_m(mean_height_m) / 2.0
-    if along_m[-1] <= 2.0 * half_m:
-        return
-    count = max(2, math.ceil((along_m[-1] - 2.0 * half_m) / SLICE_M) + 1)
-    at_m = np.linspace(half_m, along_m[-1] - half_m, count)
-    centre = np.stack([np.interp(at_m, along_m, places[:, k]) for k in (0, 1)], axis=1)
-    ahead = np.stack(
-        [
-            np.interp(at_m + half_m, along_m, places[:, k]) - np.interp(at_m - half_m, along_m, places[:, k])
-            for k in (0, 1)
-        ],
-        axis=1,
+def _flown(
+    scenario: Scenario, collect: Collect, places: NDArray[np.float64], samples: Sequence[TrackSample]
+) -> Flown:
+    """One interval in the local frame, matched to its collect."""
+    sensor = next(s for s in scenario.sensors if s.name == collect.sensor)
+    airspeed_m_s = next(a.airspeed_m_s for a in scenario.aircraft if a.name == collect.vehicle)
+    wind = scenario.wind
+    middle = places[len(places) // 2]
+    # Where north is on the interval's map; it changes little along one pass.
+    north_rad = scenario.frame.angle_rad(float(middle[0]), float(middle[1]), 0.0)
+    headings_deg = [math.nan if s.heading_deg is None else s.heading_deg for s in samples]
+    return Flown(
+        sensor.in_wind(wind.speed_m_s / airspeed_m_s, wind.toward_rad),
+        collect.look,
+        scenario.frame.to_local([place[:2] for place in collect.line]),
+        places,
+        np.array([s.height_m for s in samples]),
+        np.radians([s.roll_deg for s in samples]),
+        north_rad - np.radians(headings_deg),
+        scenario.terrain,
+        scenario.home_amsl_m or 0.0,
     )
-    ahead /= np.hypot(ahead[:, 0], ahead[:, 1])[:, None]
-    sign = 1.0 if look == "right" else -1.0
-    side = np.stack([ahead[:, 1], -ahead[:, 0]], axis=1) * sign
-    height_m = np.interp(at_m, along_m, [s.height_m for s in samples])
-    # Right wing down turns a right-looking beam towards the nadir, a left-looking one towards the horizon.
-    roll_rad = np.interp(at_m, along_m, [math.radians(s.roll_deg) for s in samples]) * sign
-    if ground is not None:
-        yield from _slices(sensor, ground, at_m, centre, ahead, side, height_m + home_amsl_m, roll_rad)
-        return
-    edges = []
-    for half_beam_rad in (-sensor.elevation_beamwidth_rad / 2.0, sensor.elevation_beamwidth_rad / 2.0):
-        look_rad = np.clip(sensor.incidence_rad + half_beam_rad - roll_rad, 0.0, MAX_LOOK_RAD)
-        # A squinted beam sees ground at slant range R abeam R·tan ahead.
-        lead_m = height_m / np.cos(look_rad) * math.tan(sensor.squint_rad)
-        edges.append(centre + side * (height_m * np.tan(look_rad))[:, None] + ahead * lead_m[:, None])
-    near, far = edges
-    for (near0, far0), (near1, far1) in pairwise(zip(near, far, strict=True)):
-        hull = MultiPoint([near0, near1, far1, far0]).convex_hull
-        if isinstance(hull, Polygon):
-            yield hull
-
-
-def _slices(
-    sensor: SarSensor,
-    ground: Ground,
-    at_m: NDArray[np.float64],
-    centre: NDArray[np.float64],
-    ahead: NDArray[np.float64],
-    side: NDArray[np.float64],
-    level_m: NDArray[np.float64],
-    roll_rad: NDArray[np.float64],
-) -> Iterable[Polygon]:
-    """The same on terrain, without what it hides: one slice half-way between each two places."""
-    half_beam_rad = sensor.elevation_beamwidth_rad / 2.0
-    for k in range(len(at_m) - 1):
-        here = [(values[k] + values[k + 1]) / 2.0 for values in (centre, ahead, side, level_m, roll_rad)]
-        middle, forward, outward, level, roll = here
-        looks_rad = [sensor.incidence_rad + sign * half_beam_rad - roll for sign in (-1.0, 1.0)]
-        near_tan, far_tan = (math.tan(min(max(float(angle), 0.0), MAX_LOOK_RAD)) for angle in looks_rad)
-        # Neighbouring slices of a weaving track are to touch.
-        half_m = (at_m[k + 1] - at_m[k]) / 2.0 * 1.02
-        pose = np.concatenate([middle, forward / np.hypot(*forward), outward / np.hypot(*outward)])
-        squint = math.tan(sensor.squint_rad)
-        yield from seen_beside(pose, float(half_m), float(level), (near_tan, far_tan), squint, ground)
 
 
 def _pass(scenario: Scenario, collect: Collect, places: NDArray[np.float64]) -> FlownPass:

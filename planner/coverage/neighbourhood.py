@@ -21,6 +21,7 @@ from planner.errors import InfeasibleError
 from planner.route import CollectPass
 from planner.scenario import Region
 from planner.sensors.sar import SarSensor
+from planner.sensors.strip import swaths_m
 
 #: η of the options when nobody asks for others: innermost, middle, outermost.
 ETAS = (0.0, 0.5, 1.0)
@@ -51,21 +52,22 @@ def neighbourhoods(
         ``"swath"`` where no pair of passes sees the region at any angle, ``"approach"`` where only the limits
         on the direction forbid it.
     """
-    swath_m = sensor.swath_m(height_m)
     points_m = hull_points(region.area)
     wanted = (turns,) if turns is not None else (0, 1)
     for count in wanted:
         angles_rad = _angles(region, step_rad, count)
         spans = spans_at(points_m, angles_rad)
-        good = fits(spans.across_m, swath_m, count)
+        good = fits(spans.across_m, swaths_m(sensor, height_m, angles_rad), count)
         if good.any():
             chosen = Spans(spans.x_min_m[good], spans.x_max_m[good], spans.y_min_m[good], spans.y_max_m[good])
             return tuple(
                 Neighbourhood(region, sensor, height_m, look, count, angles_rad[good], chosen)
                 for look in sensor.looks
             )
-    around_m = spans_at(points_m, angles_around(step_rad)).across_m
-    if region.approach_rad is not None and fits(around_m, swath_m, max(wanted)).any():
+    around_rad = angles_around(step_rad)
+    around_m = spans_at(points_m, around_rad).across_m
+    around_swaths_m = swaths_m(sensor, height_m, around_rad)
+    if region.approach_rad is not None and fits(around_m, around_swaths_m, max(wanted)).any():
         raise InfeasibleError(
             "approach",
             region.label,

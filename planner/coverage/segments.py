@@ -30,6 +30,7 @@ from planner.coverage.merge import MergedRegion
 from planner.errors import InfeasibleError
 from planner.route import CollectPass
 from planner.sensors.sar import Look, SarSensor
+from planner.sensors.strip import strip_on, swaths_m
 from planner.sensors.view import seen_on_flat
 
 Floats = NDArray[np.float64]
@@ -74,8 +75,8 @@ class Neighbourhood:
         """
         spans = _turned(self.spans) if opposite else self.spans
         angles_rad = self.angles_rad + (math.pi if opposite else 0.0)
-        swath_m, near_m = self.sensor.swath_m(self.height_m), self.sensor.near_m(self.height_m)
-        run_in_m, run_out_m = self.sensor.run_in_m(self.height_m), self.sensor.run_out_m(self.height_m)
+        strip = strip_on(self.sensor, self.height_m, angles_rad, self.look)
+        swath_m, near_m = strip.swath_m, strip.near_m
         # Eq 19 for a right-looking sensor, mirrored for a left-looking one.
         inner_m = spans.y_max_m + near_m
         outer_m = spans.y_min_m + (self.turns + 1) * swath_m + near_m
@@ -83,7 +84,7 @@ class Neighbourhood:
             inner_m = spans.y_min_m - near_m
             outer_m = spans.y_max_m - (self.turns + 1) * swath_m - near_m
         y_m = inner_m[:, None] + etas[None, :] * (outer_m - inner_m)[:, None]
-        x_m = np.stack([spans.x_min_m - run_in_m, spans.x_max_m + run_out_m], axis=1)
+        x_m = np.stack([spans.x_min_m - strip.run_in_m, spans.x_max_m + strip.run_out_m], axis=1)
         cos, sin = np.cos(angles_rad)[:, None, None], np.sin(angles_rad)[:, None, None]
         east_m = cos * x_m[:, None, :] - sin * y_m[:, :, None]
         north_m = sin * x_m[:, None, :] + cos * y_m[:, :, None]
@@ -119,7 +120,7 @@ def segment(
         raise ValueError(f"η lies in [0, 1], not {eta}")
     angles_rad = np.array([angle_rad])
     spans = spans_at(hull_points(region.area), angles_rad)
-    if not fits(spans.across_m, sensor.swath_m(height_m), turns)[0]:
+    if not fits(spans.across_m, swaths_m(sensor, height_m, angles_rad), turns)[0]:
         raise too_wide(region, sensor, height_m, float(spans.across_m[0]))
     return Neighbourhood(region, sensor, height_m, look, turns, angles_rad, spans).collect(0, eta)
 
@@ -163,7 +164,7 @@ def collect_along(
     near, far = side * sensor.near_m(height_m), side * sensor.far_m(height_m)
     first, last = line[0] + half_m * ahead, line[1] - half_m * ahead
     footprint = Polygon([first + near, last + near, last + far, first + far])
-    if sensor.squint_rad != 0.0 or sensor.mode == "spotlight":
+    if sensor.squint_rad != 0.0 or sensor.mode == "spotlight" or sensor.crabs:
         footprint = seen_on_flat(sensor, line, look, height_m)
     start, end = (float(line[0, 0]), float(line[0, 1])), (float(line[1, 0]), float(line[1, 1]))
     return CollectPass(region.names, sensor.name, look, start, end, eta, footprint)

@@ -27,6 +27,7 @@ from planner.coverage.merge import MergedRegion
 from planner.coverage.segments import Neighbourhood, collect_along
 from planner.route import CollectPass
 from planner.sensors.sar import Look, SarSensor
+from planner.sensors.strip import strip_on, swaths_m
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -35,6 +36,7 @@ Ints = NDArray[np.int64]
 VARIANTS = 4
 #: Headings that need this many times the fewest lanes, and more than what is tried exactly, are left out.
 MOST_LANES_FACTOR = 1.5
+MOST_LANES = 1000
 #: Kept between neighbouring strips where there is enough to spare.
 LEAST_OVERLAP_M = 0.5
 _SAME_ANGLE_RAD = math.radians(0.01)
@@ -81,7 +83,8 @@ class Sweep:
     def lanes(self, angles_rad: Floats) -> Ints:
         """How many lanes each heading takes, shape (M,)."""
         across_m = spans_at(hull_points(self.region.area), angles_rad).across_m
-        swath_m = self.sensor.swath_m(self.height_m)
+        # A crab may leave hardly any swath, and no heading takes more lanes than this.
+        swath_m = np.maximum(swaths_m(self.sensor, self.height_m, angles_rad), across_m / MOST_LANES)
         fewest = np.maximum(np.ceil((across_m - ROUNDING_M) / swath_m), 1.0).astype(np.int64)
         return np.asarray(fewest + self.extra, dtype=np.int64)
 
@@ -146,7 +149,9 @@ def sweeps(region: MergedRegion, sensor: SarSensor, height_m: float, extra: int 
 def lanes_at(sweep: Sweep, angles_rad: Floats, etas: Floats, count: int) -> Lanes:
     """Lanes at headings (M,) that all take ``count`` of them, and at η (K,)."""
     sensor, height_m = sweep.sensor, sweep.height_m
-    swath_m, near_m = sensor.swath_m(height_m), sensor.near_m(height_m)
+    # Edges of a strip are the same to either side and in either direction.
+    strip = strip_on(sensor, height_m, angles_rad, "right")
+    swath_m, near_m = strip.swath_m, strip.near_m[:, None, None]
     spans = spans_at(hull_points(sweep.region.area), angles_rad)
     spare_m = np.maximum(count * swath_m - spans.across_m, 0.0)
     # Neighbours keep some overlap where there is any to spare; a strip wholly beside the region sees nothing.
@@ -155,15 +160,17 @@ def lanes_at(sweep: Sweep, angles_rad: Floats, etas: Floats, count: int) -> Lane
     if count == 1:
         beyond_m = etas[None, :] * spare_m[:, None]
     overlap_m = (spare_m[:, None] - 2.0 * beyond_m) / max(count - 1, 1)
-    step_m = swath_m - overlap_m
+    step_m = swath_m[:, None] - overlap_m
     high_m = (spans.y_max_m[:, None] + beyond_m)[:, :, None] - step_m[:, :, None] * np.arange(count)
-    low_m = high_m - swath_m
+    low_m = high_m - swath_m[:, None, None]
     extent_m = kernels.strip_extents(_edges(sweep.region), angles_rad, low_m, high_m)
-    run_in_m, run_out_m = sensor.run_in_m(height_m), sensor.run_out_m(height_m)
     states: list[Floats] = []
     headings, looks, onward = [], [], []
     for way in _ways(sweep):
+        courses_rad = angles_rad if way == 1 else angles_rad + math.pi
         for look in sensor.looks:
+            flown = strip_on(sensor, height_m, courses_rad, look)
+            run_in_m, run_out_m = flown.run_in_m[:, None, None], flown.run_out_m[:, None, None]
             from_high = (look == "right") == (way == 1)
             y_m = high_m + near_m if from_high else low_m - near_m
             first_m, last_m = (extent_m[..., 0], extent_m[..., 1])[::way]
@@ -173,7 +180,7 @@ def lanes_at(sweep: Sweep, angles_rad: Floats, etas: Floats, count: int) -> Lane
             east_m = cos * x_m - sin * y_m[..., None]
             north_m = sin * x_m + cos * y_m[..., None]
             states.append(np.stack([east_m, north_m], axis=-1))
-            headings.append(angles_rad if way == 1 else angles_rad + math.pi)
+            headings.append(courses_rad)
             looks.append(look)
             onward.append(way == 1)
     return Lanes(np.stack(headings, axis=1), tuple(looks), np.array(onward), np.stack(states, axis=3))

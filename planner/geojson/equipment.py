@@ -124,6 +124,7 @@ def read_sensor(raw: Any, index: int, findings: Findings) -> SarSensor | None:
     sub_swaths = fields.integer("sub_swaths", 3 if mode == "scansar" else 1, minimum=1)
     pointing_deg = fields.number("pointing_margin_deg", 0.0, minimum=0.0, maximum=MAX_POINTING_DEG)
     position_m = fields.number("position_margin_m", 0.0, minimum=0.0)
+    stabilised = fields.flag("stabilised", False)
     wavelength_m = _wavelength_m(fields)
     fields.refuse_unknown(
         also_known=("azimuth_beamwidth_deg", "aperture_length_m", "wavelength_m", "frequency_hz")
@@ -167,7 +168,7 @@ def read_sensor(raw: Any, index: int, findings: Findings) -> SarSensor | None:
     return SarSensor(
         name, math.radians(incidence_deg), math.radians(elevation_deg), azimuth_rad, looks, resolution_m,
         math.radians(squint_deg), mode, sub_swaths, turned_rad,
-        pointing_margin_rad=math.radians(pointing_deg), position_margin_m=position_m,
+        pointing_margin_rad=math.radians(pointing_deg), position_margin_m=position_m, stabilised=stabilised,
     )  # fmt: skip
 
 

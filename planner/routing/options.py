@@ -23,6 +23,7 @@ from planner.environment.terrain import Ground
 from planner.route import CollectPass
 from planner.scenario import Wind
 from planner.sensors.sar import Look
+from planner.sensors.strip import swaths_m
 from planner.sensors.view import shadow_cost
 from planner.vehicle.wind import STILL_AIR, still_air_factor
 
@@ -146,7 +147,7 @@ def collect_passes(sides: Sequence[Side], options: Options, index: int) -> tuple
 def _at(side: Neighbourhood, angles_rad: Floats) -> Neighbourhood:
     """The same neighbourhood at other angles: those of them that see the region."""
     spans = spans_at(hull_points(side.region.area), angles_rad)
-    good = fits(spans.across_m, side.sensor.swath_m(side.height_m), side.turns)
+    good = fits(spans.across_m, swaths_m(side.sensor, side.height_m, angles_rad), side.turns)
     kept = spans_at(hull_points(side.region.area), angles_rad[good])
     return Neighbourhood(
         side.region, side.sensor, side.height_m, side.look, side.turns, angles_rad[good], kept

@@ -3,7 +3,8 @@
 Geometry of Li, Chen, Wang, Li (2018), "Sensor-Oriented Path Planning for Multiregion Surveillance with a
 Single Lightweight UAV SAR", section 3. With h = 500 m, θ_L = 45°, θ_B = 30° and θ_A = 10° the formulas give
 l_s = 123.41 m, l_sw = 577.35 m and a near-end distance of 288.68 m; the paper's Table 1 prints 228.68 m for
-the last, a slip of the pen. Squint and the modes besides stripmap are in ``sar_modes``.
+the last, a slip of the pen. Squint and the modes besides stripmap are in ``sar_modes``, what a crab in the
+wind does to the strip in ``strip``; lengths here are those without.
 """
 
 from __future__ import annotations
@@ -12,10 +13,14 @@ import math
 from dataclasses import dataclass, replace
 from typing import Literal, Self
 
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
 from planner.sensors import sar_modes
 from planner.sensors.sar_modes import Mode
 
 Look = Literal["left", "right"]
+Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,6 +54,10 @@ class SarSensor:
     position_margin_m
         Planning leaves out this much of the swath at either edge, and begins and ends each pass so much
         further out, so that the aircraft may be off its place by as much.
+    stabilised
+        Whether the antenna is kept abeam of the course; otherwise it is fixed to the aircraft.
+    drift, toward_rad
+        Of the wind it is flown in: its speed by the airspeed, and where the air moves to.
     """
 
     name: str
@@ -64,6 +73,30 @@ class SarSensor:
     relief_m: float = 0.0
     pointing_margin_rad: float = 0.0
     position_margin_m: float = 0.0
+    stabilised: bool = False
+    drift: float = 0.0
+    toward_rad: float = 0.0
+
+    def in_wind(self, drift: float, toward_rad: float) -> Self:
+        """The same sensor on an aircraft in a steady wind."""
+        return replace(self, drift=drift, toward_rad=toward_rad)
+
+    @property
+    def crabs(self) -> bool:
+        """Whether the beam turns with the nose: no antenna that is steered, to stay abeam or on its place."""
+        return self.drift != 0.0 and not self.stabilised and self.mode != "spotlight"
+
+    def yaw_rad(self, course_rad: ArrayLike, look: Look) -> Floats:
+        """How far the beam of an antenna fixed to the aircraft turns forward, on courses given.
+
+        The nose points off the course by asin(W sin δ / V) to the left, δ from the wind's direction to the
+        course (``planner.vehicle.wind``): forward for a beam to the right, backward for one to the left.
+        """
+        course = np.asarray(course_rad, dtype=np.float64)
+        if not self.crabs:
+            return np.zeros(course.shape)
+        crab = np.arcsin(np.clip(self.drift * np.sin(course - self.toward_rad), -1.0, 1.0))
+        return np.asarray(crab if look == "right" else -crab, dtype=np.float64)
 
     def over_relief(self, relief_m: float) -> Self:
         """The same sensor over ground this much above and below its mean height."""

@@ -12,6 +12,9 @@ from __future__ import annotations
 import math
 from typing import Literal
 
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
 Mode = Literal["stripmap", "spotlight", "scansar"]
 
 
@@ -32,6 +35,21 @@ def turned_for_rad(wavelength_m: float, resolution_m: float, squint_rad: float =
 def stripmap_aperture_m(range_m: float, beamwidth_rad: float, squint_rad: float = 0.0) -> float:
     """L = R θ_A / cos² θ_sq: the way along which a place abeam at slant range R stays in the beam (CW)."""
     return range_m * beamwidth_rad / math.cos(squint_rad) ** 2
+
+
+def crabbed_aperture_m(
+    range_m: float, beamwidth_rad: float, squint_rad: float, look_rad: float, yaw_rad: ArrayLike
+) -> NDArray[np.float64]:
+    """The same where the antenna is turned about the vertical by ψ besides.
+
+    The angle φ of a place from the antenna's plane abeam is that of squint, sin φ = x_b / ρ, with x_b its
+    distance ahead along the antenna's axis and ρ its slant range. Along the track a, dx_b/da = cos ψ and
+    dρ/da = a / ρ, so that L = θ_A / (dφ/da) = R θ_A / (cos θ_sq (cos θ_sq cos ψ − sin θ_sq sin ψ sin θ)), θ
+    the look angle; without ψ that is ``stripmap_aperture_m``, without squint R θ_A / cos ψ.
+    """
+    cos, sin = math.cos(squint_rad), math.sin(squint_rad)
+    turned = cos * np.cos(yaw_rad) - sin * math.sin(look_rad) * np.sin(yaw_rad)
+    return np.asarray(range_m * beamwidth_rad / (cos * turned), dtype=np.float64)
 
 
 def spotlight_aperture_m(range_m: float, turned_rad: float, squint_rad: float = 0.0) -> float:

@@ -3,7 +3,8 @@
 A place at slant range R abeam is seen at full resolution while the aircraft is within half an aperture of the
 spot from which the beam, squint included, lies on it; so the ground seen in a pass of length l is, at each
 distance from the track, [l_s/2 + R tan θ_sq, l − l_s/2 + R tan θ_sq] along it. Across, it lies between the
-beam's edges, without what is in shadow or layover.
+beam's edges, without what is in shadow or layover. An antenna fixed to the aircraft turns with the crab; see
+``strip``.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from shapely.geometry.base import BaseGeometry
 
 from planner.environment.terrain import Ground
 from planner.scenario import Scenario
-from planner.sensors import sar_modes, view_kernels
+from planner.sensors import sar_modes, strip, view_kernels
 from planner.sensors.sar import Look, SarSensor
 
 Floats = NDArray[np.float64]
@@ -71,10 +72,11 @@ def seen_on_flat(sensor: SarSensor, line_m: ArrayLike, look: Look, height_m: flo
     """Ground seen from a line (2, 2) at a height over flat ground; empty where the line is too short."""
     sensor = sensor.whole()
     frame = _Axes.of(line_m, look)
-    near_m, far_m = sensor.near_m(height_m), sensor.far_m(height_m)
+    yaw_rad = float(sensor.yaw_rad(frame.course_rad, look))
+    near_tan, far_tan = _edges_tan(sensor, yaw_rad)
     squinted = sensor.squint_rad != 0.0
-    out_m = np.linspace(near_m, far_m, EDGE_POINTS if squinted else 2)
-    first_m, last_m = _dwell(sensor, frame.length_m, out_m, np.full(len(out_m), height_m))
+    out_m = np.linspace(height_m * near_tan, height_m * far_tan, EDGE_POINTS if squinted else 2)
+    first_m, last_m = _dwell(sensor, frame.length_m, out_m, np.full(len(out_m), height_m), yaw_rad)
     if (first_m >= last_m).any():
         return Polygon()
     ring = np.concatenate([np.stack([first_m, out_m], axis=1), np.stack([last_m, out_m], axis=1)[::-1]])
@@ -86,14 +88,15 @@ def seen_on_terrain(
 ) -> SeenGround:
     """Ground seen from a line (2, 2) flown at a level over the ground's datum."""
     frame = _Axes.of(line_m, look)
-    half_rad = sensor.elevation_beamwidth_rad / 2.0
-    near_tan, far_tan = math.tan(sensor.incidence_rad - half_rad), math.tan(sensor.incidence_rad + half_rad)
+    yaw_rad = float(sensor.yaw_rad(frame.course_rad, look))
+    near_tan, far_tan = _edges_tan(sensor.whole(), yaw_rad)
     lowest_m = _lowest(ground, frame, level_m, far_tan)
     if math.isnan(lowest_m):
         return SeenGround(Polygon(), 0.0, 0.0)
     out_edges = _edges(0.0, (level_m - lowest_m) * far_tan, ground.step_m)
     out_m = (out_edges[:-1] + out_edges[1:]) / 2.0
-    reach_m = math.hypot(out_edges[-1], level_m - lowest_m) * abs(math.tan(sensor.squint_rad))
+    farthest = strip.lead_m(sensor.squint_rad, yaw_rad, [0.0, out_edges[-1]], level_m - lowest_m)
+    reach_m = float(np.abs(farthest).max())
     along_edges = _edges(-reach_m, frame.length_m + reach_m, ground.step_m)
     along_m = (along_edges[:-1] + along_edges[1:]) / 2.0
     flags, heights = view_kernels.strip_flags(
@@ -108,10 +111,11 @@ def seen_on_terrain(
         near_tan,
         far_tan,
         math.tan(sensor.squint_rad),
+        yaw_rad,
     )
     drop_m = level_m - heights
     visible = _visible_area(flags, along_edges, out_edges, out_m, drop_m, near_tan, far_tan)
-    dwell = _dwell_area(sensor, frame, ground, level_m, out_edges)
+    dwell = _dwell_area(sensor, frame, ground, level_m, out_edges, yaw_rad)
     inside = shapely.contains_xy(dwell, *np.meshgrid(along_m, out_m, indexing="ij"))
     cell_m2 = float((along_edges[1] - along_edges[0]) * (out_edges[1] - out_edges[0]))
     return SeenGround(
@@ -128,6 +132,7 @@ def seen_beside(
     edges_tan: tuple[float, float],
     squint: float,
     ground: Ground,
+    yaw_rad: float = 0.0,
 ) -> list[Polygon]:
     """Ground seen at one moment of a flight, as wide along the track as half to either side.
 
@@ -139,19 +144,23 @@ def seen_beside(
         Tangents of the look angles of the beam's edges, bank included.
     squint
         Tangent of the squint angle.
+    yaw_rad
+        How far the antenna is turned forward off abeam, about the vertical.
     """
     frame = _Axes(np.asarray(pose, dtype=np.float64), 2.0 * half_along_m)
-    near_tan, far_tan = edges_tan
+    near_tan, far_tan = (
+        tan * math.cos(yaw_rad) - squint * math.hypot(1.0, tan) * math.sin(yaw_rad) for tan in edges_tan
+    )
     lowest_m = _lowest(ground, frame, level_m, far_tan)
     if math.isnan(lowest_m):
         return []
     out_edges = _edges(0.0, (level_m - lowest_m) * far_tan, ground.step_m)
     out_m = (out_edges[:-1] + out_edges[1:]) / 2.0
-    lead_m = np.hypot(out_m, level_m - lowest_m) * squint
-    middle_m = float(lead_m[len(lead_m) // 2])
+    leads_m = strip.lead_m(math.atan(squint), yaw_rad, out_m, level_m - lowest_m)
+    middle_m = float(leads_m[len(leads_m) // 2])
     flags, heights = view_kernels.strip_flags(
         ground.heights_m, ground.west_m, ground.south_m, ground.step_m, frame.pose,
-        np.array([middle_m]), out_m, level_m, near_tan, far_tan, squint,
+        np.array([middle_m]), out_m, level_m, near_tan, far_tan, squint, yaw_rad,
     )  # fmt: skip
     along_edges = np.array([middle_m - half_along_m, middle_m + half_along_m])
     seen = _visible_area(flags, along_edges, out_edges, out_m, level_m - heights, near_tan, far_tan)
@@ -186,7 +195,11 @@ def shadow_cost(
     ahead = ahead / np.hypot(ahead[:, 0], ahead[:, 1])[:, None]
     sign = 1.0 if look == "right" else -1.0
     poses = np.column_stack([flat[:, 0], ahead, sign * ahead[:, 1], -sign * ahead[:, 0]])
-    half_rad = sensor.elevation_beamwidth_rad / 2.0
+    yaw_rad = sensor.yaw_rad(np.arctan2(ahead[:, 1], ahead[:, 0]), look)
+    near_tan, far_tan = (
+        strip.edge_tan(sensor, edge_rad, yaw_rad)
+        for edge_rad in (sensor.whole().steepest_rad, sensor.whole().flattest_rad)
+    )
     hidden = view_kernels.line_visibility(
         ground.heights_m,
         ground.west_m,
@@ -197,9 +210,10 @@ def shadow_cost(
         spread(area.buffer(ground.step_m / 2.0, join_style="mitre"), places),
         max(ground.step_m / 2.0, 1.0),
         level_m,
-        math.tan(sensor.incidence_rad - half_rad),
-        math.tan(sensor.incidence_rad + half_rad),
+        near_tan,
+        far_tan,
         math.tan(sensor.squint_rad),
+        yaw_rad,
     )
     cost_m: Floats = np.where(hidden > 0.0, SOME_HIDDEN_M + HIDDEN_M * hidden, 0.0)
     return cost_m.reshape(lines_m.shape[:-2])
@@ -235,6 +249,11 @@ class _Axes:
         side = (ahead[1], -ahead[0]) if look == "right" else (-ahead[1], ahead[0])
         return cls(np.array([east0, north0, *ahead, *side]), length_m)
 
+    @property
+    def course_rad(self) -> float:
+        """Flight direction."""
+        return math.atan2(self.pose[3], self.pose[2])
+
     def to_local(self, shape: Polygon | MultiPolygon) -> Polygon | MultiPolygon:
         """From (along, away) to east and north."""
         e, n, a_e, a_n, s_e, s_n = (float(value) for value in self.pose)
@@ -247,9 +266,20 @@ class _Axes:
         return np.stack([e + along_m * a_e + out_m * s_e, n + along_m * a_n + out_m * s_n], axis=-1)
 
 
-def _dwell(sensor: SarSensor, length_m: float, out_m: Floats, drop_m: Floats) -> tuple[Floats, Floats]:
+def _edges_tan(sensor: SarSensor, yaw_rad: float) -> tuple[float, float]:
+    """Tangents of the beam's near and far edge beside the track."""
+    near, far = (
+        strip.edge_tan(sensor, sensor.steepest_rad, yaw_rad),
+        strip.edge_tan(sensor, sensor.flattest_rad, yaw_rad),
+    )
+    return float(near), float(far)
+
+
+def _dwell(
+    sensor: SarSensor, length_m: float, out_m: Floats, drop_m: Floats, yaw_rad: float
+) -> tuple[Floats, Floats]:
     """From where to where along the line ground is seen at full resolution, at distances and drops (N,)."""
-    lead_m = np.hypot(out_m, drop_m) * math.tan(sensor.squint_rad)
+    lead_m = strip.lead_m(sensor.squint_rad, yaw_rad, out_m, drop_m)
     if sensor.turned_rad is not None:
         # The beam stays on the middle of the spot, the one seen squinted from the middle of the line.
         middle_m = length_m / 2.0 + float(lead_m[0] + lead_m[-1]) / 2.0
@@ -257,13 +287,12 @@ def _dwell(sensor: SarSensor, length_m: float, out_m: Floats, drop_m: Floats) ->
         enough = length_m >= sensor.aperture_m(float(np.median(drop_m)) - sensor.relief_m) * (1.0 - 1e-9)
         half_m = spot_m / 2.0 if enough else -1.0
         return np.full(len(out_m), middle_m - half_m), np.full(len(out_m), middle_m + half_m)
-    range_m = drop_m / math.cos(sensor.incidence_rad)
-    aperture_m = range_m * sar_modes.stripmap_aperture_m(1.0, sensor.azimuth_beamwidth_rad, sensor.squint_rad)
+    aperture_m = strip.aperture_m(sensor, drop_m, yaw_rad)
     return aperture_m / 2.0 + lead_m, length_m - aperture_m / 2.0 + lead_m
 
 
 def _dwell_area(
-    sensor: SarSensor, frame: _Axes, ground: Ground, level_m: float, out_edges: Floats
+    sensor: SarSensor, frame: _Axes, ground: Ground, level_m: float, out_edges: Floats, yaw_rad: float
 ) -> Polygon | MultiPolygon:
     """Ground lit over a whole aperture, in the line's axes, the beam's edges aside."""
     ends = []
@@ -273,7 +302,7 @@ def _dwell_area(
         for _ in range(4):
             heights = ground.at(frame.places(at_m, out_edges))
             drop_m = level_m - np.where(np.isnan(heights), np.nanmean(ground.heights_m), heights)
-            at_m = _dwell(sensor, frame.length_m, out_edges, drop_m)[which]
+            at_m = _dwell(sensor, frame.length_m, out_edges, drop_m, yaw_rad)[which]
         ends.append(at_m)
     first_m, last_m = ends
     if (first_m >= last_m).all():

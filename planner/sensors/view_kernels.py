@@ -72,6 +72,21 @@ def profile_flags(
 
 
 @njit(cache=True)
+def lead_m(out_m: float, drop_m: float, squint_tan: float, yaw_rad: float) -> float:
+    """How far ahead of the aircraft a place is seen, from its distance beside the track and its drop.
+
+    Of y = y_b cos ψ − x_b sin ψ, x_b = √(y_b² + d²) tan θ_sq, the root y_b; then y_b sin ψ + x_b cos ψ.
+    """
+    if yaw_rad == 0.0:
+        return math.hypot(out_m, drop_m) * squint_tan
+    cos, sin = math.cos(yaw_rad), math.sin(yaw_rad)
+    side = squint_tan * sin
+    rest = cos * cos - side * side
+    beside_m = (cos * out_m + side * math.sqrt(out_m * out_m + rest * drop_m * drop_m)) / rest
+    return beside_m * sin + math.hypot(beside_m, drop_m) * squint_tan * cos
+
+
+@njit(cache=True)
 def strip_flags(
     heights_m: Array,
     west_m: float,
@@ -84,6 +99,7 @@ def strip_flags(
     near_tan: float,
     far_tan: float,
     squint_tan: float,
+    yaw_rad: float,
 ) -> tuple[Flags, Array]:
     """Flags and ground of a strip's cells.
 
@@ -98,6 +114,9 @@ def strip_flags(
     squint_tan
         Tangent of the squint angle: a place is seen from R·tan ahead of or behind the line's foot, R being
         its slant range abeam. Each such place then has a profile of its own, along the ray to it.
+    yaw_rad
+        How far the antenna is turned forward off abeam, about the vertical; ``near_tan`` and ``far_tan`` are
+        those beside the track.
 
     Returns
     -------
@@ -113,7 +132,7 @@ def strip_flags(
             e_m = pose[0] + along_m[i] * pose[2] + out_m[j] * pose[4]
             n_m = pose[1] + along_m[i] * pose[3] + out_m[j] * pose[5]
             ground[i, j] = ground_at(heights_m, west_m, south_m, step_m, e_m, n_m)
-        if squint_tan == 0.0:
+        if squint_tan == 0.0 and yaw_rad == 0.0:
             flags[i] = profile_flags(level_m, out_m, ground[i], near_tan, far_tan, 1.0)
             continue
         profile = np.empty(len(out_m))
@@ -124,14 +143,14 @@ def strip_flags(
             tangent = out_m[j] / drop_m if drop_m > 0.0 else math.inf
             if not near_tan <= tangent <= far_tan:
                 continue
-            lead_m = math.hypot(out_m[j], drop_m) * squint_tan
+            ahead_m = lead_m(out_m[j], drop_m, squint_tan, yaw_rad)
             for k in range(len(out_m)):
-                at_m = along_m[i] - lead_m * (1.0 - out_m[k] / out_m[j])
+                at_m = along_m[i] - ahead_m * (1.0 - out_m[k] / out_m[j])
                 e_m = pose[0] + at_m * pose[2] + out_m[k] * pose[4]
                 n_m = pose[1] + at_m * pose[3] + out_m[k] * pose[5]
                 profile[k] = ground_at(heights_m, west_m, south_m, step_m, e_m, n_m)
             profile[j] = ground[i, j]
-            stretch = math.hypot(1.0, lead_m / out_m[j])
+            stretch = math.hypot(1.0, ahead_m / out_m[j])
             flags[i, j] = profile_flags(level_m, out_m, profile, near_tan, far_tan, stretch)[j]
     return flags, ground
 
@@ -146,9 +165,10 @@ def line_visibility(
     places_m: Array,
     cell_m: float,
     level_m: float,
-    near_tan: float,
-    far_tan: float,
+    near_tan: Array,
+    far_tan: Array,
     squint_tan: float,
+    yaw_rad: Array,
 ) -> Array:
     """Fraction of places hidden, in shadow or layover, from each of several lines; for choosing among them.
 
@@ -162,6 +182,8 @@ def line_visibility(
         float64 (P, 2).
     cell_m
         Distance between samples of the profiles.
+    near_tan, far_tan, yaw_rad
+        Of each line, as in ``strip_flags``, float64 (L,).
     """
     hidden = np.zeros(len(poses))
     for i in range(len(poses)):
@@ -173,9 +195,9 @@ def line_visibility(
             z_m = ground_at(heights_m, west_m, south_m, step_m, places_m[p, 0], places_m[p, 1])
             if reach_m <= 0.0 or math.isnan(z_m) or z_m >= level_m:
                 continue
-            if not near_tan <= reach_m / (level_m - z_m) <= far_tan:
+            if not near_tan[i] <= reach_m / (level_m - z_m) <= far_tan[i]:
                 continue
-            lead_m = math.hypot(reach_m, level_m - z_m) * squint_tan
+            ahead_m = lead_m(reach_m, level_m - z_m, squint_tan, yaw_rad[i])
             last = int(reach_m / cell_m)
             beyond = int(0.5 * reach_m / cell_m) + 2
             out_m = np.empty(last + 1 + beyond)
@@ -183,13 +205,13 @@ def line_visibility(
             for k in range(last + 1 + beyond):
                 # The place itself is one of the samples.
                 out_m[k] = reach_m + (k - last) * cell_m
-                at_m = foot_m - lead_m * (1.0 - out_m[k] / reach_m)
+                at_m = foot_m - ahead_m * (1.0 - out_m[k] / reach_m)
                 e_m = pose[0] + at_m * pose[2] + out_m[k] * pose[4]
                 n_m = pose[1] + at_m * pose[3] + out_m[k] * pose[5]
                 profile[k] = ground_at(heights_m, west_m, south_m, step_m, e_m, n_m)
             profile[last] = z_m
-            stretch = math.hypot(1.0, lead_m / reach_m)
-            flag = profile_flags(level_m, out_m, profile, near_tan, far_tan, stretch)[last]
+            stretch = math.hypot(1.0, ahead_m / reach_m)
+            flag = profile_flags(level_m, out_m, profile, near_tan[i], far_tan[i], stretch)[last]
             if flag != SEEN:
                 hidden[i] += 1.0
         hidden[i] /= max(len(places_m), 1)

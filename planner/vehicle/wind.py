@@ -13,17 +13,14 @@ where its radius is at least ((V + W) / V)² times the tightest turn in still ai
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from planner.dubins.path import Path, Segment
-from planner.errors import Finding, InfeasibleError
-from planner.route import CollectPass
+from planner.errors import InfeasibleError
 from planner.scenario import Scenario, Wind
-from planner.vehicle.aircraft import Aircraft
 
 Array = NDArray[np.float64]
 
@@ -38,7 +35,7 @@ CIRCLE_RAD = np.linspace(0.0, 2.0 * math.pi, 360, endpoint=False)
 
 
 def in_wind(scenario: Scenario) -> Scenario:
-    """The scenario with aircraft that plan their turns for its wind.
+    """The scenario with aircraft that plan their turns for its wind, and sensors that look where they crab.
 
     Raises
     ------
@@ -57,7 +54,13 @@ def in_wind(scenario: Scenario) -> Scenario:
                 f"{aircraft.airspeed_m_s:g} m/s: against it no ground is gained",
                 f"Wait for a wind under {aircraft.airspeed_m_s:g} m/s or fly faster.",
             )
-    return replace(scenario, aircraft=tuple(a.in_wind(speed_m_s) for a in scenario.aircraft))
+    # One aircraft flies all passes.
+    drift = speed_m_s / scenario.aircraft[0].airspeed_m_s
+    return replace(
+        scenario,
+        aircraft=tuple(a.in_wind(speed_m_s) for a in scenario.aircraft),
+        sensors=tuple(sensor.in_wind(drift, scenario.wind.toward_rad) for sensor in scenario.sensors),
+    )
 
 
 def crab_rad(course_rad: ArrayLike, airspeed_m_s: float, wind: Wind) -> Array:
@@ -118,31 +121,3 @@ def still_air_costs(lengths_m: Array, begins: Array, ends: Array, airspeed_m_s: 
     along = still_air_factor(np.arctan2(offset[..., 1], offset[..., 0]), airspeed_m_s, wind)
     turning = float(still_air_factor(CIRCLE_RAD, airspeed_m_s, wind).mean())
     return np.asarray(direct_m * along + (lengths_m - direct_m) * turning, dtype=np.float64)
-
-
-def drift(scenario: Scenario, aircraft: Aircraft, passes: Iterable[CollectPass]) -> tuple[Finding, ...]:
-    """Passes on which the nose is so far off the course that an antenna fixed to it looks past abeam.
-
-    Abeam is within the beam up to a crab of half the azimuth beamwidth; beyond, the strip seen is shifted
-    along the track and drawn nearer to it.
-    """
-    findings = []
-    for collect in passes:
-        crab = abs(float(crab_rad(collect.angle_rad, aircraft.airspeed_m_s, scenario.wind)))
-        sensor = next(s for s in scenario.sensors if s.name == collect.sensor)
-        if crab <= 0.5 * sensor.azimuth_beamwidth_rad:
-            continue
-        far_m = sensor.far_m(scenario.height_m)
-        findings.append(
-            Finding(
-                "+".join(collect.regions),
-                "crab",
-                f"is seen with a crab of {math.degrees(crab):.1f}°, more than half the azimuth beam of "
-                f"{math.degrees(0.5 * sensor.azimuth_beamwidth_rad):.1f}°: an antenna fixed to the aircraft "
-                f"sees {far_m * math.sin(crab):.0f} m ahead or behind and "
-                f"{far_m * (1.0 - math.cos(crab)):.0f} m less far",
-                "Steer the antenna abeam of the course, or allow headings along the wind.",
-                "warning",
-            )
-        )
-    return tuple(findings)
