@@ -1,4 +1,6 @@
-"""Compiled lengths of Dubins lines; ``words.py`` is the plain twin and cites the equations.
+"""Compiled lengths of Dubins lines, and the cheapest way through a row of them.
+
+``words.py`` is the plain twin and cites the equations.
 
 A line from many poses to many needs one sine and one cosine a pose, then a square root a word. Angles cost
 most: LSL and RSR are decided by signs without one, and a word is given up as soon as what is known of it,
@@ -292,3 +294,22 @@ def dubins_matrix(starts: Array, goals: Array, radius: float) -> Array:
                 cosines[j],
             )
     return lengths
+
+
+@njit(cache=True)
+def cheapest_steps(costs: Array) -> NDArray[np.int64]:
+    """The forerunner of each node on its cheapest way from the first, int64 (N,); steps go forward alone.
+
+    ``costs`` is float64, shape (N, N), read above the diagonal. Of two ways at one cost the one over the
+    earlier forerunner is taken; node 0 has itself.
+    """
+    count = costs.shape[0]
+    totals = np.full(count, np.inf)
+    before = np.zeros(count, dtype=np.int64)
+    totals[0] = 0.0
+    for j in range(1, count):
+        for i in range(j):
+            through = totals[i] + costs[i, j]
+            if through < totals[j]:
+                totals[j], before[j] = through, i
+    return before

@@ -12,14 +12,14 @@ more than the length.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from planner.angles import wrap_pi
-from planner.dubins.kernels import dubins_matrix
+from planner.dubins.kernels import cheapest_steps, dubins_matrix
 from planner.dubins.path import Path, Segment, join
 from planner.dubins.words import candidates
 from planner.route import Pose
@@ -136,31 +136,27 @@ class _Graph:
 
     def best_way(self) -> list[tuple[int, int]]:
         """Edges of the cheapest way from the first pose to the last."""
-        count = len(self.poses)
-        total = np.full(count, math.inf)
-        before = np.zeros(count, dtype=np.int64)
-        total[0] = 0.0
-        for j in range(1, count):
-            through = total[:j] + self.cost[:j, j]
-            before[j] = int(np.argmin(through))
-            total[j] = through[before[j]]
+        before = cheapest_steps(self.cost)
         way: list[tuple[int, int]] = []
-        j = count - 1
+        j = len(before) - 1
         while j > 0:
             way.append((int(before[j]), j))
             j = int(before[j])
         return way[::-1]
 
-    def _lines(self, edge: tuple[int, int]) -> list[Path]:
-        """Lines that may serve as an edge, the preferred first."""
+    def _lines(self, edge: tuple[int, int]) -> Iterator[Path]:
+        """Lines that may serve as an edge, the preferred first; made when asked for."""
         (start, goal) = (Pose(*map(float, self.poses[node])) for node in edge)
-        words = candidates(start, goal, self.radius_m)
         corner = fillet(start, goal, self.radius_m)
         if corner is None:
-            return words
-        if self.method == "fillet":
-            return [corner, *words]
-        return sorted([corner, *words], key=lambda path: path.length_m)
+            yield from candidates(start, goal, self.radius_m)
+        elif self.method == "fillet":
+            yield corner
+            yield from candidates(start, goal, self.radius_m)
+        else:
+            yield from sorted(
+                [corner, *candidates(start, goal, self.radius_m)], key=lambda path: path.length_m
+            )
 
     def test(self, way: list[tuple[int, int]]) -> bool:
         """Test the edges of a way that were not yet; whether any turned out dearer than was thought."""
@@ -168,9 +164,8 @@ class _Graph:
         for edge in way:
             if edge in self.pieces:
                 continue
-            lines = self._lines(edge)
-            piece = next((line for line in lines if self.clear(line)), None)
-            self.pieces[edge] = piece or lines[0]
+            piece = next((line for line in self._lines(edge) if self.clear(line)), None)
+            self.pieces[edge] = piece or next(self._lines(edge))
             length_m = self.pieces[edge].length_m
             cost = length_m + float(self.extra[edge])
             cost += self.loop_cost if length_m > self.loop_length_m[edge] else 0.0

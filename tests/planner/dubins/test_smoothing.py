@@ -8,9 +8,12 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.sparse import csr_matrix
+from scipy.sparse.csgraph import dijkstra
 from shapely.geometry import LineString, box
 
 from planner.angles import wrap_pi
+from planner.dubins.kernels import cheapest_steps
 from planner.dubins.path import Path
 from planner.dubins.smoothing import SmoothingMethod, smooth
 from planner.environment.zones import Disc, KeepOut, PolygonZone
@@ -120,3 +123,23 @@ def test_repeated_and_bad_waypoints() -> None:
     for bad in ([[0, 0]], [[0, 0, 0], [1, 1, 1]], [[0, 0], [math.nan, 1]]):
         with pytest.raises(ValueError, match="waypoints"):
             smooth(bad, None, None, RADIUS_M, anywhere)
+
+
+@settings(deadline=None)
+@given(st.integers(0, 10_000), st.integers(2, 30))
+def test_cheapest_steps_are_those_of_dijkstra(seed: int, count: int) -> None:
+    """Forerunners trace a way that costs what scipy's Dijkstra finds, past steps that cost inf."""
+    rng = np.random.default_rng(seed)
+    costs = rng.uniform(1.0, 100.0, (count, count))
+    costs[rng.uniform(size=costs.shape) < 0.3] = np.inf
+    # One way there always is.
+    costs[np.arange(count - 1), np.arange(1, count)] = rng.uniform(1.0, 100.0, count - 1)
+    before = cheapest_steps(costs)
+    forward = np.triu(np.where(np.isfinite(costs), costs, 0.0), 1)
+    expected = dijkstra(csr_matrix(forward), indices=0)
+    for node in range(count):
+        found, here = 0.0, node
+        while here > 0:
+            assert before[here] < here
+            found, here = found + costs[before[here], here], int(before[here])
+        assert found == pytest.approx(expected[node])
