@@ -315,6 +315,8 @@ class FlightOut(BaseModel):
     started_at: datetime
     ended_at: datetime | None
     points: int
+    payload: str | None = Field(description="How the sensor was switched; null for the default.")
+    photos: int = Field(description="Reported by cameras.")
     links: dict[str, str]
 
     @classmethod

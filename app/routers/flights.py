@@ -46,7 +46,7 @@ async def get_flight(flight_id: str, flights: FlightsDep) -> FlightOut:
     responses=responses(404) | GEOJSON_ANSWER,
 )
 async def track(flight_id: str, flights: FlightsDep) -> Response:
-    """The line flown (role `track`) and where the sensor was on (role `sensor_on`)."""
+    """The line flown (role `track`), where the sensor was on (`sensor_on`), photos (`photo`), `switches`."""
     return Response(write_json(await flights.track(flight_id)), media_type=GEOJSON)
 
 

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import Any, Literal
 
 import numpy as np
@@ -12,7 +13,8 @@ from numpy.typing import NDArray
 from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
-from app.services.records import TrackSample
+from app.services.photos import MISSING_PART, Spacing, place_of
+from app.services.records import FlightEvent, TrackSample
 from planner.coverage.flown import FlownCoverage
 from planner.plan import Collect, Plan
 from planner.scenario import Scenario
@@ -44,6 +46,11 @@ class Trigger:
         Flown along the collect with the sensor on.
     late_m, early_m
         Of the collect's beginning and end, flown with the sensor off; None when it was missed.
+    photos_taken
+        Along the collect, as cameras report them.
+    photos_expected
+        By the spacing ordered; None when the sensor is no camera. Then ``photo_gaps``, metres along the
+        collect from and to, tell where they are missing, and ``state`` follows them.
     """
 
     seq: int
@@ -53,6 +60,9 @@ class Trigger:
     on_m: float
     late_m: float | None
     early_m: float | None
+    photos_taken: int = 0
+    photos_expected: int | None = None
+    photo_gaps: tuple[tuple[float, float], ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,29 +74,98 @@ class Gap:
 
 
 def triggers(
-    scenario: Scenario, plan: Plan, vehicle: str | None, samples: tuple[TrackSample, ...]
+    scenario: Scenario,
+    plan: Plan,
+    vehicle: str | None,
+    samples: tuple[TrackSample, ...],
+    photos: Sequence[FlightEvent] = (),
+    spacing: Spacing | None = None,
 ) -> tuple[Trigger, ...]:
-    """How the sensor was switched, collect by collect of one vehicle (all when None)."""
-    lonlat = np.array([(s.lon_deg, s.lat_deg) for s in samples], dtype=np.float64).reshape(-1, 2)
-    places = scenario.frame.to_local(lonlat)
+    """How the sensor was switched, collect by collect of one vehicle (all when None).
+
+    Parameters
+    ----------
+    photos
+        With a place, as ``photos.photos_of`` gives them.
+    spacing
+        How far apart they were ordered; None when the sensor is no camera.
+    """
+    places = _local(scenario, [(s.lon_deg, s.lat_deg) for s in samples])
     switched = np.array([sample.sensor_on for sample in samples], dtype=bool)
-    on = np.stack([places[:-1], places[1:]], axis=1)[switched[:-1] & switched[1:]]
+    track = np.stack([places[:-1], places[1:]], axis=1)
+    on = track[switched[:-1] & switched[1:]]
+    taken = _local(scenario, [place for photo in photos if (place := place_of(photo)) is not None])
+    # The piece of track each photo was taken on; clocks of cameras may be a piece early or late.
+    piece = np.searchsorted([s.time_s for s in samples], [photo.time_s for photo in photos]) - 1
     wanted = [collect for collect in plan.collects if vehicle is None or collect.vehicle == vehicle]
-    return tuple(_trigger(scenario, collect, on) for collect in wanted)
+    made = []
+    for collect in wanted:
+        line = _Line.of(scenario, collect)
+        trigger = _trigger(line, collect, on)
+        beside = line.beside(track)
+        then = np.zeros(len(photos), dtype=bool)
+        for shift in (-1, 0, 1) if len(beside) else ():
+            then |= beside[np.clip(piece + shift, 0, len(beside) - 1)]
+        along_m = line.along_m(taken[then])
+        if spacing is not None:
+            speed_m_s = _speed_m_s(collect, [samples[k] for k in np.flatnonzero(beside)])
+            trigger = _by_photos(trigger, along_m, spacing.at(speed_m_s))
+        made.append(replace(trigger, photos_taken=len(along_m)))
+    return tuple(made)
 
 
-def _trigger(scenario: Scenario, collect: Collect, on: NDArray[np.float64]) -> Trigger:
+def _speed_m_s(collect: Collect, beside: Sequence[TrackSample]) -> float:
+    """Over ground along a collect, as flown, else as planned."""
+    flown = [sample.ground_speed_m_s for sample in beside if sample.ground_speed_m_s is not None]
+    if flown:
+        return float(np.mean(flown))
+    return (collect.end_m - collect.start_m) / max(collect.end_s - collect.start_s, 1e-3)
+
+
+def _local(scenario: Scenario, lonlat: Sequence[tuple[float, float]]) -> NDArray[np.float64]:
+    return scenario.frame.to_local(np.array(lonlat, dtype=np.float64).reshape(-1, 2))
+
+
+@dataclass(frozen=True, slots=True)
+class _Line:
+    """A collect in the local frame: where it begins, its direction, its length."""
+
+    first: NDArray[np.float64]
+    ahead: NDArray[np.float64]
+    length_m: float
+
+    @classmethod
+    def of(cls, scenario: Scenario, collect: Collect) -> _Line:
+        first, last = scenario.frame.to_local([place[:2] for place in collect.line])
+        length_m = float(np.hypot(*(last - first)))
+        return cls(first, (last - first) / length_m, length_m)
+
+    def beside(self, pieces: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """Which pieces of track, shape (N, 2, 2), run along it: near, in its direction, within its ends."""
+        moved = pieces[:, 1] - pieces[:, 0]
+        offset = pieces - self.first
+        along_m = offset @ self.ahead
+        across_m = np.abs(offset[:, :, 0] * self.ahead[1] - offset[:, :, 1] * self.ahead[0]).max(axis=1)
+        forward = moved @ self.ahead >= ALONG_COSINE * np.hypot(moved[:, 0], moved[:, 1])
+        found: NDArray[np.bool_] = (
+            forward & (across_m <= BESIDE_M) & (along_m[:, 1] > 0.0) & (along_m[:, 0] < self.length_m)
+        )
+        return found
+
+    def along_m(self, places: NDArray[np.float64]) -> NDArray[np.float64]:
+        """How far along it the places near it are, in order."""
+        offset = places - self.first
+        across_m = np.abs(offset[:, 0] * self.ahead[1] - offset[:, 1] * self.ahead[0])
+        along_m = offset @ self.ahead
+        near = (across_m <= BESIDE_M) & (along_m >= -TRIGGER_M) & (along_m <= self.length_m + TRIGGER_M)
+        ordered: NDArray[np.float64] = np.sort(along_m[near])
+        return ordered
+
+
+def _trigger(line: _Line, collect: Collect, on: NDArray[np.float64]) -> Trigger:
     """``on``: pieces of track with the sensor on, shape (N, 2, 2): ends, east and north in metres."""
-    first, last = scenario.frame.to_local([place[:2] for place in collect.line])
-    length_m = float(np.hypot(*(last - first)))
-    ahead = (last - first) / length_m
-    moved = on[:, 1] - on[:, 0]
-    offset = on - first
-    along_m = offset @ ahead
-    across_m = np.abs(offset[:, :, 0] * ahead[1] - offset[:, :, 1] * ahead[0]).max(axis=1)
-    forward = moved @ ahead >= ALONG_COSINE * np.hypot(moved[:, 0], moved[:, 1])
-    beside = forward & (across_m <= BESIDE_M) & (along_m[:, 1] > 0.0) & (along_m[:, 0] < length_m)
-    along_m = np.clip(along_m[beside], 0.0, length_m)
+    length_m = line.length_m
+    along_m = np.clip((on[line.beside(on)] - line.first) @ line.ahead, 0.0, length_m)
     on_m = float((along_m[:, 1] - along_m[:, 0]).sum())
     if on_m < MISSED_PART * length_m:
         return Trigger(collect.seq, collect.roi, "missed", length_m, on_m, None, None)
@@ -99,6 +178,29 @@ def _trigger(scenario: Scenario, collect: Collect, on: NDArray[np.float64]) -> T
     elif on_m < length_m - late_m - early_m - TRIGGER_M:
         state = "interrupted"
     return Trigger(collect.seq, collect.roi, state, length_m, on_m, late_m, early_m)
+
+
+def _by_photos(trigger: Trigger, along_m: NDArray[np.float64], spacing_m: float) -> Trigger:
+    """The trigger judged by photos expected against photos taken."""
+    length_m = trigger.length_m
+    expected = math.floor(length_m / spacing_m + 1e-6) + 1
+    marks = [0.0, *(min(max(float(at_m), 0.0), length_m) for at_m in along_m), length_m]
+    gaps = tuple(
+        (before_m, after_m)
+        for before_m, after_m in pairwise(marks)
+        if after_m - before_m > MISSING_PART * spacing_m
+    )
+    state: TriggerState = "ok"
+    if len(along_m) < MISSED_PART * expected:
+        state = "missed"
+        gaps = ((0.0, length_m),)
+    elif gaps:
+        state = "interrupted"
+        if gaps[0][0] == 0.0:
+            state = "late"
+        elif gaps[-1][1] == length_m:
+            state = "early"
+    return replace(trigger, state=state, photos_expected=expected, photo_gaps=gaps)
 
 
 def regions_json(scenario: Scenario, plan: Plan, result: FlownCoverage) -> list[dict[str, Any]]:

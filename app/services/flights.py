@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import asyncio
-from dataclasses import asdict
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
 from functools import partial
 from typing import Any
 
@@ -16,8 +17,9 @@ from app.services.documents import read_object
 from app.services.errors import ConflictError, NotFoundError
 from app.services.gpx import write_gpx
 from app.services.missions import plan_of
+from app.services.photos import photos_of, spacing_of, switched_by_photos
 from app.services.planning import PlanningService
-from app.services.records import FlightRecord, TrackSample
+from app.services.records import FlightEvent, FlightRecord, TrackSample
 from app.services.refly import refly_scenario
 from app.services.report import write_flight_report
 from app.services.store.flights import FlightStore
@@ -45,9 +47,10 @@ class FlightService:
         return await self._store.get(flight_id)
 
     async def track(self, flight_id: str) -> dict[str, Any]:
-        """The track as GeoJSON: the line, and a piece for each time the sensor was on."""
+        """The track as GeoJSON: the line, a piece for each time the sensor was on, the photos."""
         record = await self._store.get(flight_id)
-        return track_geojson(record, await self._store.track(flight_id))
+        samples, photos, events = await self._as_recorded(record)
+        return track_geojson(record, samples, photos, events)
 
     async def track_gpx(self, flight_id: str) -> str:
         """The track as GPX 1.1."""
@@ -62,12 +65,11 @@ class FlightService:
         ConflictError
             The flight followed no plan of this service, or the plan has been deleted.
         """
-        return await asyncio.to_thread(coverage_geojson, *await self._flown(flight_id))
+        return await asyncio.to_thread(_coverage, await self._flown(flight_id))
 
     async def report(self, flight_id: str) -> str:
         """What was flown and seen, as one printable HTML page; raises as ``coverage``."""
-        flown_by = await self._flown(flight_id)
-        return await asyncio.to_thread(_report, *flown_by)
+        return await asyncio.to_thread(_report, await self._flown(flight_id))
 
     async def refly(self, flight_id: str, here: tuple[float, float, float | None] | None) -> dict[str, Any]:
         """The scenario of what a flight did not see.
@@ -82,12 +84,21 @@ class FlightService:
         ConflictError
             As ``coverage``, and when nothing worth a pass was missed.
         """
-        flown_by = await self._flown(flight_id)
-        return await asyncio.to_thread(_refly, *flown_by, here)
+        return await asyncio.to_thread(_refly, await self._flown(flight_id), here)
 
-    async def _flown(
-        self, flight_id: str
-    ) -> tuple[FlightRecord, str, str, tuple[TrackSample, ...], Terrains | None]:
+    async def _as_recorded(
+        self, record: FlightRecord
+    ) -> tuple[tuple[TrackSample, ...], tuple[FlightEvent, ...], tuple[FlightEvent, ...]]:
+        """Track, photos and all events; photos say where a sensor that is a camera was on."""
+        samples = await self._store.track(record.id)
+        events = await self._store.events(record.id)
+        photos = photos_of(events)
+        spacing = spacing_of(record.payload)
+        if spacing is not None:
+            samples = switched_by_photos(samples, photos, spacing)
+        return samples, photos, events
+
+    async def _flown(self, flight_id: str) -> _Flown:
         record = await self._store.get(flight_id)
         if record.plan_id is None:
             raise ConflictError("the flight followed no plan of this service")
@@ -96,8 +107,21 @@ class FlightService:
             scenario_text = await self._planning.scenario_text(record.plan_id)
         except NotFoundError as error:
             raise ConflictError("the flight's plan has been deleted") from error
-        samples = await self._store.track(flight_id)
-        return record, plan_text, scenario_text, samples, self._planning.terrain
+        samples, photos, events = await self._as_recorded(record)
+        return _Flown(record, plan_text, scenario_text, samples, photos, events, self._planning.terrain)
+
+
+@dataclass(frozen=True, slots=True)
+class _Flown:
+    """All that is known of a flight and its plan."""
+
+    record: FlightRecord
+    plan_text: str
+    scenario_text: str
+    samples: tuple[TrackSample, ...]
+    photos: tuple[FlightEvent, ...]
+    events: tuple[FlightEvent, ...]
+    terrain: Terrains | None
 
 
 def _feature(geometry: dict[str, Any], **properties: Any) -> dict[str, Any]:
@@ -109,11 +133,20 @@ def _place(sample: TrackSample) -> list[float]:
     return place if sample.altitude_amsl_m is None else [*place, sample.altitude_amsl_m]
 
 
-def track_geojson(record: FlightRecord, samples: tuple[TrackSample, ...]) -> dict[str, Any]:
-    """A track as a FeatureCollection: roles ``track`` and ``sensor_on``.
+_OF_A_PHOTO = ("time_s", "index", "altitude_home_m", "heading_deg", "roll_deg", "pitch_deg")
+
+
+def track_geojson(
+    record: FlightRecord,
+    samples: tuple[TrackSample, ...],
+    photos: Sequence[FlightEvent] = (),
+    events: Sequence[FlightEvent] = (),
+) -> dict[str, Any]:
+    """A track as a FeatureCollection: roles ``track``, ``sensor_on`` and ``photo``.
 
     Beside the line stand the vehicle's times in seconds since boot, the height above home, heading, roll and
-    ground speed, one of each for every vertex.
+    ground speed, one of each for every vertex. The member ``switches`` tells when the sensor, or the output
+    that switches it, was reported on and off.
     """
     features = []
     if len(samples) > 1:
@@ -131,7 +164,23 @@ def track_geojson(record: FlightRecord, samples: tuple[TrackSample, ...]) -> dic
         line = {"type": "LineString", "coordinates": [_place(sample) for sample in run]}
         times = {"start_s": run[0].time_s, "end_s": run[-1].time_s}
         features.append(_feature(line, role="sensor_on", vehicle=record.vehicle_name, **times))
-    return {"type": "FeatureCollection", "flight": record.id, "plan": record.plan_id, "features": features}
+    for photo in photos:
+        height = [] if photo.altitude_amsl_m is None else [photo.altitude_amsl_m]
+        point = {"type": "Point", "coordinates": [photo.lon_deg, photo.lat_deg, *height]}
+        told = {name: getattr(photo, name) for name in _OF_A_PHOTO}
+        features.append(_feature(point, role="photo", vehicle=record.vehicle_name, **told))
+    return {
+        "type": "FeatureCollection",
+        "flight": record.id,
+        "plan": record.plan_id,
+        "payload": record.payload,
+        "switches": [
+            {"time_s": event.time_s, "state": event.kind, "source": event.source, "index": event.index}
+            for event in events
+            if event.kind != "photo"
+        ],
+        "features": features,
+    }
 
 
 def _runs(samples: tuple[TrackSample, ...]) -> list[list[TrackSample]]:
@@ -161,22 +210,21 @@ def seen_by(scenario: Scenario, plan: Plan, samples: tuple[TrackSample, ...]) ->
     return flown.flown_coverage(scenario, plan, track)
 
 
-def coverage_geojson(
-    record: FlightRecord,
-    plan_text: str,
-    scenario_text: str,
-    samples: tuple[TrackSample, ...],
-    terrains: Terrains | None = None,
-) -> dict[str, Any]:
+def _coverage(flight: _Flown) -> dict[str, Any]:
     """What a flight saw: roles ``seen`` and ``unseen`` by region, and figures as foreign members.
 
     Members: ``coverage`` {region: fraction as flown}, ``planned_coverage``, ``collects`` with the
     distance of the track from each planned line while the sensor was on, ``triggers`` with how the sensor
-    was switched over each, and ``regions`` with what was wanted of each and what is missing.
+    was switched over each and which photos are missing, and ``regions`` with what was wanted of each and
+    what is missing.
     """
-    scenario = read_scenario(read_object(scenario_text), terrains)
-    plan = plan_of(plan_text)
+    record, samples = flight.record, flight.samples
+    scenario = read_scenario(read_object(flight.scenario_text), flight.terrain)
+    plan = plan_of(flight.plan_text)
     result = seen_by(scenario, plan, samples)
+    switched = triggers(
+        scenario, plan, record.plan_vehicle, samples, flight.photos, spacing_of(record.payload)
+    )
     to_wgs84 = partial(_to_wgs84, scenario.frame)
     features = [
         _feature(mapping(to_wgs84(shape)), role=role, roi=name, fraction=result.fraction[name])
@@ -191,37 +239,24 @@ def coverage_geojson(
         "coverage": result.fraction,
         "planned_coverage": plan.metrics.coverage,
         "collects": [asdict(collect) for collect in result.passes],
-        "triggers": [asdict(trigger) for trigger in triggers(scenario, plan, record.plan_vehicle, samples)],
+        "triggers": [asdict(trigger) for trigger in switched],
         "regions": regions_json(scenario, plan, result),
         "features": features,
     }
 
 
-def _refly(
-    record: FlightRecord,
-    plan_text: str,
-    scenario_text: str,
-    samples: tuple[TrackSample, ...],
-    terrains: Terrains | None,
-    here: tuple[float, float, float | None] | None,
-) -> dict[str, Any]:
-    document = read_object(scenario_text)
-    scenario = read_scenario(document, terrains)
-    missing = gaps(scenario, seen_by(scenario, plan_of(plan_text), samples))
+def _refly(flight: _Flown, here: tuple[float, float, float | None] | None) -> dict[str, Any]:
+    document = read_object(flight.scenario_text)
+    scenario = read_scenario(document, flight.terrain)
+    missing = gaps(scenario, seen_by(scenario, plan_of(flight.plan_text), flight.samples))
     if not missing:
         raise ConflictError("nothing is left to fly again for: every region was seen, but for slivers")
-    return refly_scenario(document, missing, scenario.frame, record.plan_vehicle, here)
+    return refly_scenario(document, missing, scenario.frame, flight.record.plan_vehicle, here)
 
 
-def _report(
-    record: FlightRecord,
-    plan_text: str,
-    scenario_text: str,
-    samples: tuple[TrackSample, ...],
-    terrains: Terrains | None,
-) -> str:
-    coverage = coverage_geojson(record, plan_text, scenario_text, samples, terrains)
-    return write_flight_report(record, read_object(scenario_text), track_geojson(record, samples), coverage)
+def _report(flight: _Flown) -> str:
+    track = track_geojson(flight.record, flight.samples)
+    return write_flight_report(flight.record, read_object(flight.scenario_text), track, _coverage(flight))
 
 
 def _to_wgs84(frame: LocalFrame, shape: BaseGeometry) -> BaseGeometry:

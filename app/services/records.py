@@ -30,6 +30,23 @@ class TrackSample:
 
 
 @dataclass(frozen=True, slots=True)
+class FlightEvent:
+    """A photo, or a switch of the sensor, in the vehicle's time since boot; angles as a camera tells them."""
+
+    time_s: float
+    kind: Literal["on", "off", "photo"]
+    source: Literal["camera", "payload", "relay", "servo"]
+    index: int | None = None
+    lon_deg: float | None = None
+    lat_deg: float | None = None
+    altitude_amsl_m: float | None = None
+    altitude_home_m: float | None = None
+    heading_deg: float | None = None
+    roll_deg: float | None = None
+    pitch_deg: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class TerrainRecord:
     """One uploaded elevation raster; ``bounds_deg`` is west, south, east, north."""
 
@@ -57,6 +74,10 @@ class FlightRecord:
         The plan last uploaded to the vehicle and its name there; None when none was.
     state
         ``interrupted``: the service ended, or the vehicle vanished, before the flight did.
+    payload
+        How the sensor was switched, as the upload said it; None for the default, or when no plan was held.
+    photos
+        Reported by cameras.
     """
 
     id: str
@@ -68,6 +89,8 @@ class FlightRecord:
     started_at: datetime
     ended_at: datetime | None
     points: int
+    payload: str | None = None
+    photos: int = 0
 
 
 @dataclass(frozen=True, slots=True)

@@ -85,6 +85,7 @@ def write_flight_report(
         map=draw_map(scenario, {"features": features}),
         regions=coverage["regions"],
         triggers=[trigger | {"line": lines.get(trigger["seq"])} for trigger in coverage["triggers"]],
+        photos=any(t["photos_taken"] or t["photos_expected"] for t in coverage["triggers"]),
         missed=[trigger for trigger in coverage["triggers"] if trigger["state"] != "ok"],
         unseen=[region for region in coverage["regions"] if not region["seen"]],
     )

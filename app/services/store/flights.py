@@ -10,20 +10,25 @@ from typing import Any, cast
 from sqlalchemy import ColumnElement, Select, func, insert, select, update
 
 from app.services.errors import NotFoundError
-from app.services.records import FlightRecord, FlightState, TrackSample
+from app.services.records import FlightEvent, FlightRecord, FlightState, TrackSample
 from app.services.store.database import Database
 from app.services.store.plans import now
-from app.services.store.tables import FlightRow, TrackPointRow
+from app.services.store.tables import FlightEventRow, FlightRow, TrackPointRow
 
 
-def _records() -> Select[FlightRow, int]:
+def _records() -> Select[FlightRow, int, int]:
     points: ColumnElement[int] = (
         select(func.count()).where(TrackPointRow.flight_id == FlightRow.id).scalar_subquery()
     )
-    return select(FlightRow, points)
+    photos: ColumnElement[int] = (
+        select(func.count())
+        .where(FlightEventRow.flight_id == FlightRow.id, FlightEventRow.kind == "photo")
+        .scalar_subquery()
+    )
+    return select(FlightRow, points, photos)
 
 
-def _record(row: FlightRow, points: int) -> FlightRecord:
+def _record(row: FlightRow, points: int, photos: int) -> FlightRecord:
     return FlightRecord(
         id=row.id,
         vehicle_id=row.vehicle_id,
@@ -34,6 +39,8 @@ def _record(row: FlightRow, points: int) -> FlightRecord:
         started_at=row.started_at,
         ended_at=row.ended_at,
         points=points,
+        payload=row.payload,
+        photos=photos,
     )
 
 
@@ -44,7 +51,12 @@ class FlightStore:
         self._database = database
 
     async def begin(
-        self, vehicle_id: str, vehicle_name: str, plan_id: str | None, plan_vehicle: str | None
+        self,
+        vehicle_id: str,
+        vehicle_name: str,
+        plan_id: str | None,
+        plan_vehicle: str | None,
+        payload: str | None = None,
     ) -> str:
         """A new flight; returns its id."""
         flight_id = str(uuid.uuid4())
@@ -56,6 +68,7 @@ class FlightStore:
                     vehicle_name=vehicle_name,
                     plan_id=plan_id,
                     plan_vehicle=plan_vehicle,
+                    payload=payload,
                     state="flying",
                     started_at=now(),
                 )
@@ -69,6 +82,14 @@ class FlightStore:
         rows: list[dict[str, Any]] = [{"flight_id": flight_id} | asdict(sample) for sample in samples]
         async with self._database.session() as session:
             await session.execute(insert(TrackPointRow), rows)
+
+    async def add_events(self, flight_id: str, events: Sequence[FlightEvent]) -> None:
+        """Append photos and switches."""
+        if not events:
+            return
+        rows: list[dict[str, Any]] = [{"flight_id": flight_id} | asdict(event) for event in events]
+        async with self._database.session() as session:
+            await session.execute(insert(FlightEventRow), rows)
 
     async def end(self, flight_id: str, state: FlightState) -> None:
         """Close a flight."""
@@ -94,7 +115,7 @@ class FlightStore:
         if vehicle_id is not None:
             query = query.where(FlightRow.vehicle_id == vehicle_id)
         async with self._database.session() as session:
-            return tuple(_record(row, points) for row, points in await session.execute(query))
+            return tuple(_record(*found) for found in await session.execute(query))
 
     async def get(self, flight_id: str) -> FlightRecord:
         """One flight; raises NotFoundError."""
@@ -102,7 +123,7 @@ class FlightStore:
             found = (await session.execute(_records().where(FlightRow.id == flight_id))).first()
         if found is None:
             raise NotFoundError("flight", flight_id)
-        return _record(found[0], found[1])
+        return _record(*found)
 
     async def track(self, flight_id: str) -> tuple[TrackSample, ...]:
         """The recorded places in order."""
@@ -125,4 +146,17 @@ class FlightStore:
                     sensor_on=row.sensor_on,
                 )
                 for row in rows
+            )
+
+    async def events(self, flight_id: str) -> tuple[FlightEvent, ...]:
+        """Photos and switches in the order they were reported."""
+        query = (
+            select(FlightEventRow)
+            .where(FlightEventRow.flight_id == flight_id)
+            .order_by(FlightEventRow.number)
+        )
+        async with self._database.session() as session:
+            rows = await session.scalars(query)
+            return tuple(
+                FlightEvent(**{name: getattr(row, name) for name in FlightEvent.__slots__}) for row in rows
             )

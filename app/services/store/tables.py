@@ -106,6 +106,7 @@ class FlightRow(Base):
     vehicle_name: Mapped[str] = mapped_column(String(200))
     plan_id: Mapped[str | None] = mapped_column(String(36), index=True)
     plan_vehicle: Mapped[str | None] = mapped_column(String(200))
+    payload: Mapped[str | None] = mapped_column(String(200))
     state: Mapped[str] = mapped_column(String(12))
     started_at: Mapped[datetime] = mapped_column(UtcTime)
     ended_at: Mapped[datetime | None] = mapped_column(UtcTime)
@@ -129,6 +130,27 @@ class TrackPointRow(Base):
     ground_speed_m_s: Mapped[float | None] = mapped_column(Float)
     mission_seq: Mapped[int | None] = mapped_column(Integer)
     sensor_on: Mapped[bool] = mapped_column(Boolean)
+
+
+class FlightEventRow(Base):
+    """A photo, or a switch of the sensor, of one flight."""
+
+    __tablename__ = "flight_events"
+    __table_args__ = (Index("ix_flight_events_flight", "flight_id", "number"),)
+
+    number: Mapped[int] = mapped_column(Integer, primary_key=True, autoincrement=True)
+    flight_id: Mapped[str] = mapped_column(String(36), ForeignKey("flights.id", ondelete="CASCADE"))
+    time_s: Mapped[float] = mapped_column(Float)
+    kind: Mapped[str] = mapped_column(String(8))
+    source: Mapped[str] = mapped_column(String(8))
+    index: Mapped[int | None] = mapped_column(Integer)
+    lon_deg: Mapped[float | None] = mapped_column(Float)
+    lat_deg: Mapped[float | None] = mapped_column(Float)
+    altitude_amsl_m: Mapped[float | None] = mapped_column(Float)
+    altitude_home_m: Mapped[float | None] = mapped_column(Float)
+    heading_deg: Mapped[float | None] = mapped_column(Float)
+    roll_deg: Mapped[float | None] = mapped_column(Float)
+    pitch_deg: Mapped[float | None] = mapped_column(Float)
 
 
 class TerrainRow(Base):

@@ -6,12 +6,12 @@ from dataclasses import dataclass
 
 import structlog
 
-from app.services.records import FlightState, TrackSample
+from app.services.records import FlightEvent, FlightState, TrackSample
 from app.services.store.flights import FlightStore
 from mavlink.client import VehicleClient
 from mavlink.outputs import SensorOutput
 from mavlink.telemetry import VehicleState
-from mavlink.track import Track, TrackPoint, TrackRecorder
+from mavlink.track import SensorEvent, Track, TrackPoint, TrackRecorder
 
 log = structlog.get_logger(__name__)
 
@@ -62,6 +62,7 @@ class FlightRecorder:
         self._interval_s = interval_s
         self._recorder: TrackRecorder | None = None
         self._plan: HeldPlan | None = None
+        self._events_saved = 0
         self._thinner = Thinner(interval_s)
         self.flight_id: str | None = None
 
@@ -94,12 +95,19 @@ class FlightRecorder:
             self._vehicle_name,
             plan.plan_id if plan else None,
             plan.plan_vehicle if plan else None,
+            plan.payload if plan else None,
         )
+        self._events_saved = 0
         log.info("flight begun", vehicle=self._vehicle_name, flight_id=self.flight_id)
 
     async def _save(self) -> None:
-        if self._recorder is not None and self.flight_id is not None:
-            await self._store.add(self.flight_id, self._thinner.more(self._recorder.track()))
+        if self._recorder is None or self.flight_id is None:
+            return
+        track = self._recorder.track()
+        await self._store.add(self.flight_id, self._thinner.more(track))
+        events = track.events[self._events_saved :]
+        self._events_saved = len(track.events)
+        await self._store.add_events(self.flight_id, [flight_event(event) for event in events])
 
     async def end(self, client: VehicleClient | None, state: FlightState) -> None:
         """Close the flight, if there is one."""
@@ -111,6 +119,23 @@ class FlightRecorder:
         await self._store.end(self.flight_id, state)
         log.info("flight ended", vehicle=self._vehicle_name, flight_id=self.flight_id, state=state)
         self.flight_id = self._recorder = self._plan = None
+
+
+def flight_event(event: SensorEvent) -> FlightEvent:
+    """An event of the track as flights keep it."""
+    return FlightEvent(
+        time_s=event.time_s,
+        kind=event.kind,
+        source=event.source,
+        index=event.index,
+        lon_deg=event.lon_deg,
+        lat_deg=event.lat_deg,
+        altitude_amsl_m=event.amsl_m,
+        altitude_home_m=event.relative_m,
+        heading_deg=event.heading_deg,
+        roll_deg=event.roll_deg,
+        pitch_deg=event.pitch_deg,
+    )
 
 
 class Thinner:
