@@ -32,6 +32,7 @@ LOWEST_M, HIGHEST_M = -12_000.0, 10_000.0
 UNSTATED = "an unstated datum"
 _HGT_NAME = re.compile(r"[NSns]\d{2}[EWew]\d{3}\.hgt", re.IGNORECASE)
 _SAFE_NAME = re.compile(r"[^A-Za-z0-9._-]")
+_IN_MEMORY = re.compile(r"/vsimem/[\w./-]*\w")
 _HGT_SIZES = {2 * posts * posts for posts in (1201, 3601)}
 
 
@@ -80,7 +81,7 @@ def read_raster(content: bytes, filename: str, name: str, datum: VerticalDatum |
             # Broken files end in any of these: GDAL's refusals, reference systems that are none, bad text.
             _refuse(
                 "raster-format",
-                f"it cannot be read as GeoTIFF, DTED or SRTM HGT ({str(error)[:200]})",
+                f"{safe} cannot be read as GeoTIFF, DTED or SRTM HGT ({_in_words(error, safe)})",
                 "Send an elevation file in one of these formats, whole.",
             )
     _check_place(heights, affine)
@@ -99,6 +100,11 @@ def read_raster(content: bytes, filename: str, name: str, datum: VerticalDatum |
     if chosen == "ellipsoid":
         heights, chosen = _over_sea(heights, affine), "EGM96"
     return Terrain(name, heights, affine, None, chosen)
+
+
+def _in_words(error: Exception, filename: str) -> str:
+    """What GDAL says, with the sender's name for the file in the place of the one it has in memory."""
+    return _IN_MEMORY.sub(filename, str(error.__cause__ or error))[:200]
 
 
 def _check_place(heights: NDArray[np.float32], affine: Affine) -> None:

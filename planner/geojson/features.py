@@ -11,7 +11,7 @@ from shapely.geometry import LineString, MultiPolygon, Point, Polygon
 
 from planner.frames import LocalFrame
 from planner.geojson import geometry as shapes
-from planner.geojson.fields import Fields, Findings
+from planner.geojson.fields import Fields, Findings, is_finite
 from planner.scenario import NoFlyZone, Obstacle, Region, Terminal, Threat
 
 #: A point target without a radius still has to be inside a footprint, as a disc this large.
@@ -40,6 +40,19 @@ class RawFeature:
     role: str
     geometry: Mapping[str, Any]
     fields: Fields
+
+
+def name_of(index: int, feature: Any) -> str:
+    """How findings name a feature: its id, else its name, else its role where there is but one of it."""
+    if not isinstance(feature, dict):
+        return f"features[{index}]"
+    properties = feature.get("properties")
+    name = feature.get("id")
+    if name is None and isinstance(properties, dict):
+        name = properties.get("name")
+        if name is None and properties.get("role") in ("area", "start", "end"):
+            name = properties["role"]
+    return f"features[{index}]" if name is None or isinstance(name, (dict, list, bool)) else str(name)
 
 
 def read_role(name: str, feature: Mapping[str, Any], findings: Findings) -> RawFeature | None:
@@ -117,14 +130,7 @@ def _headings(fields: Fields) -> tuple[float, ...] | None:
     value = fields.raw("approach_deg")
     if value is None:
         return None
-    if (
-        not isinstance(value, list)
-        or not value
-        or not all(
-            isinstance(v, (int, float)) and not isinstance(v, bool) and math.isfinite(v) and 0.0 <= v <= 360.0
-            for v in value
-        )
-    ):
+    if not isinstance(value, list) or not value or not all(is_finite(v) and 0.0 <= v <= 360.0 for v in value):
         fields.wrong("approach_deg", f"is {value!r}", "Give a list of headings in degrees, 0 to 360.")
         return None
     return tuple(float(v) for v in value)

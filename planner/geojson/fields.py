@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Iterable, Mapping
 from enum import Enum
 from typing import Any, TypeVar
@@ -20,6 +21,13 @@ REQUIRED = Required.REQUIRED
 
 
 T = TypeVar("T", float, str)
+
+LARGEST = sys.float_info.max
+
+
+def is_finite(value: Any) -> bool:
+    """Whether a JSON value is a number that a float can hold: no NaN, no Infinity, no whole number beyond."""
+    return isinstance(value, (int, float)) and not isinstance(value, bool) and abs(value) <= LARGEST
 
 
 class Findings:
@@ -101,10 +109,10 @@ class Fields:
         if isinstance(value, bool) or not isinstance(value, (int, float)):
             self.wrong(name, f"must be a number, not {_kind(value)}", "Give a plain JSON number.")
             return None
-        number = float(value)
-        if not math.isfinite(number):
+        if not is_finite(value):
             self.wrong(name, "must be finite", "Replace NaN or Infinity by a number.", rule="not-finite")
             return None
+        number = float(value)
         if number < minimum or number > maximum or number <= above or number >= below:
             low = (
                 f"≥ {minimum:g}" if math.isfinite(minimum) else f"> {above:g}" if math.isfinite(above) else ""
@@ -124,7 +132,7 @@ class Fields:
         value = self.raw(name)
         if value is None:
             return default
-        if isinstance(value, bool) or not isinstance(value, (int, float)) or value != int(value):
+        if not is_finite(value) or value != int(value):
             self.wrong(name, f"must be a whole number, not {value!r}", "Give a whole number.")
             return default
         if value < minimum:

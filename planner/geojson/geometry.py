@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from typing import Any
 
@@ -13,7 +12,7 @@ from shapely.geometry import LineString, MultiPolygon, Polygon
 from shapely.validation import explain_validity
 
 from planner.frames import LocalFrame
-from planner.geojson.fields import Findings
+from planner.geojson.fields import Findings, is_finite
 
 #: An edge of a GeoJSON ring is straight in longitude and latitude; cut to pieces this long it is, within a
 #: centimetre at latitudes below 60°, straight in the local frame as well.
@@ -36,45 +35,58 @@ def positions_of(geometry: Any) -> Iterator[Any]:
 
 def position(owner: str, value: Any, findings: Findings) -> LonLat | None:
     """A checked longitude and latitude."""
+    found = positions(owner, [value], findings)
+    return None if found is None else found[0]
+
+
+def positions(owner: str, values: list[Any], findings: Findings) -> list[LonLat] | None:
+    """Checked longitudes and latitudes; None after one finding for each rule that any of them breaks."""
+    broken: dict[str, list[tuple[int, str, str]]] = {}
+    for number, value in enumerate(values, 1):
+        fault = _fault(value)
+        if fault is not None:
+            rule, message, fix = fault
+            broken.setdefault(rule, []).append((number, message, fix))
+    for rule, faults in broken.items():
+        number, message, fix = faults[0]
+        if len(faults) > 1:
+            message += f", position {number}, the first of {len(faults)} of {len(values)} like it"
+        findings.error(owner, rule, message, fix)
+    return None if broken else [(float(value[0]), float(value[1])) for value in values]
+
+
+def _fault(value: Any) -> tuple[str, str, str] | None:
+    """What is wrong with a position: rule, message and fix."""
     if (
         not isinstance(value, list)
         or len(value) < 2
         or not all(isinstance(v, (int, float)) and not isinstance(v, bool) for v in value[:3])
     ):
-        findings.error(
-            owner, "bad-position", f"has the position {value!r}", "A position is [longitude, latitude]."
-        )
-        return None
+        return "bad-position", f"has the position {value!r}", "A position is [longitude, latitude]."
+    if not all(is_finite(v) for v in value[:2]):
+        return "not-finite", f"has the position {value!r}"[:200], "Positions must be finite numbers."
     lon, lat = float(value[0]), float(value[1])
-    if not (math.isfinite(lon) and math.isfinite(lat)):
-        findings.error(
-            owner, "not-finite", f"has the position {value!r}", "Positions must be finite numbers."
-        )
-        return None
     if abs(lat) > 90.0:
-        findings.error(
-            owner,
+        swapped = abs(lon) <= 90.0 and abs(lat) <= 180.0
+        return (
             "latitude-out-of-range",
             f"has latitude {lat:g} in {value!r}",
-            "Latitude lies in [-90, 90] and comes second: write [longitude, latitude].",
+            "Latitude lies in [-90, 90] and comes second"
+            + (": this looks like latitude, longitude order, write" if swapped else ": write")
+            + " [longitude, latitude].",
         )
-        return None
     if abs(lon) > 180.0:
-        findings.error(
-            owner, "longitude-out-of-range", f"has longitude {lon:g}", "Longitude lies in [-180, 180]."
-        )
-        return None
-    return (lon, lat)
+        return "longitude-out-of-range", f"has longitude {lon:g}", "Longitude lies in [-180, 180]."
+    return None
 
 
 def _ring(owner: str, value: Any, findings: Findings) -> list[LonLat] | None:
     if not isinstance(value, list) or len(value) == 0:
         findings.error(owner, "ring-empty", "has an empty ring", "Give at least four positions.")
         return None
-    points = [position(owner, item, findings) for item in value]
-    if any(point is None for point in points):
+    ring = positions(owner, value, findings)
+    if ring is None:
         return None
-    ring = [point for point in points if point is not None]
     if ring[0] != ring[-1]:
         findings.error(
             owner, "ring-not-closed", "has a ring whose last position is not its first", "Repeat the first."
@@ -155,9 +167,8 @@ def line(owner: str, geometry: dict[str, Any], frame: LocalFrame, findings: Find
     if not isinstance(coordinates, list) or len(coordinates) < 2:
         findings.error(owner, "line-too-short", "needs two positions", "Give two positions or more.")
         return None
-    points = [position(owner, item, findings) for item in coordinates]
-    sound = [point for point in points if point is not None]
-    if len(sound) != len(points):
+    sound = positions(owner, coordinates, findings)
+    if sound is None:
         return None
     if len(set(sound)) < 2:
         findings.error(owner, "line-too-short", "has no length", "Give two different positions.")

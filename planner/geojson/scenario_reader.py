@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import math
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
@@ -13,10 +12,9 @@ from shapely.geometry import Polygon
 
 from planner.environment.terrain import Terrains, find_terrain
 from planner.errors import ScenarioError
-from planner.frames import MAX_EXTENT_M, WGS84, LocalFrame
 from planner.geojson import equipment, features
-from planner.geojson.fields import Fields, Findings
-from planner.geojson.geometry import positions_of
+from planner.geojson.extent import frame_of
+from planner.geojson.fields import Fields, Findings, is_finite
 from planner.geojson.relief import set_on_terrain
 from planner.geojson.rules import check_together
 from planner.scenario import Scenario, Terminal
@@ -76,7 +74,7 @@ def _read(document: Any, findings: Findings, terrains: Terrains | None) -> Scena
         findings.error("scenario", "no-features", "has no list of features", "Add features.")
         return None
     _check_crs(document.get("crs"), findings)
-    frame = _frame(raw_features, findings)
+    frame = frame_of(raw_features, findings)
     raws = _raw_features(raw_features, findings)
     if frame is None:
         return None
@@ -183,34 +181,6 @@ def _check_crs(crs: Any, findings: Findings) -> None:
         )
 
 
-def _frame(raw_features: list[Any], findings: Findings) -> LocalFrame | None:
-    """A frame in the middle of everything; None (after a finding) where positions are no positions."""
-    places = []
-    for feature in raw_features:
-        for value in positions_of(feature.get("geometry") if isinstance(feature, dict) else None):
-            if (
-                len(value) >= 2
-                and all(isinstance(v, (int, float)) and math.isfinite(v) for v in value[:2])
-                and abs(value[0]) <= 180.0
-                and abs(value[1]) <= 90.0
-            ):
-                places.append((float(value[0]), float(value[1])))
-    if not places:
-        findings.error("scenario", "no-positions", "has no valid position", "Add features with geometry.")
-        return None
-    lons, lats = [p[0] for p in places], [p[1] for p in places]
-    middle = (round((min(lons) + max(lons)) / 2.0, 6), round((min(lats) + max(lats)) / 2.0, 6))
-    reach_m = WGS84.inv(min(lons), min(lats), max(lons), max(lats))[2]
-    if reach_m > 2.0 * MAX_EXTENT_M or max(lons) - min(lons) > 180.0:
-        findings.error(
-            "scenario", "extent-too-large", f"spans {reach_m / 1000.0:.0f} km",
-            f"Keep everything within {2.0 * MAX_EXTENT_M / 1000.0:.0f} km; check the axis order "
-            "(longitude first).",
-        )  # fmt: skip
-        return LocalFrame(0.0, 0.0) if abs(middle[1]) > 85.0 else LocalFrame(*middle)
-    return LocalFrame(*middle)
-
-
 def _raw_features(raw_features: list[Any], findings: Findings) -> list[features.RawFeature]:
     raws = []
     seen: set[str] = set()
@@ -220,19 +190,7 @@ def _raw_features(raw_features: list[Any], findings: Findings) -> list[features.
                 f"features[{index}]", "not-a-feature", "is not a GeoJSON Feature", "Give a Feature."
             )
             continue
-        properties = feature.get("properties")
-        name = feature.get("id")
-        if name is None and isinstance(properties, dict):
-            name = properties.get("name")
-        if (
-            name is None
-            and isinstance(properties, dict)
-            and properties.get("role") in ("area", "start", "end")
-        ):
-            name = properties["role"]
-        if name is None or isinstance(name, (dict, list, bool)):
-            name = f"features[{index}]"
-        name = str(name)
+        name = features.name_of(index, feature)
         if name in seen:
             findings.error(name, "duplicate-id", "names two features", "Give each feature its own id.")
         seen.add(name)
@@ -270,7 +228,7 @@ def _home_amsl_m(raws: list[features.RawFeature], reference: str | None, finding
         coordinates = raw.geometry.get("coordinates")
         if raw.role == "start" and isinstance(coordinates, list) and len(coordinates) > 2:
             height = coordinates[2]
-            if isinstance(height, (int, float)) and math.isfinite(height):
+            if is_finite(height):
                 return float(height)
     if reference == "amsl":
         findings.warning(

@@ -105,6 +105,16 @@ def test_projected_rasters_are_laid_into_degrees() -> None:
     assert terrain.heights_at(places) == pytest.approx([510.0, 550.0, 590.0], abs=0.5)
 
 
+@pytest.mark.parametrize("content", [b"not a raster", ramp()[:3000]])
+def test_a_broken_file_is_named_as_the_sender_has_it(content: bytes) -> None:
+    """The reason names the file sent, not the place in memory it was read from."""
+    with pytest.raises(RefusedError) as caught:
+        read_raster(content, "hills.tif", "hills")
+    (finding,) = caught.value.findings
+    assert "hills.tif" in finding.message
+    assert "vsimem" not in finding.message + str(caught.value)
+
+
 @pytest.mark.parametrize(
     ("content", "filename", "rule"),
     [

@@ -172,9 +172,21 @@ BAD: dict[str, tuple[dict[str, Any], str, str]] = {
     "search": (small(task="search"), "scenario", "not-supported"),
     "far apart": (
         small(feature("X", "threat", "Point", [60, 50], model="missile", radius_m=10)),
-        "scenario",
+        "X",
         "extent-too-large",
     ),
+    "wide by itself": (
+        small(feature("X", "no_fly", "Polygon", [[[0, 0], [5, 0], [0, 5], [0, 0]]])),
+        "X",
+        "extent-too-large",
+    ),
+    "number beyond all": (small(altitude_m=10**400), "scenario", "not-finite"),
+    "place beyond all": (
+        small(feature("X", "threat", "Point", [10**400, 0], model="missile", radius_m=10)),
+        "X",
+        "not-finite",
+    ),
+    "endless seed": (small(seed=math.inf), "scenario", "bad-value"),
     "other crs": (
         small(crs={"type": "name", "properties": {"name": "EPSG:3857"}}),
         "scenario",
@@ -318,3 +330,54 @@ def test_region_behind_a_hard_zone_and_too_much_wind_are_found_without_planning(
     assert [f.feature for f in findings(small(wall)) if f.severity == "error"] == ["A"]
     storm = small(wind={"speed_m_s": 25.0, "from_deg": 0.0})
     assert [f.rule for f in findings(storm) if f.severity == "error"] == ["wind-too-strong"]
+
+
+def at(lon: float, lat: float, *more: dict[str, Any]) -> dict[str, Any]:
+    """The small scenario moved there, and more features as they are."""
+    document = small()
+
+    def moved(value: Any) -> Any:
+        if isinstance(value[0], list):
+            return [moved(item) for item in value]
+        return [value[0] + lon, value[1] + lat]
+
+    for each in document["features"]:
+        each["geometry"]["coordinates"] = moved(each["geometry"]["coordinates"])
+    document["features"] += more
+    return document
+
+
+def test_swapped_axes_are_blamed_on_the_feature_that_has_them() -> None:
+    """Under 90 degrees too: the feature whose place is beside the rest once its axes are exchanged."""
+    wrong = feature("X", "roi", "Polygon", square(47.31, 8.52, 0.003))
+    far = feature("Y", "threat", "Point", [60.0, 50.0], model="missile", radius_m=10)
+    found = [f for f in findings(at(8.5, 47.3, wrong, far)) if f.severity == "error"]
+    assert [(f.feature, f.rule) for f in found] == [("X", "axes-swapped"), ("Y", "extent-too-large")]
+    assert "looks like latitude, longitude order" in found[0].fix
+    # Between two features with one place each nobody can tell.
+    two = at(8.5, 47.3)
+    two["features"] = [two["features"][3], feature("B", "roi", "Point", [47.3, 8.5])]
+    assert "extent-too-large" in refused(two)["scenario"]
+
+
+def test_a_ring_of_swapped_axes_is_one_finding() -> None:
+    """Every vertex breaks the same rule: it is said once, with the first of them and how many they are."""
+    ring = [[lat, lon] for lon, lat in square(-117.7, 33.5, 0.003)[0]]
+    found = [
+        f for f in findings(at(-117.7, 33.5, feature("X", "roi", "Polygon", [ring]))) if f.feature == "X"
+    ]
+    assert [f.rule for f in found] == ["latitude-out-of-range"]
+    assert "position 1, the first of 5 of 5" in found[0].message
+    assert "looks like latitude, longitude order" in found[0].fix
+    mixed = [[0, 0], [0, 91], [181, 0], [0, 92], ["x", 0], [0, 0]]
+    found = [f for f in findings(small(feature("X", "roi", "Polygon", [mixed]))) if f.feature == "X"]
+    assert [f.rule for f in found] == ["latitude-out-of-range", "longitude-out-of-range", "bad-position"]
+    assert "has latitude 91" in found[0].message
+    assert "position 2, the first of 2 of 6" in found[0].message
+
+
+def test_no_finding_is_said_twice() -> None:
+    """None of the bad inputs gives the same feature, rule and message more than once."""
+    for document, _, _ in BAD.values():
+        said = [(f.feature, f.rule, f.message) for f in findings(document)]
+        assert len(said) == len(set(said)), said
