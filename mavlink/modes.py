@@ -17,6 +17,9 @@ NO_AUTOPILOT: Final = 8
 _MULTIROTOR_TYPES: Final = frozenset({2, 3, 4, 13, 14, 15, 29, 35, 43})
 _VTOL_TYPES: Final = frozenset(range(19, 26))
 
+#: The mode of an ArduPlane that is still starting.
+BOOT_MODE: Final = "INITIALISING"
+
 _ARDUPLANE: Final[dict[int, str]] = dict(
     enumerate(
         [
@@ -36,7 +39,7 @@ _ARDUPLANE: Final[dict[int, str]] = dict(
             "TAKEOFF",
             "AVOID_ADSB",
             "GUIDED",
-            "INITIALISING",
+            BOOT_MODE,
             "QSTABILIZE",
             "QHOVER",
             "QLOITER",

@@ -14,9 +14,10 @@ from typing import Final
 
 from mavlink.events import read_event
 from mavlink.messages import Message
-from mavlink.modes import Autopilot, VehicleType, autopilot_name, mode_name, vehicle_type_name
+from mavlink.modes import BOOT_MODE, Autopilot, VehicleType, autopilot_name, mode_name, vehicle_type_name
 
 _ARMED: Final = 0x80
+_BOOT: Final = 1  # MAV_STATE_BOOT
 #: Texts of the vehicle that its state keeps.
 KEPT_TEXTS: Final = 20
 _MISSION_STATES: Final = {1: "none", 2: "not_started", 3: "active", 4: "paused", 5: "complete"}
@@ -51,6 +52,8 @@ class VehicleState:
         The vehicle's own time since boot.
     mode
         In words, as ``modes.mode_name`` gives it.
+    booting
+        It is still starting, and stores nothing yet.
     altitude_amsl_m, relative_altitude_m
         Above mean sea level; above home.
     velocity_north_m_s, velocity_east_m_s, velocity_down_m_s
@@ -82,6 +85,7 @@ class VehicleState:
     type: VehicleType = "other"
     armed: bool = False
     mode: str = ""
+    booting: bool = False
     landed: bool | None = None
     lon_deg: float | None = None
     lat_deg: float | None = None
@@ -126,6 +130,7 @@ def _heartbeat(state: VehicleState, message: Message) -> VehicleState:
     vehicle_type = vehicle_type_name(message.integer("type"))
     if vehicle_type == "fixed_wing" and state.type == "vtol":
         vehicle_type = "vtol"  # ArduPlane's quadplanes say so in EXTENDED_SYS_STATE alone
+    mode = mode_name(autopilot, vehicle_type, message.integer("custom_mode"))
     return replace(
         state,
         system_id=message.system_id,
@@ -133,7 +138,9 @@ def _heartbeat(state: VehicleState, message: Message) -> VehicleState:
         autopilot=autopilot,
         type=vehicle_type,
         armed=bool(message.integer("base_mode") & _ARMED),
-        mode=mode_name(autopilot, vehicle_type, message.integer("custom_mode")),
+        mode=mode,
+        # ArduPlane says "calibrating" meanwhile, as others do long after their start.
+        booting=mode == BOOT_MODE or message.integer("system_status") == _BOOT,
     )
 
 

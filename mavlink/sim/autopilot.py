@@ -105,6 +105,8 @@ class SimulatedAircraft:
                 return self._named("MISSION_CURRENT") if chosen else []
             case "MISSION_ITEM" | "MISSION_ITEM_INT" if message.integer("current") == _GUIDED_ITEM:
                 return self._fly_here(message)
+        if message.name.startswith("MISSION_") and self.state.time_s < self._settings.boot_s:
+            return []
         answers = self.missions.receive(message, now_s) or self._parameters.receive(message)
         self._reload()
         return answers

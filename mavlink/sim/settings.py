@@ -50,6 +50,8 @@ class SimSettings:
         The output that switches the sensor; None: any relay or servo does.
     sensor_command
         A user command (31000-31014) that switches the sensor by its param 1.
+    boot_s
+        How long after its start it says that it is starting, in simulated time; it stores nothing meanwhile.
     sensor_reports
         Whether the sensor says by itself that it is on (``SAR_ON``); most do not.
     max_items
@@ -88,6 +90,7 @@ class SimSettings:
     sensor_servo: int | None = None
     sensor_actuator: int = 1
     sensor_command: int = 31010
+    boot_s: float = 0.0
     sensor_reports: bool = True
     max_items: int | None = None
     faults: tuple[str, ...] = ()

@@ -20,6 +20,9 @@ _CELLS = 6
 _FULL_CELL_V, _EMPTY_CELL_V = 4.2, 3.5
 _UINT16_MAX = 65535
 _ARMED_FLAG, _CUSTOM_FLAG, _AUTO_FLAG, _STABILIZE_FLAG, _GUIDED_FLAG = 128, 1, 4, 16, 8
+#: ArduPlane's mode while it starts, and MAV_STATE then: ArduPlane says "calibrating", PX4 "booting".
+_INITIALISING = 16
+_BOOTING = {Flavour.ARDUPILOT: 2, Flavour.PX4: 1}
 _SENSORS = 1 | 2 | 4 | 8 | 32 | 64
 _CAPABILITIES = 1 | 2 | 4 | 8 | 8192 | 16384 | 32768
 
@@ -105,6 +108,8 @@ def _ms(snapshot: Snapshot) -> int:
 
 
 def _heartbeat(snapshot: Snapshot, settings: SimSettings) -> Message:
+    ardupilot = settings.autopilot is Flavour.ARDUPILOT
+    booting = snapshot.state.time_s < settings.boot_s
     base = _CUSTOM_FLAG | _STABILIZE_FLAG
     if snapshot.mode is not Mode.MANUAL:
         base |= _AUTO_FLAG | _GUIDED_FLAG
@@ -114,10 +119,12 @@ def _heartbeat(snapshot: Snapshot, settings: SimSettings) -> Message:
         "HEARTBEAT",
         {
             "type": 1,
-            "autopilot": 3 if settings.autopilot is Flavour.ARDUPILOT else 12,
+            "autopilot": 3 if ardupilot else 12,
             "base_mode": base,
-            "custom_mode": custom_mode(settings.autopilot, snapshot.mode),
-            "system_status": 4 if snapshot.armed else 3,
+            "custom_mode": (
+                _INITIALISING if booting and ardupilot else custom_mode(settings.autopilot, snapshot.mode)
+            ),
+            "system_status": _BOOTING[settings.autopilot] if booting else 4 if snapshot.armed else 3,
             "mavlink_version": 3,
         },
     )

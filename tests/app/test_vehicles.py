@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import json
+import os
+import pty
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 from pathlib import Path
@@ -16,7 +19,8 @@ from app.main import create_app
 from app.routers.bodies import EXAMPLE
 from app.settings import Settings
 from mavlink.link import open_link
-from mavlink.sim.run import serve
+from mavlink.sim.modes import Flavour
+from mavlink.sim.run import serve, serve_link
 from mavlink.sim.settings import SimSettings
 from tests.app.conftest import fake_house, serving, stored
 from tests.app.test_problems import check_problem
@@ -257,3 +261,79 @@ async def test_failed_link_is_opened_anew(client: httpx.AsyncClient) -> None:
     await until(client, vehicle, lambda body: body["connected"])
     simulator.cancel()
     await asyncio.gather(simulator, return_exceptions=True)
+
+
+@pytest.mark.parametrize("autopilot", [Flavour.ARDUPILOT, Flavour.PX4])
+async def test_a_vehicle_that_is_still_starting_is_not_uploaded_to(
+    client: httpx.AsyncClient, plan_id: str, autopilot: Flavour
+) -> None:
+    """It would store nothing: refused with the reason, override or not, until it has started."""
+    settings = SimSettings(autopilot=autopilot, boot_s=3.0)
+    async with faulty_vehicle(client, settings) as vehicle:
+        body = {"plan_id": plan_id, "override": True, "reason": "in a hurry"}
+        refused = await client.post(vehicle + "/mission", json=body)
+        check_problem(refused, 409, "vehicle-booting")
+        assert "still starting" in refused.json()["detail"]
+        assert (await client.get(vehicle)).json()["upload"] is None
+        await until(client, vehicle, lambda body: not body["state"]["booting"])
+        report = (await client.post(vehicle + "/mission", json={"plan_id": plan_id})).json()
+        assert (report["outcome"], report["verified"]) == ("accepted", True)
+
+
+class Modem:
+    """The vehicle's end of a serial cable: the master of a pseudo-terminal, as a link."""
+
+    def __init__(self, place: Path) -> None:
+        self.url = f"serial:{place}:57600"
+        self._master, slave = pty.openpty()
+        place.unlink(missing_ok=True)
+        place.symlink_to(os.ttyname(slave))
+        os.close(slave)
+        self._heard: asyncio.Queue[bytes] = asyncio.Queue()
+        os.set_blocking(self._master, False)
+        asyncio.get_running_loop().add_reader(self._master, self._read)
+
+    def _read(self) -> None:
+        with contextlib.suppress(OSError):  # nobody has the other end open
+            self._heard.put_nowait(os.read(self._master, 4096))
+
+    async def send(self, data: bytes) -> None:
+        with contextlib.suppress(OSError):
+            os.write(self._master, data)
+
+    async def receive(self) -> bytes:
+        return await self._heard.get()
+
+    async def close(self) -> None:
+        asyncio.get_running_loop().remove_reader(self._master)
+        os.close(self._master)
+
+
+@asynccontextmanager
+async def plugged(modem: Modem) -> AsyncIterator[None]:
+    """A simulated aircraft at the other end of the cable, until it is pulled."""
+    flying = asyncio.create_task(serve_link(modem, SimSettings()))
+    try:
+        yield
+    finally:
+        flying.cancel()
+        await asyncio.gather(flying, return_exceptions=True)
+        await modem.close()
+
+
+async def test_a_serial_port_that_failed_is_opened_anew(
+    client: httpx.AsyncClient, plan_id: str, tmp_path: Path
+) -> None:
+    """The cable is pulled and plugged in again: the same vehicle is there, and takes an upload."""
+    place = tmp_path / "ttyRadio"
+    modem = Modem(place)
+    async with plugged(modem):
+        vehicle = await connected(client, modem.url)
+    gone = await until(client, vehicle, lambda body: not body["connected"])
+    assert gone["url"] == modem.url
+    place.unlink()
+    check_problem(await client.post(vehicle + "/mission", json={"plan_id": plan_id}), 409)
+    async with plugged(Modem(place)):
+        await until(client, vehicle, lambda body: body["connected"])
+        report = (await client.post(vehicle + "/mission", json={"plan_id": plan_id})).json()
+        assert (report["outcome"], report["verified"]) == ("accepted", True)

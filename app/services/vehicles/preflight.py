@@ -123,6 +123,8 @@ def _plan(plan: Plan) -> Check:
 def _vehicle(mission: Mission, state: VehicleState) -> Check:
     if not state.connected:
         return Check("vehicle", "failed", "it is not connected")
+    if state.booting:
+        return Check("vehicle", "failed", f"it is still starting ({state.mode or 'boot'})")
     if state.autopilot != mission.autopilot:
         message = f"its autopilot is {state.autopilot}, the mission is for {mission.autopilot}"
         return Check("vehicle", "warning" if state.autopilot == "generic" else "failed", message)

@@ -17,6 +17,8 @@ log = structlog.get_logger(__name__)
 
 #: An armed vehicle that reports no landed state flies when it is faster than this.
 MOVING_M_S = 3.0
+#: An armed vehicle has landed when it says so at this many looks in turn: touching down, it may bounce.
+LANDED_LOOKS = 3
 
 
 def is_flying(state: VehicleState) -> bool:
@@ -63,6 +65,7 @@ class FlightRecorder:
         self._recorder: TrackRecorder | None = None
         self._plan: HeldPlan | None = None
         self._events_saved = 0
+        self._landed_looks = 0
         self._thinner = Thinner(interval_s)
         self.flight_id: str | None = None
 
@@ -72,32 +75,41 @@ class FlightRecorder:
         A plan uploaded in flight ends one flight and begins another: each is judged by the plan it followed.
         """
         state = client.state
-        flying = is_flying(state)
         if self.flight_id is None:
-            if state.connected and flying:
+            if state.connected and is_flying(state):
                 await self._begin(client, plan)
             return
         await self._save()
         if client.failure is not None:
             await self.end(client, "interrupted")
-        elif state.connected and not flying:
+        elif state.connected and self._landed(state):
             await self.end(client, "ended")
         elif state.connected and plan is not None and plan != self._plan:
             await self.end(client, "ended")
             await self._begin(client, plan)
 
+    def _landed(self, state: VehicleState) -> bool:
+        """Whether a flight under way is over; one that does not say whether it has landed ends disarmed."""
+        on_ground = state.armed and state.landed is True
+        self._landed_looks = self._landed_looks + 1 if on_ground else 0
+        return not state.armed or self._landed_looks >= LANDED_LOOKS
+
     async def _begin(self, client: VehicleClient, plan: HeldPlan | None) -> None:
-        self._plan = plan
-        self._recorder = client.start_recording(plan.output if plan else None)
+        recorder = client.start_recording(plan.output if plan else None)
+        try:
+            self.flight_id = await self._store.begin(
+                self._vehicle_id,
+                self._vehicle_name,
+                plan.plan_id if plan else None,
+                plan.plan_vehicle if plan else None,
+                plan.payload if plan else None,
+            )
+        except BaseException:
+            client.stop_recording(recorder)
+            raise
+        self._recorder, self._plan = recorder, plan
         self._thinner = Thinner(self._interval_s)
-        self.flight_id = await self._store.begin(
-            self._vehicle_id,
-            self._vehicle_name,
-            plan.plan_id if plan else None,
-            plan.plan_vehicle if plan else None,
-            plan.payload if plan else None,
-        )
-        self._events_saved = 0
+        self._landed_looks = self._events_saved = 0
         log.info("flight begun", vehicle=self._vehicle_name, flight_id=self.flight_id)
 
     async def _save(self) -> None:

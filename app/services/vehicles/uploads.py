@@ -151,8 +151,13 @@ def judge_upload(
     RefusedError
         The autopilot would refuse or lose part of it: no override helps.
     UnsafeError
-        A hard violation, another kind of vehicle, or one in flight; an override with a reason passes.
+        A hard violation, another kind of vehicle, or one in flight; an override with a reason passes. A
+        vehicle that is still starting; then no override helps.
     """
+    if state.booting:
+        message = f"the vehicle is still starting ({state.mode or 'boot'}) and stores nothing yet"
+        finding = Finding("vehicle", "vehicle-booting", message, "send it again in some seconds")
+        raise UnsafeError(f"not uploaded: {message}; no override helps, send it again", (finding,))
     found = mission_findings(mission, [PARTS[name] for name in parts])
     errors = tuple(finding for finding in found if finding.severity == "error")
     if errors:

@@ -1,0 +1,177 @@
+"""When a flight begins and ends, and what is kept of it."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator
+from dataclasses import replace
+
+import pytest
+
+from app.services.errors import ServiceError
+from app.services.store.database import Database
+from app.services.store.flights import FlightStore
+from app.services.vehicles.recorder import LANDED_LOOKS, FlightRecorder, HeldPlan, is_flying
+from app.settings import Settings
+from mavlink.client import VehicleClient
+from mavlink.link import memory_pair
+from mavlink.outputs import RelayOutput
+from mavlink.telemetry import VehicleState
+from mavlink.track import TrackRecorder
+from tests.mavlink.test_outputs import received
+from tests.mavlink.test_telemetry import at
+
+PLAN = HeldPlan("plan-1", "uav-1", "relay:2", RelayOutput(2))
+GROUND = VehicleState(connected=True, armed=False, landed=True)
+FLIGHT = replace(GROUND, armed=True, landed=False)
+
+
+class Client(VehicleClient):
+    """A client whose state is what a test says, and whose recorders hear what a test tells."""
+
+    def __init__(self) -> None:
+        super().__init__(memory_pair()[0])
+        self.told = GROUND
+        self.recorders: list[TrackRecorder] = []
+        self.ended: str | None = None
+
+    @property
+    def state(self) -> VehicleState:
+        return self.told
+
+    @property
+    def failure(self) -> str | None:
+        return self.ended
+
+    def start_recording(self, output: object = None) -> TrackRecorder:
+        assert output is None or isinstance(output, RelayOutput)
+        self.recorders.append(TrackRecorder(output))
+        return self.recorders[-1]
+
+    def stop_recording(self, recorder: TrackRecorder) -> None:
+        self.recorders.remove(recorder)
+
+    def hear(self, second: int) -> None:
+        """A position, a moment after the relay was reported closed."""
+        state = replace(self.told, time_s=float(second), lon_deg=8.0, lat_deg=47.0)
+        state = replace(state, altitude_amsl_m=500.0, relative_altitude_m=100.0)
+        for recorder in self.recorders:
+            recorder.take(received("RELAY_STATUS", time_boot_ms=1000 * second, on=0b100, present=0xFF), state)
+            recorder.take(at(1000 * second), state)
+
+
+@pytest.fixture
+async def store(settings: Settings) -> AsyncIterator[FlightStore]:
+    """Flights in a database of their own."""
+    database = Database(settings.database)
+    await database.open()
+    yield FlightStore(database)
+    await database.close()
+
+
+@pytest.fixture
+def recorder(store: FlightStore) -> FlightRecorder:
+    """The recorder of one vehicle."""
+    return FlightRecorder(store, "vehicle", "uav", 0.0)
+
+
+async def test_a_flight_is_from_the_take_off_to_the_landing(
+    recorder: FlightRecorder, store: FlightStore
+) -> None:
+    """Armed on the ground is none yet; the plan, its payload and the relay's state are kept with it."""
+    client = Client()
+    for state in (GROUND, replace(GROUND, armed=True)):
+        client.told = state
+        await recorder.look(client, PLAN)
+        assert recorder.flight_id is None
+    client.told = FLIGHT
+    await recorder.look(client, PLAN)
+    flight_id = recorder.flight_id
+    assert flight_id is not None
+    for second in range(3):
+        client.hear(second)
+    client.told = replace(GROUND, armed=False)
+    await recorder.look(client, PLAN)
+    assert recorder.flight_id is None
+    assert client.recorders == []
+    record = await store.get(flight_id)
+    assert (record.state, record.plan_id, record.payload) == ("ended", "plan-1", "relay:2")
+    samples = await store.track(flight_id)
+    assert [(sample.time_s, sample.sensor_on) for sample in samples] == [
+        (0.0, True),
+        (1.0, True),
+        (2.0, True),
+    ]
+
+
+async def test_a_bounce_is_no_landing(recorder: FlightRecorder) -> None:
+    """On the ground for a moment only, then in the air again: one flight. On the ground for long: its end."""
+    client = Client()
+    client.told = FLIGHT
+    await recorder.look(client, PLAN)
+    flight_id = recorder.flight_id
+    for _ in range(2):
+        for landed in (True,) * (LANDED_LOOKS - 1) + (False,):
+            client.told = replace(FLIGHT, landed=landed)
+            await recorder.look(client, PLAN)
+            assert recorder.flight_id == flight_id
+    client.told = replace(FLIGHT, landed=True)
+    for _ in range(LANDED_LOOKS):
+        await recorder.look(client, PLAN)
+    assert recorder.flight_id is None
+
+
+async def test_hovering_and_silence_are_no_landing(recorder: FlightRecorder, store: FlightStore) -> None:
+    """A vehicle that never says whether it has landed flies until it disarms; one that is lost, on and on."""
+    client = Client()
+    moving = replace(FLIGHT, landed=None, ground_speed_m_s=8.0)
+    for state in (moving, replace(moving, ground_speed_m_s=0.0), replace(moving, connected=False)):
+        client.told = state
+        await recorder.look(client, None)
+        assert recorder.flight_id is not None
+    flight_id = recorder.flight_id
+    client.ended = "the port is gone"
+    await recorder.look(client, None)
+    assert flight_id is not None
+    assert (await store.get(flight_id)).state == "interrupted"
+    assert not is_flying(replace(moving, ground_speed_m_s=0.0))
+
+
+async def test_another_plan_in_flight_is_another_flight(recorder: FlightRecorder, store: FlightStore) -> None:
+    """Each flight is judged by the plan it followed; while a plan is being replaced the old one goes on."""
+    client = Client()
+    client.told = FLIGHT
+    await recorder.look(client, PLAN)
+    first = recorder.flight_id
+    client.hear(1)
+    await recorder.look(client, None)
+    assert recorder.flight_id == first
+    await recorder.look(client, HeldPlan("plan-2", "uav-1"))
+    second = recorder.flight_id
+    assert first is not None
+    assert second is not None
+    assert second != first
+    client.hear(2)
+    await recorder.end(client, "ended")
+    assert [sample.time_s for sample in await store.track(first)] == [1.0]
+    assert [sample.time_s for sample in await store.track(second)] == [2.0]
+    assert (await store.get(second)).plan_id == "plan-2"
+
+
+async def test_a_flight_that_cannot_be_stored_is_tried_again(
+    recorder: FlightRecorder, store: FlightStore, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """No recorder is left behind by a database that fails."""
+    client = Client()
+    client.told = FLIGHT
+    with monkeypatch.context() as broken:
+
+        async def fail(*_: object) -> str:
+            raise ServiceError("no room")
+
+        broken.setattr(store, "begin", fail)
+        for _ in range(3):
+            with pytest.raises(ServiceError):
+                await recorder.look(client, PLAN)
+    assert client.recorders == []
+    await recorder.look(client, PLAN)
+    assert recorder.flight_id is not None
