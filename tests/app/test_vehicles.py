@@ -62,10 +62,9 @@ async def faulty_vehicle(client: httpx.AsyncClient, settings: SimSettings) -> As
     ("aircraft", "payload"),
     [
         ("autopilot=ardupilot", None),
-        ("autopilot=ardupilot&sensor_reports=no", "servo:9:1100:1900"),
-        ("autopilot=px4&sensor_reports=no", None),
+        ("autopilot=px4&sensor_reports=no", "actuator:1"),
     ],
-    ids=["reported", "servo", "actuator"],
+    ids=["reported", "actuator"],
 )
 async def test_whole_journey(client: httpx.AsyncClient, aircraft: str, payload: str | None) -> None:
     """Plan, connect, upload, fly, and see as flown what was planned, wherever its sensor shows."""
