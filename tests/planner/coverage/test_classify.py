@@ -4,8 +4,10 @@ import math
 
 import numpy as np
 import pytest
+import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.ndimage import binary_erosion
 from shapely import affinity
 from shapely.geometry import Polygon
 
@@ -13,6 +15,7 @@ from planner.coverage.classify import angles_around, classify, hull_points, span
 from planner.coverage.merge import merge_regions
 from tests.planner.coverage.shapes import HEIGHT_M, box, paper_sensor, polygons, sample
 
+PIXEL_M = 5.4
 SWATH_M = paper_sensor().swath_m(HEIGHT_M)
 
 
@@ -57,6 +60,36 @@ def test_kind_says_which_angles_work(area: Polygon, swath_m: float) -> None:
         np.testing.assert_array_equal(found.feasible_rad, around_rad[one_pass])
     if found.kind == "quasi-point":
         assert found.long_m.max() >= swath_m >= found.short_m.min()
+
+
+@settings(max_examples=15, deadline=None)
+@given(polygons((50.0, 700.0)), st.floats(100.0, 1200.0))
+def test_kind_as_on_pixels(area: Polygon, swath_m: float) -> None:
+    """Algorithm 2 on the paper's binary image gives the sides and, pixels apart, the category of eq 16."""
+    # A pixel is on where the region comes within half its diagonal, so that thin points are not lost.
+    reach_m = PIXEL_M / math.sqrt(2.0)
+    west, south, east, north = area.buffer(2.0 * PIXEL_M).bounds
+    easts, norths = np.meshgrid(
+        np.arange(west, east + PIXEL_M, PIXEL_M), np.arange(south, north + PIXEL_M, PIXEL_M)
+    )
+    shapely.prepare(area)
+    image = shapely.dwithin(area, shapely.points(easts, norths), reach_m)
+    edges = image & ~binary_erosion(image)
+    found = classify(area, swath_m)
+    sides = []
+    for angle_rad in found.angles_rad:
+        x = easts[edges] * math.cos(angle_rad) + norths[edges] * math.sin(angle_rad)
+        y = norths[edges] * math.cos(angle_rad) - easts[edges] * math.sin(angle_rad)
+        sides.append((np.ptp(x), np.ptp(y)))
+    long_m, short_m = np.max(sides, axis=1), np.min(sides, axis=1)
+    np.testing.assert_allclose(found.long_m, long_m, atol=2.0 * PIXEL_M)
+    np.testing.assert_allclose(found.short_m, short_m, atol=2.0 * PIXEL_M)
+    # Eq 16, where no side is within the pixels' reach of the swath.
+    if min(np.abs(long_m.max() - swath_m), np.abs(short_m.min() - swath_m)) > 2.0 * PIXEL_M:
+        kind = (
+            "point" if long_m.max() < swath_m else "quasi-point" if short_m.min() < swath_m else "distributed"
+        )
+        assert found.kind == kind
 
 
 def test_side_equal_to_the_swath() -> None:

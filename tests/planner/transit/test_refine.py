@@ -9,10 +9,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
+from scipy.integrate import quad
 from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import dijkstra
 
-from planner.dubins.path import Path
+from planner.dubins.path import Path, Segment
 from planner.environment.threats import risk_of_detection, risk_of_kill
 from planner.environment.zones import Disc, KeepOut
 from planner.errors import CancelledError, InfeasibleError
@@ -115,6 +116,32 @@ def test_a_weak_radar_is_passed_at_a_distance() -> None:
     rows = path.sample(1.0, 1.0)
     assert np.hypot(rows[:, 0] - RADAR.centre[0], rows[:, 1] - RADAR.centre[1]).min() > 150.0
     assert path.length_m < connect(START, GOAL, soft(RADAR), 100.0).length_m
+
+
+@pytest.mark.parametrize("threat", [MISSILE, RADAR])
+def test_the_cost_is_the_integral_along_the_line(threat: Threat) -> None:
+    """Eqs 12 and 14 in the limit: length and scipy's integral of eq 11 or 13 along straights and arcs."""
+    terms = risk(threat, missile=0.4, radar=0.7)
+    weight = 0.4 if threat.model == "missile" else 0.7
+    for path in (
+        connect(START, GOAL, KeepOut(), 100.0),
+        connect(Anchor(-700.0, 300.0, 1.0), Anchor(400.0, -250.0, 2.5), KeepOut(), 150.0),
+    ):
+        whole = 0.0
+        for segment in path.segments:
+
+            def density(along_m: float, of: Segment = segment) -> float:
+                away_m = math.dist(of.at(along_m).position, threat.centre)
+                if threat.model == "missile":
+                    return risk_of_kill(away_m, threat.radius_m)
+                return risk_of_detection(away_m, threat.radius_m, threat.intensity_m)
+
+            whole += quad(density, 0.0, segment.length_m, limit=400)[0]
+        assert whole > 1.0
+        # A sum in steps of 5 m: what it is off is one step at each end of what lies inside.
+        expected_m = path.length_m + RISK_M * weight * whole
+        assert terms.cost_m(path) == pytest.approx(expected_m, abs=RISK_M * weight * 5.5)
+        assert terms.cost_m(path) == pytest.approx(expected_m, rel=0.02)
 
 
 places = st.builds(Anchor, st.floats(-1500.0, 1500.0), st.floats(-1500.0, 1500.0), st.floats(-3.0, 3.0))
