@@ -17,8 +17,9 @@ from tests.app.test_vehicles import VEHICLES, connected, until
 
 async def fly(client: httpx.AsyncClient, plan_id: str) -> str:
     """The place of a simulated vehicle that has flown a plan."""
-    vehicle = await connected(client, "sim:?speedup=300")
-    uploaded = await client.post(vehicle + "/mission", json={"plan_id": plan_id})
+    vehicle = await connected(client, "sim:?speedup=300&sensor_reports=no")
+    mission = {"plan_id": plan_id, "payload": "servo:9"}
+    uploaded = await client.post(vehicle + "/mission", json=mission)
     assert uploaded.json()["verified"]
     for command in ("arm", "start"):
         await client.post(vehicle + "/commands", json={"command": command})
@@ -43,7 +44,7 @@ async def test_a_flight_is_recorded_and_flown_again_from_its_recording(
     log.f.close()
     assert len(reached) > 5
     (flown,) = (await client.get("/api/v1/flights")).json()["flights"]
-    body = {"name": "again", "url": f"replay:{path}?speedup=2&plan={plan_id}"}
+    body = {"name": "again", "url": f"replay:{path}?speedup=2&plan={plan_id}&payload=servo:9"}
     again = await client.post(VEHICLES, json=body)
     assert again.status_code == 201, again.text
     assert (again.json()["replay"], again.json()["simulated"]) == (True, False)
@@ -65,6 +66,7 @@ async def test_a_flight_is_recorded_and_flown_again_from_its_recording(
     assert track["features"][0]["properties"]["times_s"] == sorted(
         track["features"][0]["properties"]["times_s"]
     )
+    assert "sensor_on" in [feature["properties"]["role"] for feature in track["features"]]
     assert (await client.get(place + "/logs")).json()["logs"] == []
     await client.delete(vehicle)
     assert (await client.get(vehicle + "/logs")).json()["logs"]
@@ -78,6 +80,8 @@ async def test_recordings_that_are_not_there(client: httpx.AsyncClient, tmp_path
     check_problem(await client.get(vehicle + "/logs/..%2F..%2Fplans.db"), 404)
     check_problem(await client.post(VEHICLES, json={"name": "x", "url": "replay:/no.tlog"}), 409)
     check_problem(await client.post(VEHICLES, json={"name": "x", "url": "replay:"}), 409)
+    odd = {"name": "x", "url": "replay:/no.tlog?plan=p&payload=laser"}
+    check_problem(await client.post(VEHICLES, json=odd), 422, "payload")
 
 
 async def test_recording_can_be_switched_off(tmp_path: Path) -> None:

@@ -15,6 +15,7 @@ from mavlink import errors as mavlink_errors
 from mavlink.client import VehicleClient
 from mavlink.link import FORMS, open_link
 from mavlink.links.replay import parse_replay
+from mavlink.payload import PayloadError, parse_payload
 from planner.errors import Finding
 
 #: Latitude, longitude in degrees, metres above sea level.
@@ -28,20 +29,30 @@ def is_replay(url: str) -> bool:
     return url.partition(":")[0] == "replay"
 
 
-def replayed_plan(url: str) -> tuple[str, str | None]:
-    """A ``replay:`` address without its option ``plan``, and the id of the plan that was flown.
+def replayed_plan(url: str) -> tuple[str, str | None, str | None]:
+    """A ``replay:`` address without its options ``plan`` and ``payload``, and these two.
+
+    They are the id of the plan that was flown, and how the sensor was switched.
 
     Raises
     ------
     LinkError
         The address is malformed.
+    RefusedError
+        The payload is not understood.
     """
     try:
         path, options = parse_replay(url)
     except mavlink_errors.LinkError as error:
         raise LinkError(str(error)) from error
-    plan_id = options.pop("plan", None)
-    return f"replay:{path}" + (f"?{urlencode(options)}" if options else ""), plan_id
+    plan_id, payload = options.pop("plan", None), options.pop("payload", None)
+    if payload is not None:
+        try:
+            parse_payload(payload)
+        except PayloadError as error:
+            fix = "write e.g. payload=relay:0 or payload=servo:5:2000:1000"
+            raise RefusedError(str(error), (Finding("url", "payload", str(error), fix),)) from error
+    return f"replay:{path}" + (f"?{urlencode(options)}" if options else ""), plan_id, payload
 
 
 def simulated_of(url: str) -> SimulatedAircraft | None:
@@ -92,7 +103,7 @@ async def connect(
     """
     aircraft = simulated_of(url)
     if is_replay(url):
-        url, _ = replayed_plan(url)
+        url, *_ = replayed_plan(url)
     try:
         link = await open_link(url if aircraft is None else "udpin:127.0.0.1:0")
     except mavlink_errors.LinkError as error:

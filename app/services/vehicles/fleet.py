@@ -46,6 +46,8 @@ from app.services.vehicles.vehicle import Vehicle
 from mavlink import errors as mavlink_errors
 from mavlink.geometry import distance_m
 from mavlink.mission import Mission
+from mavlink.outputs import output_of
+from mavlink.payload import parse_payload
 from mavlink.transfer.command import CommandOutcome
 from mavlink.transfer.machine import Progress
 from mavlink.transfer.outcome import Outcome
@@ -358,11 +360,13 @@ class Fleet:
 
     async def _flown_plan(self, url: str) -> HeldPlan | None:
         """The plan that a recording's address says was flown."""
-        _, plan_id = replayed_plan(url)
+        _, plan_id, payload = replayed_plan(url)
         if plan_id is None:
             return None
         plan = plan_of(await self._planning.plan_text(plan_id))
-        return HeldPlan(plan_id, plan.vehicles[0].name)
+        # The output of an actuator is known from parameters, which a recording cannot be asked for.
+        output = None if payload is None else output_of(parse_payload(payload), "generic")
+        return HeldPlan(plan_id, plan.vehicles[0].name, payload, output)
 
     async def _default_home(self) -> Home | None:
         """Where a simulated aircraft stands at first: the start of the newest scenario."""
