@@ -19,22 +19,25 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 
 from planner.coverage.merge import MergedRegion, merge_regions
 from planner.coverage.neighbourhood import check_sensor
 from planner.coverage.sweeps import Side
-from planner.environment.shapes import DiscShape, hard_shapes, soft_shapes
+from planner.environment.shapes import DiscShape, hard_shapes
 from planner.errors import Finding, InfeasibleError
 from planner.progress import Progress, Stop, never, raise_if, silent
 from planner.route import CollectPass, Route
 from planner.routing import joint_kernels as kernels
 from planner.routing import tour
+from planner.routing.barriers import polygon_rows
 from planner.routing.chain import Layers, from_start, layers_of, to_end, true_choice
 from planner.routing.hidden import see_hidden
 from planner.routing.large import large_order
 from planner.routing.legs import Legs
 from planner.routing.options import Options, Surroundings, collect_passes, make_options
+from planner.routing.prices import INSIDE_FACTOR, soft_prices
 from planner.routing.split import split_passes
 from planner.routing.targets import refusal, targets
 from planner.scenario import Scenario
@@ -61,7 +64,7 @@ TRUE_SOLVES = 12
 FALSE_M = 5.0
 #: Of one option that is the only one: its side counts within one.
 NO_SIDE = np.zeros(1, dtype=np.int64)
-#: Threat discs are kept this much larger, room for the chords of arcs.
+#: Zones are kept this much larger, room for the chords of arcs and the margin of transits.
 MARGIN_M = 10.0
 
 
@@ -95,18 +98,27 @@ def surroundings(scenario: Scenario, aircraft: Aircraft) -> Surroundings:
     hard = list(hard_shapes(scenario))
     radius_m = aircraft.planned_turn_radius_m
     area = scenario.area
+    priced = soft_prices(scenario)
+    soft = priced[:, :3] + np.array([0.0, 0.0, MARGIN_M])
+    polygons = tuple(
+        shape.area.buffer(MARGIN_M, join_style="mitre") for shape in hard if not isinstance(shape, DiscShape)
+    )
     return Surroundings(
         area=area,
         room=None if area is None else area.buffer(-radius_m),
         hard=_discs([shape for shape in hard if isinstance(shape, DiscShape)]),
-        soft=_discs(list(soft_shapes(scenario))),
-        hard_polygons=tuple(shape.area for shape in hard if not isinstance(shape, DiscShape)),
+        soft=soft,
+        hard_polygons=polygons,
         radius_m=radius_m,
         settle_m=aircraft.settle_m,
         airspeed_m_s=aircraft.airspeed_m_s,
         wind=scenario.wind,
         ground=scenario.terrain,
         level_m=scenario.altitude_amsl_m,
+        prices=priced[:, 3],
+        yields=priced[:, 3] < INSIDE_FACTOR,
+        barriers=polygon_rows(polygons),
+        cramped=shapely.union_all([polygon.buffer(radius_m) for polygon in polygons]) if polygons else None,
     )
 
 

@@ -1,6 +1,7 @@
 """Compiled parts of the joint choice of order, approach angle and offset. They know nothing but numbers.
 
-Poses are float64 (N, 3): east_m, north_m, angle_rad. Discs are float64 (K, 3): east_m, north_m, radius_m.
+Poses are float64 (N, 3): east_m, north_m, angle_rad. Discs are float64 (K, 3): east_m, north_m, radius_m, or
+with more columns where some are rectangles or have a price: see ``barriers``.
 ``cluster`` is int64 (N,): the region each option belongs to, options of one region side by side.
 """
 
@@ -19,10 +20,51 @@ Ints = NDArray[np.int64]
 
 
 @njit(cache=True)
-def detour_m(e0: float, n0: float, e1: float, n1: float, discs: Floats) -> float:
-    """What going round discs adds to a straight line, each by itself: tangent, arc, tangent.
+def crosses(e0: float, n0: float, e1: float, n1: float, half_e: float, half_n: float) -> bool:
+    """Whether a straight line meets the inside of a rectangle about the origin, along the axes."""
+    low, high = 0.0, 1.0
+    for a, b, half in ((e0, e1, half_e), (n0, n1, half_n)):
+        half *= 1.0 - 1e-9
+        if abs(b - a) < 1e-12:
+            if abs(a) >= half:
+                return False
+            continue
+        one, other = (-half - a) / (b - a), (half - a) / (b - a)
+        low, high = max(low, min(one, other)), min(high, max(one, other))
+    return low < high
 
-    A disc that holds one of the ends cannot be gone round and adds nothing.
+
+@njit(cache=True)
+def round_rectangle_m(e0: float, n0: float, e1: float, n1: float, half_e: float, half_n: float) -> float:
+    """What going round a rectangle about the origin, along the axes, adds to a straight line.
+
+    By one corner or by two next to each other; nothing where it holds one of the ends.
+    """
+    if not crosses(e0, n0, e1, n1, half_e, half_n):
+        return 0.0
+    if (abs(e0) < half_e and abs(n0) < half_n) or (abs(e1) < half_e and abs(n1) < half_n):
+        return 0.0
+    to = np.empty(4)
+    on = np.empty(4)
+    for c in range(4):
+        ce = half_e if c == 0 or c == 3 else -half_e
+        cn = half_n if c < 2 else -half_n
+        to[c] = np.inf if crosses(e0, n0, ce, cn, half_e, half_n) else math.hypot(ce - e0, cn - n0)
+        on[c] = np.inf if crosses(ce, cn, e1, n1, half_e, half_n) else math.hypot(e1 - ce, n1 - cn)
+    best = np.inf
+    for c in range(4):
+        after = (c + 1) % 4
+        edge = 2.0 * half_e if c % 2 == 0 else 2.0 * half_n
+        best = min(best, to[c] + on[c], to[c] + edge + on[after], to[after] + edge + on[c])
+    return best - math.hypot(e1 - e0, n1 - n0) if best < np.inf else 0.0
+
+
+@njit(cache=True)
+def detour_m(e0: float, n0: float, e1: float, n1: float, discs: Floats) -> float:
+    """What going round zones adds to a straight line, each by itself: tangent, arc, tangent.
+
+    A zone that holds one of the ends cannot be gone round and adds nothing. A disc with a price is crossed
+    where that is cheaper, and a zone with a rectangle is gone round by its corners; see ``barriers``.
     """
     direct_m = math.hypot(e1 - e0, n1 - n0)
     if direct_m < 1e-9:
@@ -32,10 +74,24 @@ def detour_m(e0: float, n0: float, e1: float, n1: float, discs: Floats) -> float
     for k in range(discs.shape[0]):
         ce, cn, r = discs[k, 0] - e0, discs[k, 1] - n0, discs[k, 2]
         along = ce * ue + cn * un
-        if along <= 0.0 or along >= direct_m:
-            continue
         across = abs(cn * ue - ce * un)
         if across >= r:
+            continue
+        if discs.shape[1] > 3 and discs[k, 6] > 0.0:
+            if along <= -r or along >= direct_m + r:
+                continue
+            xe, xn = discs[k, 4], discs[k, 5]
+            de, dn = ce - direct_m * ue, cn - direct_m * un
+            extra_m += round_rectangle_m(
+                -ce * xe - cn * xn,
+                ce * xn - cn * xe,
+                -de * xe - dn * xn,
+                de * xn - dn * xe,
+                discs[k, 6],
+                discs[k, 7],
+            )
+            continue
+        if along <= 0.0 or along >= direct_m:
             continue
         d0 = math.hypot(along, across)
         d1 = math.hypot(direct_m - along, across)
@@ -43,7 +99,10 @@ def detour_m(e0: float, n0: float, e1: float, n1: float, discs: Floats) -> float
             continue
         between = math.atan2(along, across) + math.atan2(direct_m - along, across)
         arc = between - math.acos(r / d0) - math.acos(r / d1)
-        extra_m += math.sqrt(d0 * d0 - r * r) + math.sqrt(d1 * d1 - r * r) + r * max(arc, 0.0) - direct_m
+        round_m = math.sqrt(d0 * d0 - r * r) + math.sqrt(d1 * d1 - r * r) + r * max(arc, 0.0) - direct_m
+        if discs.shape[1] > 3:
+            round_m = min(round_m, discs[k, 3] * 2.0 * math.sqrt(r * r - across * across))
+        extra_m += round_m
     return extra_m
 
 

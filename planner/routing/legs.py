@@ -9,15 +9,14 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from planner.environment.kernels import length_in_discs
-from planner.environment.shapes import soft_shapes
 from planner.environment.zones import keep_out
 from planner.errors import InfeasibleError
 from planner.progress import Stop
 from planner.route import Anchor, CollectPass
-from planner.routing.options import INSIDE_FACTOR
+from planner.routing.prices import risk_m, soft_prices, turns_m
 from planner.scenario import Scenario, Terminal
 from planner.transit import tangent
+from planner.transit.refine import Risk, connect_by_cost
 from planner.vehicle.aircraft import Aircraft
 from planner.vehicle.wind import duration_s, still_air_factor
 
@@ -31,7 +30,7 @@ SAMPLE_M = 20.0
 
 class Legs:
     """True costs of transits in one scenario, metres: the flyable length, through the air in a wind, and more
-    inside soft threats. What was asked for once is kept.
+    inside soft threats and for turns, by the objective's weights. What was asked for once is kept.
     """
 
     def __init__(self, scenario: Scenario, aircraft: Aircraft, stop: Stop) -> None:
@@ -41,8 +40,9 @@ class Legs:
         self._start, self._end = anchor(scenario.start), anchor(scenario.end)
         self._stop = stop
         self._airspeed_m_s, self._wind = aircraft.airspeed_m_s, scenario.wind
-        soft = [(*shape.centre, shape.radius_m) for shape in soft_shapes(scenario)]
-        self._soft = np.array(soft, dtype=np.float64).reshape(-1, 3)
+        self._soft = soft_prices(scenario)
+        self._objective = scenario.objective
+        self._risk = Risk.of(scenario.threats, scenario.objective, scenario.height_m)
         self._known: dict[tuple[Anchor, Anchor], float] = {}
 
     def cost_m(self, start: Anchor, goal: Anchor) -> float:
@@ -71,7 +71,7 @@ class Legs:
             cost_m *= float(still_air_factor(collect.angle_rad, self._airspeed_m_s, self._wind))
         if len(self._soft):
             line = np.array([collect.start, collect.end])
-            cost_m += INSIDE_FACTOR * float(length_in_discs(line, self._soft))
+            cost_m += risk_m(line, self._soft)
         return cost_m
 
     def tour_m(self, passes: Sequence[CollectPass]) -> float:
@@ -93,15 +93,18 @@ class Legs:
 
     def _find(self, start: Anchor, goal: Anchor) -> float:
         try:
-            path = tangent.connect(start, goal, self._zones, self._radius_m, self._stop)
+            if self._risk.yielding:
+                path = connect_by_cost(start, goal, self._zones, self._radius_m, self._risk, self._stop)
+            else:
+                path = tangent.connect(start, goal, self._zones, self._radius_m, self._stop)
         except InfeasibleError:
             return math.inf
         cost_m = path.length_m
         if self._wind.speed_m_s > 0.0:
             cost_m = self._airspeed_m_s * duration_s(path, self._airspeed_m_s, self._wind)
         if len(self._soft) and not self._zones.clear(path):
-            cost_m += INSIDE_FACTOR * float(length_in_discs(path.sample(SAMPLE_M)[:, :2].copy(), self._soft))
-        return cost_m
+            cost_m += risk_m(path.sample(SAMPLE_M)[:, :2].copy(), self._soft)
+        return cost_m + turns_m([path], self._objective)
 
 
 def leaves(collect: CollectPass) -> Anchor:

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import shapely
 from numpy.typing import NDArray
 from shapely.geometry import Polygon
+from shapely.geometry.base import BaseGeometry
 
 from planner.coverage.alternatives import of_visit
 from planner.coverage.classify import fits, hull_points, spans_at
@@ -21,6 +22,9 @@ from planner.dubins.kernels import dubins_lengths
 from planner.environment.kernels import length_in_discs
 from planner.environment.terrain import Ground
 from planner.route import CollectPass
+from planner.routing.barriers import COLUMNS, rows_of
+from planner.routing.prices import INSIDE_FACTOR as INSIDE_FACTOR
+from planner.routing.prices import risk_m
 from planner.scenario import Wind
 from planner.sensors.sar import Look
 from planner.sensors.strip import swaths_m
@@ -29,8 +33,6 @@ from planner.vehicle.wind import STILL_AIR, still_air_factor
 
 Floats = NDArray[np.float64]
 
-#: A metre inside a threat disc costs as much as this many outside: it is flown only where nothing else sees.
-INSIDE_FACTOR = 20.0
 #: An option without room for a full turn at one of its ends is taken only where all others are worse.
 NO_ROOM_M = 5_000.0
 #: Places of a region looked at for what terrain hides, in each strip and in all.
@@ -47,6 +49,13 @@ class Surroundings:
         The operating area, and where the centre of a full turn may be; None without an area.
     hard, soft
         Discs that may not, and should not, be entered, shape (K, 3).
+    prices, yields
+        Of the soft discs: what a metre inside costs besides, and whether they may be crossed to save way,
+        (K,); where not given all cost ``INSIDE_FACTOR`` and none is crossed where there is a way round.
+    barriers
+        The polygons as rows of ``barriers.polygon_rows``.
+    cramped
+        Where the centre of a full turn may not be for the polygons' sake; None without any.
     hard_polygons
         Polygons that may not be entered.
     radius_m, settle_m
@@ -68,11 +77,23 @@ class Surroundings:
     wind: Wind = STILL_AIR
     ground: Ground | None = None
     level_m: float = 0.0
+    prices: Floats | None = None
+    yields: NDArray[np.bool_] | None = None
+    barriers: Floats = field(default_factory=lambda: np.empty((0, COLUMNS)))
+    cramped: BaseGeometry | None = None
 
     @property
     def discs(self) -> Floats:
-        """All discs, hard and soft."""
-        return np.concatenate([self.hard, self.soft])
+        """All zones between poses, for the kernels: see ``barriers``."""
+        if self.prices is None or self.yields is None:
+            return rows_of(self.hard, self.soft, np.full(len(self.soft), np.inf), self.barriers)
+        return rows_of(self.hard, self.soft, np.where(self.yields, self.prices, np.inf), self.barriers)
+
+    @property
+    def priced(self) -> Floats:
+        """Soft discs with what a metre inside costs besides, (K, 4)."""
+        prices = np.full(len(self.soft), INSIDE_FACTOR) if self.prices is None else self.prices
+        return np.column_stack([self.soft, prices])
 
 
 @dataclass(frozen=True, slots=True)
@@ -300,13 +321,14 @@ def _judge(lines: Floats, around: Surroundings) -> tuple[NDArray[np.bool_], Floa
     if around.wind.speed_m_s > 0.0:
         courses_rad = np.arctan2(delta[..., 1], delta[..., 0])
         cost_m = cost_m * still_air_factor(courses_rad, around.airspeed_m_s, around.wind)
+    priced = around.priced
     for m, k in np.ndindex(*shape):
         if not good[m, k]:
             continue
         if len(around.hard) and length_in_discs(lines[m, k], around.hard) > 0.0:
             good[m, k] = False
-        elif len(around.soft):
-            cost_m[m, k] += INSIDE_FACTOR * length_in_discs(lines[m, k], around.soft)
+        elif len(priced):
+            cost_m[m, k] += risk_m(lines[m, k], priced)
     return good, cost_m
 
 
@@ -332,6 +354,9 @@ def _roomy(poses: Floats, around: Surroundings) -> NDArray[np.bool_]:
         free = np.ones(len(poses), dtype=np.bool_)
         if around.room is not None:
             free &= shapely.contains_xy(around.room, east_m, north_m)
+        if around.cramped is not None:
+            shapely.prepare(around.cramped)
+            free &= ~shapely.contains_xy(around.cramped, east_m, north_m)
         for discs in (around.hard, around.soft):
             for e, n, r in discs:
                 free &= np.hypot(east_m - e, north_m - n) >= r + around.radius_m

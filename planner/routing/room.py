@@ -56,7 +56,14 @@ class Room:
     def of(cls, scenario: Scenario, aircraft: Aircraft, *, threat_aware: bool) -> Room:
         """The room of a scenario; soft threats count where ``threat_aware``."""
         hard = [shape.polygon().buffer(MARGIN_M) for shape in hard_shapes(scenario)]
-        soft = [shape.polygon().buffer(MARGIN_M) for shape in soft_shapes(scenario)] if threat_aware else []
+        # Threats whose risk has no weight are none.
+        minded = {"missile": scenario.objective.missile > 0.0, "radar": scenario.objective.radar > 0.0}
+        models = {threat.name: threat.model for threat in scenario.threats}
+        soft = [
+            shape.polygon().buffer(MARGIN_M)
+            for shape in soft_shapes(scenario)
+            if threat_aware and minded[models[shape.name]]
+        ]
         return cls(
             scenario.area,
             shapely.union_all(hard, grid_size=GRID_M),

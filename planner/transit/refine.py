@@ -76,7 +76,8 @@ class Risk:
         """The risk of a scenario's soft threats."""
         soft = [t for t in threats if not t.hard and t.height_m >= altitude_m]
         weights = {"missile": objective.missile, "radar": objective.radar}
-        length = objective.length
+        # In proportion to each other, as far as one line and another go.
+        length = objective.length + objective.energy
         cheap = [t.name for t in soft if weights[t.model] < length]
         per_metre = RISK_M / length if length > 0.0 else RISK_M
         missiles, radars = threat_arrays(soft, altitude_m)
