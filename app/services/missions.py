@@ -117,7 +117,7 @@ def mission_findings(mission: Mission, kinds: Sequence[MissionType]) -> tuple[Fi
             feature=f"{PART_NAMES[kind]}" if found.seq is None else f"{PART_NAMES[kind]} item {found.seq}",
             rule=found.rule,
             message=found.message,
-            fix="plan for this autopilot, or choose another payload or autopilot",
+            fix=found.fix or "plan for this autopilot, or choose another payload or autopilot",
             severity=found.severity,
         )
         for kind in kinds

@@ -43,12 +43,15 @@ class DialectFinding:
         The item; None for the list as a whole.
     severity
         ``"error"`` findings must not be uploaded, ``"warning"`` findings may.
+    fix
+        What to do about it, where that is not "plan for this autopilot".
     """
 
     rule: str
     message: str
     seq: int | None = None
     severity: Literal["error", "warning"] = "error"
+    fix: str | None = None
 
     def __str__(self) -> str:
         where = "mission" if self.seq is None else f"item {self.seq}"
@@ -138,7 +141,11 @@ def list_findings(
     kind = mission_type_of(items)
     limit = limits.get(kind)
     if limit is not None and len(items) > limit:
-        yield DialectFinding("too-many-items", f"{len(items)} items, the vehicle holds {limit}")
+        yield DialectFinding(
+            "too-many-items",
+            f"{len(items)} items, the vehicle holds {limit}",
+            fix=_fewer(kind, len(items), limit),
+        )
     for index, item in enumerate(items):
         if item.seq != index:
             yield DialectFinding("sequence", f"numbered {item.seq}, stands at {index}", item.seq)
@@ -146,6 +153,15 @@ def list_findings(
             yield DialectFinding(
                 "mixed-types", f"of type {item.mission_type.name} in a {kind.name} list", item.seq
             )
+
+
+def _fewer(kind: MissionType, count: int, limit: int) -> str:
+    if kind is MissionType.MISSION:
+        sorties = math.ceil(count / limit)
+        return f"split it into at least {sorties} sorties: plan each with a part of the regions"
+    if kind is MissionType.FENCE:
+        return f"draw no-fly zones and the area with {count - limit} corners less, or leave zones out"
+    return f"leave out {count - limit} rally points"
 
 
 def unlisted_finding(name: str, item: MissionItem) -> DialectFinding:

@@ -196,6 +196,9 @@ class Px4Dialect:
     def _mission_findings(self, items: tuple[MissionItem, ...]) -> Iterator[DialectFinding]:
         if not items[0].current:
             yield DialectFinding("current-not-first", "item 0 must be marked current", 0)
+        for item in items[1:]:
+            if item.current:
+                yield DialectFinding("current-repeated", "PX4 would begin the mission here", item.seq)
         for item in items:
             result = self.answer(item)
             if not self.knows(item.command):

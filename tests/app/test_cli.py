@@ -197,6 +197,17 @@ def test_upload_reads_back_and_tells(swathplan: Command, plan_file: Path) -> Non
     assert "1 differences" in altered.err
 
 
+def test_a_mission_over_the_limit_is_refused_with_number_limit_and_fix(
+    swathplan: Command, plan_file: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The command line says how many items there are, how many are held, and what to do; no override helps."""
+    monkeypatch.setattr("mavlink.dialects.px4.DEFAULT_MISSION_LIMIT", 9)
+    refused = swathplan("upload", str(plan_file), "--to", "sim:?autopilot=px4", "--override", "a test")
+    assert refused.code == 2
+    assert "items, the vehicle holds 9" in refused.err
+    assert "sorties: plan each with a part of the regions" in refused.err
+
+
 def test_upload_of_a_violating_plan_needs_a_reason(
     swathplan: Command, plan_file: Path, tmp_path: Path
 ) -> None:

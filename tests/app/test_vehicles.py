@@ -127,6 +127,21 @@ async def test_hard_violations_need_an_override(client: httpx.AsyncClient, plan_
     assert [finding["rule"] for finding in report["findings"]] == ["turn-radius"]
 
 
+async def test_a_mission_over_the_limit_is_refused_with_number_limit_and_fix(
+    client: httpx.AsyncClient, plan_id: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """On a board that holds nine items: how many there are, how many are held, and in how many sorties."""
+    vehicle = await connected(client, "sim:?autopilot=px4")
+    body = {"plan_id": plan_id, "override": True, "reason": "a test"}
+    monkeypatch.setattr("mavlink.dialects.px4.DEFAULT_MISSION_LIMIT", 9)
+    answer = await client.post(vehicle + "/mission", json=body)
+    check_problem(answer, 422, "too-many-items")
+    (finding,) = [each for each in answer.json()["errors"] if each["rule"] == "too-many-items"]
+    count = int(finding["message"].split()[0])
+    assert finding["message"] == f"{count} items, the vehicle holds 9"
+    assert f"at least {-(-count // 9)} sorties" in finding["fix"]
+
+
 async def test_second_upload_at_once_is_refused(client: httpx.AsyncClient, plan_id: str) -> None:
     """Of two uploads at once the second is refused, and told of the first."""
     vehicle = await connected(client)

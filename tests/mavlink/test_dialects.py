@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mavlink.dialects import Dialect, dialect_for
+from mavlink.dialects import Dialect, DialectFinding, dialect_for
 from mavlink.dialects.base import fence_shapes
 from mavlink.items import Command, Frame, MissionItem, MissionResult, MissionType
 from mavlink.mission import home_item, numbered, placed, unplaced
@@ -157,6 +157,25 @@ def test_missions_have_a_largest_size(dialect: Dialect, limit: int) -> None:
     assert "too-many-items" in rules(dialect, *first, *waypoints, *waypoints[:1])
 
 
+def test_what_is_too_much_is_told_with_number_limit_and_fix() -> None:
+    """A mission for two and a bit aircraft is told as three sorties; fences and rally lists by the surplus."""
+
+    def told(
+        dialect: Dialect, *items: MissionItem, kind: MissionType = MissionType.MISSION
+    ) -> DialectFinding:
+        found = dialect.check(numbered(items, kind))
+        return next(finding for finding in found if finding.rule == "too-many-items")
+
+    finding = told(PLANE, home_item(HERE, 0.0), *[item(Command.NAV_WAYPOINT)] * 1399)
+    assert finding.message == "1400 items, the vehicle holds 655"
+    assert finding.fix is not None
+    assert "at least 3 sorties" in finding.fix
+    corners = [replace(placed(5001, HERE, 0.0, Frame.GLOBAL), param1=70.0)] * 70
+    assert "6 corners less" in str(told(PX4_WING, *corners, kind=MissionType.FENCE).fix)
+    points = [placed(5100, HERE, 80.0, Frame.GLOBAL_RELATIVE_ALT)] * 35
+    assert "leave out 3 rally points" in str(told(PX4_WING, *points, kind=MissionType.RALLY).fix)
+
+
 @pytest.mark.parametrize(("dialect", "bad"), [(PLANE, 0.0), (PLANE, 2.0), (PX4_ROTOR, 2.0), (PX4_ROTOR, NAN)])
 def test_jumps_must_lead_somewhere(dialect: Dialect, bad: float) -> None:
     """Jumps to 0 on ArduPilot, past the end or nowhere are found."""
@@ -301,6 +320,9 @@ def test_px4_wants_the_first_item_current() -> None:
     assert PX4_WING.check(items) == ()
     unmarked = (replace(items[0], current=False), *items[1:])
     assert [finding.rule for finding in PX4_WING.check(unmarked)] == ["current-not-first"]
+    twice = (*items[:2], replace(items[2], current=True), *items[3:])
+    (finding,) = PX4_WING.check(twice)
+    assert (finding.rule, finding.seq) == ("current-repeated", 2)
 
 
 def test_ardupilot_warns_of_land_start() -> None:
