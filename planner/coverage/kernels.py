@@ -12,7 +12,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from planner.dubins.kernels import dubins_length
-from planner.routing.joint_kernels import detour_m
+from planner.routing.joint_kernels import best_orders, detour_m
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -113,7 +113,6 @@ def best_order(
         The cost, inf where there is no way, and the states in order, shape (N,).
     """
     count = len(own_m)
-    lanes = count // states
     turns = np.empty((count, count))
     for i in range(count):
         for j in range(count):
@@ -121,39 +120,11 @@ def best_order(
                 turns[i, j] = turn_m(exits, entries, i, j, cramped_m, radius_m, discs) + own_m[j]
             else:
                 turns[i, j] = np.inf
-    full = 1 << lanes
-    best = np.full((full, count), np.inf)
-    came_from = np.full((full, count), -1, dtype=np.int64)
-    for i in range(count):
-        if first[i]:
-            best[1 << (i // states), i] = own_m[i]
-    for visited in range(1, full):
-        for i in range(count):
-            so_far = best[visited, i]
-            if not so_far < np.inf:
-                continue
-            for j in range(count):
-                lane = 1 << (j // states)
-                if visited & lane:
-                    continue
-                cost = so_far + turns[i, j]
-                if cost < best[visited | lane, j]:
-                    best[visited | lane, j] = cost
-                    came_from[visited | lane, j] = i
-    total, state = np.inf, -1
-    for i in range(count):
-        if last[i] and best[full - 1, i] < total:
-            total, state = best[full - 1, i], i
-    order = np.full(lanes, -1, dtype=np.int64)
-    visited = full - 1
-    for position in range(lanes - 1, -1, -1):
-        if state < 0:
-            break
-        order[position] = state
-        before = came_from[visited, state]
-        visited ^= 1 << (state // states)
-        state = before
-    return total, order
+    begin_m = np.where(first, own_m, np.inf)
+    end_m = np.where(last, 0.0, np.inf)
+    costs, tours = best_orders(begin_m, turns, end_m, np.arange(0, count + 1, states))
+    found = int(np.argmin(costs))
+    return costs[found], tours[found]
 
 
 @njit(cache=True)
