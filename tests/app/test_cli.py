@@ -200,7 +200,7 @@ def test_upload_reads_back_and_tells(swathplan: Command, plan_file: Path) -> Non
 def test_a_mission_over_the_limit_is_refused_with_number_limit_and_fix(
     swathplan: Command, plan_file: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The command line says how many items there are, how many are held, and what to do; no override helps."""
+    """The command line says how many items there are, how many are held, and what to do."""
     monkeypatch.setattr("mavlink.dialects.px4.DEFAULT_MISSION_LIMIT", 9)
     refused = swathplan("upload", str(plan_file), "--to", "sim:?autopilot=px4", "--override", "a test")
     assert refused.code == 2

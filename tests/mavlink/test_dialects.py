@@ -158,7 +158,7 @@ def test_missions_have_a_largest_size(dialect: Dialect, limit: int) -> None:
 
 
 def test_what_is_too_much_is_told_with_number_limit_and_fix() -> None:
-    """A mission for two and a bit aircraft is told as three sorties; fences and rally lists by the surplus."""
+    """Two missions and a bit are told as three sorties; fences and rally lists by the surplus."""
 
     def told(
         dialect: Dialect, *items: MissionItem, kind: MissionType = MissionType.MISSION
