@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import sys
 from typing import Any
 
 import numpy as np
+from numba.core.dispatcher import Dispatcher
 
 from planner.environment.terrain import Terrain
 from planner.geojson import read_scenario
@@ -89,6 +91,29 @@ _SCENARIO: dict[str, Any] = {
     ],
     "altitude_m": 500.0,
 }
+
+
+def load() -> None:
+    """Load the kernels of a usual plan; where they had to be compiled for that, compile the others too.
+
+    A process that is to plan at once is ready sooner than by :func:`warm_up`.
+    """
+    one = [feature for feature in _SCENARIO["features"] if feature["id"] not in ("R1", "R2")]
+    make_plan(read_scenario(_SCENARIO | {"features": one}))
+    if compiled():
+        warm_up()
+
+
+def compiled() -> int:
+    """How many kernels this process has compiled because none were kept from before."""
+    kernels = {
+        id(value): value
+        for name, module in list(sys.modules.items())
+        if name.startswith("planner.") and module is not None
+        for value in vars(module).values()
+        if isinstance(value, Dispatcher)
+    }
+    return sum(sum(kernel.stats.cache_misses.values()) for kernel in kernels.values())
 
 
 def warm_up() -> None:

@@ -20,6 +20,7 @@ class Benchmark(StrEnum):
     LINK = "link"
     TRANSIT = "transit"
     KERNELS = "kernels"
+    START = "start"
 
 
 def _options(pairs: list[str]) -> dict[str, Any]:

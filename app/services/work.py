@@ -62,10 +62,10 @@ class PipeProgress:
 
 
 def initialise() -> None:
-    """Compile the kernels before the first plan."""
-    from planner.warm import warm_up
+    """Load the kernels before the first plan."""
+    from planner.warm import load
 
-    warm_up()
+    load()
 
 
 def ping() -> int:
