@@ -36,7 +36,7 @@ function connectForm(): HTMLElement {
       h("div", { class: "field" }, h("label", { for: "v-url" }, "Address"), url),
     ),
     h("p", { class: "quiet" }, "udpin:host:port, udpout:host:port, tcp:host:port, serial:device:baud, sim: for a simulated aircraft, or replay:file for a recording"),
-    h("div", { class: "row" }, go),
+    h("div", { class: "row" }, go, button("Refresh the list", () => void attempt("The vehicles were not listed", refreshVehicles))),
   );
   form.addEventListener("submit", (event) => {
     event.preventDefault();
@@ -73,7 +73,7 @@ function vehicleList(): HTMLElement {
   };
   vehicles.watch(draw);
   watched.watch(draw);
-  return h("div", {}, items, section("Connect a vehicle", false, connectForm()), button("Refresh", () => void attempt("The vehicles were not listed", refreshVehicles)));
+  return h("div", {}, items, section("Connect a vehicle", false, connectForm()));
 }
 
 async function release(vehicle: Vehicle): Promise<void> {
@@ -195,5 +195,5 @@ function flightList(planned: () => void): HTMLElement {
 export function vehiclePanel(planned: () => void): HTMLElement {
   const title = h("h2", {});
   watched.watch((vehicle) => fill(title, vehicle ? vehicle.name : "No vehicle"));
-  return h("div", {}, vehicleList(), title, uploadBox(), commands(), gauges(), flightChart(), flightList(planned));
+  return h("div", {}, vehicleList(), title, commands(), gauges(), uploadBox(), flightChart(), flightList(planned));
 }
