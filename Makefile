@@ -1,6 +1,6 @@
 # Two commands do all the set-up: `make run` and `make test`. `make help` lists the rest.
 .DEFAULT_GOAL := help
-.PHONY: help run demo test lint types imports bench lock clean
+.PHONY: help run demo journey-ardupilot journey-px4 test lint types imports bench lock clean
 
 PYTHON ?= python3
 VENV   := .venv
@@ -9,13 +9,20 @@ LOCK   := uv pip compile --quiet --universal --generate-hashes --no-annotate --n
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
 help: ## Show this list
-	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-8s %s\n", $$1, $$2}'
+	@grep -hE '^[a-z0-9-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-17s %s\n", $$1, $$2}'
 
 run: $(VENV)/.installed static/dist/index.html ## Start the service with a simulated aircraft and the sample scenario
 	$(BIN)/swathplan serve --sim --scenario examples/sar-case-1.geojson
 
 demo: $(VENV)/.installed ## The same journey without a browser: plan, upload, read back, fly, prove
 	$(BIN)/swathplan demo examples/sar-case-1.geojson
+
+# With ADDRESS=udpin:… a service and a simulator that run here already are used instead of containers.
+journey-ardupilot: ## Fly a plan in a real ArduPlane: containers, plan, upload, read back, fly, report
+	sh docker/journey.sh ardupilot $(ADDRESS)
+
+journey-px4: ## The same in a real PX4
+	sh docker/journey.sh px4 $(ADDRESS)
 
 test: $(VENV)/.installed-dev static/dist/index.html ## Run every test
 	$(BIN)/python -m pytest
