@@ -1,0 +1,79 @@
+"""The client commands a stub aircraft: one at a time, in each autopilot's language."""
+
+from __future__ import annotations
+
+import asyncio
+
+import pytest
+
+from mavlink.items import Command
+from mavlink.transfer.outcome import Accepted
+from tests.mavlink.aircraft import flying
+
+
+async def test_commands_are_answered_and_take_turns() -> None:
+    """Accepted, refused and unanswered commands; two of one number do not take each other's answer."""
+    async with flying() as (client, aircraft):
+        aircraft.results = {Command.MISSION_START: 2, Command.DO_SET_RELAY: None}
+        outcomes = await asyncio.gather(
+            client.arm(), client.disarm(), client.command(300), client.command(181)
+        )
+        assert [outcome.result for outcome in outcomes] == [0, 0, 2, None]
+        assert [params[0] for number, params in aircraft.commands if number == 400] == [1.0, 0.0]
+        assert "MISSION_START: denied" in str(outcomes[2])
+
+
+async def test_a_cancelled_command_makes_room_for_the_next() -> None:
+    """Giving up on an unanswered command does not block others of its number."""
+    async with flying() as (client, aircraft):
+        aircraft.results = {Command.COMPONENT_ARM_DISARM: None}
+        first = asyncio.create_task(client.arm())
+        await asyncio.sleep(0.02)
+        first.cancel()
+        with pytest.raises(asyncio.CancelledError):
+            await first
+        aircraft.results = {}
+        assert (await client.disarm()).accepted
+
+
+COPTER, PLANE = 2, 1
+
+FLIGHT = [
+    ("ardupilot", PLANE, "start_mission", [(176, (1.0, 10.0, 0.0)), (300, (0.0, 0.0, 0.0))]),
+    ("ardupilot", PLANE, "pause", [(176, (1.0, 12.0, 0.0))]),
+    ("ardupilot", PLANE, "resume", [(176, (1.0, 10.0, 0.0))]),
+    ("ardupilot", COPTER, "pause", [(193, (0.0, 0.0, 0.0))]),
+    ("ardupilot", COPTER, "resume", [(193, (1.0, 0.0, 0.0))]),
+    ("ardupilot", COPTER, "start_mission", [(176, (1.0, 3.0, 0.0)), (300, (0.0, 0.0, 0.0))]),
+    ("px4", PLANE, "start_mission", [(300, (0.0, 0.0, 0.0))]),
+    ("px4", PLANE, "pause", [(176, (1.0, 4.0, 3.0))]),
+    ("px4", PLANE, "resume", [(176, (1.0, 4.0, 4.0))]),
+    ("generic", PLANE, "pause", [(193, (0.0, 0.0, 0.0))]),
+    ("px4", PLANE, "return_to_launch", [(20, (0.0, 0.0, 0.0))]),
+]
+
+
+@pytest.mark.parametrize(("manner", "kind", "helper", "expected"), FLIGHT)
+async def test_flight_commands_speak_each_autopilots_language(
+    manner: str, kind: int, helper: str, expected: list[tuple[int, tuple[float, ...]]]
+) -> None:
+    """Each helper sends what that autopilot understands, and nothing else."""
+    async with flying(manner, kind) as (client, aircraft):
+        assert (await getattr(client, helper)()).accepted
+        sent = [(number, params[:3]) for number, params in aircraft.commands if number != 511]
+        assert sent == expected
+
+
+async def test_a_refused_mode_stops_the_start() -> None:
+    """An ArduPilot that does not go to AUTO is not told to start."""
+    async with flying() as (client, aircraft):
+        aircraft.results = {Command.DO_SET_MODE: 4}
+        assert (await client.start_mission()).result == 4
+        assert 300 not in [number for number, _ in aircraft.commands]
+
+
+async def test_an_item_becomes_the_current_one() -> None:
+    """goto_item waits for the vehicle's MISSION_CURRENT, and the state shows it."""
+    async with flying() as (client, _):
+        assert await client.goto_item(7) == Accepted()
+        assert client.state.mission_current == 7
