@@ -38,7 +38,7 @@ pytestmark = [
 ]
 
 AEROPLANE = dialect_for("px4", "fixed_wing")
-SPEEDUP = 18.0
+SPEEDUP = 12.0
 
 
 #: What the simulator's aeroplane is; margins for one that rolls by 1° (standard deviation): docs/px4.md.
