@@ -23,7 +23,8 @@ export async function refreshFlights(): Promise<void> {
 export async function showFlight(flight: Flight): Promise<void> {
   const path = `/flights/${encodeURIComponent(flight.id)}`;
   const [seen, track] = await Promise.all([get<SeenCollection>(`${path}/coverage.geojson`), get<FeatureCollection<LineString>>(`${path}/track.geojson`)]);
-  const pieces = track.features.map((feature) => ({
+  const lines = track.features.filter((feature) => feature.properties?.["role"] !== "photo");
+  const pieces = lines.map((feature) => ({
     type: "Feature" as const,
     geometry: feature.geometry,
     properties: { sensor_on: feature.properties?.["role"] === "sensor_on" },
