@@ -41,6 +41,8 @@ class Parameters:
                 "MAV_SYS_ID": float(settings.system_id),
                 "FW_AIRSPD_TRIM": settings.airspeed_m_s,
                 "NPFG_PERIOD": settings.tuning.l1_period_s,
+                "NPFG_DAMPING": 0.7,
+                "NPFG_SW_DST_MLT": 0.32,
                 "FW_R_LIM": bank_deg,
                 "MIS_TKO_LAND_REQ": 2.0,
                 "NAV_ACC_RAD": settings.acceptance_m,

@@ -10,7 +10,15 @@ import pytest
 from mavlink.dialects import Autopilot
 from mavlink.encode import encode
 from mavlink.items import Command
-from mavlink.parameter_rules import RULES, Needs, judge_parameters, names_to_read, needs_of
+from mavlink.parameter_rules import (
+    RULES,
+    Needs,
+    judge_parameters,
+    names_to_read,
+    needs_of,
+    other_names,
+    unanswered,
+)
 from mavlink.payload import (
     ActuatorPayload,
     CameraPayload,
@@ -27,6 +35,7 @@ GOOD: dict[Autopilot, dict[str, float]] = {
         "NAVL1_PERIOD": 10.0,
         "AIRSPEED_CRUISE": 22.0,
         "ROLL_LIMIT_DEG": 45.0,
+        "WP_LOITER_RAD": -100.0,
         "RTL_AUTOLAND": 2.0,
         "FENCE_ENABLE": 1.0,
         "FENCE_TYPE": 7.0,
@@ -38,6 +47,9 @@ GOOD: dict[Autopilot, dict[str, float]] = {
     "px4": {
         "NAV_ACC_RAD": 30.0,
         "NPFG_PERIOD": 10.0,
+        "NPFG_DAMPING": 0.7,
+        "NPFG_SW_DST_MLT": 0.32,
+        "NAV_LOITER_RAD": 80.0,
         "FW_AIRSPD_TRIM": 22.4,
         "FW_R_LIM": 50.0,
         "FW_LND_ANG": 5.0,
@@ -71,8 +83,10 @@ def test_all_well_is_no_finding(autopilot: Autopilot) -> None:
         ("ardupilot", "FENCE_ACTION", 0.0, "warning"),
         ("ardupilot", "CAM1_TYPE", 0.0, "error"),
         ("px4", "NAV_ACC_RAD", 80.0, "warning"),
-        ("px4", "NPFG_PERIOD", 20.0, "warning"),
         ("px4", "FW_AIRSPD_TRIM", 14.0, "warning"),
+        ("px4", "NPFG_SW_DST_MLT", 0.6, "warning"),
+        ("px4", "NAV_LOITER_RAD", 60.0, "warning"),
+        ("ardupilot", "WP_LOITER_RAD", -60.0, "warning"),
         ("px4", "FW_R_LIM", 20.0, "error"),
         ("px4", "FW_LND_ANG", 2.0, "error"),
         ("px4", "GF_ACTION", 0.0, "warning"),
@@ -164,3 +178,46 @@ def test_needs_come_from_plan_and_mission() -> None:
     assert needs.payload == ActuatorPayload(1)
     assert Command.NAV_WAYPOINT in needs.commands
     assert needs.fence == bool(mission.fence)
+
+
+@pytest.mark.parametrize(
+    ("modern", "older", "unit", "wrong"),
+    [("ROLL_LIMIT_DEG", "LIM_ROLL_CD", 100.0, 20.0), ("AIRSPEED_CRUISE", "TRIM_ARSPD_CM", 100.0, 15.0)],
+)
+def test_older_names_are_judged_in_their_own_units(
+    modern: str, older: str, unit: float, wrong: float
+) -> None:
+    """Asked for where the new name is not answered; value and advice are in their hundredths."""
+    values = {name: value for name, value in GOOD["ardupilot"].items() if name != modern}
+    names = names_to_read("ardupilot", "fixed_wing", PLANE)
+    assert other_names(names, values) == (older,)
+    assert other_names(names, GOOD["ardupilot"]) == ()
+    assert modern in unanswered(names, values)
+    assert modern not in unanswered(names, {**values, older: 1.0})
+    (finding,) = judge_parameters("ardupilot", "fixed_wing", PLANE, values | {older: wrong * unit})
+    assert (finding.name, finding.value) == (older, wrong * unit)
+    assert finding.advised is not None
+    assert judge_parameters("ardupilot", "fixed_wing", PLANE, values | {older: finding.advised}) == ()
+
+
+@pytest.mark.parametrize(
+    ("speed_m_s", "radius_m", "cut"), [(14.0, 63.0, False), (14.0, 40.0, True), (30.0, 100.0, True)]
+)
+def test_px4s_acceptance_distance_is_a_product(speed_m_s: float, radius_m: float, cut: bool) -> None:
+    """0.32 · speed · 10 s · 0.7, about 31 m at 14 m/s whatever NAV_ACC_RAD says, against half the radius."""
+    needs = replace(PLANE, airspeed_m_s=speed_m_s, turn_radius_m=radius_m)
+    values = {"NPFG_SW_DST_MLT": 0.32, "NPFG_PERIOD": 10.0, "NPFG_DAMPING": 0.7}
+    found = judge_parameters("px4", "fixed_wing", needs, values)
+    assert [finding.name for finding in found] == (["NPFG_SW_DST_MLT"] if cut else [])
+    assert judge_parameters("px4", "fixed_wing", needs, {"NPFG_SW_DST_MLT": 1.0}) == ()
+    if cut:
+        assert f"{0.32 * speed_m_s * 7.0:.0f} m away" in found[0].reason
+
+
+def test_px4s_long_period_both_wanders_and_cuts() -> None:
+    """Twice the period holds lines worse and doubles the distance at which waypoints count as reached."""
+    found = judge_parameters("px4", "fixed_wing", PLANE, GOOD["px4"] | {"NPFG_PERIOD": 20.0})
+    assert {finding.name: finding.advised for finding in found} == {
+        "NPFG_PERIOD": 10.0,
+        "NPFG_SW_DST_MLT": pytest.approx(0.15),
+    }

@@ -21,6 +21,8 @@ from mavlink.parameter_rules import (
     judge_parameters,
     names_to_read,
     needs_of,
+    other_names,
+    unanswered,
 )
 from mavlink.payload import parse_payload
 from mavlink.transfer.parameters import Parameter
@@ -65,7 +67,7 @@ async def read_parameters(
         message = "no parameter is named"
         raise RefusedError(message, (Finding("name", "name-missing", message, "send name or plan_id"),))
     try:
-        found = await client.read_parameters(wanted)
+        found = await _read(client, wanted)
     except ValueError as error:
         finding = Finding("name", "parameter-name", str(error), "write e.g. name=WP_RADIUS")
         raise RefusedError(str(error), (finding,)) from error
@@ -75,7 +77,17 @@ async def read_parameters(
     if judged_by is not None:
         values = {name: parameter.value for name, parameter in found.items()}
         findings = judge_parameters(mission.autopilot, mission.vehicle_type, needs, values)
-    return ParameterReport(tuple(found.values()), tuple(n for n in wanted if n not in found), findings)
+    return ParameterReport(tuple(found.values()), unanswered(wanted, found), findings)
+
+
+async def _read(client: VehicleClient, names: Sequence[str]) -> dict[str, Parameter]:
+    """Read parameters; those unanswered by what older firmware calls them, too."""
+    found = await client.read_parameters(names)
+    older = other_names(names, found)
+    if older:
+        with contextlib.suppress(TransferFailedError):
+            found |= await client.read_parameters(older)
+    return found
 
 
 async def inspect(
@@ -108,12 +120,12 @@ async def inspect(
     names = names_to_read(mission.autopilot, mission.vehicle_type, needs)
     values: dict[str, Parameter] | None = None
     with contextlib.suppress(TransferFailedError):
-        values = await client.read_parameters(names)
+        values = await _read(client, names)
     observed = Observed(
         client.state,
         held,
         None if values is None else {name: parameter.value for name, parameter in values.items()},
-        tuple(name for name in names if name not in (values or {})),
+        unanswered(names, values or {}),
     )
     return preflight(plan_id, plan, scenario, mission, needs, observed)
 

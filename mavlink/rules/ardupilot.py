@@ -1,0 +1,98 @@
+"""ArduPilot's rules: ArduPlane 4.6 and ArduCopter; the names of 4.4 and before are known too."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from mavlink.items import Command
+from mavlink.payload import RelayPayload, ServoPayload
+from mavlink.rules.base import Needs, Rule, any_of, camera, check
+from mavlink.rules.flight import bank, corners, l1_period, loiter, speed
+
+
+def _relay_names(needs: Needs) -> tuple[str, ...]:
+    assert isinstance(needs.payload, RelayPayload)
+    number = needs.payload.relay + 1
+    return (f"RELAY{number}_FUNCTION",)
+
+
+def _servo_names(needs: Needs) -> tuple[str, ...]:
+    assert isinstance(needs.payload, ServoPayload)
+    return (f"SERVO{needs.payload.servo}_FUNCTION",)
+
+
+_SHUTTERS: Final = tuple(f"SERVO{number}_FUNCTION" for number in range(1, 17))
+
+_PAYLOAD: Final = (
+    check(
+        "CAM1_TYPE",
+        lambda value, needs: value > 0,
+        lambda needs: "without a camera driver the trigger items are accepted and nothing is taken",
+        lambda needs: 1.0,
+        "error",
+        camera,
+    ),
+    any_of(
+        lambda needs: _SHUTTERS,
+        lambda value, needs: round(value) == 10,
+        lambda needs: "no output has function 10 (camera trigger), which CAM1_TYPE 1 (servo) needs",
+        camera,
+    ),
+    any_of(
+        _servo_names,
+        lambda value, needs: round(value) in (0, 1) or 51 <= value <= 66,
+        lambda needs: "an output with a function of its own does not obey DO_SET_SERVO; 0 does",
+        lambda needs: isinstance(needs.payload, ServoPayload),
+    ),
+    any_of(
+        _relay_names,
+        lambda value, needs: round(value) == 1,
+        lambda needs: "the relay that switches the sensor is no relay; 1 makes it one, RELAYx_PIN says where",
+        lambda needs: isinstance(needs.payload, RelayPayload),
+    ),
+)
+
+_FENCE: Final = (
+    check(
+        "FENCE_ENABLE",
+        lambda value, needs: value > 0,
+        lambda needs: "the plan's fence is stored, but it is not in force",
+        lambda needs: 1.0,
+        applies=lambda needs: needs.fence,
+    ),
+    check(
+        "FENCE_TYPE",
+        lambda value, needs: bool(round(value) & 4),
+        lambda needs: "polygons and circles (4) are not among the fences in force",
+        lambda needs: 7.0,
+        applies=lambda needs: needs.fence,
+    ),
+    check(
+        "FENCE_ACTION",
+        lambda value, needs: value > 0,
+        lambda needs: "leaving the fence is only reported",
+        lambda needs: 1.0,
+        applies=lambda needs: needs.fence,
+    ),
+)
+
+_AUTOLAND: Final = check(
+    "RTL_AUTOLAND",
+    lambda value, needs: value > 0,
+    lambda needs: "with DO_LAND_START in the mission the vehicle refuses to arm",
+    lambda needs: 2.0,
+    "error",
+    lambda needs: Command.DO_LAND_START in needs.commands,
+)
+
+PLANE: Final[tuple[Rule, ...]] = (
+    corners("WP_RADIUS"),
+    l1_period("NAVL1_PERIOD"),
+    speed("AIRSPEED_CRUISE"),
+    bank("ROLL_LIMIT_DEG"),
+    loiter("WP_LOITER_RAD"),
+    _AUTOLAND,
+    *_FENCE,
+    *_PAYLOAD,
+)
+COPTER: Final[tuple[Rule, ...]] = (*_FENCE, *_PAYLOAD)

@@ -1,0 +1,154 @@
+"""What a rule on parameters is, what it is judged by, and what it finds."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Final, Literal
+
+from mavlink.items import Command
+from mavlink.mission import Mission
+from mavlink.payload import ActuatorPayload, CameraPayload, ImagePayload, Payload, RelayPayload
+from planner.plan import Plan
+
+Values = Mapping[str, float]
+
+#: What else firmware calls a parameter, and how many of that one's units make one of this one's.
+OTHER_NAMES: Final[dict[str, tuple[str, float]]] = {
+    "ROLL_LIMIT_DEG": ("LIM_ROLL_CD", 100.0),  # ArduPlane before 4.5
+    "AIRSPEED_CRUISE": ("TRIM_ARSPD_CM", 100.0),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class ParameterFinding:
+    """One parameter that is not as the plan needs it.
+
+    Parameters
+    ----------
+    value
+        As the vehicle holds it.
+    advised
+        What would do; None where it depends on the wiring.
+    reason
+        Why, with the plan's figures.
+    severity
+        ``"error"``: the mission cannot be flown, or sees nothing. ``"warning"``: it is flown less well.
+    """
+
+    name: str
+    value: float
+    advised: float | None
+    reason: str
+    severity: Literal["error", "warning"]
+
+    def __str__(self) -> str:
+        advice = "" if self.advised is None else f"; {self.advised:g} is advised"
+        return f"{self.name} is {self.value:g}: {self.reason}{advice}"
+
+
+@dataclass(frozen=True, slots=True)
+class Needs:
+    """What a mission needs of its vehicle.
+
+    Parameters
+    ----------
+    settle_m
+        Straight flight the plan leaves before each collect; None when not known.
+    payload
+        How the sensor is switched, as the autopilot switches it.
+    commands
+        Of the mission's items.
+    """
+
+    airspeed_m_s: float
+    turn_radius_m: float
+    settle_m: float | None
+    payload: Payload
+    commands: frozenset[int]
+    fence: bool
+
+
+def needs_of(plan: Plan, mission: Mission, payload: Payload, settle_m: float | None = None) -> Needs:
+    """What a plan's mission needs."""
+    vehicle = next(vehicle for vehicle in plan.vehicles if vehicle.name == mission.vehicle)
+    if mission.autopilot == "px4" and isinstance(payload, RelayPayload):
+        payload = ActuatorPayload(payload.relay + 1)  # as the encoder says it
+    return Needs(
+        vehicle.airspeed_m_s,
+        vehicle.min_turn_radius_m,
+        settle_m,
+        payload,
+        frozenset(item.command for item in mission.mission),
+        bool(mission.fence),
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class Rule:
+    """Parameters to read, and what to say of them.
+
+    Parameters
+    ----------
+    names
+        To read; those a firmware does not have are simply not there when it is judged.
+    judge
+        The finding, None when all is well or the values do not tell.
+    applies
+        Whether the mission needs it at all.
+    """
+
+    names: Callable[[Needs], tuple[str, ...]]
+    judge: Callable[[Values, Needs], ParameterFinding | None]
+    applies: Callable[[Needs], bool] = lambda needs: True
+
+
+def check(
+    name: str,
+    good: Callable[[float, Needs], bool],
+    reason: Callable[[Needs], str],
+    advised: Callable[[Needs], float] | None = None,
+    severity: Literal["error", "warning"] = "warning",
+    applies: Callable[[Needs], bool] = lambda needs: True,
+) -> Rule:
+    """A rule about one parameter, by whichever name the firmware has it."""
+
+    def judge(values: Values, needs: Needs) -> ParameterFinding | None:
+        found, unit = name, 1.0
+        if name not in values and name in OTHER_NAMES:
+            found, unit = OTHER_NAMES[name]
+        value = values.get(found)
+        if value is None or good(value / unit, needs):
+            return None
+        advice = None if advised is None else advised(needs) * unit
+        return ParameterFinding(found, value, advice, reason(needs), severity)
+
+    return Rule(lambda needs: (name,), judge, applies)
+
+
+def any_of(
+    names: Callable[[Needs], tuple[str, ...]],
+    good: Callable[[float, Needs], bool],
+    reason: Callable[[Needs], str],
+    applies: Callable[[Needs], bool],
+) -> Rule:
+    """A rule that one of several parameters must meet; it speaks only when some were read."""
+
+    def judge(values: Values, needs: Needs) -> ParameterFinding | None:
+        found = [(name, values[name]) for name in names(needs) if name in values]
+        if not found or any(good(value, needs) for _, value in found):
+            return None
+        name, value = found[0]
+        return ParameterFinding(name, value, None, reason(needs), "error")
+
+    return Rule(names, judge, applies)
+
+
+def camera(needs: Needs) -> bool:
+    """Whether the sensor is triggered as a camera."""
+    return isinstance(needs.payload, (CameraPayload, ImagePayload))
+
+
+def lands(needs: Needs) -> bool:
+    """Whether the mission ends on the ground."""
+    return bool(needs.commands & {Command.NAV_LAND, Command.NAV_VTOL_LAND})
