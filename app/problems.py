@@ -131,6 +131,13 @@ def http_problem(request: Request, error: Exception) -> Response:
     return problem_response(request, error.status_code, kind, title, detail, headers=error.headers)
 
 
+def _fix(request: Request, rule: str) -> str:
+    # What curl sends with -d alone is taken for a form.
+    if rule == "model_attributes_type" and "json" not in request.headers.get("content-type", ""):
+        return "send a JSON object with the header Content-Type: application/json"
+    return "see /openapi.json for what is taken here"
+
+
 def validation_problem(request: Request, error: Exception) -> Response:
     """Answer for parameters and bodies that do not fit their schema; never repeats the input."""
     assert isinstance(error, RequestValidationError)
@@ -139,7 +146,7 @@ def validation_problem(request: Request, error: Exception) -> Response:
             "feature": ".".join(str(part) for part in entry["loc"]),
             "rule": str(entry["type"]),
             "message": str(entry["msg"]),
-            "fix": "see /openapi.json for what is taken here",
+            "fix": _fix(request, str(entry["type"])),
         }
         for entry in error.errors()
     ]

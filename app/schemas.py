@@ -63,7 +63,14 @@ class PlanOut(BaseModel):
         base = f"/api/v1/plans/{record.id}"
         links = {"self": base, "events": f"{base}/events", "scenario": f"{base}/scenario"}
         if record.state == "done":
-            artefacts = ("plan.geojson", "mission.plan", "mission.waypoints", "mission.kml", "report.html")
+            artefacts = (
+                "plan.geojson",
+                "mission.plan",
+                "mission.waypoints",
+                "mission.kml",
+                "mission.kmz",
+                "report.html",
+            )
             links |= {name: f"{base}/{name}" for name in artefacts}
         return cls(
             id=record.id,

@@ -72,6 +72,13 @@ def emit_bytes(content: bytes, output: str = "-") -> None:
         raise CommandError(f"{output} cannot be written: {error.strerror}") from error
 
 
+def require_writable(output: str) -> None:
+    """End before the work is done rather than after it when its result has nowhere to go."""
+    folder = Path(output).parent
+    if output != "-" and not folder.is_dir():
+        raise CommandError(f"{output} cannot be written: there is no folder {folder}")
+
+
 def emit_json(value: Any, output: str = "-") -> None:
     """Write a result as indented JSON."""
     emit(json.dumps(value, indent=2, ensure_ascii=False, allow_nan=False, default=str), output)

@@ -9,7 +9,17 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from app.cli.output import CommandError, Exit, Json, Output, emit, emit_json, read_document, say
+from app.cli.output import (
+    CommandError,
+    Exit,
+    Json,
+    Output,
+    emit,
+    emit_json,
+    read_document,
+    require_writable,
+    say,
+)
 
 if TYPE_CHECKING:
     from planner.environment.terrain import Terrain
@@ -149,6 +159,7 @@ def plan(
 
     With --json and -o FILE the plan's metrics and violations go to standard output.
     """
+    require_writable(output)
     asked = with_choices(read_document(scenario), seed, method or [])
     ground = None
     if terrain is not None:

@@ -45,10 +45,17 @@ for module in (serve, planning, missions, exchange, journey, bench):
 
 def run() -> None:
     """Run the command line; every foreseen error ends with its findings, not with a traceback."""
+    as_json = "--json" in sys.argv
     try:
-        cli()
+        # Left to itself the library words wrong usage in a box, which no program reads.
+        ended = cli(standalone_mode=not as_json)
+        raise SystemExit(ended if isinstance(ended, int) else 0)
+    except typer.TyperException as error:
+        fail(CommandError(error.format_message(), Exit.BAD_INPUT), as_json)
+    except typer.Abort:
+        raise SystemExit(130) from None
     except CommandError as error:
-        fail(error, "--json" in sys.argv)
+        fail(error, as_json)
     except KeyboardInterrupt:
         raise SystemExit(130) from None
     except BrokenPipeError:

@@ -262,3 +262,28 @@ def test_serve_refuses_wishes_it_cannot_fulfil(
     assert ended.code == 2, ended
     assert told in ended.err
     assert not database.exists()
+
+
+@pytest.mark.parametrize(
+    "arguments", [("frobnicate",), ("plan",), ("bench", "nope"), ("plan", "-", "--seed", "x")]
+)
+def test_wrong_usage_is_told_as_json_where_json_is_asked_for(
+    swathplan: Command, arguments: tuple[str, ...]
+) -> None:
+    """With --json a usage error is one JSON object on standard error, and still exits with 2."""
+    ended = swathplan(*arguments, "--json")
+    assert (ended.code, ended.out) == (2, "")
+    assert json.loads(ended.err)["error"]
+    plain = swathplan(*arguments)
+    assert plain.code == 2
+    assert "Usage" in plain.err
+
+
+def test_a_result_with_nowhere_to_go_is_said_before_planning(
+    swathplan: Command, scenario_file: Path, tmp_path: Path
+) -> None:
+    """A folder that is not there ends the command before anything is planned."""
+    ended = swathplan("plan", str(scenario_file), "-o", str(tmp_path / "no" / "plan"))
+    assert ended.code == 1
+    assert "no folder" in ended.err
+    assert "%" not in ended.err

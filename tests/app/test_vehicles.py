@@ -351,3 +351,11 @@ async def test_a_serial_port_that_failed_is_opened_anew(
         await until(client, vehicle, lambda body: body["connected"])
         report = (await client.post(vehicle + "/mission", json={"plan_id": plan_id})).json()
         assert (report["outcome"], report["verified"]) == ("accepted", True)
+
+
+async def test_json_sent_as_a_form_is_told_its_header(client: httpx.AsyncClient) -> None:
+    """A body that curl sends with -d alone is refused with the header it lacks."""
+    headers = {"Content-Type": "application/x-www-form-urlencoded"}
+    answer = await client.post(VEHICLES, content='{"name": "x", "url": "sim:"}', headers=headers)
+    check_problem(answer, 422)
+    assert "Content-Type: application/json" in answer.json()["errors"][0]["fix"]
