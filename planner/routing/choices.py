@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
+from shapely.geometry import Polygon
 
 from planner.coverage.classify import STEP_RAD
 from planner.coverage.merge import MergedRegion
@@ -81,11 +82,12 @@ def choices(
         found = _with_two_passes(region, sensor, height_m, room, etas, step_rad) or found
     if found.best < FORBIDDEN:
         return found
-    hard = "" if room.hard.is_empty else " or crosses a hard zone"
+    open_room = replace(room, hard=Polygon())
+    zoned = not room.hard.is_empty and _graded(region, least, etas, open_room).best < FORBIDDEN
     raise InfeasibleError(
-        "area" if room.hard.is_empty else "hard-zone",
+        "hard-zone" if zoned else "area",
         region.label,
-        f"every pass that sees it leaves the operating area{hard}",
+        f"every pass that sees it leaves the operating area{' or crosses a hard zone' if zoned else ''}",
         "enlarge the area round the region, change the altitude, or let the sensor look to both sides",
         region.centroid,
     )

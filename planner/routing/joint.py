@@ -17,6 +17,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 import shapely
@@ -38,8 +39,9 @@ from planner.routing.large import large_order
 from planner.routing.legs import Legs
 from planner.routing.options import Options, Surroundings, collect_passes, make_options
 from planner.routing.prices import INSIDE_FACTOR, soft_prices
+from planner.routing.relaxation import explained
 from planner.routing.split import split_passes
-from planner.routing.targets import refusal, targets
+from planner.routing.targets import can_be_flown, refusal, targets
 from planner.scenario import Scenario
 from planner.sensors.view import sensing
 from planner.vehicle.aircraft import Aircraft
@@ -158,7 +160,7 @@ def joint_route(
         if options is None:
             options = make_options(of_region, of_region[0].angles_rad, np.linspace(0.0, 1.0, 9), around)
         if options is None:
-            raise refusal(region)
+            raise refusal(region, around)
         coarse.append(options)
     candidates = _orders(scenario, around, regions, coarse, progress, stop, enough)
     refined = []
@@ -250,9 +252,12 @@ def _visible(
             for name in region.names:
                 check_sensor(by_name[name], sensor, height_m)
             found = targets(region, sensor, height_m, around, wide=wide)
-        except InfeasibleError as error:
+        except InfeasibleError as refused:
+            error = refused
+            if error.constraint == "area":
+                error = explained(scenario, region, refused, partial(_some_pass, region=region, wide=wide))
             if region.required:
-                raise
+                raise error from refused
             dropped.append(
                 Finding(
                     error.feature, f"not-seen-{error.constraint}", error.message, error.relaxation, "warning"
@@ -262,6 +267,17 @@ def _visible(
         regions.extend(target.region for target in found)
         sides.extend(target.sides for target in found)
     return regions, sides, tuple(dropped)
+
+
+def _some_pass(scenario: Scenario, *, region: MergedRegion, wide: bool) -> bool:
+    """Whether a region can be seen in a scenario with other zones or at another altitude."""
+    around = surroundings(scenario, scenario.aircraft[0])
+    asked = next((s for s in scenario.sensors if s.name == region.sensor), scenario.sensors[0])
+    try:
+        sensor, height_m = sensing(scenario, asked, region.area)
+        return can_be_flown(region, sensor, height_m, around, wide=wide)
+    except InfeasibleError:
+        return False
 
 
 def _allowed(region: MergedRegion, angles_rad: Floats) -> Floats:
@@ -392,7 +408,7 @@ def _single(choice: _Choice, position: int, sides: tuple[Side, ...], around: Sur
     chosen = (sides[choice.side[position]],)
     options = make_options(chosen, np.array([choice.angle_rad[position]]), np.unique(np.array(etas)), around)
     if options is None:
-        raise refusal(chosen[0].region)
+        raise refusal(chosen[0].region, around)
     same = (options.eta_first == choice.eta_first[position]) & (
         np.isnan(options.eta_second) | (options.eta_second == choice.eta_second[position])
     )

@@ -66,18 +66,27 @@ def targets(
                 sides, options = _some(part, sensor, height_m, around, wide=wide)
                 visit = part
             if options is None:
-                raise refusal(region)
+                raise refusal(region, around)
             found.append(Target(visit, sides))
     return tuple(found)
 
 
-def refusal(region: MergedRegion) -> InfeasibleError:
+def can_be_flown(
+    region: MergedRegion, sensor: SarSensor, height_m: float, around: Surroundings, *, wide: bool = True
+) -> bool:
+    """Whether some pass, or some sweep of the whole region, may be flown."""
+    return _some(region, sensor, height_m, around, wide=wide)[1] is not None
+
+
+def refusal(region: MergedRegion, around: Surroundings) -> InfeasibleError:
     """What to say where every pass is forbidden."""
     return InfeasibleError(
         "area",
         region.label,
-        "every pass that sees it leaves the operating area or enters a hard zone",
-        "enlarge the area round it, allow the other look side, or move the zone",
+        "every pass that sees it leaves the operating area"
+        if len(around.hard) + len(around.hard_polygons) == 0
+        else "every pass that sees it leaves the operating area or enters a hard zone",
+        "enlarge the area round it, or allow the other look side",
         region.centroid,
     )
 
