@@ -22,6 +22,8 @@ export function buildToolbar(drawing: Drawing): void {
   drawing.tool.watch((active) => {
     for (const { tool, made } of buttons) made.setAttribute("aria-pressed", String(tool === active));
     const hint = byId("hint");
+    // Under the tools, which take two rows and more in a narrow window.
+    hint.style.top = `${byId("tools").offsetHeight + 16}px`;
     hint.classList.toggle("shown", active !== null);
     if (active) fill(hint, `${active.label}: ${active.hint} `, button("Place in the middle", () => drawing.placeAtCentre(active)));
     else fill(hint);
