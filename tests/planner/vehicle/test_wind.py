@@ -189,3 +189,41 @@ def test_straights_count_by_their_course() -> None:
     begins, ends = np.array([[[0.0, 0.0]]]), np.array([[[1000.0, 0.0]], [[-1000.0, 0.0]]])
     costs = still_air_costs(np.full((2, 1), 1000.0), begins, ends, 20.0, Wind(5.0, 0.0))
     np.testing.assert_allclose(costs[:, 0], [1000.0 * 20.0 / 25.0, 1000.0 * 20.0 / 15.0])
+
+
+def across_and_along(from_deg: float, objective: dict[str, float]) -> tuple[Scenario, Plan]:
+    """A long region of several lanes, turns cheap beside them, and a steered antenna."""
+    document = small(wind={"speed_m_s": 12.0, "from_deg": from_deg}, objective=objective)
+    document["vehicles"][0].update(airspeed_m_s=20.0, min_turn_radius_m=30.0)
+    document["sensors"][0].update(stabilised=True)
+    # As wide as it is long: in still air either way is as good.
+    corners = [[0.0, 0.0], [0.02, 0.0], [0.02, 0.02], [0.0, 0.02], [0.0, 0.0]]
+    document["features"][0]["geometry"]["coordinates"] = [corners]
+    scenario = read_scenario(document)
+    return scenario, make_plan(scenario)
+
+
+@pytest.mark.parametrize("from_deg", [0.0, 90.0])
+def test_lanes_lie_the_way_that_takes_less_time(from_deg: float) -> None:
+    """The heading chosen takes no more time than either of two at right angles, forced; the wind decides."""
+    scenario, free = across_and_along(from_deg, {})
+    region = scenario.regions[0]
+    times = {}
+    for forced_deg in (0.0, 90.0):
+        allowed = tuple(math.radians(forced_deg + back) for back in (0.0, 180.0))
+        limited = replace(region, approach_rad=allowed)
+        plan = make_plan(replace(scenario, regions=(limited, *scenario.regions[1:])))
+        assert not plan.hard_violations
+        times[forced_deg] = plan.metrics.duration_s
+    assert not free.hard_violations
+    assert free.metrics.duration_s <= min(times.values()) * 1.005
+    assert abs(times[0.0] - times[90.0]) > 10.0
+
+
+@pytest.mark.parametrize("objective", [{"length": 1.0}, {"length": 0.0, "energy": 1.0}])
+def test_by_length_or_by_energy_it_is_time_that_counts(objective: dict[str, float]) -> None:
+    """Either objective gives the quicker plan in a wind: metres count through the air."""
+    scenario, windy_plan = across_and_along(30.0, objective)
+    still = replace(scenario, wind=Wind(), aircraft=(replace(scenario.aircraft[0], min_turn_radius_m=76.8),))
+    blind = make_plan(still)
+    assert windy_plan.metrics.duration_s <= time_of(blind, scenario, scenario.wind) * 1.001
