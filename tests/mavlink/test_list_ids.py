@@ -15,7 +15,7 @@ from mavlink.messages import Message
 from mavlink.telemetry import VehicleState
 from mavlink.transfer.outcome import Accepted, Unknown
 from tests.mavlink.aircraft import Aircraft, flying
-from tests.mavlink.test_client import compare
+from tests.mavlink.test_client_transfers import compare
 from tests.mavlink.transfer.vehicle import waypoints
 
 MISSION, FENCE = MissionType.MISSION, MissionType.FENCE

@@ -16,8 +16,8 @@ from mavlink.sim.modes import Flavour
 from mavlink.transfer.outcome import Accepted, Refused, Unknown
 from mavlink.verify import VerifiedUpload
 from tests.mavlink.aircraft import flying
-from tests.mavlink.test_client import compare
 from tests.mavlink.test_client_faults import comparison, mission, simulated
+from tests.mavlink.test_client_transfers import compare
 from tests.mavlink.transfer.vehicle import waypoints
 
 MISSION = MissionType.MISSION
