@@ -45,5 +45,5 @@ def test_files_it_names_are_there() -> None:
 def test_its_make_targets_are_there() -> None:
     """Every `make` command of the README is a target."""
     makefile = (ROOT / "Makefile").read_text()
-    for target in set(re.findall(r"(?:^|`)make ([a-z]+)", README, flags=re.MULTILINE)):
+    for target in set(re.findall(r"(?:^|`)make ([a-z0-9-]+)", README, flags=re.MULTILINE)):
         assert re.search(rf"^{target}:", makefile, flags=re.MULTILINE), target
