@@ -5,7 +5,7 @@
 #   sh docker/journey.sh ardupilot|px4 ADDRESS    with a service (SERVICE, http://127.0.0.1:8000) and a simulator
 #                                                 that run here already; it calls ADDRESS: udpin:127.0.0.1:14551
 #
-# SCENARIO  what to fly, examples/sar-case-1.geojson when not set; SPEEDUP  of the containers, 10
+# SCENARIO  what to fly, examples/sar-case-1.geojson when not set; SPEEDUP  of the containers, 10 (PX4: 5)
 set -eu
 case ${1:-} in
     ardupilot) calls=udpin:127.0.0.1:14551 ;;
