@@ -1,0 +1,242 @@
+"""Compiled parts of the lower bound: cells of passes. Numbers only.
+
+A *box* of passes is float64 (5,): family, theta, alpha, eta, half_eta; its passes have headings
+``theta + x·alpha`` and offsets ``eta + y·half_eta``, x and y from −1 to 1.
+
+A *family* of passes is float64 (10,): kind (below), side (1 looks right, −1 left), near edge, swath, half an
+aperture, settling run, east and north of the middle of its region, how many strips it is one of, and how many
+of these may be more than the fewest that see the region.
+
+A *cell* is what is known of a box, float64 (``WIDTH``,): entry, exit and inner cost of its middle pass, how
+they change with x and y, and by how much at most that change differs anywhere in the box.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+#: What a pass of a family sees: the whole region; of several passes, the strip furthest on the side the line
+#: is on, or furthest on the other side; of several each as long as the whole region, the first of these.
+WHOLE, NEAR_STRIP, FAR_STRIP, NEAR_LONG = 0.0, 1.0, 2.0, 3.0
+ROUNDING_M = 1e-6
+
+#: Heading, half the headings, 1 where the box holds a pass at all; the middle pass's inner cost, what that
+#: gains with x, by how much at most the gain differs because of what changes evenly over the box and because
+#: of corners of the region; by how much the pass may lie elsewhere for reasons that x and y do not tell.
+THETA, ALPHA, HOLDS, INNER, INNER_GAIN, INNER_DEV, INNER_JUMP, LOOSE = range(8)
+#: Change of place with y, the same for both ends: east, north, by how much at most it differs.
+Y_E, Y_N, Y_DEV = 8, 9, 10
+#: Of the entry, then of the exit: place, its change with x, by how much at most that differs, evenly and
+#: because of corners, and how far away the end can be.
+ENTRY, EXIT = 11, 18
+E, N, X_E, X_N, X_DEV, X_JUMP, REACH = range(7)
+#: Of the heading.
+COS, SIN = 25, 26
+WIDTH = 27
+
+
+@njit(cache=True)
+def support(hull: Floats, angle: float, alpha: float) -> tuple[float, float, float, float]:
+    """How far a convex ring reaches in a direction, and how that changes as the direction turns by ± alpha.
+
+    The change is the place, across the direction, of the vertex that reaches furthest. Vertices that do so
+    for some direction of the interval are those met going round from one end of it to the other.
+
+    Parameters
+    ----------
+    hull
+        Counter-clockwise, (V, 2).
+
+    Returns
+    -------
+    float, float, float, float
+        Reach in the middle direction; middle and half of the range of its derivative over these vertices;
+        how far any of these is from the origin, which is what the derivative changes by per radian.
+    """
+    count = len(hull)
+    cos, sin = math.cos(angle), math.sin(angle)
+    reach = -np.inf
+    for k in range(count):
+        reach = max(reach, cos * hull[k, 0] + sin * hull[k, 1])
+    first = _furthest(hull, angle - alpha)
+    last = _furthest(hull, angle + alpha)
+    low, high, far = np.inf, -np.inf, 0.0
+    k = first
+    while True:
+        across = -sin * hull[k, 0] + cos * hull[k, 1]
+        low, high = min(low, across), max(high, across)
+        far = max(far, math.hypot(hull[k, 0], hull[k, 1]))
+        if k == last:
+            break
+        k = k + 1 if k + 1 < count else 0
+    return reach, 0.5 * (low + high), 0.5 * (high - low), far
+
+
+@njit(cache=True)
+def _furthest(hull: Floats, angle: float) -> int:
+    cos, sin = math.cos(angle), math.sin(angle)
+    best, at = -np.inf, 0
+    for k in range(len(hull)):
+        reach = cos * hull[k, 0] + sin * hull[k, 1]
+        if reach > best:
+            best, at = reach, k
+    return at
+
+
+@njit(cache=True)
+def extremes(x: Floats, y: Floats, least: float) -> tuple[float, float, float, float]:
+    """The points of a closed ring furthest back and furthest ahead in x whose y is ``least`` or more.
+
+    Their x and y; inf and −inf if there are none.
+    """
+    low, low_y, high, high_y = np.inf, 0.0, -np.inf, 0.0
+    for k in range(len(x)):
+        m = k + 1 if k + 1 < len(x) else 0
+        for crossing in range(2):
+            at_x, at_y = x[k], y[k]
+            if crossing == 0 and y[k] < least:
+                continue
+            if crossing == 1:
+                if (y[k] - least) * (y[m] - least) >= 0.0:
+                    continue
+                at_x, at_y = x[k] + (x[m] - x[k]) * (least - y[k]) / (y[m] - y[k]), least
+            if at_x < low:
+                low, low_y = at_x, at_y
+            if at_x > high:
+                high, high_y = at_x, at_y
+    return low, low_y, high, high_y
+
+
+@njit(cache=True)
+def cell(ring: Floats, hull: Floats, family: Floats, box: Floats) -> Floats:
+    """What is known of a box of passes of a family.
+
+    ``ring`` and ``hull`` are the region's, (V, 2), counter-clockwise and relative to its middle. An offset η
+    lays the line η times what its strips have to spare, or half of that, beyond where it would just see the
+    edge.
+    """
+    kind, side, near, swath, half, settle = family[0], family[1], family[2], family[3], family[4], family[5]
+    strips, fewest = family[8], family[8] - family[9]
+    theta, alpha, eta, half_eta = box[1], box[2], box[3], box[4]
+    out = np.zeros(WIDTH)
+    # Turning within the box moves no point of the region further.
+    margin = alpha * math.sqrt((hull[:, 0] ** 2 + hull[:, 1] ** 2).max())
+    # Ahead and behind, then towards the line and away from it.
+    x_max, ahead, ahead_jump, ahead_far = support(hull, theta, alpha)
+    x_min, behind, behind_jump, behind_far = support(hull, theta + math.pi, alpha)
+    y_max, to, to_jump, to_far = support(hull, theta + side * 0.5 * math.pi, alpha)
+    y_min, fro, fro_jump, fro_far = support(hull, theta - side * 0.5 * math.pi, alpha)
+    x_min, y_min, behind, fro = -x_min, -y_min, -behind, -fro
+    across = y_max - y_min
+    if across - 2.0 * margin > strips * swath or across + 2.0 * margin < (fewest - 1.0) * swath - ROUNDING_M:
+        return out
+    loose = 0.0
+    spare = strips * swath - across
+    spare_gain, spare_jump, spare_dev = fro - to, to_jump + fro_jump, alpha * (to_far + fro_far)
+    if kind in (NEAR_STRIP, FAR_STRIP):
+        # Up to half of what is to spare lies beyond the region's edge.
+        spare, spare_gain = 0.5 * spare, 0.5 * spare_gain
+        spare_jump, spare_dev = 0.5 * spare_jump, 0.5 * spare_dev
+        # What the strip holds with every pass of the box: the points of the region furthest back and ahead
+        # there must be seen, wherever else the pass goes.
+        x = math.cos(theta) * ring[:, 0] + math.sin(theta) * ring[:, 1]
+        y = side * (math.cos(theta) * ring[:, 1] - math.sin(theta) * ring[:, 0])
+        if kind == FAR_STRIP:
+            y = -y
+        widest = spare + alpha * (abs(spare_gain) + spare_jump + spare_dev)
+        seen = swath - min(eta + half_eta, 1.0) * max(widest, 0.0)
+        x_min, behind, x_max, ahead = extremes(x, y, y.max() - seen + 2.0 * margin)
+        if x_min > x_max:
+            # At the least one of the vertices that are outermost at some heading.
+            for k in range(len(x)):
+                if y[k] >= y.max() - 2.0 * margin - ROUNDING_M:
+                    x_min, x_max = min(x_min, x[k]), max(x_max, x[k])
+            loose = margin + 0.5 * (x_max - x_min)
+            x_min = 0.5 * (x_min + x_max)
+            x_max, ahead, behind = x_min, 0.0, 0.0
+        flip = side if kind == NEAR_STRIP else -side
+        ahead, behind = flip * ahead, flip * behind
+        ahead_far, behind_far = math.hypot(x_max, ahead), math.hypot(x_min, behind)
+        ahead_jump, behind_jump = 0.0, 0.0
+    out[INNER_GAIN] = alpha * (ahead - behind)
+    out[INNER_DEV], out[INNER_JUMP] = (
+        alpha * alpha * (ahead_far + behind_far),
+        alpha * (ahead_jump + behind_jump),
+    )
+    if kind == FAR_STRIP:
+        line, line_y = y_min + swath + near - eta * spare, -spare
+        line_gain, line_jump = fro - eta * spare_gain, fro_jump + eta * spare_jump
+    else:
+        line, line_y = y_max + near + eta * spare, spare
+        line_gain, line_jump = to + eta * spare_gain, to_jump + eta * spare_jump
+    # The line moves by its own change with the heading and, less evenly, by what the offset adds.
+    line_dev = alpha * max(to_far, fro_far) + half_eta * (abs(spare_gain) + spare_dev)
+    line_jump += half_eta * spare_jump
+    line_reach = alpha * (abs(line_gain) + line_dev + line_jump) + half_eta * abs(spare)
+    line *= side
+    line_y *= side
+    line_gain *= side
+    cos, sin = math.cos(theta), math.sin(theta)
+    for end in (ENTRY, EXIT):
+        if end == ENTRY:
+            along, gain, jump, far = x_min - half - settle, behind, behind_jump, behind_far
+        else:
+            along, gain, jump, far = x_max + half, ahead, ahead_jump, ahead_far
+        # In axes turned by the heading, which turn with it.
+        change_x, change_y = gain - line, along + line_gain
+        reach_x = alpha * (abs(gain) + jump + alpha * far)
+        dev = math.hypot(alpha * far + line_reach, reach_x + line_dev)
+        dev += alpha * math.hypot(change_x, change_y)
+        out[end + E] = family[6] + cos * along - sin * line
+        out[end + N] = family[7] + sin * along + cos * line
+        out[end + X_E] = alpha * (cos * change_x - sin * change_y)
+        out[end + X_N] = alpha * (sin * change_x + cos * change_y)
+        out[end + X_DEV] = alpha * dev
+        out[end + X_JUMP] = alpha * math.hypot(jump, line_jump)
+        out[end + REACH] = (
+            alpha * (math.hypot(change_x, change_y) + dev) + out[end + X_JUMP] + half_eta * abs(spare)
+        )
+    out[THETA], out[ALPHA], out[HOLDS], out[LOOSE] = theta, alpha, 1.0, loose
+    out[COS], out[SIN] = cos, sin
+    out[INNER] = x_max - x_min + 2.0 * half + settle
+    out[Y_E], out[Y_N] = -half_eta * sin * line_y, half_eta * cos * line_y
+    out[Y_DEV] = half_eta * alpha * (abs(spare_gain) + spare_jump + spare_dev + abs(spare))
+    return out
+
+
+@njit(cache=True)
+def parts(box: Floats, cell: Floats) -> Floats:
+    """A box in two or four, (2 or 4, 5): half the headings, half the offsets or both, what moves it more."""
+    by_x = max(
+        math.hypot(cell[ENTRY + X_E], cell[ENTRY + X_N]), math.hypot(cell[EXIT + X_E], cell[EXIT + X_N])
+    )
+    by_y = math.hypot(cell[Y_E], cell[Y_N])
+    ways_x = 1 if box[2] == 0.0 or by_y > 2.0 * by_x else 2
+    ways_y = 1 if box[2] > 0.0 and by_x > 2.0 * by_y else 2
+    out = np.empty((ways_x * ways_y, 5))
+    for k in range(ways_x):
+        for m in range(ways_y):
+            part = out[k * ways_y + m]
+            part[:] = box
+            if ways_x == 2:
+                part[2] = 0.5 * box[2]
+                part[1] = box[1] + (k - 0.5) * box[2]
+            if ways_y == 2:
+                part[4] = 0.5 * box[4]
+                part[3] = box[3] + (m - 0.5) * box[4]
+    return out
+
+
+@njit(cache=True)
+def cells(ring: Floats, hull: Floats, families: Floats, boxes: Floats) -> Floats:
+    """The cells of boxes (B, 5), (B, ``WIDTH``)."""
+    out = np.empty((len(boxes), WIDTH))
+    for k in range(len(boxes)):
+        out[k] = cell(ring, hull, families[int(boxes[k, 0])], boxes[k])
+    return out
