@@ -124,6 +124,19 @@ def warm_up() -> None:
         {"routing": "li2018", "transit": "ssas", "smoothing": "shortcut"},
     ):
         make_plan(read_scenario(_SCENARIO | {"method": method}))
+    # Beyond nine passes the order is searched and bounded otherwise.
+    make_plan(read_scenario(_many()))
     # The scenario lies at 0° N 0° E.
     plain = Terrain("plain", np.zeros((21, 21), dtype=np.float32), (0.1, 0.0, -1.0, 0.0, -0.1, 1.0))
     make_plan(read_scenario(_SCENARIO | {"terrain": "plain"}, {"plain": plain}))
+
+
+def _many() -> dict[str, Any]:
+    """The same with a dozen regions side by side, and no zones."""
+    kept = [f for f in _SCENARIO["features"] if f["properties"]["role"] in ("area", "start")]
+    for k in range(12):
+        west, south = 0.012 * (k % 4), 0.012 * (k // 4) - 0.012
+        ring = [[west, south], [west + 0.003, south], [west + 0.003, south + 0.002], [west, south]]
+        geometry = {"type": "Polygon", "coordinates": [ring]}
+        kept.append({"type": "Feature", "id": f"M{k}", "properties": {"role": "roi"}, "geometry": geometry})
+    return _SCENARIO | {"features": kept}

@@ -30,14 +30,13 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
-#: Headings of the first boxes.
-HEADINGS = 48
+#: Headings of the first boxes, up to so many nodes and beyond.
+HEADINGS, FEW, HEADINGS_BEYOND = 48, 9, 24
 #: Directions of a region's two passes are divided once they span this many times its finest cell's.
 WIDE = 16.0
-#: What a cell takes, in lines between cells; of two cells it is one in so many.
-WORK_EACH = 10
-#: Cells of a problem beyond which it is not divided further: its matrices are of this squared.
-MOST_CELLS = 2_000
+#: What it takes in lines between cells: a cell; and two cells, as a part, for being there and for each set of
+#: the other nodes that may come before them.
+WORK_EACH, WORK_PAIR, WORK_SET = 10, 1.0 / 10.0, 1.0 / 200.0
 #: Of the open cells, the part split at a time, and at least how many.
 SPLIT, LEAST_SPLIT = 0.6, 8
 
@@ -128,7 +127,7 @@ def _prove(
     count = itertools.count()
     heap = [(0.0, next(count), problem) for problem in _first(nodes)]
     spent = 0
-    while heap and heap[0][0] < target_m and spent < effort:
+    while heap and heap[0][0] < target_m and spent + _least_work(heap[0][2]) < effort:
         raise_if(stop)
         bound_m, _, problem = heapq.heappop(heap)
         solved = _solve(nodes, problem, start, end, radius_m, target_m)
@@ -138,8 +137,6 @@ def _prove(
         bound_m = max(bound_m, float(solved.known_m.min()))
         if bound_m >= target_m:
             continue
-        if len(solved.boxes) > MOST_CELLS:
-            return bound_m, spent
         for part in _parts_of(nodes, problem, solved, target_m):
             heapq.heappush(heap, (bound_m, next(count), part))
     return min([target_m, *(item[0] for item in heap[:1])]), spent
@@ -153,7 +150,7 @@ def _first(nodes: list[Node]) -> Iterator[_Problem]:
         of_region = dict(zip(twice, chosen, strict=True))
         boxes = []
         for node in nodes:
-            own = node.boxes(HEADINGS)
+            own = node.boxes(HEADINGS if len(nodes) <= FEW else HEADINGS_BEYOND)
             if node.strip:
                 own = own[node.group[own[:, 0].astype(np.int64)] == of_region[node.region]]
             boxes.append(own)
@@ -199,8 +196,15 @@ def _solve(
         np.maximum(known_m, through),
         offsets,
         tours.short_pairs(ahead, behind, between, offsets, target_m),
-        evaluated + len(boxes) * (WORK_EACH + len(boxes) // WORK_EACH),
+        evaluated + _least_work(problem),
     )
+
+
+def _least_work(problem: _Problem) -> int:
+    """What solving a problem takes besides lines between its cells."""
+    count = sum(len(boxes) for boxes in problem.boxes)
+    sets = 2.0 ** (len(problem.boxes) - 2)
+    return int(count * WORK_EACH + count * count * (WORK_PAIR + sets * WORK_SET))
 
 
 def _parts_of(nodes: list[Node], problem: _Problem, solved: _Solved, target_m: float) -> Iterator[_Problem]:

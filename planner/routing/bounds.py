@@ -34,11 +34,13 @@ from planner.scenario import Scenario
 from planner.vehicle.aircraft import Aircraft
 
 #: Passes up to which the order is searched exactly.
-EXACT_UP_TO = 9
+EXACT_UP_TO = 13
 #: Gaps worth proving, the last first only where that takes little.
 GAPS = (0.049, 0.02)
-#: Lines between cells to evaluate: over all, and for each of many passes.
-EFFORT, EFFORT_EACH = 1_500_000, 100_000
+#: Lines between cells to evaluate: exactly over the order up to so many passes; over trees, for each pass.
+EFFORT_EXACT, EFFORT_TREES = {9: 2_500_000, EXACT_UP_TO: 8_000_000}, 100_000
+#: Where the exact search comes out further below than this, trees may do better.
+POOR_GAP = 0.15
 
 
 def lower_bound_m(
@@ -65,11 +67,15 @@ def lower_bound_m(
     ]
     ends = (terminal(scenario.start), terminal(scenario.end))
     radius_m = aircraft.planned_turn_radius_m
+    best_m = 0.0
     if len(passes) <= EXACT_UP_TO:
         targets_m = tuple(known_m * (1.0 - gap) for gap in GAPS)
-        return exact_bound_m(passes, *ends, radius_m, targets_m, effort or EFFORT, stop)
-    bound_m = trees_bound_m(passes, *ends, radius_m, known_m, effort or EFFORT_EACH * len(passes), stop)
-    return max(min(bound_m, known_m), 0.0)
+        work = effort or next(most for up_to, most in EFFORT_EXACT.items() if len(passes) <= up_to)
+        best_m = exact_bound_m(passes, *ends, radius_m, targets_m, work, stop)
+    if len(passes) > 1 and best_m < known_m * (1.0 - POOR_GAP):
+        work = effort or EFFORT_TREES * len(passes)
+        best_m = max(best_m, trees_bound_m(passes, *ends, radius_m, known_m, work, stop))
+    return min(best_m, known_m)
 
 
 def bounded(scenario: Scenario) -> bool:

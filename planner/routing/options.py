@@ -19,12 +19,12 @@ from planner.coverage.neighbourhood import complementary, inside
 from planner.coverage.segments import Neighbourhood
 from planner.coverage.sweeps import VARIANTS, Judge, Side, Sweep, Swept, best_sweeps, sweep_passes
 from planner.dubins.kernels import dubins_lengths
-from planner.environment.kernels import length_in_discs
 from planner.environment.terrain import Ground
 from planner.route import CollectPass
 from planner.routing.barriers import COLUMNS, rows_of
+from planner.routing.options_kernels import circles_fit, inside_m
 from planner.routing.prices import INSIDE_FACTOR as INSIDE_FACTOR
-from planner.routing.prices import risk_m
+from planner.routing.prices import risks_m
 from planner.scenario import Wind
 from planner.sensors.sar import Look
 from planner.sensors.strip import swaths_m
@@ -321,14 +321,11 @@ def _judge(lines: Floats, around: Surroundings) -> tuple[NDArray[np.bool_], Floa
     if around.wind.speed_m_s > 0.0:
         courses_rad = np.arctan2(delta[..., 1], delta[..., 0])
         cost_m = cost_m * still_air_factor(courses_rad, around.airspeed_m_s, around.wind)
-    priced = around.priced
-    for m, k in np.ndindex(*shape):
-        if not good[m, k]:
-            continue
-        if len(around.hard) and length_in_discs(lines[m, k], around.hard) > 0.0:
-            good[m, k] = False
-        elif len(priced):
-            cost_m[m, k] += risk_m(lines[m, k], priced)
+    flat = np.ascontiguousarray(lines).reshape(-1, 2, 2)
+    if len(around.hard):
+        good &= (inside_m(flat, around.hard) == 0.0).reshape(shape)
+    if len(around.soft):
+        cost_m[good] += risks_m(flat[good.reshape(-1)], around.priced)
     return good, cost_m
 
 
@@ -348,17 +345,15 @@ def _cramped_m(arriving: Floats, leaving: Floats, around: Surroundings) -> Float
 def _roomy(poses: Floats, around: Surroundings) -> NDArray[np.bool_]:
     """Whether a full turn to one side or the other fits: inside the area, outside every disc."""
     roomy = np.zeros(len(poses), dtype=np.bool_)
+    discs = np.concatenate([around.hard, around.soft])
     for side in (1.0, -1.0):
+        free = circles_fit(poses, side, around.radius_m, discs)
         east_m = poses[:, 0] - side * around.radius_m * np.sin(poses[:, 2])
         north_m = poses[:, 1] + side * around.radius_m * np.cos(poses[:, 2])
-        free = np.ones(len(poses), dtype=np.bool_)
         if around.room is not None:
             free &= shapely.contains_xy(around.room, east_m, north_m)
         if around.cramped is not None:
             shapely.prepare(around.cramped)
             free &= ~shapely.contains_xy(around.cramped, east_m, north_m)
-        for discs in (around.hard, around.soft):
-            for e, n, r in discs:
-                free &= np.hypot(east_m - e, north_m - n) >= r + around.radius_m
         roomy |= free
     return roomy

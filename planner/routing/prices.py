@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planner.dubins.path import Path
-from planner.environment.kernels import length_in_discs
 from planner.environment.shapes import acts
 from planner.metrics import MIN_TURN_RAD
+from planner.routing.options_kernels import inside_m
 from planner.scenario import Objective, Scenario
 
 Floats = NDArray[np.float64]
@@ -48,12 +48,16 @@ def soft_prices(scenario: Scenario) -> Floats:
 
 def risk_m(line: Floats, priced: Floats) -> float:
     """What of a polyline (N, 2) lies in priced discs (K, 4), by price; overlaps of one price count once."""
-    return float(
-        sum(
-            price * length_in_discs(line, np.ascontiguousarray(priced[priced[:, 3] == price, :3]))
-            for price in np.unique(priced[:, 3]).tolist()
-        )
-    )
+    return float(risks_m(line[None], priced)[0])
+
+
+def risks_m(lines: Floats, priced: Floats) -> Floats:
+    """The same of many polylines (M, N, 2), (M,)."""
+    costs_m = np.zeros(len(lines))
+    for price in np.unique(priced[:, 3]).tolist():
+        of_price = np.ascontiguousarray(priced[priced[:, 3] == price, :3])
+        costs_m += price * inside_m(np.ascontiguousarray(lines), of_price)
+    return costs_m
 
 
 def turns_m(paths: Iterable[Path], objective: Objective) -> float:
