@@ -6,7 +6,7 @@ from typing import Final
 
 from mavlink.items import Command
 from mavlink.payload import RelayPayload, ServoPayload
-from mavlink.rules.base import Needs, Rule, any_of, camera, check
+from mavlink.rules.base import Needs, ParameterFinding, Rule, Values, any_of, camera, check
 from mavlink.rules.flight import bank, corners, l1_period, loiter, speed
 
 
@@ -21,6 +21,8 @@ def _servo_names(needs: Needs) -> tuple[str, ...]:
     return (f"SERVO{needs.payload.servo}_FUNCTION",)
 
 
+#: FENCE_TYPE's bit of the fences uploaded; 1 is a greatest height, 2 a circle round home, 8 a least height.
+_DRAWN_FENCES: Final = 4
 _SHUTTERS: Final = tuple(f"SERVO{number}_FUNCTION" for number in range(1, 17))
 
 _PAYLOAD: Final = (
@@ -52,6 +54,16 @@ _PAYLOAD: Final = (
     ),
 )
 
+
+def _judge_fence_type(values: Values, needs: Needs) -> ParameterFinding | None:
+    """Advises the kinds in force and the plan's: a height or a circle nobody set would end the flight."""
+    kinds = round(values.get("FENCE_TYPE", _DRAWN_FENCES))
+    if kinds & _DRAWN_FENCES:
+        return None
+    reason = f"polygons and circles ({_DRAWN_FENCES}) are not among the fences in force"
+    return ParameterFinding("FENCE_TYPE", float(kinds), float(kinds | _DRAWN_FENCES), reason, "warning")
+
+
 _FENCE: Final = (
     check(
         "FENCE_ENABLE",
@@ -60,13 +72,7 @@ _FENCE: Final = (
         lambda needs: 1.0,
         applies=lambda needs: needs.fence,
     ),
-    check(
-        "FENCE_TYPE",
-        lambda value, needs: bool(round(value) & 4),
-        lambda needs: "polygons and circles (4) are not among the fences in force",
-        lambda needs: 7.0,
-        applies=lambda needs: needs.fence,
-    ),
+    Rule(lambda needs: ("FENCE_TYPE",), _judge_fence_type, lambda needs: needs.fence),
     check(
         "FENCE_ACTION",
         lambda value, needs: value > 0,

@@ -221,3 +221,12 @@ def test_px4s_long_period_both_wanders_and_cuts() -> None:
         "NPFG_PERIOD": 10.0,
         "NPFG_SW_DST_MLT": pytest.approx(0.15),
     }
+
+
+@pytest.mark.parametrize(("kinds", "advised"), [(0.0, 4.0), (1.0, 5.0), (3.0, 7.0), (8.0, 12.0)])
+def test_a_fence_type_is_advised_with_the_kinds_in_force(kinds: float, advised: float) -> None:
+    """ArduPilot's own circle of 300 m and height of 100 m are not put in force by following the advice."""
+    found = judge_parameters("ardupilot", "fixed_wing", PLANE, GOOD["ardupilot"] | {"FENCE_TYPE": kinds})
+    assert [(finding.name, finding.value, finding.advised) for finding in found] == [
+        ("FENCE_TYPE", kinds, advised)
+    ]
