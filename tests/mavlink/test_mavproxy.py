@@ -1,7 +1,7 @@
 """MAVProxy as an independent reader: the lists we upload, and the files we write, are the same to it.
 
 The program itself runs, without a terminal: orders go to its standard input, and what it prints is read.
-It is installed without its own needs (maps, video): ``pip install --no-deps MAVProxy pynmeagps pyserial``.
+It is installed without its own needs (maps, video): requirements-peers.lock.
 """
 
 from __future__ import annotations
