@@ -57,10 +57,12 @@ function readiness(found: Preflight): HTMLElement {
   );
 }
 
-function answer(result: Upload): HTMLElement {
+/** What a vehicle answered; `plan` is the one on the map, which may be another than was sent. */
+function answer(result: Upload, plan: string | undefined): HTMLElement {
   return h(
     "div",
     { "data-outcome": result.outcome, "data-verified": String(result.verified) },
+    plan !== undefined && plan !== result.plan_id ? h("p", { class: "warning" }, "Another plan than the one on the map was sent:") : null,
     h("p", { class: result.outcome === "accepted" && result.verified ? "good" : "warning" }, `${WORDS[result.outcome]}${result.verified ? "; read back equal" : ""}.`),
     h("ul", { class: "findings" }, ...Object.entries(result.parts).map(([name, part]) => partLine(name, part))),
     result.findings.length > 0 ? h("ul", { class: "findings" }, ...result.findings.map((finding) => h("li", { class: finding.severity ?? "warning" }, findingText(finding)))) : null,
@@ -79,13 +81,16 @@ export function uploadBox(): HTMLElement {
   const why = h("p", { class: "quiet" });
   const check = button("Check before flight", () => void inquire(), { id: "preflight", title: "Reads the vehicle and changes nothing in it" });
   const checked = h("div", { id: "preflight-result", "aria-live": "polite" });
+  const subject = (): string => `${watched.value?.id ?? ""}/${open.value?.record.id ?? ""}`;
   const inquire = async (): Promise<void> => {
     const vehicle = watched.value;
     const plan = open.value;
     if (!vehicle || !plan) return;
+    const asked = subject();
     fill(checked, h("p", {}, `Asking ${vehicle.name} …`));
     const found = await attempt(`${vehicle.name} was not checked`, () => preflight(vehicle.id, plan.record.id));
-    fill(checked, found ? readiness(found) : null);
+    // The answer is of this vehicle and this plan alone.
+    if (subject() === asked) fill(checked, found ? readiness(found) : null);
   };
 
   const send = async (override: Override | null): Promise<void> => {
@@ -96,7 +101,7 @@ export function uploadBox(): HTMLElement {
     go.disabled = true;
     fill(result, h("p", {}, `Uploading to ${vehicle.name} …`));
     try {
-      fill(result, answer(await upload(vehicle.id, plan.record.id, chosen, override)));
+      fill(result, answer(await upload(vehicle.id, plan.record.id, chosen, override), open.value?.record.id));
     } catch (error) {
       fill(result);
       if (error instanceof ApiError && error.problem.type?.endsWith(":unsafe") && !override) await offerOverride(error);
@@ -119,16 +124,20 @@ export function uploadBox(): HTMLElement {
   };
 
   let shownNumber: string | null = null;
+  let shownSubject = subject();
   const update = (): void => {
     const vehicle: Vehicle | null = watched.value;
     const busy = vehicle?.operation ?? null;
     go.disabled = check.disabled = !vehicle?.connected || vehicle.replay || !open.value || busy !== null;
     fill(why, !vehicle ? "No vehicle is chosen." : !vehicle.connected ? "The vehicle is not heard." : vehicle.replay ? "A recording takes no uploads." : !open.value ? "No plan is on the map." : busy ? `At work: ${busy}` : "");
     fill(moving, vehicle?.transfer ? h("progress", { max: Math.max(1, vehicle.transfer.total), value: vehicle.transfer.done, "aria-label": "Upload progress" }) : null);
+    const turned = subject() !== shownSubject;
+    shownSubject = subject();
+    if (turned) fill(checked);
     const number = vehicle?.upload ? `${vehicle.id}/${vehicle.upload.number}/${vehicle.upload.outcome}/${vehicle.upload.verified}` : null;
-    if (number !== shownNumber && busy === null) {
+    if ((turned || number !== shownNumber) && busy === null) {
       shownNumber = number;
-      fill(result, vehicle?.upload ? answer(vehicle.upload) : null);
+      fill(result, vehicle?.upload ? answer(vehicle.upload, open.value?.record.id) : null);
     }
   };
   watched.watch(update);

@@ -3,7 +3,7 @@ import { ask } from "../dialog";
 import { button, fill, h, section } from "../dom";
 import { command, connectVehicle, letGo, refreshVehicles, stream, vehicles, watched, watchVehicle, type Command } from "../fleet";
 import { flights, flightUrl, flown, refly, refreshFlights, showFlight, type Flown } from "../flights";
-import { openPlan } from "../plans";
+import { open, openPlan } from "../plans";
 import { attempt, news, warn } from "../notices";
 import type { Vehicle } from "../types";
 import { metres, number, percent } from "../units";
@@ -83,7 +83,9 @@ async function release(vehicle: Vehicle): Promise<void> {
 }
 
 async function give(vehicle: Vehicle, wanted: (typeof COMMANDS)[number]): Promise<void> {
-  const sure = await ask({ title: `${wanted.label}: ${vehicle.name}?`, lines: [wanted.says], go: wanted.label });
+  const lines = [wanted.says];
+  if (wanted.name === "start" && open.value && open.value.record.id !== vehicle.plan_id) lines.push("That is not known to be the plan on the map.");
+  const sure = await ask({ title: `${wanted.label}: ${vehicle.name}?`, lines, go: wanted.label });
   if (sure === null) return;
   const answer = await attempt(`${wanted.label}: the command was not carried out`, () => command(vehicle.id, wanted.name));
   if (answer?.outcome === "unknown") warn(`${wanted.label}: ${vehicle.name} did not confirm it`, answer.detail);

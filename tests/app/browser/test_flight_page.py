@@ -116,6 +116,33 @@ def test_readiness_is_asked_of_the_vehicle(page: Page, planned: str) -> None:
     expect(asked).to_contain_text("mission")
 
 
+def test_what_was_sent_is_told_from_what_is_on_the_map(page: Page, planned: str, service: Service) -> None:
+    """With another plan on the map the answer says so, the check is gone, and the start asks once more."""
+    record = httpx.post(
+        f"{service.address}/api/v1/plans?wait=60",
+        json=CASE_1 | {"name": "elsewhere", "seed": 7},
+        timeout=90.0,
+    ).json()
+    assert record["state"] == "done"
+    result, checked = page.locator("#upload-result"), page.locator("#preflight-result [data-ready]")
+    expect(result).not_to_contain_text("Another plan")
+    expect(checked).to_have_count(1)
+    page.get_by_role("tab", name="Plan").click()
+    page.get_by_role("button", name="Refresh").first.click()
+    page.locator("#recent button", has_text="elsewhere").click()
+    await_hook(page, f"plan()?.id === '{record['id']}'")
+    page.get_by_role("tab", name="Fly").click()
+    expect(result).to_contain_text("Another plan than the one on the map was sent")
+    expect(checked).to_have_count(0)
+    page.click("[data-command=start]")
+    expect(page.get_by_role("dialog")).to_contain_text("not known to be the plan on the map")
+    page.keyboard.press("Escape")
+    page.get_by_role("tab", name="Plan").click()
+    page.locator("#recent button", has_text="sar-case-1").first.click()
+    await_hook(page, f"plan()?.id === '{planned}'")
+    expect(result).not_to_contain_text("Another plan")
+
+
 def test_two_plans_are_compared(page: Page, planned: str, service: Service) -> None:
     """Figures of another plan stand beside those of the one on the map, and its path is drawn."""
     other = CASE_1 | {"name": "other", "method": {"routing": "li2018"}}
