@@ -11,6 +11,7 @@ from pymavlink.dialects.v20 import ardupilotmega as dialect
 from mavlink.client import VehicleClient
 from mavlink.codec import Codec
 from mavlink.items import MissionItem, MissionType
+from mavlink.list_ids import ListIds
 from mavlink.messages import Message
 from mavlink.telemetry import VehicleState
 from mavlink.transfer.outcome import Accepted, Unknown
@@ -90,6 +91,16 @@ async def test_a_vehicle_that_numbers_no_lists_draws_no_warning() -> None:
         assert result.status == "stored"
         await report(aircraft, client, times=4)
         assert (client.replaced, client.state.mission_id) == (frozenset(), None)
+
+
+def test_an_id_that_is_never_reported_draws_no_warning() -> None:
+    """A vehicle that gives an id with its acknowledgement alone has lost nothing."""
+    ids, state = ListIds(), VehicleState()
+    ids.sent(MISSION, Accepted(), OTHER, state)
+    for now_s in range(4):
+        state = ids.watched(state, Message("MISSION_CURRENT", {"seq": 1}), float(now_s))
+    assert ids.replaced == frozenset()
+    assert state.texts == ()
 
 
 async def test_our_own_clearing_and_uploads_draw_no_warning() -> None:
