@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -12,10 +13,10 @@ from mavlink.driver import Driver
 from mavlink.errors import NotConnectedError, TransferFailedError, UnsupportedError
 from mavlink.items import MissionItem, MissionType
 from mavlink.telemetry import VehicleState
-from mavlink.transfer.clear import ClearMachine, SetCurrentMachine
+from mavlink.transfer.clear import ClearMachine, SetCurrentMachine, flown_for
 from mavlink.transfer.download import DownloadMachine
 from mavlink.transfer.machine import Progress, TransferSettings
-from mavlink.transfer.outcome import Outcome
+from mavlink.transfer.outcome import Accepted, Outcome, Unknown
 from mavlink.transfer.partial import PartialUpdateMachine
 from mavlink.transfer.upload import UploadMachine
 from mavlink.verify import (
@@ -42,6 +43,7 @@ class MissionTransfers(ABC):
     def __init__(self) -> None:
         self._pending: Pending | None = None
         self._read_id: int | None = None
+        self._held_mission: tuple[MissionItem, ...] | None = None
         self._rejected: tuple[tuple[MissionItem, ...], tuple[str, ...]] | None = None
 
     @property
@@ -86,6 +88,7 @@ class MissionTransfers(ABC):
     async def _send(self, machine: UploadMachine, progress: Callable[[Progress], None] | None) -> Outcome:
         ids, kind = self._driver.list_ids, machine.mission_type
         self._driver.require_free()
+        self._forget(kind)
         ids.sending(kind, self.state)
         outcome = await self._driver.transfer(machine, progress)
         return ids.sent(kind, outcome, machine.opaque_id, self.state)
@@ -99,18 +102,38 @@ class MissionTransfers(ABC):
         if outcome.kind != "accepted":
             raise TransferFailedError(f"download of the {mission_type.name.lower()}", outcome)
         self._read_id = machine.opaque_id
+        if mission_type is MissionType.MISSION:
+            self._held_mission = machine.items
         return machine.items
 
     async def clear(self, mission_type: MissionType) -> Outcome:
         """Empty one of the vehicle's lists. Raises BusyError, NotConnectedError."""
         machine = ClearMachine(mission_type, *self._target(), self._settings)
         self._driver.require_free()
+        self._forget(mission_type)
         self._driver.list_ids.sending(mission_type, self.state)
         return await self._driver.transfer(machine)
 
+    def _forget(self, mission_type: MissionType) -> None:
+        """What was read of a list no longer counts: it is being changed."""
+        if mission_type is MissionType.MISSION:
+            self._held_mission = None
+
     async def set_current(self, seq: int) -> Outcome:
-        """Make an item the one flown next. Raises BusyError, NotConnectedError."""
-        return await self._driver.transfer(SetCurrentMachine(seq, *self._target(), self._settings))
+        """Make an item the one flown next. Raises BusyError, NotConnectedError.
+
+        Sent to an item that is no place to fly to, a vehicle goes on to the next that is, and reports that
+        one. Which it is the mission tells: as last read, or else read when the answer leaves it open.
+        """
+        known = self._held_mission
+        answers = frozenset[int]() if known is None else flown_for(known, seq)
+        machine = SetCurrentMachine(seq, *self._target(), self._settings, answers)
+        outcome = await self._driver.transfer(machine)
+        if known is None and machine.reported and outcome == Unknown("timeout"):
+            with contextlib.suppress(TransferFailedError, NotConnectedError):
+                if machine.reported & flown_for(await self.download(MissionType.MISSION), seq):
+                    return Accepted()
+        return outcome
 
     async def upload_verified(
         self,

@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import math
 from abc import abstractmethod
+from collections.abc import Sequence
+from typing import Final
 
-from mavlink.items import MissionResult, MissionType
+from mavlink.items import Command, MissionItem, MissionResult, MissionType
 from mavlink.messages import Message
 from mavlink.transfer.machine import DEFAULT_SETTINGS, Machine, Progress, TransferSettings
 from mavlink.transfer.outcome import Accepted, Outcome, Refused, Unknown
+
+_NAV_LAST: Final = 95  # MAV_CMD_NAV_LAST
 
 
 class _QuestionMachine(Machine[Outcome]):
@@ -78,11 +82,47 @@ class ClearMachine(_QuestionMachine):
         return Accepted() if result == MissionResult.ACCEPTED else Refused(result)
 
 
+def flown_for(items: Sequence[MissionItem], seq: int) -> frozenset[int]:
+    """Numbers that a vehicle may report once it has been sent to an item.
+
+    Only navigation items (MAV_CMD up to NAV_LAST, 95) are flown: sent to a DO item, a vehicle carries it out,
+    goes on, and reports what it passes on the way to the next one to be flown. Jumps are followed both ways.
+
+    Parameters
+    ----------
+    items
+        The mission held, home row included.
+    """
+    passed: set[int] = set()
+    ahead = [seq]
+    while ahead:
+        number = ahead.pop()
+        if number in passed or not 0 <= number < len(items):
+            continue
+        passed.add(number)
+        item = items[number]
+        if item.command > _NAV_LAST:
+            ahead.append(number + 1)
+        if item.command == Command.DO_JUMP and math.isfinite(item.param1):
+            ahead.append(int(item.param1))
+    return frozenset(passed)
+
+
 class SetCurrentMachine(_QuestionMachine):
     """Make an item the one flown next (MISSION_SET_CURRENT).
 
     The vehicle answers with MISSION_CURRENT. ArduPilot says nothing to an item past the end, so that ends
     as unknown; a MISSION_CURRENT of another number is its periodic report and no answer.
+
+    Parameters
+    ----------
+    answers
+        Numbers that mean yes beside that of the item itself, as ``flown_for`` tells of a known mission.
+
+    Attributes
+    ----------
+    reported
+        Numbers of the items the vehicle said it was flying to, since it was asked.
     """
 
     def __init__(
@@ -91,16 +131,20 @@ class SetCurrentMachine(_QuestionMachine):
         target_system: int,
         target_component: int,
         settings: TransferSettings = DEFAULT_SETTINGS,
+        answers: frozenset[int] = frozenset(),
     ) -> None:
         super().__init__(MissionType.MISSION, target_system, target_component, settings)
         self.seq = seq
+        self.reported: set[int] = set()
+        self._answers = answers | {seq}
 
     def _question(self) -> Message:
         return self._addressed("MISSION_SET_CURRENT", seq=self.seq)
 
     def _verdict(self, message: Message) -> Outcome | None:
-        if message.name == "MISSION_CURRENT" and message.integer("seq") == self.seq:
-            return Accepted()
+        if message.name == "MISSION_CURRENT":
+            self.reported.add(message.integer("seq"))
+            return Accepted() if self.reported & self._answers else None
         if message.name == "MISSION_ACK" and self._concerns(message):
             result = message.integer("type")
             return None if result == MissionResult.ACCEPTED else Refused(result, self.seq)

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
-from mavlink.items import MissionType
-from mavlink.transfer.clear import SetCurrentMachine
+from mavlink.items import Command, MissionItem, MissionType
+from mavlink.transfer.clear import SetCurrentMachine, flown_for
 from mavlink.transfer.download import DownloadMachine
 from mavlink.transfer.outcome import Accepted, Unknown
 from mavlink.transfer.upload import UploadMachine
@@ -64,3 +66,49 @@ def test_set_current_is_repeated_until_it_is_answered() -> None:
     machine.receive(from_vehicle("MISSION_CURRENT", seq=4), 5.0)
     assert machine.outcome == Accepted()
     assert machine.tick(100.0) == []
+
+
+def mission(*commands: int, jump_to: float = 0.0) -> tuple[MissionItem, ...]:
+    """Items of these commands; the jumps among them lead to one item."""
+    items = (replace(item, command=number) for item, number in zip(waypoints(9), commands, strict=False))
+    return tuple(replace(item, param1=jump_to) if item.command == Command.DO_JUMP else item for item in items)
+
+
+@pytest.mark.parametrize(
+    ("items", "seq", "flown"),
+    [
+        (mission(16, 16, 16), 1, {1}),
+        (mission(16, 178, 181, 16, 16), 1, {1, 2, 3}),
+        (mission(16, 178), 1, {1}),
+        (mission(16, 22, 16, 177, 16, jump_to=0.0), 3, {3, 4, 0}),
+        (mission(16, 22, 16, 177, 16, jump_to=1.0), 3, {3, 4, 1}),
+        (mission(16, 177, jump_to=1.0), 1, {1}),
+        (mission(16, 177, jump_to=float("nan")), 1, {1}),
+        (mission(16), 5, set()),
+    ],
+    ids=[
+        "waypoint",
+        "do",
+        "do at the end",
+        "jump to home",
+        "jump",
+        "jump to itself",
+        "nowhere",
+        "past the end",
+    ],
+)
+def test_items_that_are_no_places_lead_to_the_next(
+    items: tuple[MissionItem, ...], seq: int, flown: set[int]
+) -> None:
+    """What a vehicle sent to an item may report: the item, and what it passes up to the next to be flown."""
+    assert flown_for(items, seq) == flown
+
+
+def test_set_current_takes_the_numbers_that_mean_yes() -> None:
+    """Sent to a DO item, the report of the waypoint behind it is a yes, and that of another one is none."""
+    machine = SetCurrentMachine(4, 1, 1, answers=frozenset({4, 5}))
+    machine.start(0.0)
+    machine.receive(from_vehicle("MISSION_CURRENT", seq=6), 0.1)
+    assert (machine.outcome, machine.reported) == (None, {6})
+    machine.receive(from_vehicle("MISSION_CURRENT", seq=5), 0.2)
+    assert machine.outcome == Accepted()
