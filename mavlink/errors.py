@@ -4,7 +4,8 @@
 
     MavlinkError
     ├── CodecError           a message cannot be put on the wire: unknown name or field, value out of range
-    ├── LinkError            an address is malformed, or a port or device cannot be opened or has failed
+    ├── LinkError            a port or device cannot be opened or has failed
+    │   └── AddressError     an address is malformed: no other try will open it
     ├── VehicleNotFoundError no autopilot's heartbeat arrived in time
     ├── NotConnectedError    asked of a vehicle that is not connected, or whose client is closed
     │   └── ReadOnlyError    a transfer or command asked of a recording that is being replayed
@@ -32,7 +33,11 @@ class CodecError(MavlinkError, ValueError):
 
 
 class LinkError(MavlinkError, ValueError):
-    """An address is malformed, or a port or device cannot be opened or has failed."""
+    """A port or device cannot be opened or has failed."""
+
+
+class AddressError(LinkError):
+    """An address is malformed: no other try will open it."""
 
 
 class VehicleNotFoundError(MavlinkError):

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Final, Protocol, runtime_checkable
 
-from mavlink.errors import LinkError
+from mavlink.errors import AddressError, LinkError
 from mavlink.links.memory import LinkFaults, MemoryLink, memory_pair
 from mavlink.links.replay import ReplayLink, open_replay
 from mavlink.links.serial_port import open_serial
@@ -61,31 +61,47 @@ class DirectLink(Link, Protocol):
         """Send without waiting."""
 
 
+def parse_address(url: str) -> tuple[str, str, int]:
+    """Form, host or device, and port or baud rate of an address other than ``replay:``.
+
+    Raises
+    ------
+    AddressError
+        It has none of the known forms.
+    """
+    form, _, rest = url.partition(":")
+    address, _, last = rest.rpartition(":")
+    if form not in {"udpin", "udpout", "tcp", "tcpin", "serial"} or not address or not last:
+        raise AddressError(f"{url!r} is no link address; the forms are {FORMS}")
+    if not last.isascii() or not last.isdigit():
+        what = "baud rate" if form == "serial" else "port"
+        raise AddressError(f"{url!r}: the {what} {last!r} is not a number; the forms are {FORMS}")
+    number = int(last)
+    if form == "serial":
+        if number == 0:
+            raise AddressError(f"{url!r}: a serial port needs a baud rate above 0")
+        return form, address, number
+    lowest = 0 if form.endswith("in") else 1
+    if not lowest <= number <= 65535:
+        raise AddressError(f"{url!r}: port {number} is not in {lowest} to 65535")
+    return form, address, number
+
+
 async def open_link(url: str) -> Link:
     """Open the link an address names.
 
     Raises
     ------
+    AddressError
+        The address has none of the known forms.
     LinkError
-        The address has none of the known forms, or the port or device cannot be opened.
+        The port or device cannot be opened.
     """
-    form, _, rest = url.partition(":")
-    if form == "replay":
+    if url.partition(":")[0] == "replay":
         return open_replay(url)
-    address, _, last = rest.rpartition(":")
-    if form not in {"udpin", "udpout", "tcp", "tcpin", "serial"} or not address or not last:
-        raise LinkError(f"{url!r} is no link address; the forms are {FORMS}")
-    if not last.isascii() or not last.isdigit():
-        what = "baud rate" if form == "serial" else "port"
-        raise LinkError(f"{url!r}: the {what} {last!r} is not a number; the forms are {FORMS}")
-    number = int(last)
+    form, address, number = parse_address(url)
     if form == "serial":
-        if number == 0:
-            raise LinkError(f"{url!r}: a serial port needs a baud rate above 0")
         return await open_serial(address, number)
-    lowest = 0 if form.endswith("in") else 1
-    if not lowest <= number <= 65535:
-        raise LinkError(f"{url!r}: port {number} is not in {lowest} to 65535")
     host = address.removeprefix("[").removesuffix("]")
     try:
         if form in {"udpin", "udpout"}:

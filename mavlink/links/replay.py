@@ -11,7 +11,7 @@ from typing import Final
 from urllib.parse import parse_qsl
 
 from mavlink.codec import Codec
-from mavlink.errors import LinkError
+from mavlink.errors import AddressError, LinkError
 from mavlink.recording import read_tlog
 
 #: Longer silences of a recording are cut short to this.
@@ -92,14 +92,16 @@ class ReplayLink:
 
 
 def parse_replay(url: str) -> tuple[Path, dict[str, str]]:
-    """Path and options of a ``replay:`` address. Raises LinkError for malformed ones."""
+    """Path and options of a ``replay:`` address. Raises AddressError for malformed ones."""
     path, _, query = url.removeprefix("replay:").partition("?")
     try:
         options = dict(parse_qsl(query, strict_parsing=True)) if query else {}
     except ValueError as error:
-        raise LinkError(f"{url!r}: the options are not understood; write replay:path?speedup=10") from error
+        raise AddressError(
+            f"{url!r}: the options are not understood; write replay:path?speedup=10"
+        ) from error
     if not path or "\0" in path:
-        raise LinkError(f"{url!r} names no file; write replay:path?speedup=10")
+        raise AddressError(f"{url!r} names no file; write replay:path?speedup=10")
     return Path(path), options
 
 
@@ -113,8 +115,10 @@ def open_replay(url: str) -> ReplayLink:
 
     Raises
     ------
+    AddressError
+        The address is malformed.
     LinkError
-        The address is malformed, or the file is missing, unreadable or no recording.
+        The file is missing, unreadable or no recording.
     """
     path, options = parse_replay(url)
     try:
@@ -122,9 +126,9 @@ def open_replay(url: str) -> ReplayLink:
     except ValueError:
         speedup = math.nan
     if not (math.isfinite(speedup) and speedup > 0.0):
-        raise LinkError(f"{url!r}: the speed-up must be a number above 0")
+        raise AddressError(f"{url!r}: the speed-up must be a number above 0")
     if options:
-        raise LinkError(f"{url!r}: a replay has no option {', '.join(sorted(options))}")
+        raise AddressError(f"{url!r}: a replay has no option {', '.join(sorted(options))}")
     try:
         # Pipes and devices never end, or never begin.
         found = path.is_file() and _holds_messages(path)

@@ -10,7 +10,7 @@ from dataclasses import replace
 
 from mavlink.codec import Codec
 from mavlink.errors import CodecError, LinkError
-from mavlink.link import Link, open_link
+from mavlink.link import Link, open_link, parse_address
 from mavlink.messages import Message
 from mavlink.sim.autopilot import SimulatedAircraft
 from mavlink.sim.faults import Fault
@@ -218,6 +218,10 @@ def main(argv: list[str] | None = None) -> int:
     arguments = p.parse_args(argv)
     try:
         settings = settings_of(arguments)
+        if not arguments.url.startswith("replay:"):
+            parse_address(arguments.url)
+        else:
+            p.error("a recording cannot be flown on")
     except ValueError as error:
         p.error(str(error))
     try:

@@ -153,6 +153,17 @@ def test_refused_scenario_exits_2_with_every_finding(swathplan: Command, command
         (("export", "-"), json.dumps(EXAMPLE)),
         (("upload", "-", "--to", "sim:"), "{}"),
         (("download", "--from", "nonsense"), ""),
+        (("download", "--from", "udpin:127.0.0.1:port"), ""),
+        (("download", "--from", "tcp:127.0.0.1:99999"), ""),
+        (("download", "--from", "serial:/dev/ttyUSB0:0"), ""),
+        (("download", "--from", "replay:flight.tlog?speedup=-1"), ""),
+        (("download", "--from", "sim:?airspeed=300"), ""),
+        (("sim", "--url", "nonsense"), ""),
+        (("sim", "--url", "udpout:127.0.0.1:99999"), ""),
+        (("sim", "--url", "replay:flight.tlog"), ""),
+        (("serve", "--sim-url", "sim:?wind=-3,270"), ""),
+        (("serve", "--sim-url", "udpin:127.0.0.1:14550"), ""),
+        (("serve", "--port", "99999"), ""),
         (("bench", "no-such"), ""),
         (("serve", "--host", "0.0.0.0"), ""),
     ],
@@ -164,6 +175,31 @@ def test_bad_usage_and_input_exit_2(swathplan: Command, arguments: tuple[str, ..
     assert ended.out == ""
     assert ended.err
     assert "Traceback" not in ended.err
+
+
+def test_upload_names_what_is_wrong_with_the_address(swathplan: Command, plan_file: Path) -> None:
+    """A good plan and an address that no try will open: 2, and the reason."""
+    ended = swathplan("upload", str(plan_file), "--to", "udpin:127.0.0.1:99999")
+    assert (ended.code, ended.out) == (2, "")
+    assert "port 99999 is not in 0 to 65535" in ended.err
+
+
+def test_ports_in_use_exit_1(swathplan: Command) -> None:
+    """The address is good and the port another's: 1, with the port, as another try may do better."""
+    with (
+        socket.create_server(("127.0.0.1", 0)) as listener,
+        socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as taken,
+    ):
+        taken.bind(("127.0.0.1", 0))
+        port, udp_port = str(listener.getsockname()[1]), str(taken.getsockname()[1])
+        for arguments, number in (
+            (("sim", "--url", f"tcpin:127.0.0.1:{port}"), port),
+            (("download", "--from", f"udpin:127.0.0.1:{udp_port}"), udp_port),
+        ):
+            ended = swathplan(*arguments)
+            assert ended.code == 1, arguments
+            assert number in ended.err
+            assert "in use" in ended.err
 
 
 def test_what_fails_exits_1(swathplan: Command, scenario_file: Path, tmp_path: Path) -> None:

@@ -36,15 +36,13 @@ def replayed_plan(url: str) -> tuple[str, str | None, str | None]:
 
     Raises
     ------
-    LinkError
-        The address is malformed.
     RefusedError
-        The payload is not understood.
+        The address is malformed, or the payload not understood.
     """
     try:
         path, options = parse_replay(url)
-    except mavlink_errors.LinkError as error:
-        raise LinkError(str(error)) from error
+    except mavlink_errors.AddressError as error:
+        raise _refused(error, "write e.g. replay:flight.tlog?speedup=10") from error
     plan_id, payload = options.pop("plan", None), options.pop("payload", None)
     if payload is not None:
         try:
@@ -53,6 +51,10 @@ def replayed_plan(url: str) -> tuple[str, str | None, str | None]:
             fix = "write e.g. payload=relay:0 or payload=servo:5:2000:1000"
             raise RefusedError(str(error), (Finding("url", "payload", str(error), fix),)) from error
     return f"replay:{path}" + (f"?{urlencode(options)}" if options else ""), plan_id, payload
+
+
+def _refused(error: mavlink_errors.AddressError, fix: str) -> RefusedError:
+    return RefusedError(str(error), (Finding("url", "link-address", str(error), fix),))
 
 
 def simulated_of(url: str) -> SimulatedAircraft | None:
@@ -97,7 +99,7 @@ async def connect(
     Raises
     ------
     RefusedError
-        The address has none of the known forms.
+        The address is malformed.
     LinkError
         The link cannot be opened, or the simulator ended.
     """
@@ -106,6 +108,8 @@ async def connect(
         url, *_ = replayed_plan(url)
     try:
         link = await open_link(url if aircraft is None else "udpin:127.0.0.1:0")
+    except mavlink_errors.AddressError as error:
+        raise _refused(error, f"write {FORMS} or sim:") from error
     except mavlink_errors.LinkError as error:
         raise LinkError(str(error)) from error
     client = VehicleClient(link, tap=tap)

@@ -12,6 +12,7 @@ from urllib.parse import parse_qsl
 
 from app.services.errors import LinkError, RefusedError
 from mavlink.sim.faults import Fault
+from mavlink.sim.run import parser, settings_of
 from planner.errors import Finding
 
 #: How long a simulated aircraft may take to end by itself.
@@ -33,6 +34,7 @@ _NUMBERS = {
 }
 _WORDS = {
     "autopilot": ("ardupilot", "px4"),
+    "type": ("fixed_wing", "multirotor"),
     "dynamics": ("auto", "kinematic", "jsbsim"),
     "sensor_reports": ("yes", "no"),
     "fault": tuple(fault.value for fault in Fault),
@@ -92,16 +94,20 @@ def parse_simulated(url: str) -> SimulatedAircraft:
             home = (lat_deg, lon_deg, altitude_m[0] if altitude_m else 0.0)
         elif name == "wind":
             speed_m_s, from_deg = _floats(name, text, (2,))
-            arguments += ["--wind", f"{speed_m_s},{from_deg}"]
+            arguments.append(f"--wind={speed_m_s},{from_deg}")
         elif name in _NUMBERS:
             _floats(name, text, (1,))
-            arguments += [_NUMBERS[name], text]
+            arguments.append(f"{_NUMBERS[name]}={text}")
         elif name in _WORDS:
             if text not in _WORDS[name]:
                 _refuse(f"{name}={text}: {' or '.join(_WORDS[name])} is meant")
-            arguments += [f"--{name.replace('_', '-')}", text]
+            arguments.append(f"--{name.replace('_', '-')}={text}")
         else:
             _refuse(f"a simulated aircraft has no option {name}")
+    try:
+        settings_of(parser().parse_args(arguments))
+    except ValueError as error:
+        _refuse(str(error))
     return SimulatedAircraft(home, tuple(arguments))
 
 
