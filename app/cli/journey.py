@@ -97,7 +97,7 @@ async def _fly(
     vehicle = plan.vehicles[0]
     url = (
         f"sim:?speedup={speedup:g}&autopilot={autopilot or vehicle.autopilot}&wind={wind}"
-        f"&airspeed={vehicle.airspeed_m_s:g}&turn_radius={vehicle.min_turn_radius_m:g}"
+        f"&type={vehicle.type}&airspeed={vehicle.airspeed_m_s:g}&turn_radius={vehicle.min_turn_radius_m:g}"
     )
     async with connected(url, (plan.home[1], plan.home[0], 0.0), 20.0) as client:
         flown_by = client.state.autopilot

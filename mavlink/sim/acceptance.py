@@ -159,8 +159,8 @@ def _px4_refusal(item: MissionItem, sensor_command: int) -> MissionResult | None
     return MissionResult.UNSUPPORTED_FRAME
 
 
-def as_stored(flavour: Flavour, item: MissionItem, home: Place) -> MissionItem:
-    """The item as the autopilot keeps it and reads it back."""
+def as_stored(flavour: Flavour, item: MissionItem, home: Place, *, hovers: bool = False) -> MissionItem:
+    """The item as the autopilot keeps it and reads it back; ArduCopter's waypoints keep a delay alone."""
     if item.mission_type is MissionType.FENCE:
         frame = Frame.GLOBAL if flavour is Flavour.ARDUPILOT else Frame.GLOBAL_INT
         return replace(item, frame=frame, z=0.0)
@@ -169,7 +169,10 @@ def as_stored(flavour: Flavour, item: MissionItem, home: Place) -> MissionItem:
             return replace(item, frame=Frame.GLOBAL_RELATIVE_ALT, z=float(math.trunc(item.z)))
         return item
     if flavour is Flavour.ARDUPILOT:
-        return _ardupilot_stored(item, home)
+        stored = _ardupilot_stored(item, home)
+        if hovers and item.seq > 0 and item.command == Command.NAV_WAYPOINT:
+            return replace(stored, param1=float(math.trunc(item.param1)), param2=0.0, param3=0.0)
+        return stored
     return _px4_stored(item)
 
 
@@ -275,17 +278,21 @@ def finished_list(
     return list(items), ""
 
 
-def infeasible(flavour: Flavour, items: Sequence[MissionItem]) -> str:
-    """Why a stored mission cannot be started; empty when it can."""
+def infeasible(flavour: Flavour, items: Sequence[MissionItem], *, hovers: bool = False) -> str:
+    """Why a stored mission cannot be started; empty when it can.
+
+    PX4 asks a multirotor for neither take-off nor landing (MIS_TKO_LAND_REQ 0).
+    """
     flown = items[1:] if flavour is Flavour.ARDUPILOT else items
     if not flown:
         return "no mission"
     if flavour is Flavour.ARDUPILOT:
         return ""
     placed = [item for item in flown if item.command in _PX4_PLACED]
-    if not placed or placed[0].command != Command.NAV_TAKEOFF:
+    takes_off = any(item.command == Command.NAV_TAKEOFF for item in placed) or not hovers
+    if takes_off and (not placed or placed[0].command != Command.NAV_TAKEOFF):
         return "first item is no takeoff"
-    if not any(item.command == Command.NAV_LAND for item in placed):
+    if not hovers and not any(item.command == Command.NAV_LAND for item in placed):
         return "landing required"
     if any(item.command in (Command.CONDITION_DELAY, Command.CONDITION_DISTANCE) for item in flown):
         return "condition items are not flown"

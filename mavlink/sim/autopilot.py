@@ -24,7 +24,7 @@ _GUIDED_ITEM = 2
 
 
 class SimulatedAircraft:
-    """A fixed wing with an autopilot.
+    """A fixed wing or a multirotor with an autopilot.
 
     Two clocks: ``now_s`` of ``receive`` and ``advance`` is the link's, by which the mission protocol repeats
     and gives up; the simulated time runs ``settings.speedup`` times as fast while armed, and with it flight,
@@ -45,6 +45,7 @@ class SimulatedAircraft:
             faults=self._faults,
             max_items=settings.max_items,
             sensor_command=settings.sensor_command,
+            hovers=settings.hovers,
             vanish_after_items=settings.vanish_after_items,
             vanish_for_s=settings.vanish_for_s,
         )
@@ -97,7 +98,11 @@ class SimulatedAircraft:
             case "COMMAND_LONG" | "COMMAND_INT":
                 return self._command(message)
             case "SET_MODE":
-                mode = mode_of(self._settings.autopilot, message.integer("custom_mode"))
+                mode = mode_of(
+                    self._settings.autopilot,
+                    message.integer("custom_mode"),
+                    hovers=self._settings.hovers,
+                )
                 return change_mode(self, mode)[1]
             case "MISSION_SET_CURRENT":
                 # Past the end ArduPilot and PX4 say nothing.
@@ -249,5 +254,6 @@ class SimulatedAircraft:
             current=pilot.current,
             total=len(self.missions.items()),
             mission_complete=pilot.mission_complete,
+            paused=pilot.paused,
             list_ids=tuple(self.missions.opaque_id(kind) for kind in MissionType),
         )

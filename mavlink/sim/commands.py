@@ -117,8 +117,17 @@ def carry_out(aircraft: Aircraft, order: Order) -> Outcome:
         case Command.MISSION_START:
             return _start(aircraft)
         case Command.DO_SET_MODE:
-            mode = mode_of_command(aircraft.settings.autopilot, order.param2, order.param3)
+            mode = mode_of_command(
+                aircraft.settings.autopilot, order.param2, order.param3, hovers=aircraft.settings.hovers
+            )
             return change_mode(aircraft, mode)
+        case Command.DO_PAUSE_CONTINUE if _is_copter(aircraft):
+            # In AUTO it pauses without leaving the mode.
+            if not pilot.pause(state, on=order.param1 != 1.0):
+                return _denied("Pause denied: no mission is flown")
+            return CommandResult.ACCEPTED, _now(aircraft, "MISSION_CURRENT")
+        case Command.NAV_LAND if aircraft.settings.hovers:
+            return change_mode(aircraft, Mode.LAND)
         case Command.DO_PAUSE_CONTINUE:
             return change_mode(aircraft, Mode.AUTO if order.param1 == 1.0 else Mode.LOITER)
         case Command.NAV_RETURN_TO_LAUNCH:
@@ -196,7 +205,12 @@ def _start(aircraft: Aircraft) -> Outcome:
         if result is not CommandResult.ACCEPTED:
             return result, said
     result, more = change_mode(aircraft, Mode.AUTO)
+    aircraft.pilot.start()
     return result, said + more
+
+
+def _is_copter(aircraft: Aircraft) -> bool:
+    return aircraft.settings.hovers and aircraft.settings.autopilot is Flavour.ARDUPILOT
 
 
 def _set_home(aircraft: Aircraft, order: Order) -> Outcome:

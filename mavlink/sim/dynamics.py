@@ -16,6 +16,27 @@ JSBSIM_FASTEST_M_S = 60.0
 
 
 @dataclass(frozen=True, slots=True)
+class HoverCommand:
+    """What guidance asks of an aircraft that hovers.
+
+    Parameters
+    ----------
+    north_m_s, east_m_s
+        Velocity over the ground.
+    north_m_s2, east_m_s2
+        Acceleration known beforehand, as in a turn.
+    heading_rad
+        Where the nose is to point, clockwise from true north; None: where it does.
+    """
+
+    north_m_s: float = 0.0
+    east_m_s: float = 0.0
+    north_m_s2: float = 0.0
+    east_m_s2: float = 0.0
+    heading_rad: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class FlightCommand:
     """What guidance asks of the aircraft.
 
@@ -29,6 +50,8 @@ class FlightCommand:
         On the ground: run and lift off. Without it an aircraft on the ground brakes and stays there.
     launch_heading_rad
         Where to point the standing aircraft before the run; None: leave it.
+    hover
+        What a multirotor does instead of banking at an airspeed; None: it stays over its place.
     """
 
     bank_rad: float = 0.0
@@ -36,6 +59,7 @@ class FlightCommand:
     climb_m_s: float = 0.0
     launch: bool = False
     launch_heading_rad: float | None = None
+    hover: HoverCommand | None = None
 
 
 @dataclass(frozen=True, slots=True)

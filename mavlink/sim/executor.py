@@ -8,25 +8,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from mavlink.items import Command, Frame, MissionItem
+from mavlink.sim.craft import Craft, Path, Vertex
 from mavlink.sim.dynamics import AircraftState, FlightCommand
 from mavlink.sim.geodesy import Place
-from mavlink.sim.guidance import PolylineFollower, climb_towards_m_s
-from mavlink.sim.manoeuvres import GoTo, Landing, Loiter, Manoeuvre, Takeoff
+from mavlink.sim.manoeuvres import Manoeuvre
 from mavlink.sim.modes import Flavour
 from mavlink.sim.settings import SimSettings
 
-NAVIGATION = frozenset(
-    {
-        Command.NAV_WAYPOINT,
-        Command.NAV_LOITER_UNLIM,
-        Command.NAV_LOITER_TURNS,
-        Command.NAV_LOITER_TIME,
-        Command.NAV_RETURN_TO_LAUNCH,
-        Command.NAV_LAND,
-        Command.NAV_TAKEOFF,
-        Command.NAV_LOITER_TO_ALT,
-    }
-)
 _CONDITIONS = frozenset({Command.CONDITION_DELAY, Command.CONDITION_DISTANCE})
 _MOST_JUMPS_AT_ONCE = 100
 #: PX4 stores -1 repetitions as this.
@@ -85,14 +73,16 @@ class MissionRun:
         What happened since the caller last emptied it.
     """
 
-    def __init__(self, items: Sequence[MissionItem], settings: SimSettings, home: Place) -> None:
+    def __init__(
+        self, items: Sequence[MissionItem], settings: SimSettings, craft: Craft, home: Place
+    ) -> None:
         self._items = list(items)
         self._settings = settings
-        self._tuning = settings.tuning
+        self._craft = craft
         self._home = home
         self._first = 1 if settings.autopilot is Flavour.ARDUPILOT else 0
         self._manoeuvre: Manoeuvre | None = None
-        self._path: PolylineFollower | None = None
+        self._path: Path | None = None
         self._path_seqs: deque[int] = deque()
         self._last_vertex: Place | None = None
         self._pending: deque[MissionItem] = deque()
@@ -107,7 +97,9 @@ class MissionRun:
     @property
     def first_navigation(self) -> MissionItem | None:
         """The first navigation item of the list."""
-        return next((item for item in self._items[self._first :] if item.command in NAVIGATION), None)
+        return next(
+            (item for item in self._items[self._first :] if item.command in self._craft.navigation), None
+        )
 
     def begin(self, seq: int, state: AircraftState) -> None:
         """Fly on from an item."""
@@ -123,7 +115,7 @@ class MissionRun:
         if self._manoeuvre is not None:
             command = self._manoeuvre.command(state, airspeed_m_s)
             if self._manoeuvre.done:
-                if isinstance(self._manoeuvre, Landing):
+                if self._manoeuvre.lands:
                     self.events.append(Landed())
                 self._reached(state)
             return command
@@ -131,21 +123,21 @@ class MissionRun:
         if path is None:
             raise RuntimeError(f"mission item {self.current} has neither a path nor a manoeuvre")
         for _ in range(len(self._items)):
-            acceptance_m = self._items[self.current].param2 or self._settings.acceptance_m
-            if self._settings.autopilot is Flavour.PX4:
-                acceptance_m = self._settings.acceptance_m
-            if path.finished or not path.passed(state, acceptance_m):
+            item = self._items[self.current]
+            if path.finished or not path.passed(state, self._craft.acceptance_m(item)):
                 break
-            self._last_vertex = place_of(self._items[self.current], self._home)
+            self._last_vertex = place_of(item, self._home)
+            stop_s = self._craft.stop_s(item)
+            if stop_s > 0.0:
+                self._path = None
+                self._manoeuvre = self._craft.stop(self._placed(item, state), stop_s)
+                return self.command(state, airspeed_m_s)
             self._reached(state)
             if self._path is not path or self._manoeuvre is not None or self.finished:
                 return self.command(state, airspeed_m_s)
-        bank_rad = path.bank_rad(state)
+        command = path.command(state, airspeed_m_s)
         self.cross_track_m = path.cross_track_m
-        climb_m_s = climb_towards_m_s(
-            self._tuning, state.altitude_m, path.wanted_altitude_m, path.slope_climb_m_s
-        )
-        return FlightCommand(bank_rad, airspeed_m_s, climb_m_s)
+        return command
 
     def _reached(self, state: AircraftState) -> None:
         self.events.append(Reached(self.current))
@@ -162,7 +154,7 @@ class MissionRun:
                 self._run_pending(state)
                 self.finished = self.returning = True
                 return
-            if item.command in NAVIGATION:
+            if item.command in self._craft.navigation:
                 self.current = seq
                 self._start(item, state)
                 self._run_pending(state)
@@ -218,7 +210,6 @@ class MissionRun:
         return True
 
     def _start(self, item: MissionItem, state: AircraftState) -> None:
-        settings = self._settings
         place = self._placed(item, state)
         if item.command == Command.NAV_WAYPOINT:
             self._manoeuvre = None
@@ -230,63 +221,28 @@ class MissionRun:
         self._last_vertex = None
         match item.command:
             case Command.NAV_TAKEOFF:
-                named = place if item.x or item.y else None
-                self._manoeuvre = Takeoff(
-                    self._tuning,
-                    state,
-                    place.altitude_m,
-                    settings.climb_m_s,
-                    radius_m=settings.turn_radius_m,
-                    towards=named if settings.autopilot is Flavour.PX4 else None,
-                    pointed_at=named if settings.heading_deg is None else None,
-                )
+                self._manoeuvre = self._craft.takeoff(item, place, state)
             case Command.NAV_LAND:
-                self._manoeuvre = Landing(
-                    self._tuning,
-                    previous or state.place,
-                    place,
-                    ground_m=settings.home.altitude_m,
-                    sink_m_s=settings.sink_m_s,
-                    radius_m=settings.turn_radius_m,
-                )
+                self._manoeuvre = self._craft.land(previous or state.place, place)
             case _:
-                self._manoeuvre = self._loiter(item, place)
-
-    def _loiter(self, item: MissionItem, place: Place) -> Loiter:
-        ardupilot = self._settings.autopilot is Flavour.ARDUPILOT
-        radius_m = item.param2 if item.command == Command.NAV_LOITER_TO_ALT else item.param3
-        # Written so that NaN, which PX4 takes, means the default too.
-        if not abs(radius_m) > 1.0:
-            radius_m = -self._settings.turn_radius_m if radius_m < 0.0 else self._settings.turn_radius_m
-        aligned = item.param1 if item.command == Command.NAV_LOITER_TO_ALT else item.param2
-        # ArduPlane leaves every loiter towards the next item; PX4 where the item says so.
-        exit_towards = self._next_place(item.seq) if ardupilot or aligned == 1.0 else None
-        turns = item.param1 if item.command == Command.NAV_LOITER_TURNS else None
-        seconds = item.param1 if item.command == Command.NAV_LOITER_TIME else None
-        return Loiter(
-            self._tuning,
-            place,
-            radius_m,
-            turns=turns,
-            seconds=seconds,
-            until_altitude=item.command == Command.NAV_LOITER_TO_ALT,
-            exit_towards=exit_towards,
-        )
+                self._manoeuvre = self._craft.loiter(item, place, state, self._next_place(item.seq))
 
     def _start_path(self, seq: int, state: AircraftState) -> None:
         """The polyline from here through the waypoints that follow, to a landing place if one does."""
-        places, self._path_seqs = [], deque()
+        vertices: list[Vertex] = []
+        self._path_seqs = deque()
         for item in self._items[seq:]:
             if item.command == Command.DO_JUMP:
                 break
-            if item.command not in NAVIGATION:
+            if item.command not in self._craft.navigation:
                 continue
-            if item.command in (Command.NAV_WAYPOINT, Command.NAV_LAND):
-                places.append(self._placed(item, state))
+            passes = item.command == Command.NAV_WAYPOINT
+            if passes or (item.command == Command.NAV_LAND and self._craft.glides):
+                vertices.append(Vertex(self._placed(item, state), self._craft.acceptance_m(item)))
                 self._path_seqs.append(item.seq)
-            if item.command != Command.NAV_WAYPOINT:
+            if not passes or self._craft.stop_s(item) > 0.0:
                 break
-        self._path = PolylineFollower(self._tuning, [state.place, *places])
+        self._path = self._craft.path(state.place, vertices)
 
     def _placed(self, item: MissionItem, state: AircraftState) -> Place:
         """Where an item is; without coordinates it is where the aircraft is, without altitude as high."""
@@ -302,21 +258,6 @@ class MissionRun:
         for item in self._items[seq + 1 :]:
             if item.command == Command.NAV_RETURN_TO_LAUNCH:
                 return self._home
-            if item.command in NAVIGATION:
+            if item.command in self._craft.navigation:
                 return place_of(item, self._home)
         return None
-
-
-def return_home(state: AircraftState, settings: SimSettings, home: Place) -> Manoeuvre:
-    """ArduPlane goes home at its return altitude and circles; PX4 goes home and lands."""
-    if settings.autopilot is Flavour.PX4:
-        return Landing(
-            settings.tuning,
-            state.place,
-            home,
-            ground_m=settings.home.altitude_m,
-            sink_m_s=settings.sink_m_s,
-            radius_m=settings.turn_radius_m,
-        )
-    above = replace(home, altitude_m=home.altitude_m + settings.rtl_altitude_m)
-    return GoTo(settings.tuning, state.place, above, settings.turn_radius_m)

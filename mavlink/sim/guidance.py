@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
-from mavlink.sim.dynamics import GRAVITY_M_S2, AircraftState
+from mavlink.sim.dynamics import GRAVITY_M_S2, AircraftState, FlightCommand
 from mavlink.sim.geodesy import Place, offset_m, wrap_rad
 
 _LEAST_L1_M = 15.0
@@ -145,6 +145,14 @@ class PolylineFollower:
         else:
             north_m, east_m = b_n, b_e
         return self._pursuit.bank_rad(state, north_m, east_m)
+
+    def command(self, state: AircraftState, airspeed_m_s: float) -> FlightCommand:
+        """Bank and climb for this instant."""
+        bank_rad = self.bank_rad(state)
+        climb_m_s = climb_towards_m_s(
+            self._tuning, state.altitude_m, self.wanted_altitude_m, self.slope_climb_m_s
+        )
+        return FlightCommand(bank_rad, airspeed_m_s, climb_m_s)
 
     def _past_corner(self, state: AircraftState, beyond_m: float) -> tuple[float, float]:
         leg = self._leg + 1

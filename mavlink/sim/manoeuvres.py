@@ -24,6 +24,10 @@ class Manoeuvre(Protocol):
     """One thing to do."""
 
     @property
+    def lands(self) -> bool:
+        """Whether it ends on the ground."""
+
+    @property
     def done(self) -> bool:
         """Whether it has ended."""
 
@@ -42,6 +46,8 @@ class Takeoff:
     pointed_at
         Where the aircraft is turned to before its run; None: as it stands.
     """
+
+    lands = False
 
     def __init__(
         self,
@@ -94,6 +100,8 @@ class Loiter:
         Leave only when flying towards this place, or after one more turn.
     """
 
+    lands = False
+
     def __init__(
         self, tuning: Tuning, centre: Place, radius_m: float, *, turns: float | None = None,
         seconds: float | None = None, until_altitude: bool = False, exit_towards: Place | None = None,
@@ -137,6 +145,8 @@ class Loiter:
 class GoTo:
     """Flies straight to a place and circles there for ever."""
 
+    lands = False
+
     def __init__(self, tuning: Tuning, start: Place, place: Place, radius_m: float) -> None:
         self._tuning = tuning
         # The altitude is flown to at once, not spread over the way.
@@ -171,6 +181,8 @@ class Landing:
     sink_m_s
         Steepest sink rate of the approach.
     """
+
+    lands = True
 
     def __init__(
         self, tuning: Tuning, start: Place, place: Place, *, ground_m: float, sink_m_s: float, radius_m: float

@@ -99,6 +99,7 @@ class MissionServer:
         faults: frozenset[Fault] = frozenset(),
         max_items: int | None = None,
         sensor_command: int = 0,
+        hovers: bool = False,
         vanish_after_items: int = 3,
         vanish_for_s: float = 10.0,
     ) -> None:
@@ -107,6 +108,7 @@ class MissionServer:
         self._faults = faults
         self._max_items = max_items
         self._sensor_command = sensor_command
+        self._hovers = hovers
         self._vanish_after_items = vanish_after_items
         self._vanish_for_s = vanish_for_s
         self._stores: dict[MissionType, list[MissionItem]] = {kind: [] for kind in MissionType}
@@ -264,7 +266,7 @@ class MissionServer:
             self._upload = None
             text = status_text(4, f"Mission item {item.seq}: {refused.name}")
             return [text, self._ack(message, kind, refused)]
-        upload.items.append(as_stored(self._flavour, item, self.home))
+        upload.items.append(as_stored(self._flavour, item, self.home, hovers=self._hovers))
         upload.checksum = checksum(message, upload.checksum)
         upload.asked_s = now_s
         if self._in_place(kind):

@@ -1,6 +1,6 @@
 """The few parameters a ground station asks a vehicle for; read only.
 
-Source: MAVLink parameter protocol; names of ArduPlane 4.6 and PX4 1.16.
+Source: MAVLink parameter protocol; names of ArduPlane and ArduCopter 4.6 and PX4 1.16.
 """
 
 from __future__ import annotations
@@ -18,46 +18,13 @@ class Parameters:
     """Answers PARAM_REQUEST_READ, PARAM_REQUEST_LIST and PARAM_SET (which changes nothing and says so)."""
 
     def __init__(self, settings: SimSettings) -> None:
-        bank_deg = math.degrees(settings.bank_limit_rad)
-        if settings.autopilot is Flavour.ARDUPILOT:
-            self._values = {
-                "SYSID_THISMAV": float(settings.system_id),
-                "AIRSPEED_CRUISE": settings.airspeed_m_s,
-                "NAVL1_PERIOD": settings.tuning.l1_period_s,
-                "ROLL_LIMIT_DEG": bank_deg,
-                "RTL_ALTITUDE": settings.rtl_altitude_m,
-                "RTL_AUTOLAND": 0.0,
-                "WP_LOITER_RAD": settings.turn_radius_m,
-                "WP_RADIUS": settings.acceptance_m,
-                "FENCE_ENABLE": 1.0,
-                "FENCE_TYPE": 7.0,
-                "FENCE_ACTION": 1.0,
-                "CAM1_TYPE": 1.0,
-            }
-            self._values |= {f"RELAY{number}_FUNCTION": 1.0 for number in range(1, 7)}
-            self._values |= {f"SERVO{n}_FUNCTION": 10.0 if n == 9 else 0.0 for n in range(1, 17)}
-        else:
-            self._values = {
-                "MAV_SYS_ID": float(settings.system_id),
-                "FW_AIRSPD_TRIM": settings.airspeed_m_s,
-                "NPFG_PERIOD": settings.tuning.l1_period_s,
-                "NPFG_DAMPING": 0.7,
-                "NPFG_SW_DST_MLT": 0.32,
-                "FW_R_LIM": bank_deg,
-                "MIS_TKO_LAND_REQ": 2.0,
-                "NAV_ACC_RAD": settings.acceptance_m,
-                "NAV_LOITER_RAD": settings.turn_radius_m,
-                "RTL_RETURN_ALT": settings.rtl_altitude_m,
-                "FW_LND_ANG": 5.0,
-                "GF_ACTION": 3.0,
-                "TRIG_MODE": 4.0,
-                "COM_DISARM_PRFLT": 10.0,
-                "COM_DISARM_LAND": 2.0,
-            } | {
-                f"PWM_{group}_FUNC{output}": 296.0 + output if group == "MAIN" and output > 4 else 0.0
-                for group in ("MAIN", "AUX")
-                for output in range(1, 9)
-            }
+        ardupilot = settings.autopilot is Flavour.ARDUPILOT
+        of_the_kind = (
+            (_copter if settings.hovers else _plane)
+            if ardupilot
+            else (_px4_multirotor if settings.hovers else _px4_plane)
+        )
+        self._values = (_ardupilot if ardupilot else _px4)(settings) | of_the_kind(settings)
 
     def receive(self, message: Message) -> list[Message]:
         """Answers to one message of the parameter protocol; none for others, and none for unknown names."""
@@ -90,3 +57,81 @@ class Parameters:
                 "param_index": index,
             },
         )
+
+
+def _ardupilot(settings: SimSettings) -> dict[str, float]:
+    return (
+        {
+            "SYSID_THISMAV": float(settings.system_id),
+            "FENCE_ENABLE": 1.0,
+            "FENCE_TYPE": 7.0,
+            "FENCE_ACTION": 1.0,
+            "CAM1_TYPE": 1.0,
+        }
+        | {f"RELAY{number}_FUNCTION": 1.0 for number in range(1, 7)}
+        | {f"SERVO{n}_FUNCTION": 10.0 if n == 9 else 0.0 for n in range(1, 17)}
+    )
+
+
+def _plane(settings: SimSettings) -> dict[str, float]:
+    return {
+        "AIRSPEED_CRUISE": settings.airspeed_m_s,
+        "NAVL1_PERIOD": settings.tuning.l1_period_s,
+        "ROLL_LIMIT_DEG": math.degrees(settings.bank_limit_rad),
+        "RTL_ALTITUDE": settings.rtl_altitude_m,
+        "RTL_AUTOLAND": 0.0,
+        "WP_LOITER_RAD": settings.turn_radius_m,
+        "WP_RADIUS": settings.acceptance_m,
+    }
+
+
+def _copter(settings: SimSettings) -> dict[str, float]:
+    # Centimetres and centidegrees.
+    return {
+        "ANGLE_MAX": 100.0 * math.degrees(settings.bank_limit_rad),
+        "RTL_ALT": 100.0 * settings.rtl_altitude_m,
+        "WPNAV_RADIUS": 100.0 * settings.waypoint_radius_m,
+        "WPNAV_SPEED": 100.0 * settings.airspeed_m_s,
+        "WPNAV_SPEED_DN": 100.0 * settings.sink_m_s,
+        "WPNAV_SPEED_UP": 100.0 * settings.climb_m_s,
+    }
+
+
+def _px4(settings: SimSettings) -> dict[str, float]:
+    return {
+        "MAV_SYS_ID": float(settings.system_id),
+        "NAV_LOITER_RAD": settings.turn_radius_m,
+        "RTL_RETURN_ALT": settings.rtl_altitude_m,
+        "GF_ACTION": 3.0,
+        "TRIG_MODE": 4.0,
+        "COM_DISARM_PRFLT": 10.0,
+        "COM_DISARM_LAND": 2.0,
+    } | {
+        f"PWM_{group}_FUNC{output}": 296.0 + output if group == "MAIN" and output > 4 else 0.0
+        for group in ("MAIN", "AUX")
+        for output in range(1, 9)
+    }
+
+
+def _px4_plane(settings: SimSettings) -> dict[str, float]:
+    return {
+        "FW_AIRSPD_TRIM": settings.airspeed_m_s,
+        "NPFG_PERIOD": settings.tuning.l1_period_s,
+        "NPFG_DAMPING": 0.7,
+        "NPFG_SW_DST_MLT": 0.32,
+        "FW_R_LIM": math.degrees(settings.bank_limit_rad),
+        "MIS_TKO_LAND_REQ": 2.0,
+        "NAV_ACC_RAD": settings.acceptance_m,
+        "FW_LND_ANG": 5.0,
+    }
+
+
+def _px4_multirotor(settings: SimSettings) -> dict[str, float]:
+    return {
+        "MIS_TKO_LAND_REQ": 0.0,
+        "MPC_TILTMAX_AIR": math.degrees(settings.bank_limit_rad),
+        "MPC_XY_CRUISE": settings.airspeed_m_s,
+        "MPC_Z_VEL_MAX_DN": settings.sink_m_s,
+        "MPC_Z_VEL_MAX_UP": settings.climb_m_s,
+        "NAV_ACC_RAD": settings.waypoint_radius_m,
+    }

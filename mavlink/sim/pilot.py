@@ -8,9 +8,10 @@ from collections.abc import Sequence
 from mavlink.items import Command, MissionItem
 from mavlink.sim.acceptance import infeasible
 from mavlink.sim.dynamics import AircraftState, FlightCommand
-from mavlink.sim.executor import Do, Event, Landed, MissionRun, Said, return_home
+from mavlink.sim.executor import Do, Event, Landed, MissionRun, Said
 from mavlink.sim.geodesy import Place
-from mavlink.sim.manoeuvres import GoTo, Loiter, Manoeuvre
+from mavlink.sim.kinds import craft_of
+from mavlink.sim.manoeuvres import Manoeuvre
 from mavlink.sim.modes import Flavour, Mode
 from mavlink.sim.settings import SimSettings
 
@@ -31,6 +32,7 @@ class Pilot:
 
     def __init__(self, settings: SimSettings) -> None:
         self._settings = settings
+        self._craft = craft_of(settings)
         self.home = settings.home
         self.armed = False
         self.mode = Mode.MANUAL if settings.autopilot is Flavour.ARDUPILOT else Mode.LOITER
@@ -41,6 +43,17 @@ class Pilot:
         self._seq = self._first
         self._airspeed_m_s = settings.airspeed_m_s
         self._ground_speed_m_s: float | None = None
+        self._waits = False
+
+    @property
+    def _copter(self) -> bool:
+        """Whether it is ArduCopter, which pauses, starts and ends its missions in ways of its own."""
+        return self._settings.hovers and self._settings.autopilot is Flavour.ARDUPILOT
+
+    @property
+    def paused(self) -> bool:
+        """Whether ArduCopter has paused its mission in AUTO."""
+        return self.mode is Mode.AUTO and self._run is not None and self._manoeuvre is not None
 
     @property
     def _first(self) -> int:
@@ -67,7 +80,9 @@ class Pilot:
         if self.mode is Mode.AUTO and self._run is not None:
             seq = self._run.current
             self._run = None
-            if seq < len(items) and not infeasible(self._settings.autopilot, items):
+            if seq < len(items) and not infeasible(
+                self._settings.autopilot, items, hovers=self._settings.hovers
+            ):
                 self._fly_from(seq, state)
             else:
                 self._mission_over(state)
@@ -97,10 +112,10 @@ class Pilot:
 
     def why_not_auto(self, state: AircraftState) -> str:
         """Why the mission cannot be flown; empty when it can."""
-        reason = infeasible(self._settings.autopilot, self._items)
+        reason = infeasible(self._settings.autopilot, self._items, hovers=self._settings.hovers)
         if reason:
             return reason
-        run = MissionRun(self._items, self._settings, self.home)
+        run = MissionRun(self._items, self._settings, self._craft, self.home)
         first = run.first_navigation
         if state.on_ground and (first is None or first.command != Command.NAV_TAKEOFF):
             return "mission has no takeoff"
@@ -115,19 +130,34 @@ class Pilot:
         if mode is Mode.AUTO and (state.on_ground or self._seq >= len(self._items)):
             # Whatever is left of an earlier flight, a start from the ground begins with the take-off.
             self._seq = self._first
+        # ArduCopter in AUTO on the ground waits for the throttle or for MISSION_START.
+        self._waits = mode is Mode.AUTO and state.on_ground and self._copter
         if state.on_ground:
             return
-        settings = self._settings
-        if mode is Mode.LOITER:
-            self._manoeuvre = Loiter(settings.tuning, state.place, settings.turn_radius_m)
+        if mode in (Mode.LOITER, Mode.BRAKE):
+            self._manoeuvre = self._craft.wait(state)
         elif mode is Mode.RTL:
-            self._manoeuvre = return_home(state, settings, self.home)
+            self._manoeuvre = self._craft.come_home(state, self.home)
+        elif mode is Mode.LAND:
+            self._manoeuvre = self._craft.touch_down(state)
         elif mode is Mode.GUIDED:
-            self._manoeuvre = GoTo(settings.tuning, state.place, goto or state.place, settings.turn_radius_m)
+            self._manoeuvre = self._craft.go(state, goto) if goto else self._craft.wait(state)
+
+    def start(self) -> None:
+        """MISSION_START: what waits on the ground in AUTO waits no longer."""
+        self._waits = False
+
+    def pause(self, state: AircraftState, *, on: bool) -> bool:
+        """Stop within the mission, or go on; False where there is no mission to pause."""
+        if self.mode is not Mode.AUTO or self._run is None or state.on_ground:
+            return False
+        self._manoeuvre = (self._manoeuvre or self._craft.wait(state)) if on else None
+        return True
 
     def change_speed(self, item: MissionItem) -> None:
         """DO_CHANGE_SPEED: param 1 says air (0) or ground (1) speed, param 2 how fast; -1 changes nothing."""
-        if not item.param2 > 0.0:
+        if not item.param2 > 0.0 or (self._settings.hovers and item.param1 not in (0.0, 1.0)):
+            # Multirotors have vertical speeds for 2 and 3.
             return
         if item.param1 == 1.0:
             self._ground_speed_m_s = item.param2
@@ -139,7 +169,9 @@ class Pilot:
         if not self.armed:
             return FlightCommand()
         airspeed_m_s = self._wanted_airspeed_m_s(state)
-        if self.mode is Mode.AUTO:
+        if self.mode is Mode.AUTO and self._manoeuvre is None:
+            if self._waits:
+                return FlightCommand()
             if self._run is None:
                 self._fly_from(self._seq, state)
             if self._run is not None:
@@ -156,7 +188,7 @@ class Pilot:
         return FlightCommand() if state.on_ground else command
 
     def _fly_from(self, seq: int, state: AircraftState) -> None:
-        self._run = MissionRun(self._items, self._settings, self.home)
+        self._run = MissionRun(self._items, self._settings, self._craft, self.home)
         self._run.begin(seq, state)
         self._take_events(state)
 
@@ -182,7 +214,11 @@ class Pilot:
         if state.on_ground:
             self.mode = Mode.MANUAL if self._settings.autopilot is Flavour.ARDUPILOT else Mode.LOITER
             return
-        if self._settings.autopilot is Flavour.ARDUPILOT:
+        if self._copter:
+            # It stays in AUTO, over the place where the mission has ended.
+            self.events.append(Said(_INFO, "Mission complete, loitering"))
+            self._manoeuvre = self._craft.wait(state)
+        elif self._settings.autopilot is Flavour.ARDUPILOT:
             self.events.append(Said(_INFO, "Mission complete, changing mode to RTL"))
             self.set_mode(Mode.RTL, state)
         else:
@@ -190,6 +226,9 @@ class Pilot:
             self.set_mode(Mode.LOITER, state)
 
     def _wanted_airspeed_m_s(self, state: AircraftState) -> float:
+        if self._settings.hovers:
+            # Both kinds of speed are its speed over the ground.
+            return self._ground_speed_m_s or self._airspeed_m_s
         if self._ground_speed_m_s is None or state.on_ground:
             return self._airspeed_m_s
         along = math.atan2(state.east_m_s, state.north_m_s)

@@ -126,7 +126,9 @@ def parser() -> argparse.ArgumentParser:
     defaults = SimSettings()
     p = argparse.ArgumentParser(
         prog="swathplan sim",
-        description="A simulated fixed wing with an ArduPilot- or PX4-like autopilot on a MAVLink link.",
+        description=(
+            "A simulated fixed wing or multirotor with an ArduPilot- or PX4-like autopilot on a MAVLink link."
+        ),
     )
     p.add_argument("--url", default="udpout:127.0.0.1:14550", help="link address (default: %(default)s)")
     p.add_argument(
@@ -143,7 +145,12 @@ def parser() -> argparse.ArgumentParser:
         help="heading on the ground, degrees (default: at the take-off)",
     )
     p.add_argument("--autopilot", choices=[f.value for f in Flavour], default=Flavour.ARDUPILOT.value)
-    p.add_argument("--type", choices=["fixed_wing"], default="fixed_wing", help="the only type simulated")
+    p.add_argument(
+        "--type",
+        choices=["fixed_wing", "multirotor", "vtol"],
+        default="fixed_wing",
+        help="what flies (default: %(default)s); a vtol is refused: its transitions are not simulated",
+    )
     p.add_argument("--system-id", type=int, default=1)
     p.add_argument("--airspeed", type=float, default=20.0, metavar="M_S")
     p.add_argument(
@@ -238,7 +245,8 @@ async def _run(url: str, settings: SimSettings) -> None:
     for number in (signal.SIGINT, signal.SIGTERM):
         loop.add_signal_handler(number, stop.set)
     _say(
-        f"{settings.autopilot.value} fixed wing, {settings.flight_model} dynamics, "
+        f"{settings.autopilot.value} {settings.vehicle_type.replace('_', ' ')}, "
+        f"{settings.flight_model} dynamics, "
         f"{settings.airspeed_m_s:g} m/s, {settings.speedup:g} times real time in flight, on {url}"
     )
     await serve(url, settings, stop=stop)

@@ -15,6 +15,9 @@ from mavlink.sim.modes import Flavour
 _LEAST_BANK_LIMIT_DEG = 45.0
 _BANK_MARGIN_DEG = 15.0
 _GREATEST_BANK_DEG = 65.0
+_TILT_LIMIT_DEG = 35.0
+#: WPNAV_RADIUS of ArduCopter and NAV_ACC_RAD of PX4's multirotors.
+_WAYPOINT_RADIUS_M = 2.0
 _L1_PERIOD_S = {"kinematic": 7.0, "jsbsim": 12.0}
 
 
@@ -26,11 +29,16 @@ class SimSettings:
     ----------
     home
         Where it stands; its altitude is that of the ground, above mean sea level, flat all round.
+    vehicle_type
+        ``fixed_wing`` or ``multirotor``.
+    airspeed_m_s
+        Of a multirotor: its speed over the ground, until the mission changes it.
     turn_radius_m
-        Radius of loiters that name none, and what the bank limit must allow with a margin.
+        Radius of loiters that name none, and what the bank limit must allow with a margin; a multirotor has
+        no use for it.
     max_bank_deg
         None: 45 degrees, or 15 more than the turn radius needs at the airspeed, whichever is larger (65 at
-        most).
+        most); a multirotor's largest tilt, 35 degrees.
     wind_from_deg
         Where the steady wind comes from, clockwise from true north.
     speedup
@@ -45,7 +53,8 @@ class SimSettings:
     l1_period_s
         Period of the lateral guidance; None: 7 s, and 12 s under JSBSim, whose roll is slower.
     acceptance_m
-        How far before a waypoint it counts as reached, where the item does not say; 0: when abeam of it.
+        How far before a waypoint it counts as reached, where the item does not say; 0: when abeam of it, and
+        2 m for a multirotor.
     sensor_relay, sensor_servo, sensor_actuator
         The output that switches the sensor; None: any relay or servo does.
     sensor_command
@@ -99,8 +108,13 @@ class SimSettings:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "autopilot", Flavour(self.autopilot))
-        if self.vehicle_type != "fixed_wing":
-            raise ValueError(f"only a fixed_wing is simulated, not {self.vehicle_type!r}")
+        if self.vehicle_type == "vtol":
+            raise ValueError(
+                "no vtol is simulated: its transitions between rotors and wings are not; take fixed_wing or "
+                "multirotor, or a real autopilot's simulator (docs/simulators.md)"
+            )
+        if self.vehicle_type not in ("fixed_wing", "multirotor"):
+            raise ValueError(f"fixed_wing and multirotor are simulated, not {self.vehicle_type!r}")
         if self.dynamics not in ("auto", "kinematic", "jsbsim"):
             raise ValueError(f"dynamics is auto, kinematic or jsbsim, not {self.dynamics!r}")
         for name in ("airspeed_m_s", "turn_radius_m", "climb_m_s", "sink_m_s", "speedup"):
@@ -109,6 +123,8 @@ class SimSettings:
                 raise ValueError(f"{name} must be a positive number, not {value!r}")
         if self.l1_period_s is not None and not self.l1_period_s > 0.0:
             raise ValueError(f"l1_period_s must be a positive number, not {self.l1_period_s!r}")
+        if self.dynamics == "jsbsim" and self.hovers:
+            raise ValueError("JSBSim's c172p is a fixed wing; use the kinematic model for a multirotor")
         if self.dynamics == "jsbsim" and not self._suits_jsbsim:
             raise ValueError(
                 f"JSBSim's c172p flies {JSBSIM_SLOWEST_M_S:.0f} to {JSBSIM_FASTEST_M_S:.0f} m/s, "
@@ -120,13 +136,25 @@ class SimSettings:
             raise ValueError(
                 f"home latitude must be within 89 degrees of the equator, not {self.home.lat_deg}"
             )
+        if self.max_bank_deg is not None and not 5.0 <= self.max_bank_deg <= 75.0:
+            raise ValueError(f"max_bank_deg is 5 to 75 degrees, not {self.max_bank_deg!r}")
         needed_deg = math.degrees(math.atan(self.airspeed_m_s**2 / (GRAVITY_M_S2 * self.turn_radius_m)))
-        if needed_deg > _GREATEST_BANK_DEG - _BANK_MARGIN_DEG:
+        if not self.hovers and needed_deg > _GREATEST_BANK_DEG - _BANK_MARGIN_DEG:
             raise ValueError(
                 f"a turn of {self.turn_radius_m} m at {self.airspeed_m_s} m/s needs "
                 f"{needed_deg:.0f} degrees of bank; the limit is {_GREATEST_BANK_DEG - _BANK_MARGIN_DEG:.0f}"
             )
         parse_faults(self.faults)
+
+    @property
+    def hovers(self) -> bool:
+        """Whether it is a multirotor."""
+        return self.vehicle_type == "multirotor"
+
+    @property
+    def waypoint_radius_m(self) -> float:
+        """A multirotor's acceptance distance where the item names none."""
+        return self.acceptance_m or _WAYPOINT_RADIUS_M
 
     @property
     def _suits_jsbsim(self) -> bool:
@@ -137,6 +165,8 @@ class SimSettings:
         """``jsbsim`` or ``kinematic``, as ``auto`` decides."""
         if self.dynamics != "auto":
             return self.dynamics
+        if self.hovers:
+            return "kinematic"
         return "jsbsim" if self._suits_jsbsim and find_spec("jsbsim") is not None else "kinematic"
 
     @property
@@ -144,6 +174,8 @@ class SimSettings:
         """Largest bank."""
         if self.max_bank_deg is not None:
             return math.radians(self.max_bank_deg)
+        if self.hovers:
+            return math.radians(_TILT_LIMIT_DEG)
         needed_rad = math.atan(self.airspeed_m_s**2 / (GRAVITY_M_S2 * self.turn_radius_m))
         return max(math.radians(_LEAST_BANK_LIMIT_DEG), needed_rad + math.radians(_BANK_MARGIN_DEG))
 

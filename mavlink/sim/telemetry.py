@@ -63,6 +63,7 @@ class Snapshot:
     current: int
     total: int
     mission_complete: bool
+    paused: bool = False
     list_ids: tuple[int, ...] = (0, 0, 0)
 
 
@@ -118,11 +119,13 @@ def _heartbeat(snapshot: Snapshot, settings: SimSettings) -> Message:
     return Message(
         "HEARTBEAT",
         {
-            "type": 1,
+            "type": 2 if settings.hovers else 1,
             "autopilot": 3 if ardupilot else 12,
             "base_mode": base,
             "custom_mode": (
-                _INITIALISING if booting and ardupilot else custom_mode(settings.autopilot, snapshot.mode)
+                _INITIALISING
+                if booting and ardupilot and not settings.hovers
+                else custom_mode(settings.autopilot, snapshot.mode, hovers=settings.hovers)
             ),
             "system_status": _BOOTING[settings.autopilot] if booting else 4 if snapshot.armed else 3,
             "mavlink_version": 3,
@@ -242,7 +245,7 @@ def _mission_current(snapshot: Snapshot, settings: SimSettings) -> Message:
         mission_state = 1
     elif snapshot.mission_complete:
         mission_state = 5
-    elif snapshot.armed and snapshot.mode is Mode.AUTO:
+    elif snapshot.armed and snapshot.mode is Mode.AUTO and not snapshot.paused:
         mission_state = 3
     else:
         mission_state = 2 if snapshot.state.on_ground else 4

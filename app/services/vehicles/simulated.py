@@ -39,7 +39,7 @@ _WORDS = {
     "sensor_reports": ("yes", "no"),
     "fault": tuple(fault.value for fault in Fault),
 }
-FORM = "sim:?speedup=20&home=33.48,-117.75&autopilot=px4&airspeed=20&turn_radius=100&wind=8,270"
+FORM = "sim:?speedup=20&home=33.48,-117.75&autopilot=px4&type=multirotor&airspeed=12&wind=8,270"
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,6 +98,8 @@ def parse_simulated(url: str) -> SimulatedAircraft:
         elif name in _NUMBERS:
             _floats(name, text, (1,))
             arguments.append(f"{_NUMBERS[name]}={text}")
+        elif (name, text) == ("type", "vtol"):
+            _refuse("no vtol is simulated: its transitions between rotors and wings are not")
         elif name in _WORDS:
             if text not in _WORDS[name]:
                 _refuse(f"{name}={text}: {' or '.join(_WORDS[name])} is meant")

@@ -390,8 +390,12 @@ def test_energy_is_used_in_flight() -> None:
 
 def test_refused_settings_say_why() -> None:
     """Other vehicles, impossible turns, wind too strong and models out of their speeds are refused."""
+    with pytest.raises(ValueError, match="transitions"):
+        SimSettings(vehicle_type="vtol")
     with pytest.raises(ValueError, match="fixed_wing"):
-        SimSettings(vehicle_type="multirotor")
+        SimSettings(vehicle_type="balloon")
+    with pytest.raises(ValueError, match="multirotor"):
+        SimSettings(vehicle_type="multirotor", dynamics="jsbsim")
     with pytest.raises(ValueError, match="degrees of bank"):
         SimSettings(airspeed_m_s=50.0, turn_radius_m=100.0)
     with pytest.raises(ValueError, match="wind"):

@@ -157,11 +157,12 @@ def test_options_become_settings() -> None:
         (["--home", "200,0,0"], "latitude"),
         (["--home", "here"], "home"),
         (["--wind", "8"], "speed,from"),
-        (["--type", "multirotor"], "fixed_wing"),
+        (["--type", "vtol"], "transitions"),
         (["--fault", "nonsense"], "no_final_ack"),
         (["--airspeed", "60", "--turn-radius", "100"], "bank"),
         (["--dynamics", "jsbsim"], "c172p"),
         (["--speedup", "0"], "speedup"),
+        (["--url", "carrier-pigeon:1"], "carrier-pigeon"),
     ],
 )
 def test_bad_usage_exits_2_and_says_why(
@@ -175,6 +176,6 @@ def test_bad_usage_exits_2_and_says_why(
 
 
 def test_a_link_that_cannot_be_opened_exits_1(capsys: pytest.CaptureFixture[str]) -> None:
-    """No such address: exit code 1 and the reason, no traceback."""
-    assert main(["--url", "carrier-pigeon:1"]) == 1
-    assert "carrier-pigeon" in capsys.readouterr().err
+    """A port that is not to be had: exit code 1 and the reason, no traceback."""
+    assert main(["--url", "tcp:127.0.0.1:1"]) == 1
+    assert "tcp:127.0.0.1:1" in capsys.readouterr().err
