@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from dataclasses import dataclass
 
 import structlog
@@ -68,25 +69,28 @@ class FlightRecorder:
         self._landed_looks = 0
         self._thinner = Thinner(interval_s)
         self.flight_id: str | None = None
+        # A link that is lost ends the flight while a look at it may be waiting for the database.
+        self._turn = asyncio.Lock()
 
     async def look(self, client: VehicleClient, plan: HeldPlan | None) -> None:
         """Begin, go on with or end a flight, as the vehicle's state says; call about once a second.
 
         A plan uploaded in flight ends one flight and begins another: each is judged by the plan it followed.
         """
-        state = client.state
-        if self.flight_id is None:
-            if state.connected and is_flying(state):
+        async with self._turn:
+            state = client.state
+            if self.flight_id is None:
+                if client.failure is None and state.connected and is_flying(state):
+                    await self._begin(client, plan)
+                return
+            await self._save()
+            if client.failure is not None:
+                await self._end(client, "interrupted")
+            elif state.connected and self._landed(state):
+                await self._end(client, "ended")
+            elif state.connected and plan is not None and plan != self._plan:
+                await self._end(client, "ended")
                 await self._begin(client, plan)
-            return
-        await self._save()
-        if client.failure is not None:
-            await self.end(client, "interrupted")
-        elif state.connected and self._landed(state):
-            await self.end(client, "ended")
-        elif state.connected and plan is not None and plan != self._plan:
-            await self.end(client, "ended")
-            await self._begin(client, plan)
 
     def _landed(self, state: VehicleState) -> bool:
         """Whether a flight under way is over; one that does not say whether it has landed ends disarmed."""
@@ -123,6 +127,10 @@ class FlightRecorder:
 
     async def end(self, client: VehicleClient | None, state: FlightState) -> None:
         """Close the flight, if there is one."""
+        async with self._turn:
+            await self._end(client, state)
+
+    async def _end(self, client: VehicleClient | None, state: FlightState) -> None:
         if self.flight_id is None:
             return
         await self._save()

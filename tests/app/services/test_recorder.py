@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import AsyncIterator
+import asyncio
+from collections.abc import AsyncIterator, Sequence
 from dataclasses import replace
 
 import pytest
 
 from app.services.errors import ServiceError
+from app.services.records import TrackSample
 from app.services.store.database import Database
 from app.services.store.flights import FlightStore
 from app.services.vehicles.recorder import LANDED_LOOKS, FlightRecorder, HeldPlan, is_flying
@@ -175,3 +177,70 @@ async def test_a_flight_that_cannot_be_stored_is_tried_again(
     assert client.recorders == []
     await recorder.look(client, PLAN)
     assert recorder.flight_id is not None
+
+
+class SlowStore(FlightStore):
+    """A database that is busy with something else when it is first asked to write."""
+
+    wait_s = 0.1
+
+    async def _turn(self) -> None:
+        wait_s, self.wait_s = self.wait_s, 0.0
+        await asyncio.sleep(wait_s)
+
+    async def begin(
+        self,
+        vehicle_id: str,
+        vehicle_name: str,
+        plan_id: str | None,
+        plan_vehicle: str | None,
+        payload: str | None = None,
+    ) -> str:
+        await self._turn()
+        return await super().begin(vehicle_id, vehicle_name, plan_id, plan_vehicle, payload)
+
+    async def add(self, flight_id: str, samples: Sequence[TrackSample]) -> None:
+        await self._turn()
+        await super().add(flight_id, samples)
+
+
+@pytest.fixture
+async def slow(settings: Settings) -> AsyncIterator[SlowStore]:
+    """The same, slower."""
+    database = Database(settings.database)
+    await database.open()
+    yield SlowStore(database)
+    await database.close()
+
+
+async def test_a_link_lost_while_the_track_is_saved_loses_none_of_it(slow: SlowStore) -> None:
+    """The flight ends after what is being saved has been: places in order, switches with their flight."""
+    recorder, client = FlightRecorder(slow, "vehicle", "uav", 0.0), Client()
+    client.told = FLIGHT
+    await recorder.look(client, PLAN)
+    flight_id = recorder.flight_id
+    assert flight_id is not None
+    client.hear(0)
+    client.recorders[0].take(received("RELAY_STATUS", time_boot_ms=500, on=0, present=0xFF), FLIGHT)
+    slow.wait_s = 0.1
+    looking = asyncio.create_task(recorder.look(client, PLAN))
+    await asyncio.sleep(0)
+    client.hear(1)
+    await asyncio.gather(looking, recorder.end(client, "interrupted"))
+    assert [sample.time_s for sample in await slow.track(flight_id)] == [0.0, 1.0]
+    assert [event.kind for event in await slow.events(flight_id)] == ["off", "on"]
+    assert (await slow.get(flight_id)).state == "interrupted"
+
+
+async def test_a_flight_that_begins_as_its_link_is_lost_is_closed(slow: SlowStore) -> None:
+    """No flight is left open that nothing more is heard of, and none begins on a link that has failed."""
+    recorder, client = FlightRecorder(slow, "vehicle", "uav", 0.0), Client()
+    client.told = FLIGHT
+    looking = asyncio.create_task(recorder.look(client, PLAN))
+    await asyncio.sleep(0)
+    client.ended = "reset by peer"
+    await asyncio.gather(looking, recorder.end(client, "interrupted"))
+    assert (recorder.flight_id, client.recorders) == (None, [])
+    await recorder.look(client, PLAN)
+    assert recorder.flight_id is None
+    assert [flight.state for flight in await slow.newest(9, 0, None)] == ["interrupted"]
