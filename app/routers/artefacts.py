@@ -9,6 +9,7 @@ from fastapi import APIRouter, Query, Response
 
 from app.deps import PlanningDep
 from app.problems import responses
+from app.routers.streams import page_answer
 from app.services.missions import AutopilotName, MissionChoice, mission_bytes, plan_of
 from app.services.report import write_report
 
@@ -98,5 +99,4 @@ async def report(plan_id: str, planning: PlanningDep) -> Response:
     record = await planning.get(plan_id)
     plan_text, scenario_text = await planning.plan_text(plan_id), await planning.scenario_text(plan_id)
     page = await asyncio.to_thread(write_report, record, plan_text, scenario_text)
-    policy = "default-src 'none'; style-src 'unsafe-inline'; frame-ancestors 'self'"
-    return Response(page, media_type="text/html", headers={"Content-Security-Policy": policy})
+    return page_answer(page)

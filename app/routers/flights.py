@@ -9,6 +9,7 @@ from fastapi.responses import HTMLResponse
 
 from app.deps import FleetDep, FlightsDep, PlanningDep, SettingsDep
 from app.problems import responses
+from app.routers.streams import page_answer
 from app.schemas import PlanOut
 from app.schemas_vehicles import FlightList, FlightOut
 from app.services.documents import write_json
@@ -80,7 +81,7 @@ async def coverage(flight_id: str, flights: FlightsDep) -> Response:
 )
 async def report(flight_id: str, flights: FlightsDep) -> HTMLResponse:
     """What was flown and seen: regions, missed triggers, cross-track errors, one page without scripts."""
-    return HTMLResponse(await flights.report(flight_id))
+    return page_answer(await flights.report(flight_id))
 
 
 @router.post(

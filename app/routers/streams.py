@@ -1,4 +1,4 @@
-"""Server-sent events that end in good order when the service does, and files that may still grow."""
+"""Answers of a kind: events that end when the service does, files that may still grow, reports."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from collections.abc import AsyncGenerator, AsyncIterator, Iterator
 from pathlib import Path
 
 import anyio
-from fastapi.responses import StreamingResponse
+from fastapi.responses import HTMLResponse, StreamingResponse
 from sse_starlette import EventSourceResponse, ServerSentEvent
 
 PING_S = 15
@@ -31,6 +31,12 @@ def file_stream(path: Path, media_type: str) -> StreamingResponse:
 
     headers = {"Content-Length": str(size), "Content-Disposition": f'attachment; filename="{path.name}"'}
     return StreamingResponse(chunks(), media_type=media_type, headers=headers)
+
+
+def page_answer(page: str) -> HTMLResponse:
+    """A report, in which nothing runs and which fetches nothing."""
+    policy = "default-src 'none'; style-src 'unsafe-inline'; frame-ancestors 'self'"
+    return HTMLResponse(page, headers={"Content-Security-Policy": policy})
 
 
 def event_stream(events: AsyncGenerator[ServerSentEvent, None]) -> EventSourceResponse:

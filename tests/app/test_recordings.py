@@ -73,13 +73,13 @@ async def test_a_flight_is_recorded_and_flown_again_from_its_recording(
 
 
 async def test_recordings_that_are_not_there(client: httpx.AsyncClient, tmp_path: Path) -> None:
-    """Unknown vehicles, names and ways out of the folder are a 404; unknown files to play a 409."""
+    """Unknown vehicles, names and ways out of the folder are a 404; unknown recordings a 409, none a 422."""
     vehicle = await connected(client)
     check_problem(await client.get(VEHICLES + "/nobody/logs"), 404)
     check_problem(await client.get(vehicle + "/logs/none.tlog"), 404)
     check_problem(await client.get(vehicle + "/logs/..%2F..%2Fplans.db"), 404)
     check_problem(await client.post(VEHICLES, json={"name": "x", "url": "replay:/no.tlog"}), 409)
-    check_problem(await client.post(VEHICLES, json={"name": "x", "url": "replay:"}), 409)
+    check_problem(await client.post(VEHICLES, json={"name": "x", "url": "replay:"}), 422, "link-address")
     odd = {"name": "x", "url": "replay:/no.tlog?plan=p&payload=laser"}
     check_problem(await client.post(VEHICLES, json=odd), 422, "payload")
 

@@ -87,6 +87,7 @@ async def test_a_whole_flight_leaves_nothing_to_fly_again_for(flown: Flown) -> N
     assert "nothing is left" in refused.json()["detail"]
     page = await flown.client.get(place + "/report.html")
     assert "Every region was seen" in page.text
+    assert "default-src 'none'" in page.headers["content-security-policy"]
 
 
 async def test_a_missed_collect_is_named_and_flown_again(flown: Flown) -> None:
