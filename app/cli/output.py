@@ -75,8 +75,12 @@ def emit_bytes(content: bytes, output: str = "-") -> None:
 def require_writable(output: str) -> None:
     """End before the work is done rather than after it when its result has nowhere to go."""
     folder = Path(output).parent
-    if output != "-" and not folder.is_dir():
+    if output == "-":
+        return
+    if not folder.is_dir():
         raise CommandError(f"{output} cannot be written: there is no folder {folder}")
+    if Path(output).is_dir():
+        raise CommandError(f"{output} cannot be written: it is a folder")
 
 
 def emit_json(value: Any, output: str = "-") -> None:

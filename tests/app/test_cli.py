@@ -276,6 +276,33 @@ def test_demo_flies_what_it_planned(swathplan: Command, scenario_file: Path) -> 
     assert min(told["seen"].values()) > 0.99
 
 
+@pytest.mark.parametrize("autopilot", ["ardupilot", "px4"])
+def test_demo_flies_a_multirotor_where_the_plan_has_one(
+    swathplan: Command, scenario_file: Path, autopilot: str
+) -> None:
+    """What is simulated is the plan's vehicle: lines within a metre, all of the regions seen."""
+    scenario = json.loads(scenario_file.read_text())
+    scenario["vehicles"][0] |= {"type": "multirotor", "autopilot": autopilot, "min_turn_radius_m": 60}
+    scenario_file.write_text(json.dumps(scenario))
+    ended = swathplan("demo", str(scenario_file), "--speedup", "300", "--json")
+    assert ended.code == 0, ended.err
+    told = json.loads(ended.out)
+    assert told["violations"] == []
+    assert told["read_back_equal"]
+    assert told["cross_track_max_m"] < 1.5
+    assert min(told["seen"].values()) > 0.9999
+
+
+def test_demo_says_why_it_flies_no_vtol(swathplan: Command, scenario_file: Path) -> None:
+    """Exit code 2 and the reason."""
+    scenario = json.loads(scenario_file.read_text())
+    scenario["vehicles"][0]["type"] = "vtol"
+    scenario_file.write_text(json.dumps(scenario))
+    ended = swathplan("demo", str(scenario_file))
+    assert ended.code == 2
+    assert "no vtol is simulated" in ended.err
+
+
 @pytest.mark.parametrize(
     ("arguments", "told"),
     [
@@ -318,8 +345,9 @@ def test_wrong_usage_is_told_as_json_where_json_is_asked_for(
 def test_a_result_with_nowhere_to_go_is_said_before_planning(
     swathplan: Command, scenario_file: Path, tmp_path: Path
 ) -> None:
-    """A folder that is not there ends the command before anything is planned."""
-    ended = swathplan("plan", str(scenario_file), "-o", str(tmp_path / "no" / "plan"))
-    assert ended.code == 1
-    assert "no folder" in ended.err
+    """A folder that is not there, or is given for the file, ends the command before anything is planned."""
+    for place, reason in ((tmp_path / "no" / "plan", "no folder"), (tmp_path, "it is a folder")):
+        ended = swathplan("plan", str(scenario_file), "-o", str(place))
+        assert ended.code == 1
+        assert reason in ended.err
     assert "%" not in ended.err
