@@ -3,9 +3,9 @@
 A *box* of passes is float64 (5,): family, theta, alpha, eta, half_eta; its passes have headings
 ``theta + x·alpha`` and offsets ``eta + y·half_eta``, x and y from −1 to 1.
 
-A *family* of passes is float64 (10,): kind (below), side (1 looks right, −1 left), near edge, swath, half an
-aperture, settling run, east and north of the middle of its region, how many strips it is one of, and how many
-of these may be more than the fewest that see the region.
+A *family* of passes is float64 (11,): kind (below), side (1 looks right, −1 left), near edge, swath, half an
+aperture, settling run, east and north of the middle of its region, how many strips it is one of, how many of
+these may be more than the fewest that see the region, and which of them it is, counted from the line's side.
 
 A *cell* is what is known of a box, float64 (``WIDTH``,): entry, exit and inner cost of its middle pass, how
 they change with x and y, and by how much at most that change differs anywhere in the box.
@@ -21,9 +21,9 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 
-#: What a pass of a family sees: the whole region; of several passes, the strip furthest on the side the line
-#: is on, or furthest on the other side; of several each as long as the whole region, the first of these.
-WHOLE, NEAR_STRIP, FAR_STRIP, NEAR_LONG = 0.0, 1.0, 2.0, 3.0
+#: What a pass of a family sees: the whole region; of two passes each as long as the whole region, the strip
+#: on the side of its line; a strip, flown as far as the region reaches in it.
+WHOLE, LONG, STRIP = 0.0, 1.0, 2.0
 ROUNDING_M = 1e-6
 
 #: Heading, half the headings, 1 where the box holds a pass at all; the middle pass's inner cost, what that
@@ -90,22 +90,23 @@ def _furthest(hull: Floats, angle: float) -> int:
 
 
 @njit(cache=True)
-def extremes(x: Floats, y: Floats, least: float) -> tuple[float, float, float, float]:
-    """The points of a closed ring furthest back and furthest ahead in x whose y is ``least`` or more.
+def extremes(x: Floats, y: Floats, least: float, most: float) -> tuple[float, float, float, float]:
+    """The points of a closed ring furthest back and furthest ahead in x whose y lies within bounds.
 
     Their x and y; inf and −inf if there are none.
     """
     low, low_y, high, high_y = np.inf, 0.0, -np.inf, 0.0
     for k in range(len(x)):
         m = k + 1 if k + 1 < len(x) else 0
-        for crossing in range(2):
+        for which in range(3):
             at_x, at_y = x[k], y[k]
-            if crossing == 0 and y[k] < least:
-                continue
-            if crossing == 1:
-                if (y[k] - least) * (y[m] - least) >= 0.0:
+            if which > 0:
+                level = least if which == 1 else most
+                if (y[k] - level) * (y[m] - level) >= 0.0:
                     continue
-                at_x, at_y = x[k] + (x[m] - x[k]) * (least - y[k]) / (y[m] - y[k]), least
+                at_x, at_y = x[k] + (x[m] - x[k]) * (level - y[k]) / (y[m] - y[k]), level
+            if not least <= at_y <= most:
+                continue
             if at_x < low:
                 low, low_y = at_x, at_y
             if at_x > high:
@@ -118,11 +119,11 @@ def cell(ring: Floats, hull: Floats, family: Floats, box: Floats) -> Floats:
     """What is known of a box of passes of a family.
 
     ``ring`` and ``hull`` are the region's, (V, 2), counter-clockwise and relative to its middle. An offset η
-    lays the line η times what its strips have to spare, or half of that, beyond where it would just see the
-    edge.
+    lays the outermost of n strips beyond the region's edge by η times what the strips have to spare, or half
+    of that; what is left to spare is shared by the overlaps of neighbours.
     """
     kind, side, near, swath, half, settle = family[0], family[1], family[2], family[3], family[4], family[5]
-    strips, fewest = family[8], family[8] - family[9]
+    strips, fewest, index = family[8], family[8] - family[9], family[10]
     theta, alpha, eta, half_eta = box[1], box[2], box[3], box[4]
     out = np.zeros(WIDTH)
     # Turning within the box moves no point of the region further.
@@ -136,49 +137,39 @@ def cell(ring: Floats, hull: Floats, family: Floats, box: Floats) -> Floats:
     across = y_max - y_min
     if across - 2.0 * margin > strips * swath or across + 2.0 * margin < (fewest - 1.0) * swath - ROUNDING_M:
         return out
-    loose = 0.0
     spare = strips * swath - across
     spare_gain, spare_jump, spare_dev = fro - to, to_jump + fro_jump, alpha * (to_far + fro_far)
-    if kind in (NEAR_STRIP, FAR_STRIP):
-        # Up to half of what is to spare lies beyond the region's edge.
-        spare, spare_gain = 0.5 * spare, 0.5 * spare_gain
-        spare_jump, spare_dev = 0.5 * spare_jump, 0.5 * spare_dev
+    # The line lies off the region's edge by so many swaths and this share of the spare, which goes with η.
+    share, by_eta = eta, 1.0
+    if kind == STRIP:
+        by_eta = 0.5 - index / (strips - 1.0)
+        share = index / (strips - 1.0) + eta * by_eta
+    line, line_y = y_max + near - index * swath + share * spare, by_eta * spare
+    line_gain = (1.0 - share) * to + share * fro
+    line_jump = (1.0 - share) * to_jump + share * fro_jump
+    # The line moves by its own change with the heading and, less evenly, by what the offset adds.
+    line_dev = alpha * max(to_far, fro_far) + half_eta * abs(by_eta) * (abs(spare_gain) + spare_dev)
+    line_jump += half_eta * abs(by_eta) * spare_jump
+    line_reach = alpha * (abs(line_gain) + line_dev + line_jump) + half_eta * abs(line_y)
+    loose = 0.0
+    if kind == STRIP:
         # What the strip holds with every pass of the box: the points of the region furthest back and ahead
         # there must be seen, wherever else the pass goes.
         x = math.cos(theta) * ring[:, 0] + math.sin(theta) * ring[:, 1]
         y = side * (math.cos(theta) * ring[:, 1] - math.sin(theta) * ring[:, 0])
-        if kind == FAR_STRIP:
-            y = -y
-        widest = spare + alpha * (abs(spare_gain) + spare_jump + spare_dev)
-        seen = swath - min(eta + half_eta, 1.0) * max(widest, 0.0)
-        x_min, behind, x_max, ahead = extremes(x, y, y.max() - seen + 2.0 * margin)
-        if x_min > x_max:
-            # At the least one of the vertices that are outermost at some heading.
-            for k in range(len(x)):
-                if y[k] >= y.max() - 2.0 * margin - ROUNDING_M:
-                    x_min, x_max = min(x_min, x[k]), max(x_max, x[k])
+        low = line - near - swath + line_reach + margin if index < strips - 1.0 else -np.inf
+        high = line - near - line_reach - margin if index > 0.0 else np.inf
+        from_x, from_y, to_x, to_y = extremes(x, y, low, high)
+        if from_x > to_x:
+            # Somewhere it holds something.
             loose = margin + 0.5 * (x_max - x_min)
-            x_min = 0.5 * (x_min + x_max)
-            x_max, ahead, behind = x_min, 0.0, 0.0
-        flip = side if kind == NEAR_STRIP else -side
-        ahead, behind = flip * ahead, flip * behind
-        ahead_far, behind_far = math.hypot(x_max, ahead), math.hypot(x_min, behind)
-        ahead_jump, behind_jump = 0.0, 0.0
+            from_x, from_y = 0.5 * (x_min + x_max), 0.0
+            to_x, to_y = from_x, 0.0
+        x_min, behind, behind_jump, behind_far = from_x, side * from_y, 0.0, math.hypot(from_x, from_y)
+        x_max, ahead, ahead_jump, ahead_far = to_x, side * to_y, 0.0, math.hypot(to_x, to_y)
     out[INNER_GAIN] = alpha * (ahead - behind)
-    out[INNER_DEV], out[INNER_JUMP] = (
-        alpha * alpha * (ahead_far + behind_far),
-        alpha * (ahead_jump + behind_jump),
-    )
-    if kind == FAR_STRIP:
-        line, line_y = y_min + swath + near - eta * spare, -spare
-        line_gain, line_jump = fro - eta * spare_gain, fro_jump + eta * spare_jump
-    else:
-        line, line_y = y_max + near + eta * spare, spare
-        line_gain, line_jump = to + eta * spare_gain, to_jump + eta * spare_jump
-    # The line moves by its own change with the heading and, less evenly, by what the offset adds.
-    line_dev = alpha * max(to_far, fro_far) + half_eta * (abs(spare_gain) + spare_dev)
-    line_jump += half_eta * spare_jump
-    line_reach = alpha * (abs(line_gain) + line_dev + line_jump) + half_eta * abs(spare)
+    out[INNER_DEV] = alpha * alpha * (ahead_far + behind_far)
+    out[INNER_JUMP] = alpha * (ahead_jump + behind_jump)
     line *= side
     line_y *= side
     line_gain *= side
@@ -200,13 +191,13 @@ def cell(ring: Floats, hull: Floats, family: Floats, box: Floats) -> Floats:
         out[end + X_DEV] = alpha * dev
         out[end + X_JUMP] = alpha * math.hypot(jump, line_jump)
         out[end + REACH] = (
-            alpha * (math.hypot(change_x, change_y) + dev) + out[end + X_JUMP] + half_eta * abs(spare)
+            alpha * (math.hypot(change_x, change_y) + dev) + out[end + X_JUMP] + half_eta * abs(line_y)
         )
     out[THETA], out[ALPHA], out[HOLDS], out[LOOSE] = theta, alpha, 1.0, loose
     out[COS], out[SIN] = cos, sin
     out[INNER] = x_max - x_min + 2.0 * half + settle
     out[Y_E], out[Y_N] = -half_eta * sin * line_y, half_eta * cos * line_y
-    out[Y_DEV] = half_eta * alpha * (abs(spare_gain) + spare_jump + spare_dev + abs(spare))
+    out[Y_DEV] = half_eta * alpha * abs(by_eta) * (abs(spare_gain) + spare_jump + spare_dev + abs(spare))
     return out
 
 

@@ -35,14 +35,15 @@ class Node:
     ring, hull
         The region's and its convex hull's, (V, 2), counter-clockwise, relative to ``middle``.
     families
-        See ``bound_cells_kernels``, (F, 10).
+        See ``bound_cells_kernels``, (F, 11).
     group
-        Of each family: two passes of one region are of families of one group, int64 (F,).
+        Of each family: the passes of one region are of families of one group, int64 (F,).
     approach_rad
         The headings allowed; None for any.
     strip
-        0 where the region asks for one pass; 1 or 2 for the outermost strips of two or more, to the left and
-        to the right of the northward of both directions they are flown in.
+        0 where the region asks for one pass. Of several, counted to the right from the left of the northward
+        of both directions they are flown in: 1 for the first strip, 2 for the last, 2 + k for the one k after
+        the first.
     """
 
     region: int
@@ -68,55 +69,61 @@ class Node:
             (family, theta, alpha, 0.5, 0.5)
             for family in range(len(self.families))
             for theta, alpha in ways
-            if self.strip == 0 or self._sees(family, theta) == self.strip
+            if self._sees(family, theta)
         ]
         return np.array(rows, dtype=np.float64).reshape(-1, 5)
 
-    def _sees(self, family: int, theta: float) -> int:
-        """Which strip a pass of a family sees. A strip is on the side of its line, or on the other."""
+    def _sees(self, family: int, theta: float) -> bool:
+        """Whether a pass of a family, flown that way, sees the strip; of several, one pass sees the first."""
         kind, side = self.families[family, :2]
+        if kind == kernels.WHOLE:
+            return True
+        strips, _, index = self.families[family, 8:]
         northward = theta % (2.0 * math.pi) < math.pi - 1e-9
-        line_is_left = (side > 0.0) == northward
-        return 1 if line_is_left == (kind != kernels.FAR_STRIP) else 2
+        from_left = index if (side > 0.0) == northward else strips - 1.0 - index
+        return bool(from_left == {0: 0.0, 1: 0.0, 2: strips - 1.0}.get(self.strip, self.strip - 2.0)) and (
+            self.strip < 3 or from_left < strips - 1.0
+        )
 
 
-def nodes(sides: Sequence[Side], settle_m: float, region_index: int) -> list[Node]:
-    """The passes one region, part of one or visit to one asks for."""
+def nodes(sides: Sequence[Side], settle_m: float, region_index: int, most: int = 8) -> list[Node]:
+    """The passes one region, part of one or visit to one asks for; of many strips no more than ``most``."""
     region, sensor, height_m = sides[0].region, sides[0].sensor, sides[0].height_m
     ring = _ring(region.area)
     middle = 0.5 * (ring.min(axis=0) + ring.max(axis=0))
     ring = ring - middle
     around = _ring(shapely.convex_hull(shapely.Polygon(ring)))
     swath_m = sensor.swath_m(height_m)
-    extras = {side.extra for side in sides if isinstance(side, Sweep)}
+    extras = sorted({side.extra for side in sides if isinstance(side, Sweep)})
+    fewest = max(math.ceil((_narrowest_m(around) - ROUNDING_M) / swath_m), 1)
     widest = math.ceil(2.0 * float(np.hypot(*around.T).max()) / swath_m)
-    # Kind, how many strips, how many of them beyond the fewest, group.
-    kinds: list[tuple[float, float, float, int]] = []
-    if any(isinstance(side, Neighbourhood) and side.turns == 0 for side in sides) or (
-        0 in extras and _narrowest_m(around) <= swath_m + ROUNDING_M
-    ):
-        kinds.append((kernels.WHOLE, 1.0, ANY_WIDTH, 0))
-    single = bool(kinds)
+    # Kind, how many strips, how many of them beyond the fewest, which one, group.
+    kinds: list[tuple[float, int, float, int, int]] = []
+    strips = [fewest + extra for extra in extras]
+    if any(isinstance(side, Neighbourhood) and side.turns == 0 for side in sides) or 1 in strips:
+        kinds.append((kernels.WHOLE, 1, ANY_WIDTH, 0, 0))
+        strips.append(1)
     if any(isinstance(side, Neighbourhood) and side.turns > 0 for side in sides):
-        kinds.append((kernels.NEAR_LONG, 2.0, ANY_WIDTH, 1))
-    for extra in sorted(extras):
-        for strips in range(2, widest + extra + 1):
+        kinds.append((kernels.LONG, 2, ANY_WIDTH, 0, 1))
+        strips.append(2)
+    for extra in extras:
+        for count in range(2, widest + extra + 1):
             group = 2 + len(kinds)
-            kinds.append((kernels.NEAR_STRIP, float(strips), float(extra), group))
-            kinds.append((kernels.FAR_STRIP, float(strips), float(extra), group))
+            kinds += [(kernels.STRIP, count, float(extra), index, group) for index in range(count)]
     fixed = (sensor.near_m(height_m), swath_m, sensor.run_in_m(height_m), settle_m, *middle)
     families = np.array(
         [
-            (kind, 1.0 if look == "right" else -1.0, *fixed, strips, extra)
+            (kind, 1.0 if look == "right" else -1.0, *fixed, count, extra, index)
             for look in sensor.looks
-            for kind, strips, extra, _ in kinds
+            for kind, count, extra, index, _ in kinds
         ],
         dtype=np.float64,
     )
-    groups = np.array([kind[3] for _ in sensor.looks for kind in kinds], dtype=np.int64)
+    groups = np.array([kind[4] for _ in sensor.looks for kind in kinds], dtype=np.int64)
+    flown = min(min(strips), max(most, 2))
     return [
         Node(region_index, ring, around, families, groups, region.approach_rad, strip)
-        for strip in ((0,) if single else (1, 2))
+        for strip in (range(1, flown + 1) if flown > 1 else (0,))
     ]
 
 

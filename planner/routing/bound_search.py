@@ -5,7 +5,7 @@ through each cell, over all orders. Cells and pairs of neighbours in the order t
 target goes through are dropped; cells with the shortest tours are split; slopes follow the best tours.
 Problems are worked on in the order of their bounds, least first, so that the least of them is the bound.
 
-Both passes of a region with two nodes are flown along one direction, and belong to one group: problems are
+The passes of a region with several nodes are flown along one direction, and belong to one group: problems are
 divided by group, then by direction until that is known as well as cells are fine.
 """
 
@@ -37,6 +37,8 @@ WIDE = 16.0
 #: What it takes in lines between cells: a cell; and two cells, as a part, for being there and for each set of
 #: the other nodes that may come before them.
 WORK_EACH, WORK_PAIR, WORK_SET = 10, 1.0 / 10.0, 1.0 / 200.0
+#: Problems to begin with.
+MOST_FIRST = 64
 #: Of the open cells, the part split at a time, and at least how many.
 SPLIT, LEAST_SPLIT = 0.6, 8
 
@@ -53,7 +55,7 @@ class _Problem:
         For each box in turn, which cell it is part of, int64 (N,), and which of those cells may come right
         after which, bool; None where all may.
     directions
-        For each region with two nodes, from where to where both its passes' directions lie, from 0 to π.
+        For each region with several nodes, from where to where its passes' directions lie, from 0 to π.
     """
 
     boxes: tuple[Floats, ...]
@@ -143,15 +145,20 @@ def _prove(
 
 
 def _first(nodes: list[Node]) -> Iterator[_Problem]:
-    """A problem for each choice of groups of the regions with two nodes."""
-    twice = sorted({node.region for node in nodes if node.strip})
+    """A problem for each choice of groups of regions with several nodes, of as many as there is room for."""
+    several = sorted({node.region for node in nodes if node.strip})
     groups = {node.region: sorted(set(node.group.tolist())) for node in nodes if node.strip}
-    for chosen in itertools.product(*(groups[region] for region in twice)):
-        of_region = dict(zip(twice, chosen, strict=True))
+    count, chosen_of = 1, []
+    for region in sorted(several, key=lambda region: len(groups[region])):
+        count *= len(groups[region])
+        if count <= MOST_FIRST:
+            chosen_of.append(region)
+    for chosen in itertools.product(*(groups[region] for region in chosen_of)):
+        of_region = dict(zip(chosen_of, chosen, strict=True))
         boxes = []
         for node in nodes:
             own = node.boxes(HEADINGS if len(nodes) <= FEW else HEADINGS_BEYOND)
-            if node.strip:
+            if node.region in of_region:
                 own = own[node.group[own[:, 0].astype(np.int64)] == of_region[node.region]]
             boxes.append(own)
         yield _Problem(
@@ -160,7 +167,7 @@ def _first(nodes: list[Node]) -> Iterator[_Problem]:
             tuple(np.zeros(len(own)) for own in boxes),
             tuple(np.zeros(len(own), dtype=np.int64) for own in boxes),
             None,
-            dict.fromkeys(twice, (0.0, math.pi)),
+            dict.fromkeys(several, (0.0, math.pi)),
         )
 
 

@@ -161,8 +161,10 @@ def _in_order(cells: _Cells, order: Ints, region: Ints, start: Floats, end: Floa
             cells.split(_most(cells, -through, everywhere, lambda n: min((MOST_IN_ORDER - n) // 3, n // 6)))
     for begin, end_ in cells.spans:
         best = begin + int(np.argmin(through[begin:end_]))
-        own = 0.5 * ((ahead[begin:end_] - ahead[best]) - (behind[begin:end_] - behind[best]))
-        cells.potential[begin:end_] = np.where(np.isfinite(own), own, 0.0)
+        known = np.isfinite(through[begin:end_])
+        if known.any():
+            to, fro = ahead[begin:end_][known], behind[begin:end_][known]
+            cells.potential[begin:end_][known] = 0.5 * ((to - ahead[best]) - (fro - behind[best]))
 
 
 def _most(cells: _Cells, worth: Floats, allowed: Flags, room: Callable[[int], int]) -> Flags:

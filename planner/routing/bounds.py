@@ -5,10 +5,10 @@ tighter than the aircraft can. Here
 
 - there are no threats, no zones, no operating area: lines and passes may be anywhere;
 - a region that one pass sees whole asks for one of those passes: any heading, any offset, both continuous;
-- a region that takes several passes, one after the other or with other regions between, asks for two: of the
-  parallel strips of one swath that hold it, the outermost to the left and the outermost to the right, each
-  flown along the same direction, one way or the other, as far as the region surely reaches in it; the passes
-  between them are dropped;
+- a region that takes several passes, one after the other or with other regions between, asks for as many as
+  it takes at least: of the parallel strips of one swath that hold it, the outermost and those next to the
+  first, all flown along the same direction, one way or the other, as far as the region surely reaches in
+  each; other passes are dropped;
 - where one pass may see the region whole and several may too, one of either is kept.
 
 Dropping a part of a line between two poses cannot make the shortest line through the rest longer, so every
@@ -35,6 +35,8 @@ from planner.vehicle.aircraft import Aircraft
 
 #: Passes up to which the order is searched exactly.
 EXACT_UP_TO = 13
+#: Strips of one region asked for at most: fewer where the order can then be searched exactly.
+MOST_STRIPS = 8
 #: Gaps worth proving, the last first only where that takes little.
 GAPS = (0.049, 0.02)
 #: Lines between cells to evaluate: exactly over the order up to so many passes; over trees, for each pass.
@@ -62,9 +64,14 @@ def lower_bound_m(
     effort
         Lines between cells to evaluate, about two million a second.
     """
-    passes = [
-        node for index, of_region in enumerate(sides) for node in nodes(of_region, aircraft.settle_m, index)
-    ]
+    for most in (*range(MOST_STRIPS, 1, -1), MOST_STRIPS):
+        passes = [
+            node
+            for index, of_region in enumerate(sides)
+            for node in nodes(of_region, aircraft.settle_m, index, most)
+        ]
+        if len(passes) <= EXACT_UP_TO:
+            break
     ends = (terminal(scenario.start), terminal(scenario.end))
     radius_m = aircraft.planned_turn_radius_m
     best_m = 0.0

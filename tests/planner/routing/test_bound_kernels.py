@@ -41,7 +41,7 @@ def family(
     ring: Floats, side: float, middle: tuple[float, float], kind: float = cells_of.WHOLE, strips: float = 1.0
 ) -> Floats:
     """Passes of a sensor with a swath of 700 m from 300 m off, 40 m of aperture and 50 m to settle."""
-    return np.array([kind, side, 300.0, 700.0, 20.0, 50.0, *middle, strips, 1e6])
+    return np.array([kind, side, 300.0, 700.0, 20.0, 50.0, *middle, strips, 1e6, 0.0])
 
 
 def flown(ring: Floats, of: Floats, theta: float, eta: float) -> tuple[Floats, Floats] | None:

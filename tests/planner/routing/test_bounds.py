@@ -114,7 +114,7 @@ def test_no_sweep_of_one_region_is_shorter(
         shortest = min(shortest, length)
     begin, end = np.array([*away, 1.0, 0.5]), np.array([*away, 1.0, 2.0])
     passes_of = nodes(family, 0.0, 0)
-    bound = exact_bound_m(passes_of, begin, end, RADIUS_M, (2.0 * shortest,), 30_000, never)
+    bound = exact_bound_m(passes_of, begin, end, RADIUS_M, (2.0 * shortest,), 400_000, never)
     assert 0.0 < bound <= shortest + 1e-6
 
 
