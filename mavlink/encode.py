@@ -151,13 +151,14 @@ def _pass_by_notes(task: Task) -> tuple[str, ...]:
     early_m = task.turns_early_m
     if not (early_m > 0.0 and task.collects):
         return ()
+    kind = "multirotors" if task.hovers else "fixed wings"
     if task.off_delay_m < early_m:
         return (
-            f"PX4's fixed wings count a waypoint as reached some {early_m:.0f} m early: the sensor goes off"
+            f"PX4's {kind} count a waypoint as reached some {early_m:.0f} m early: the sensor goes off"
             " up to that much too soon, unless it is switched off late (off_delay_m)",
         )
     return (
-        f"PX4's fixed wings turn some {early_m:.0f} m before a waypoint: those that end a collect lie up to"
+        f"PX4's {kind} turn some {early_m:.0f} m before a waypoint: those that end a collect lie up to"
         f" {task.off_delay_m:.0f} m past its end",
     )
 

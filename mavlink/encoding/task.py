@@ -15,6 +15,8 @@ from planner.plan import Collect, FlownPath, PathSegment, Plan, PlanVehicle
 
 #: NPFG_SW_DST_MLT · NPFG_PERIOD · NPFG_DAMPING, as PX4 has them by default.
 _PX4_TURNS_EARLY_S = 0.32 * 10.0 * 0.7
+#: NAV_ACC_RAD of PX4's multirotors, by default.
+_PX4_ACCEPTANCE_M = 2.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,6 +50,8 @@ class Task:
     @property
     def turns_early_m(self) -> float:
         """How far before a waypoint the vehicle turns to the next one, whatever the item says."""
+        if self.is_px4 and self.hovers:
+            return _PX4_ACCEPTANCE_M
         if not (self.is_px4 and self.vehicle.type == "fixed_wing"):
             return 0.0
         return _PX4_TURNS_EARLY_S * self.vehicle.airspeed_m_s

@@ -44,13 +44,15 @@ def fly(
     plan: Plan, autopilot: Autopilot, payload: Payload | None = None
 ) -> tuple[list[tuple[float, float]], ...]:
     """The whole track, then a track for each time the sensor was on."""
-    # The simulated aircraft flies up to its waypoints, so the sensor needs no delay.
-    options = EncodeOptions(off_delay_m=0.0)
+    # The simulated fixed wing flies up to its waypoints, so the sensor needs no delay.
+    kind = plan.vehicles[0].type
+    options = EncodeOptions(off_delay_m=None if kind == "multirotor" else 0.0)
     if payload is not None:
         options = replace(options, payload=payload)
     mission = encode(plan, autopilot=autopilot, options=options)
     home = Place(plan.home[1], plan.home[0], 488.0)
-    station = Station(SimulatedAircraft(SimSettings(home=home, autopilot=Flavour(autopilot))))
+    settings = SimSettings(home=home, autopilot=Flavour(autopilot), vehicle_type=kind)
+    station = Station(SimulatedAircraft(settings))
     for kind in (MissionType.MISSION, MissionType.FENCE):
         assert station.upload(mission.items_of(kind), kind) == 0
         held = tuple(station.download(kind))
@@ -95,6 +97,25 @@ def test_a_mission_is_flown_as_planned(autopilot: Autopilot, start: Pose, payloa
         planned = LineString([begin, end])
         assert max(planned.distance(Point(point)) for point in line) <= 3.0
     assert math.dist(track[-1], FRAME.to_local(plan.end)) <= 150.0
+
+
+@pytest.mark.parametrize("autopilot", ["ardupilot", "px4"])
+def test_a_multirotors_mission_is_flown_as_planned(autopilot: Autopilot) -> None:
+    """The same for ArduCopter and PX4's multirotors: on the lines within a metre, down at the plan's end."""
+    plan = make_plan(LEGS, autopilot=autopilot, vehicle_type="multirotor", min_turn_radius_m=60.0)
+    track, *seen = fly(plan, autopilot)
+    assert len(seen) == len(plan.collects)
+    for collect, line in zip(plan.collects, seen, strict=True):
+        begin, end = ends(collect)
+        assert math.dist(line[0], begin) <= 3.0
+        # Nothing of the collect is left unseen, whatever way the autopilot takes its waypoints.
+        assert -1.1 <= math.dist(line[-1], begin) - math.dist(begin, end) <= 3.0
+        whole = LineString([begin, end])
+        inner = [point for point in line if 3.0 < whole.project(Point(point)) < whole.length - 3.0]
+        assert max(whole.distance(Point(point)) for point in inner) <= 1.0
+    planned = LineString(FRAME.to_local([point[:2] for point in plan.paths[0].line]))
+    assert max(planned.distance(Point(point)) for point in track) <= 6.0
+    assert math.dist(track[-1], FRAME.to_local(plan.end)) <= 1.0
 
 
 def test_the_turns_are_flown_near_their_arcs() -> None:
