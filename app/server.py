@@ -59,9 +59,15 @@ async def _plan_sample(house: House, scenario: Mapping[str, Any]) -> None:
 class _Server(uvicorn.Server):
     """Tells when it listens, then greets."""
 
-    def __init__(self, config: uvicorn.Config, listening: Callable[[], Coroutine[Any, Any, None]]) -> None:
+    def __init__(
+        self,
+        config: uvicorn.Config,
+        listening: Callable[[], Coroutine[Any, Any, None]],
+        ending: Callable[[], Coroutine[Any, Any, None]],
+    ) -> None:
         super().__init__(config)
         self._listening = listening
+        self._ending = ending
         self._greeting: asyncio.Task[None] | None = None
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
@@ -74,6 +80,8 @@ class _Server(uvicorn.Server):
         if self._greeting is not None:
             self._greeting.cancel()
             await asyncio.gather(self._greeting, return_exceptions=True)
+        # Requests that wait for a vehicle get their answer now; in GRACE_S they would be cut.
+        await self._ending()
         await super().shutdown(sockets)
 
 
@@ -113,7 +121,10 @@ def run_server(
         announce(f"http://{name}:{port}")
         return _greet(app.state.house, welcome)
 
-    server = _Server(config, listening)
+    async def ending() -> None:
+        await app.state.house.fleet.close()
+
+    server = _Server(config, listening, ending)
     try:
         server.run(sockets=[listener])
     except SystemExit as error:  # uvicorn's end after a failed start

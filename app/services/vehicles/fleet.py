@@ -60,6 +60,9 @@ CONNECT_S = 10.0
 MAX_VEHICLES = 64
 #: A simulated aircraft without a home of its own stands where its plan begins; further away, it moves.
 AT_HOME_M = 50.0
+_ENDING = "the service is ending"
+#: Orders that make a vehicle fly a mission, and so not while one is being changed.
+_FLYING_ORDERS = frozenset({"arm", "start", "resume", "goto_item"})
 
 
 class Fleet:
@@ -86,6 +89,8 @@ class Fleet:
         self._recordings = recordings
         self._vehicles: dict[str, Vehicle] = {}
         self._hub: Hub[Vehicle] = Hub()
+        self._opening: dict[str, asyncio.Task[None]] = {}
+        self._ended = False
 
     async def open(self) -> None:
         """Close the flights an earlier service left open; listen for its vehicles, commanding nothing."""
@@ -103,7 +108,10 @@ class Fleet:
             log.info("vehicle known from before", vehicle=vehicle.name, url=vehicle.url)
 
     async def close(self) -> None:
-        """Let every vehicle go."""
+        """Let every vehicle go, and give up those still being opened; once is enough, again is harmless."""
+        self._ended = True
+        for opening in tuple(self._opening.values()):
+            opening.cancel()
         await asyncio.gather(*(vehicle.close() for vehicle in self._vehicles.values()))
         self._vehicles.clear()
 
@@ -135,6 +143,8 @@ class Fleet:
         RefusedError, LinkError
             The address is malformed, or the link cannot be opened.
         """
+        if self._ended:
+            raise ConflictError(_ENDING)
         if len(self._vehicles) >= MAX_VEHICLES:
             raise ConflictError(f"{MAX_VEHICLES} vehicles are connected already")
         for other in self._vehicles.values():
@@ -146,15 +156,23 @@ class Fleet:
         if vehicle.replay:
             vehicle.held = await self._flown_plan(url)
         self._vehicles[vehicle.id] = vehicle
+        opening = asyncio.create_task(vehicle.open(await self._default_home(), timeout_s))
+        self._opening[vehicle.id] = opening
         try:
-            await vehicle.open(await self._default_home(), timeout_s)
+            await asyncio.wait((opening,))
+            if self._ended:
+                raise ConflictError(_ENDING)
+            if vehicle.id not in self._vehicles:
+                raise ConflictError(f"{name} was let go while it was being connected")
+            opening.result()
         except BaseException:
             self._vehicles.pop(vehicle.id, None)
+            opening.cancel()
+            await asyncio.gather(opening, return_exceptions=True)
             await vehicle.close()
             raise
-        if vehicle.id not in self._vehicles:
-            await vehicle.close()
-            raise ConflictError(f"{name} was let go while it was being connected")
+        finally:
+            del self._opening[vehicle.id]
         if keep and not vehicle.replay:
             await self._kept.add(VehicleRecord(vehicle.id, name, url, vehicle.created_at))
         log.info("vehicle added", vehicle=name, url=url, connected=vehicle.state.connected)
@@ -164,6 +182,8 @@ class Fleet:
         """Let a vehicle go; raises NotFoundError."""
         vehicle = self.get(vehicle_id)
         del self._vehicles[vehicle_id]
+        if vehicle_id in self._opening:
+            self._opening[vehicle_id].cancel()
         await self._kept.forget(vehicle_id)
         await vehicle.close()
         self._hub.publish(vehicle_id, vehicle)
@@ -199,8 +219,10 @@ class Fleet:
             The vehicle is not there.
         """
         vehicle = self.get(vehicle_id)
-        async with vehicle.busy(f"upload of plan {plan_id}"):
+        async with vehicle.busy(f"upload of plan {plan_id}", changes=True):
             plan = plan_of(await self._planning.plan_text(plan_id))
+            # Now, as somebody may delete the plan meanwhile.
+            scenario = json.loads(await self._planning.scenario_text(plan_id))
             if not vehicle.state.connected:
                 raise LinkError(f"{vehicle.name} is not connected")
             mission = await asyncio.to_thread(encode_plan, plan, _for_vehicle(vehicle, choice))
@@ -220,7 +242,7 @@ class Fleet:
             finally:
                 await self._record_upload(vehicle)
             if report.outcome == "accepted":
-                report.preflight = await self._preflight_behind(vehicle, plan, report, choice)
+                report.preflight = await self._preflight_behind(vehicle, plan, scenario, report, choice)
         return report
 
     async def preflight(self, vehicle_id: str, plan_id: str, choice: MissionChoice) -> Preflight:
@@ -234,15 +256,19 @@ class Fleet:
             return await inspect(vehicle.client, plan_id, plan, scenario, mission, choice)
 
     async def _preflight_behind(
-        self, vehicle: Vehicle, plan: Plan, report: UploadReport, choice: MissionChoice
+        self,
+        vehicle: Vehicle,
+        plan: Plan,
+        scenario: dict[str, Any],
+        report: UploadReport,
+        choice: MissionChoice,
     ) -> Preflight | None:
         """The check behind an upload; None when the vehicle vanished, which leaves the upload as it is."""
-        scenario = json.loads(await self._planning.scenario_text(report.plan_id))
         try:
             return await inspect(
                 vehicle.client, report.plan_id, plan, scenario, report.mission, choice, report
             )
-        except (mavlink_errors.NotConnectedError, mavlink_errors.BusyError):
+        except (mavlink_errors.NotConnectedError, mavlink_errors.BusyError, LinkError):
             log.warning("no pre-flight check behind the upload", vehicle=vehicle.name)
             return None
 
@@ -284,7 +310,7 @@ class Fleet:
     async def clear(self, vehicle_id: str, parts: Sequence[PartName]) -> dict[str, Outcome]:
         """Empty a vehicle's lists."""
         vehicle = self.get(vehicle_id)
-        async with vehicle.busy("clearing"):
+        async with vehicle.busy("clearing", changes=True):
             outcomes: dict[str, Outcome] = {}
             for name in parts:
                 outcomes[name] = await vehicle.client.clear(PARTS[name])
@@ -299,7 +325,11 @@ class Fleet:
         vehicle.require_orders(command)
         log.info("flight command", vehicle=vehicle.name, command=command, seq=seq)
         try:
-            outcome = await self._order(vehicle, command, seq)
+            if command in _FLYING_ORDERS:
+                with vehicle.ordering(command):
+                    outcome = await self._order(vehicle, command, seq)
+            else:
+                outcome = await self._order(vehicle, command, seq)
         except (mavlink_errors.NotConnectedError, mavlink_errors.LinkError) as error:
             raise LinkError(f"{vehicle.name}: {error}") from error
         except mavlink_errors.BusyError as error:

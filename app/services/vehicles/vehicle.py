@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-from collections.abc import AsyncIterator, Awaitable, Callable
-from contextlib import asynccontextmanager
+from collections.abc import AsyncIterator, Awaitable, Callable, Iterator
+from contextlib import asynccontextmanager, contextmanager
 from typing import Any
 
 import structlog
@@ -75,6 +75,9 @@ class Vehicle:
         self.upload: UploadReport | None = None
         self.progress: dict[str, Any] | None = None
         self.operation: str | None = None
+        self._changing = False
+        self._orders: list[str] = []
+        self._gone = False
         self.simulated: SimulatedAircraft | None = simulated_of(url)
         self.replay = is_replay(url)
         self._recordings = None if self.replay else recordings
@@ -124,7 +127,11 @@ class Vehicle:
         """
         if self._recordings is not None:
             self._writer = self._recordings.writer(self.id)
-        self._connection = await connect(self.url, home, timeout_s, self._tap)
+        connection = await connect(self.url, home, timeout_s, self._tap)
+        if self._gone:
+            await connection.close()
+            raise LinkError(f"{self.name} was let go")
+        self._connection = connection
         self._tasks = [asyncio.create_task(self._watch()), asyncio.create_task(self._record())]
 
     def resume(self, home: Home | None, timeout_s: float) -> None:
@@ -155,7 +162,11 @@ class Vehicle:
         self._publish(self)
 
     async def close(self) -> None:
-        """Close the link, end the simulator, close the flight."""
+        """Let it go for good: close the link, end the simulator, close the flight."""
+        self._gone = True
+        await self._shut()
+
+    async def _shut(self) -> None:
         for task in self._tasks:
             task.cancel()
         await asyncio.gather(*self._tasks, return_exceptions=True)
@@ -195,16 +206,24 @@ class Vehicle:
 
     async def move(self, home: Home, timeout_s: float) -> None:
         """Put a simulated aircraft somewhere else: a new one on a new link."""
-        await self.close()
+        await self._shut()
         await self.open(home, timeout_s)
 
     @asynccontextmanager
-    async def busy(self, operation: str) -> AsyncIterator[None]:
-        """One operation at a time; raises BusyError naming the one at work."""
+    async def busy(self, operation: str, *, changes: bool = False) -> AsyncIterator[None]:
+        """One operation at a time; raises BusyError naming the one at work.
+
+        Parameters
+        ----------
+        changes
+            Whether it changes what the vehicle holds; then no order to fly may be under way.
+        """
         self.require_orders(operation)
         if self.operation is not None:
             raise BusyError(f"{self.name} is busy: {self.operation}")
-        self.operation = operation
+        if changes and self._orders:
+            raise BusyError(f"{self.name} is busy: the order {self._orders[0]} is not answered yet")
+        self.operation, self._changing = operation, changes
         try:
             yield
         except mavlink_errors.BusyError as error:
@@ -213,7 +232,19 @@ class Vehicle:
             raise LinkError(f"{self.name}: {error}") from error
         finally:
             self.operation = None
+            self._changing = False
             self.progress = None
+
+    @contextmanager
+    def ordering(self, order: str) -> Iterator[None]:
+        """An order to fly is under way; raises BusyError while what is to be flown is being changed."""
+        if self._changing:
+            raise BusyError(f"{self.name} is busy: {self.operation}; {order} waits for its end")
+        self._orders.append(order)
+        try:
+            yield
+        finally:
+            self._orders.remove(order)
 
     async def _watch(self) -> None:
         """Follow the vehicle; open the link anew when it fails, as a TCP peer that restarts makes it do."""
