@@ -24,7 +24,7 @@ from planner.geojson import read_scenario
 from planner.pipeline import make_plan
 from planner.plan import Plan
 from planner.progress import never
-from planner.routing.hidden import Sight, see_hidden
+from planner.routing.hidden import Sight, hidden_findings, see_hidden
 from planner.routing.joint import surroundings
 from planner.routing.legs import Legs
 from planner.scenario import Scenario
@@ -129,6 +129,23 @@ def test_what_is_left_no_pass_sees_much_of(slope: float, apart_m: float, look: s
             assert gained < 0.2 * rest.area
 
 
+def test_passes_go_where_they_cost_least_and_needless_ones_go() -> None:
+    """What is added for the first region is flown before the last; a pass that was there twice is so once."""
+    scenario = on(hills(1.0, 200.0, 40.0), 0.004, "right")
+    aircraft = scenario.aircraft[0]
+    around, legs = surroundings(scenario, aircraft), Legs(scenario, aircraft, never)
+    first, last = (
+        next(every_way(split_region(region)[0], *sensing(scenario, scenario.sensors[0], region.area)))[0]
+        for region in scenario.regions[:2]
+    )
+    tour = see_hidden(scenario, around, (first, first, last), legs)
+    assert tour.count(first) <= 1
+    added = [at for at, collect in enumerate(tour) if collect not in (first, last) and "A" in collect.regions]
+    assert added
+    assert added[0] < len(tour) - 1
+    assert "B" in tour[-1].regions
+
+
 def test_flat_ground_needs_nothing_more() -> None:
     """Without terrain, and on flat terrain, the tour stays as it is."""
     for scenario in (read_scenario(small()), on(hills(0.0, 200.0, 0.0), 0.004, "right")):
@@ -138,3 +155,13 @@ def test_flat_ground_needs_nothing_more() -> None:
         sensor, height_m = sensing(scenario, scenario.sensors[0], part.area)
         passes = next(every_way(part, sensor, height_m))
         assert see_hidden(scenario, around, passes, Legs(scenario, aircraft, never)) is passes
+
+
+def test_ground_outside_every_beam_is_not_called_hidden() -> None:
+    """A region no pass was laid for is unseen, yet nothing hides it: the warning is for shadow."""
+    scenario = on(hills(0.0, 200.0, 0.0), 0.004, "right")
+    region = scenario.regions[1]
+    passes = next(every_way(split_region(region)[0], *sensing(scenario, scenario.sensors[0], region.area)))
+    assert scenario.terrain is not None
+    assert set(Sight(scenario, scenario.terrain).unseen(passes)) == {"A"}
+    assert hidden_findings(scenario, passes, by_paper=False) == ()

@@ -112,3 +112,13 @@ def test_turns_cost_by_their_weight() -> None:
     plain, few = (make_plan(with_threat("missile", {"turns": weight})) for weight in (0.0, 20.0))
     assert few.metrics.turns <= plain.metrics.turns
     assert few.hard_violations == ()
+
+
+def test_threats_that_reach_less_high_have_no_price() -> None:
+    """Flown over, a threat is neither gone round nor paid for; one that reaches higher is."""
+    low, high = (
+        {**BETWEEN["missile"], "properties": BETWEEN["missile"]["properties"] | {"height_m": m}}
+        for m in (10.0, 5000.0)
+    )
+    assert len(soft_prices(read_scenario(small(low)))) == 0
+    assert len(soft_prices(read_scenario(small(high)))) == 1
