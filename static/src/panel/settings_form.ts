@@ -2,7 +2,7 @@
 import { button, h, section } from "../dom";
 import { scenarios } from "../scenario";
 import type { Member, Scenario } from "../types";
-import { choiceField, numberField, textField, type Field } from "./fields";
+import { choiceField, numberField, textField, tickField, type Field } from "./fields";
 import { terrainField } from "./terrain_field";
 
 type List = "vehicles" | "sensors";
@@ -93,6 +93,14 @@ function vehicle(index: number): Field[] {
   ];
 }
 
+function steered(index: number): Field {
+  const { get, set } = member("sensors", index, "stabilised");
+  return tickField({
+    id: `sensors-${index}-stabilised`, label: "Steered abeam of the course", hint: "In wind an antenna fixed to the aircraft turns with the nose; a steered one does not",
+    get: () => get<boolean>() ?? false, set: (value) => set(value ? true : undefined),
+  });
+}
+
 function sensor(index: number): Field[] {
   return [
     name("sensors", index),
@@ -108,6 +116,7 @@ function sensor(index: number): Field[] {
     ...(scenarios.document.value.sensors?.[index]?.["mode"] === "scansar"
       ? [number("sensors", index, "sub_swaths", "Sub-swaths", "", { min: 1, placeholder: "3" })]
       : []),
+    steered(index),
     number("sensors", index, "pointing_margin_deg", "Pointing margin", "°", { max: 15, placeholder: "0", hint: "Planned with this much less of the beam at every edge, because the aircraft sways; 1.5° to 2° made real autopilots see every region whole" }),
     number("sensors", index, "position_margin_m", "Position margin", "m", { placeholder: "0", hint: "Planned with this much less of the swath at every edge, because the aircraft is not quite on its line" }),
   ];

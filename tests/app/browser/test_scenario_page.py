@@ -222,11 +222,15 @@ def test_margins_and_wind_reach_the_document(page: Page) -> None:
         page.locator(field).fill(text)
         page.keyboard.press("Tab")
     page.select_option("#vehicles-0-type", "vtol")
+    page.check("#sensors-0-stabilised")
     made = ask(page, "scenario()")
     sensor, vehicle = made["sensors"][0], made["vehicles"][0]
     assert (sensor["pointing_margin_deg"], sensor["position_margin_m"], sensor["squint_deg"]) == (1.5, 5, -10)
+    assert sensor["stabilised"] is True
     assert (vehicle["settle_m"], vehicle["max_load_factor"], vehicle["type"]) == (150, 1.2, "vtol")
     assert (made["clearance_m"], made["wind"]) == (50, {"speed_m_s": 6, "from_deg": 270})
+    page.uncheck("#sensors-0-stabilised")
+    assert "stabilised" not in ask(page, "scenario()")["sensors"][0]
     page.locator("#wind-speed_m_s").fill("")
     page.keyboard.press("Tab")
     assert "wind" not in ask(page, "scenario()")
