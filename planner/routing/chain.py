@@ -19,7 +19,7 @@ from planner.progress import Stop, raise_if
 from planner.routing import joint_kernels as kernels
 from planner.routing.large_kernels import discs_between
 from planner.routing.legs import Legs
-from planner.routing.options import Options, Surroundings, collect_passes
+from planner.routing.options import NO_ROOM_M, Options, Surroundings, collect_passes
 from planner.scenario import Scenario, Terminal
 from planner.vehicle.wind import still_air_costs
 
@@ -168,8 +168,11 @@ def _put(
     done: set[tuple[int, int, int]],
     place: int,
 ) -> None:
-    """Put a leg's true cost in the estimate's place, and its error, fading, on legs close by."""
-    error_m = true_m - costs[row, column]
+    """Put a leg's true cost in the estimate's place, and its error, fading, on legs close by.
+
+    Where there is no leg, those close by are as doubtful as ends without room to turn.
+    """
+    error_m = true_m - float(costs[row, column]) if math.isfinite(true_m) else NO_ROOM_M
     if math.isfinite(error_m) and error_m > TRUE_WITHIN_M:
         apart_m = (
             np.hypot(*(rows[:, :2] - rows[row, :2]).T)[:, None]

@@ -41,7 +41,7 @@ from planner.routing.options import Options, Surroundings, collect_passes, make_
 from planner.routing.prices import INSIDE_FACTOR, soft_prices
 from planner.routing.relaxation import explained
 from planner.routing.split import split_passes
-from planner.routing.targets import can_be_flown, refusal, targets
+from planner.routing.targets import can_be_flown, coarse_options, refusal, targets
 from planner.scenario import Scenario
 from planner.sensors.view import sensing
 from planner.vehicle.aircraft import Aircraft
@@ -156,12 +156,7 @@ def joint_route(
     coarse = []
     for region, of_region in zip(regions, sides, strict=True):
         raise_if(stop)
-        options = make_options(of_region, _allowed(region, angles_rad), etas, around)
-        if options is None:
-            options = make_options(of_region, of_region[0].angles_rad, np.linspace(0.0, 1.0, 9), around)
-        if options is None:
-            raise refusal(region, around)
-        coarse.append(options)
+        coarse.append(coarse_options(region, of_region, angles_rad, etas, around))
     candidates = _orders(scenario, around, regions, coarse, progress, stop, enough)
     refined = []
     for index, choice in enumerate(candidates):
@@ -278,10 +273,6 @@ def _some_pass(scenario: Scenario, *, region: MergedRegion, wide: bool) -> bool:
         return can_be_flown(region, sensor, height_m, around, wide=wide)
     except InfeasibleError:
         return False
-
-
-def _allowed(region: MergedRegion, angles_rad: Floats) -> Floats:
-    return angles_rad if region.approach_rad is None else np.asarray(region.approach_rad, dtype=np.float64)
 
 
 def _orders(

@@ -288,7 +288,7 @@ def _lane_judge(sweep: Sweep, around: Surroundings) -> Judge:
             rows = rows[np.isfinite(cost_m[rows])]
             cost_m[rows] += _hidden_m(sweep, look, lines[rows], around)
         entries, exits = _poses(lines, headings_rad, around.settle_m)
-        cramped = ~np.stack([_roomy(entries, around), _roomy(exits, around)], axis=1)
+        cramped = ~np.stack([roomy(entries, around), roomy(exits, around)], axis=1)
         return cost_m, entries, exits, NO_ROOM_M * cramped.astype(np.float64)
 
     return judge
@@ -339,10 +339,10 @@ def _poses(line: Floats, angles_rad: Floats, settle_m: float) -> tuple[Floats, F
 
 def _cramped_m(arriving: Floats, leaving: Floats, around: Surroundings) -> Floats:
     """What two poses cost where a full turn fits at neither side of one of them."""
-    return NO_ROOM_M * (~(_roomy(arriving, around) & _roomy(leaving, around))).astype(np.float64)
+    return NO_ROOM_M * (~(roomy(arriving, around) & roomy(leaving, around))).astype(np.float64)
 
 
-def _roomy(poses: Floats, around: Surroundings) -> NDArray[np.bool_]:
+def roomy(poses: Floats, around: Surroundings) -> NDArray[np.bool_]:
     """Whether a full turn to one side or the other fits: inside the area, outside every disc."""
     roomy = np.zeros(len(poses), dtype=np.bool_)
     discs = np.concatenate([around.hard, around.soft])

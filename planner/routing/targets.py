@@ -12,7 +12,7 @@ from planner.coverage.merge import MergedRegion
 from planner.coverage.sweeps import Side
 from planner.errors import InfeasibleError
 from planner.routing import joint_kernels as kernels
-from planner.routing.options import Options, Surroundings, make_options
+from planner.routing.options import Options, Surroundings, make_options, roomy
 from planner.sensors.sar import SarSensor
 
 Floats = NDArray[np.float64]
@@ -24,6 +24,12 @@ ETAS = np.array([0.0, 0.5, 1.0])
 OPTIONS_COMPARED = 48
 #: in every order up to this many parts.
 EXACT_UP_TO = 4
+#: Headings tried where a coarse grid leaves no room for turns, and how many options with room are kept.
+FINE_STEP_RAD = math.radians(2.5)
+MOST_ROOMY = 100
+#: Headings tried where a coarse grid leaves no room for turns, and how many options with room are kept.
+FINE_STEP_RAD = math.radians(2.5)
+MOST_ROOMY = 100
 
 
 def targets(
@@ -78,6 +84,36 @@ def can_be_flown(
     return _some(region, sensor, height_m, around, wide=wide)[1] is not None
 
 
+def coarse_options(
+    region: MergedRegion, sides: tuple[Side, ...], angles_rad: Floats, etas: Floats, around: Surroundings
+) -> Options:
+    """The options of one target to choose an order by.
+
+    Where none has room to turn at both ends, those of a finer grid that have it are taken instead.
+
+    Raises
+    ------
+    InfeasibleError
+        Where no option keeps the hard constraints.
+    """
+    free = region.approach_rad is None
+    allowed = angles_rad if region.approach_rad is None else np.asarray(region.approach_rad, dtype=np.float64)
+    options = make_options(sides, allowed, etas, around)
+    if options is None:
+        options = make_options(sides, sides[0].angles_rad, np.linspace(0.0, 1.0, 9), around)
+    if options is None:
+        raise refusal(region, around)
+    if _with_room(options, around).any():
+        return options
+    turned_rad = np.arange(-math.pi, math.pi - 1e-9, FINE_STEP_RAD, dtype=np.float64) if free else allowed
+    finer = make_options(sides, turned_rad, np.linspace(0.0, 1.0, 9), around)
+    kept = np.empty(0, dtype=np.int64) if finer is None else np.flatnonzero(_with_room(finer, around))
+    if finer is None or len(kept) == 0:
+        return options
+    kept = kept[:: math.ceil(len(kept) / MOST_ROOMY)]
+    return Options(*(getattr(finer, name)[kept] for name in Options.__slots__))
+
+
 def refusal(region: MergedRegion, around: Surroundings) -> InfeasibleError:
     """What to say where every pass is forbidden."""
     return InfeasibleError(
@@ -105,6 +141,11 @@ def _some(
             if options is not None:
                 return sides, options
     return sides, None
+
+
+def _with_room(options: Options, around: Surroundings) -> NDArray[np.bool_]:
+    """Which options have room for a full turn at both ends."""
+    return roomy(options.entries, around) & roomy(options.exits, around)
 
 
 def _passes(options: Options) -> NDArray[np.int64]:

@@ -8,9 +8,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from shapely.geometry import LineString, Point, Polygon
+from shapely.geometry import LineString, Point, Polygon, box
 from shapely.ops import unary_union
 
 from planner.check import judge, seen_times
@@ -23,8 +24,8 @@ from planner.pipeline import make_plan
 from planner.route import CollectPass
 from planner.routing import joint_kernels
 from planner.routing.joint import joint_route
-from planner.routing.options import collect_passes, make_options
-from planner.routing.targets import targets
+from planner.routing.options import collect_passes, make_options, roomy
+from planner.routing.targets import MOST_ROOMY, coarse_options, targets
 from planner.scenario import Region
 from tests.planner.coverage.shapes import HEIGHT_M, paper_sensor, unseen_m2
 from tests.planner.coverage.test_decompose import L_SHAPE
@@ -33,6 +34,7 @@ from tests.planner.scenarios import feature, small, square
 
 SENSOR = paper_sensor()
 ETAS = np.array([0.0, 0.5, 1.0])
+STEPS_RAD = np.radians(np.arange(-180.0, 180.0, 30.0))
 
 
 def stops(area: Polygon, radius_m: float = 100.0, **known: object) -> tuple[Target, ...]:
@@ -211,3 +213,21 @@ def test_a_spot_is_not_swept() -> None:
     (region,) = split_region(Region("R", Polygon([(0, 0), (3000, 0), (3000, 2000), (0, 2000)])))
     with pytest.raises(InfeasibleError):
         targets(region, spot, HEIGHT_M, open_ground())
+
+
+def test_where_few_headings_have_room_they_are_looked_for() -> None:
+    """Where no pass of a coarse grid has room to turn, those with room between its headings are taken."""
+    (region,) = split_region(Region("R", box(-100.0, -100.0, 100.0, 100.0)))
+    around = replace(open_ground(), radius_m=100.0)
+    (found,) = targets(region, SENSOR, HEIGHT_M, around)
+    every = coarse_options(region, found.sides, STEPS_RAD, np.array([0.0, 1.0]), around)
+    # Posts at the ends of all coarse passes: wide enough that no full turn fits there.
+    ends = np.concatenate([every.entries[:, :2], every.exits[:, :2]])
+    posts = shapely.union_all([Point(*end).buffer(1.0) for end in ends])
+    cramped = replace(around, cramped=posts.buffer(around.radius_m))
+    coarse = make_options(found.sides, STEPS_RAD, np.array([0.0, 1.0]), cramped)
+    assert coarse is not None
+    assert not (roomy(coarse.entries, cramped) & roomy(coarse.exits, cramped)).any()
+    finer = coarse_options(region, found.sides, STEPS_RAD, np.array([0.0, 1.0]), cramped)
+    assert (roomy(finer.entries, cramped) & roomy(finer.exits, cramped)).all()
+    assert 0 < len(finer.inner_m) <= 2 * MOST_ROOMY
