@@ -37,7 +37,7 @@ def covered(
         seen = seen_times(prints, region.revisits)
         # A millimetre of slack: coordinates are rounded to a hundredth of one.
         rest = difference(region.area, seen.buffer(1e-3), grid_size=GRID_M)
-        fraction = 1.0 - rest.area / region.area.area
+        fraction = max(0.0, 1.0 - rest.area / region.area.area)
         coverage[region.name] = fraction
         if rest.area <= UNSEEN_FRACTION * region.area.area:
             coverage[region.name] = 1.0
