@@ -209,6 +209,35 @@ class UploadOut(BaseModel):
         )
 
 
+class SentOut(BaseModel):
+    """The mission last sent to a vehicle from here, over restarts of the service, and what became of it."""
+
+    plan_id: str
+    list_id: int | None = Field(description="The id the vehicle gave it; null: it gives none (ArduPilot).")
+    standing: Literal["held", "differs", "unknown"] = Field(
+        description="Whether the vehicle still holds it. unknown: it is silent, or was not read back since it "
+        "came back and gives no ids."
+    )
+    shown_by: Literal["read_back", "id"] | None = Field(
+        description="read_back: compared item by item. id: the vehicle's id of its list, a first sign."
+    )
+    read_back_at: datetime | None = Field(description="When it was compared, in this run of the service.")
+
+    @classmethod
+    def of(cls, vehicle: Vehicle) -> Self | None:
+        """The answer for a vehicle; None when nothing was sent."""
+        if vehicle.sent is None:
+            return None
+        standing, shown_by = vehicle.standing()
+        return cls(
+            plan_id=vehicle.sent.plan_id,
+            list_id=vehicle.sent.list_id,
+            standing=standing,
+            shown_by=shown_by,
+            read_back_at=vehicle.read_back_at,
+        )
+
+
 class VehicleOut(BaseModel):
     """A vehicle and how it is."""
 
@@ -224,6 +253,7 @@ class VehicleOut(BaseModel):
     transfer: dict[str, Any] | None = Field(description="Of an upload at work: part, done, total.")
     pending: bool = Field(description="An upload's outcome is unknown; it is read back on reconnection.")
     plan_id: str | None = Field(description="The plan it holds, read back and compared.")
+    sent: SentOut | None = Field(description="The mission last sent from here; null: none, or cleared.")
     flight_id: str | None = Field(description="The flight being recorded.")
     upload: UploadOut | None = Field(description="The last upload, without its items.")
     state: dict[str, Any] = Field(description="Position, attitude, mode, mission, battery …; null: not said.")
@@ -244,6 +274,7 @@ class VehicleOut(BaseModel):
             transfer=vehicle.progress,
             pending=vehicle.pending,
             plan_id=vehicle.held.plan_id if vehicle.held else None,
+            sent=SentOut.of(vehicle),
             flight_id=vehicle.flight_id,
             upload=UploadOut.of(vehicle.upload, items=False) if vehicle.upload else None,
             state=state_json(vehicle.state),

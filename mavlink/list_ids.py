@@ -68,6 +68,10 @@ class ListIds:
             return replace(outcome, sign="unchanged" if now == before else "changed")
         return outcome
 
+    def meant(self, kind: MissionType) -> int | None:
+        """The id of the list sent from here; None where the vehicle gave it none."""
+        return self._meant.get(kind)
+
     def read(self, kind: MissionType, opaque_id: int | None) -> None:
         """The list read back under this id is the one that was meant."""
         self._expect(kind, opaque_id)

@@ -209,6 +209,14 @@ class MissionTransfers(ABC):
         """
         return self._driver.list_ids.replaced
 
+    def recognise(self, mission_type: MissionType) -> None:
+        """Take the list read last for the one meant: from now on its id tells whether it is replaced."""
+        self._driver.list_ids.read(mission_type, self._read_id)
+
+    def sent_id(self, mission_type: MissionType) -> int | None:
+        """The id the vehicle gave the list sent from here; None where it gives none, or none was sent."""
+        return self._driver.list_ids.meant(mission_type)
+
     async def _objections(self, items: tuple[MissionItem, ...], begun_s: float) -> tuple[str, ...]:
         """What a vehicle that speaks in events says against its mission, having just taken this list."""
 

@@ -103,6 +103,14 @@ class HeldMission:
 
 
 @dataclass(frozen=True, slots=True)
+class SentMission:
+    """The plan last sent to a vehicle, and the id the vehicle gave its mission; None where it gives none."""
+
+    plan_id: str
+    list_id: int | None
+
+
+@dataclass(frozen=True, slots=True)
 class VehicleRecord:
     """One vehicle as it was added; ``held`` is None where no plan was seen in it."""
 
@@ -111,6 +119,7 @@ class VehicleRecord:
     url: str
     created_at: datetime
     held: HeldMission | None = None
+    sent: SentMission | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,6 +16,7 @@ from pymavlink.dialects.v20 import ardupilotmega
 
 from app.main import create_app
 from app.settings import Settings
+from mavlink.sim.modes import Flavour
 from mavlink.sim.run import serve
 from mavlink.sim.settings import SimSettings
 from tests.app.conftest import fake_house, serving, stored
@@ -165,3 +166,83 @@ async def test_address_no_longer_understood_is_forgotten(settings: Settings, url
         database.execute("UPDATE vehicles SET url = ?", (url,))
     async with service(settings) as client:
         assert (await client.get(VEHICLES)).json() == {"vehicles": []}
+
+
+@asynccontextmanager
+async def holding(settings: SimSettings, url: str) -> AsyncIterator[None]:
+    """A simulated aircraft of some kind that does not belong to the service."""
+    simulator = asyncio.create_task(serve(url, settings))
+    try:
+        yield
+    finally:
+        simulator.cancel()
+        await asyncio.gather(simulator, return_exceptions=True)
+
+
+@pytest.mark.parametrize("kind", ["ardupilot", "px4"])
+async def test_what_was_sent_last_stands_as_far_as_it_is_known(
+    settings: Settings, plan_file: Path, kind: str
+) -> None:
+    """After a restart: unknown while silent, held once read back, differs once another aircraft is there."""
+    url = f"127.0.0.1:{free_port()}"
+    aircraft = SimSettings(autopilot=Flavour(kind))
+    async with holding(aircraft, f"udpout:{url}"):
+        async with service(settings) as client:
+            vehicle = await add(client, "uav", f"udpin:{url}")
+            assert vehicle["sent"] is None
+            plan_id = await stored(client, plan_file)
+            await client.post(f"{VEHICLES}/{vehicle['id']}/mission", json={"plan_id": plan_id})
+            sent = (await until(client, lambda body: body["operation"] is None))["sent"]
+            assert (sent["plan_id"], sent["standing"], sent["shown_by"]) == (plan_id, "held", "read_back")
+            assert (sent["list_id"] is None) == (kind == "ardupilot")
+        async with service(settings) as client:
+            again = (await until(client, lambda body: body["plan_id"] is not None))["sent"]
+            assert again["read_back_at"] > sent["read_back_at"]
+            assert {key: again[key] for key in ("plan_id", "list_id", "standing", "shown_by")} == {
+                key: sent[key] for key in ("plan_id", "list_id", "standing", "shown_by")
+            }
+    async with service(settings) as client:
+        silent = (await until(client, lambda body: True))["sent"]
+        assert (silent["plan_id"], silent["standing"], silent["shown_by"]) == (plan_id, "unknown", None)
+        async with holding(aircraft, f"udpout:{url}"):
+            await until(client, lambda body: body["sent"]["shown_by"] == "read_back")
+            empty = (await client.get(VEHICLES)).json()["vehicles"][0]
+            assert (empty["sent"]["standing"], empty["plan_id"]) == ("differs", None)
+    async with holding(aircraft, f"udpout:{url}"), service(settings) as client:
+        # Once found different it is not read again: no list, no id, nothing known, and that is said.
+        known = await until(client, lambda body: body["connected"])
+        assert (known["sent"]["plan_id"], known["sent"]["standing"]) == (plan_id, "unknown")
+        await client.delete(f"{VEHICLES}/{known['id']}/mission")
+        assert (await until(client, lambda body: body["operation"] is None))["sent"] is None
+
+
+async def test_a_vehicle_that_fell_silent_is_not_taken_for_the_one_that_comes_back(
+    settings: Settings, plan_file: Path
+) -> None:
+    """Held by read-back; then another aircraft answers at the same address: unknown, until it is read."""
+    url = f"127.0.0.1:{free_port()}"
+    async with service(settings) as client:
+        async with holding(SimSettings(), f"udpout:{url}"):
+            vehicle = await add(client, "uav", f"udpin:{url}")
+            plan_id = await stored(client, plan_file)
+            await client.post(f"{VEHICLES}/{vehicle['id']}/mission", json={"plan_id": plan_id})
+            await until(client, lambda body: body["sent"]["standing"] == "held")
+        await until(client, lambda body: not body["connected"])
+        async with holding(SimSettings(), f"udpout:{url}"):
+            back = await until(client, lambda body: body["connected"])
+            assert (back["sent"]["standing"], back["sent"]["read_back_at"]) == ("unknown", None)
+
+
+async def test_a_deleted_plan_leaves_the_id_to_tell(settings: Settings, plan_file: Path) -> None:
+    """What was sent cannot be compared any more; a PX4's id still shows that it is there, as a first sign."""
+    url = f"127.0.0.1:{free_port()}"
+    async with holding(SimSettings(autopilot=Flavour.PX4), f"udpout:{url}"):
+        async with service(settings) as client:
+            vehicle = await add(client, "uav", f"udpin:{url}")
+            plan_id = await stored(client, plan_file)
+            await client.post(f"{VEHICLES}/{vehicle['id']}/mission", json={"plan_id": plan_id})
+            await client.delete(f"/api/v1/plans/{plan_id}")
+        async with service(settings) as client:
+            body = await until(client, lambda body: body["sent"]["standing"] != "unknown")
+            assert (body["sent"]["standing"], body["sent"]["shown_by"]) == ("held", "id")
+            assert body["plan_id"] is None

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from sqlalchemy import delete, select, update
 
-from app.services.records import HeldMission, VehicleRecord
+from app.services.records import HeldMission, SentMission, VehicleRecord
 from app.services.store.database import Database
 from app.services.store.tables import VehicleRow
 
@@ -13,7 +13,8 @@ def _record(row: VehicleRow) -> VehicleRecord:
     held = None
     if row.held_plan_id is not None and row.held_plan_vehicle is not None:
         held = HeldMission(row.held_plan_id, row.held_plan_vehicle, row.held_payload)
-    return VehicleRecord(row.id, row.name, row.url, row.created_at, held)
+    sent = None if row.last_plan_id is None else SentMission(row.last_plan_id, row.last_list_id)
+    return VehicleRecord(row.id, row.name, row.url, row.created_at, held, sent)
 
 
 class VehicleStore:
@@ -40,6 +41,15 @@ class VehicleStore:
             "held_plan_id": held.plan_id if held else None,
             "held_plan_vehicle": held.plan_vehicle if held else None,
             "held_payload": held.payload if held else None,
+        }
+        async with self._database.session() as session:
+            await session.execute(update(VehicleRow).where(VehicleRow.id == vehicle_id).values(**values))
+
+    async def send(self, vehicle_id: str, sent: SentMission | None) -> None:
+        """Note what a vehicle was sent last; None once it was cleared from here."""
+        values = {
+            "last_plan_id": sent.plan_id if sent else None,
+            "last_list_id": sent.list_id if sent else None,
         }
         async with self._database.session() as session:
             await session.execute(update(VehicleRow).where(VehicleRow.id == vehicle_id).values(**values))

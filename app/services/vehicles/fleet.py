@@ -24,7 +24,7 @@ from app.services.hub import Hub
 from app.services.metrics import UPLOADS, VEHICLES
 from app.services.missions import PARTS, MissionChoice, PartName, encode_plan, plan_of
 from app.services.planning import PlanningService
-from app.services.records import HeldMission, VehicleRecord
+from app.services.records import HeldMission, SentMission, VehicleRecord
 from app.services.store.flights import FlightStore
 from app.services.store.uploads import UploadStore
 from app.services.store.vehicles import VehicleStore
@@ -317,6 +317,9 @@ class Fleet:
                 if name == "mission":
                     vehicle.holds_unknown()
                     await self._kept.hold(vehicle.id, None)
+                    if outcomes[name].kind == "accepted":
+                        vehicle.sent = None
+                        await self._kept.send(vehicle.id, None)
             return outcomes
 
     async def command(self, vehicle_id: str, command: str, seq: int | None) -> CommandOutcome | Outcome:
@@ -446,6 +449,9 @@ class Fleet:
             held = HeldMission(report.plan_id, report.plan_vehicle, report.payload)
             if mission.verified:
                 await vehicle.hold(held)
+            vehicle.found(None if mission.differences is None else not mission.differences)
+            vehicle.sent = SentMission(report.plan_id, vehicle.sent_id if mission.verified else None)
+            await self._kept.send(vehicle.id, vehicle.sent)
             await self._kept.hold(vehicle.id, held if mission.verified else None)
         outcome = "unknown" if report.outcome == "not_attempted" else report.outcome
         UPLOADS.labels(outcome=outcome).inc()
@@ -467,18 +473,20 @@ class Fleet:
             self._recordings,
         )
 
-    async def _still_holds(self, vehicle: Vehicle, held: HeldMission) -> bool:
-        """Read back whether a vehicle holds the plan it held before the service was restarted."""
+    async def _still_holds(self, vehicle: Vehicle, held: HeldMission) -> bool | None:
+        """Read back whether a vehicle holds the plan it held before; None when that plan is deleted."""
         try:
             plan = plan_of(await self._planning.plan_text(held.plan_id))
         except (NotFoundError, ConflictError):
-            return False
+            return None
         choice = _for_vehicle(vehicle, MissionChoice(held.plan_vehicle, None, held.payload))
         mission = await asyncio.to_thread(encode_plan, plan, choice)
         meant = mission.items_of(PARTS["mission"])
         found = await vehicle.client.download(PARTS["mission"])
         same = not comparing(mission.dialect)(meant, found)
-        if not same:
+        if same:
+            vehicle.client.recognise(PARTS["mission"])
+        else:
             await self._kept.hold(vehicle.id, None)
         return same
 

@@ -6,7 +6,8 @@ import asyncio
 import contextlib
 from collections.abc import AsyncIterator, Awaitable, Callable, Iterator
 from contextlib import asynccontextmanager, contextmanager
-from typing import Any
+from datetime import UTC, datetime
+from typing import Any, Literal
 
 import structlog
 
@@ -21,6 +22,7 @@ from app.services.vehicles.uploads import UploadReport, read_back
 from mavlink import errors as mavlink_errors
 from mavlink.client import VehicleClient
 from mavlink.encoding.options import DEFAULT_PAYLOAD
+from mavlink.items import MissionType
 from mavlink.payload import parse_payload
 from mavlink.recording import TlogWriter
 from mavlink.telemetry import VehicleState
@@ -38,6 +40,8 @@ REOPEN_S = 2.0
 #: An upload's unknown outcome is read back so often each time the vehicle comes back.
 RESOLVE_TRIES = 3
 
+Standing = Literal["held", "differs", "unknown"]
+
 
 class Vehicle:
     """A vehicle the service knows, connected or not.
@@ -51,7 +55,7 @@ class Vehicle:
     resolved
         Called when an upload whose outcome was unknown has been resolved by reading back.
     still_holds
-        Asked, once the vehicle is heard, whether it holds the plan it held before.
+        Asked, once the vehicle is heard, whether it holds the plan it held before; None: nobody can tell.
     recordings
         Where the link is recorded; None not to. A recording is not recorded again.
     """
@@ -63,7 +67,7 @@ class Vehicle:
         track_interval_s: float,
         publish: Callable[[Vehicle], None],
         resolved: Callable[[Vehicle], Awaitable[None]],
-        still_holds: Callable[[Vehicle, HeldMission], Awaitable[bool]],
+        still_holds: Callable[[Vehicle, HeldMission], Awaitable[bool | None]],
         recordings: Recordings | None = None,
     ) -> None:
         self.id = record.id
@@ -85,6 +89,9 @@ class Vehicle:
         self._recorder = FlightRecorder(flights, record.id, record.name, track_interval_s)
         # A simulated aircraft is a new one, and holds nothing.
         self._believed = None if self.simulated is not None else record.held
+        self.sent = None if self.simulated is not None else record.sent
+        self.read_back_at: datetime | None = None
+        self._found: bool | None = None
         self._still_holds = still_holds
         self._publish = publish
         self._resolved = resolved
@@ -192,6 +199,34 @@ class Vehicle:
     def holds_unknown(self) -> None:
         """Believe nothing about the mission it holds: it is being changed."""
         self.held = self._believed = None
+        self.found(None)
+
+    def found(self, same: bool | None) -> None:
+        """Reading back has shown whether it holds what was sent; None: it has not."""
+        self._found = same
+        self.read_back_at = None if same is None else datetime.now(UTC)
+
+    @property
+    def sent_id(self) -> int | None:
+        """The id it gave the mission sent to it in this life of the service."""
+        return None if self._connection is None else self._connection.client.sent_id(MissionType.MISSION)
+
+    def standing(self) -> tuple[Standing, Literal["read_back", "id"] | None]:
+        """Whether it holds the mission last sent to it, and what shows it.
+
+        A read-back tells, until the vehicle reports another id or falls silent; where there was none, its id
+        is a first sign. Of one that is silent, or gives no ids and was not read, nothing is known.
+        """
+        if self.sent is None or not self.state.connected or self._changing:
+            return "unknown", None
+        expected, reported = self.sent.list_id, self.state.mission_id
+        if MissionType.MISSION in self.client.replaced:
+            return "differs", "id"
+        if self._found is not None:
+            return ("held" if self._found else "differs"), "read_back"
+        if expected is None or reported is None:
+            return "unknown", None
+        return ("held" if reported == expected else "differs"), "id"
 
     def require_orders(self, what: str) -> None:
         """Raise ConflictError for a recording, which takes none."""
@@ -267,6 +302,8 @@ class Vehicle:
                 self._publish(self)
                 if not state.connected:
                     tries = RESOLVE_TRIES
+                    # What comes back may be another aircraft, or this one with another mission.
+                    self.found(None)
                 elif self.pending and self.operation is None and tries:
                     tries -= 1
                     await self._resolve(client)
@@ -279,8 +316,10 @@ class Vehicle:
         """Read back whether it holds what it held before; a vehicle that does not answer is not believed."""
         try:
             async with self.busy("reading back the mission held before the restart"):
-                if await self._still_holds(self, held):
+                same = await self._still_holds(self, held)
+                if same:
                     await self.hold(held)
+                self.found(same)
         except (ServiceError, mavlink_errors.TransferFailedError) as error:
             log.warning("mission not read back", vehicle=self.name, reason=str(error))
             if not last:
