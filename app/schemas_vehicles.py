@@ -26,7 +26,13 @@ CommandName = Literal["arm", "disarm", "start", "pause", "resume", "rtl", "goto_
 class VehicleIn(Strict):
     """A vehicle to connect."""
 
-    name: str = Field(min_length=1, max_length=100, pattern=r"\S", examples=["uav-1"])
+    name: str = Field(
+        min_length=1,
+        max_length=100,
+        pattern=r"^[^\x00-\x1f\x7f]*[^\s\x00-\x1f\x7f][^\x00-\x1f\x7f]*$",
+        description="Something to see, and no control characters.",
+        examples=["uav-1"],
+    )
     url: str = Field(
         min_length=1,
         max_length=300,
@@ -215,8 +221,8 @@ class SentOut(BaseModel):
     plan_id: str
     list_id: int | None = Field(description="The id the vehicle gave it; null: it gives none (ArduPilot).")
     standing: Literal["held", "differs", "unknown"] = Field(
-        description="Whether the vehicle still holds it. unknown: it is silent, or was not read back since it "
-        "came back and gives no ids."
+        description="Whether the vehicle still holds it. unknown: it is silent, or was not read back since "
+        "it came back and gives no ids."
     )
     shown_by: Literal["read_back", "id"] | None = Field(
         description="read_back: compared item by item. id: the vehicle's id of its list, a first sign."
