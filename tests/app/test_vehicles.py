@@ -363,3 +363,10 @@ async def test_json_sent_as_a_form_is_told_its_header(client: httpx.AsyncClient)
     answer = await client.post(VEHICLES, content='{"name": "x", "url": "sim:"}', headers=headers)
     check_problem(answer, 422)
     assert "Content-Type: application/json" in answer.json()["errors"][0]["fix"]
+
+
+@pytest.mark.parametrize("name", ["", "  ", "a\0b", "a\x1b[2J", "a\r\nX-Y: z", "\x7f"])
+async def test_a_name_that_cannot_be_shown_is_refused(client: httpx.AsyncClient, name: str) -> None:
+    """Names stand in logs, terminals and files: blank ones and control characters are a 422."""
+    check_problem(await client.post(VEHICLES, json={"name": name, "url": "sim:"}), 422)
+    assert (await client.get(VEHICLES)).json()["vehicles"] == []
