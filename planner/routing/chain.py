@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -16,6 +17,7 @@ from numpy.typing import NDArray
 
 from planner.coverage.sweeps import Side
 from planner.progress import Stop, raise_if
+from planner.route import CollectPass
 from planner.routing import joint_kernels as kernels
 from planner.routing.large_kernels import discs_between
 from planner.routing.legs import Legs
@@ -26,10 +28,18 @@ from planner.vehicle.wind import still_air_costs
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
+#: What the passes at a place in the order cost besides their flight: ground they leave in shadow.
+Besides = Callable[[int, Sequence[CollectPass]], float]
+
 #: A leg's error is put on legs whose ends together are less than this far off too, fading with distance.
 FADE_M = 300.0
 #: An estimate this close to the truth stands.
 TRUE_WITHIN_M = 0.5
+
+
+def nothing(place: int, passes: Sequence[CollectPass]) -> float:
+    """Besides their flight passes cost nothing."""
+    return 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,9 +120,19 @@ def _terminal_costs(terminal: Terminal, entries: Floats, around: Surroundings, d
 
 
 def true_choice(
-    layers: Layers, sides: list[tuple[Side, ...]], legs: Legs, solves: int, stop: Stop
+    layers: Layers,
+    sides: list[tuple[Side, ...]],
+    legs: Legs,
+    solves: int,
+    stop: Stop,
+    besides: Besides = nothing,
 ) -> tuple[float, list[int]]:
     """The cheapest way through by true costs, as far as ``solves`` solutions tell.
+
+    Parameters
+    ----------
+    besides
+        What the passes at a place cost besides their flight.
 
     Returns
     -------
@@ -132,7 +152,8 @@ def true_choice(
         true_m = 0.0
         for place, option in enumerate(chosen):
             options = layers.options[place]
-            inner_m = legs.inner_m(collect_passes(sides[place], options, option))
+            passes = collect_passes(sides[place], options, option)
+            inner_m = legs.inner_m(passes) + besides(place, passes)
             if (place, option) not in done_inner:
                 done_inner.add((place, option))
                 into = layers.first if place == 0 else layers.between[place - 1]

@@ -16,6 +16,7 @@ the tour takes one of each at the least whole length, exactly over the order for
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -37,7 +38,7 @@ from planner.routing.chain import Layers, from_start, layers_of, to_end, true_ch
 from planner.routing.hidden import see_hidden
 from planner.routing.large import large_order
 from planner.routing.legs import Legs
-from planner.routing.options import Options, Surroundings, collect_passes, make_options
+from planner.routing.options import Options, Surroundings, collect_passes, hidden_m, make_options
 from planner.routing.prices import INSIDE_FACTOR, soft_prices
 from planner.routing.relaxation import explained
 from planner.routing.split import split_passes
@@ -191,7 +192,8 @@ def _truest(
 ) -> tuple[float, tuple[CollectPass, ...]]:
     """The tour that truly costs least, and its passes.
 
-    Where flying a tour costs more than was thought, options round its own are tried with true costs.
+    Where flying a tour costs more than was thought, options round its own are tried with true costs. Ground
+    left in shadow counts as in the options, but not in the cost given back.
     """
     best_m, best = math.inf, _passes(choices[0], sides, around)
     choices = sorted(choices, key=lambda choice: choice.cost_m)[:TRUE_TOURS]
@@ -199,7 +201,7 @@ def _truest(
         raise_if(stop)
         progress("routing", 0.7 + 0.3 * index / len(choices))
         passes = _passes(choice, sides, around)
-        true_m = legs.tour_m(passes)
+        true_m = legs.tour_m(passes) + _shadow_m(choice, sides, around)
         if true_m < best_m:
             best_m, best = true_m, passes
         if true_m - choice.cost_m <= FALSE_M or choice.cost_m >= best_m or enough():
@@ -207,7 +209,14 @@ def _truest(
         # A little finer and a little wider than the last refinement.
         for step_rad, step_eta in ((COARSE_STEP_RAD / 2.0, 0.125), (COARSE_STEP_RAD / 8.0, 0.03)):
             layers, of_places = _layers(scenario, around, regions, sides, choice, step_rad, step_eta)
-            found_m, picked = true_choice(layers, of_places, legs, TRUE_SOLVES, stop)
+            found_m, picked = true_choice(
+                layers,
+                of_places,
+                legs,
+                TRUE_SOLVES,
+                stop,
+                partial(_besides, of_places, around),
+            )
             if not found_m < true_m - 1e-6:
                 continue
             true_m = found_m
@@ -215,7 +224,24 @@ def _truest(
             passes = _passes(choice, sides, around)
             if true_m < best_m:
                 best_m, best = true_m, passes
-    return best_m, best
+    return legs.tour_m(best), best
+
+
+def _besides(
+    of_places: list[tuple[Side, ...]], around: Surroundings, place: int, passes: Sequence[CollectPass]
+) -> float:
+    return hidden_m(of_places[place][0], passes, around)
+
+
+def _shadow_m(choice: _Choice, sides: list[tuple[Side, ...]], around: Surroundings) -> float:
+    """What a tour's passes cost for ground that terrain hides from them."""
+    if around.ground is None:
+        return 0.0
+    return math.fsum(
+        hidden_m(sides[region][side], collect_passes(sides[region], option, 0), around)
+        for position, (region, side) in enumerate(zip(choice.order, choice.side, strict=True))
+        for option in [_single(choice, position, sides[region], around)]
+    )
 
 
 def _passes(choice: _Choice, sides: list[tuple[Side, ...]], around: Surroundings) -> tuple[CollectPass, ...]:

@@ -309,6 +309,16 @@ def _hidden_m(side: Side, look: Look, lines: Floats, around: Surroundings) -> Fl
     return shadow_cost(lines, look, side.sensor, around.level_m, wanted, around.ground, places)
 
 
+def hidden_m(side: Side, passes: Sequence[CollectPass], around: Surroundings) -> float:
+    """What passes of one option cost for ground of the region that terrain hides from them, as in options."""
+    if around.ground is None:
+        return 0.0
+    return math.fsum(
+        float(np.sum(_hidden_m(side, collect.look, np.array([[collect.start, collect.end]]), around)))
+        for collect in passes
+    )
+
+
 def _judge(lines: Floats, around: Surroundings) -> tuple[NDArray[np.bool_], Floats]:
     """Which lines (M, K, 2, 2) keep the hard constraints, and what each costs."""
     shape = lines.shape[:2]

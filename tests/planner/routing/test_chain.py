@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Sequence
 
 import numpy as np
 import pytest
@@ -278,3 +279,20 @@ def test_a_threat_in_the_way_is_flown_in_earnest() -> None:
     assert every[tuple(chosen)] == pytest.approx(found_m)
     assert every.min() - 1e-6 <= found_m <= 1.01 * every.min()
     assert layers.best()[0] < found_m
+
+
+@pytest.mark.usefixtures("without_passes")
+def test_ground_in_shadow_still_costs_once_flown() -> None:
+    """Of two options the shorter leaves ground in shadow: flown in earnest, it is still the dearer one."""
+    poses, zeros = np.array([[0.0, 0.0, 0.0], [5000.0, 0.0, 0.0]]), np.zeros(2)
+    options, plain = bare(poses, np.array([5000.0, 0.0])), bare(poses)
+    legs = Table((plain,), Layers((plain,), np.array([100.0, 400.0]), (), zeros))
+    # The way to the second turns out longer than thought, so that the first is looked at, too.
+    layers = Layers((options,), np.array([5100.0, 300.0]), (), zeros)
+
+    def shadow_m(place: int, passes: Sequence[CollectPass]) -> float:
+        return 5000.0 if passes[1] == 0 else 0.0
+
+    assert true_choice(layers, range(1), legs, 9, never, shadow_m) == (400.0, [1])
+    dearer = Layers((options,), np.array([5100.0, 6000.0]), (), zeros)
+    assert true_choice(dearer, range(1), legs, 1, never, shadow_m) == (5100.0, [0])
