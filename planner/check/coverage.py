@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from shapely import difference, intersection, union_all
+from shapely import difference, get_parts, intersection, union_all
 from shapely.geometry import MultiPolygon, Polygon
 from shapely.geometry.base import BaseGeometry
 
@@ -67,10 +67,15 @@ def seen_times(prints: Sequence[BaseGeometry], times: int) -> BaseGeometry:
     deep: list[BaseGeometry] = [Polygon() for _ in range(times)]
     for ground in prints:
         for k in range(times - 1, 0, -1):
-            again = intersection(deep[k - 1], ground, grid_size=GRID_M)
+            again = _areal(intersection(deep[k - 1], ground, grid_size=GRID_M))
             deep[k] = union_all([deep[k], again], grid_size=GRID_M)
         deep[0] = union_all([deep[0], ground], grid_size=GRID_M)
     return deep[-1]
+
+
+def _areal(geometry: BaseGeometry) -> MultiPolygon:
+    """What has area of an overlay: footprints that share an edge besides leave a line, too."""
+    return MultiPolygon([part for part in get_parts(geometry).tolist() if isinstance(part, Polygon)])
 
 
 def _counts(scenario: Scenario, region: Region, collect: Collect) -> bool:

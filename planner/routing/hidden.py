@@ -277,7 +277,8 @@ def _left(region: Region, prints: Sequence[BaseGeometry]) -> BaseGeometry:
     deep: list[BaseGeometry] = [Polygon() for _ in range(region.revisits)]
     for area in prints:
         for k in range(region.revisits - 1, 0, -1):
-            again = shapely.intersection(deep[k - 1], area, grid_size=GRID_M)
+            # Of an overlay with lines in it, where outlines touch, the areas alone.
+            again = shapely.intersection(deep[k - 1], area, grid_size=GRID_M).buffer(0.0)
             deep[k] = shapely.union_all([deep[k], again], grid_size=GRID_M)
         deep[0] = shapely.union_all([deep[0], area], grid_size=GRID_M)
     return shapely.difference(region.area, deep[-1].buffer(1e-3), grid_size=GRID_M)

@@ -231,3 +231,13 @@ def test_where_few_headings_have_room_they_are_looked_for() -> None:
     finer = coarse_options(region, found.sides, STEPS_RAD, np.array([0.0, 1.0]), cramped)
     assert (roomy(finer.entries, cramped) & roomy(finer.exits, cramped)).all()
     assert 0 < len(finer.inner_m) <= 2 * MOST_ROOMY
+
+
+def test_footprints_that_overlap_and_touch_count_by_their_area() -> None:
+    """Two footprints that share ground and, elsewhere, an edge, and a third: only what has area is seen."""
+    one = box(0.0, 0.0, 10.0, 10.0)
+    other = unary_union([box(5.0, 8.0, 20.0, 10.0), box(10.0, 0.0, 20.0, 8.0)])
+    assert one.intersection(other).geom_type == "GeometryCollection"
+    third = box(0.0, 0.0, 20.0, 20.0)
+    assert seen_times([one, other, third], 3).area == pytest.approx(10.0)
+    assert seen_times([one, other], 2).area == pytest.approx(10.0)
