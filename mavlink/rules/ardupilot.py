@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
 from typing import Final
 
 from mavlink.items import Command
@@ -21,8 +23,12 @@ def _servo_names(needs: Needs) -> tuple[str, ...]:
     return (f"SERVO{needs.payload.servo}_FUNCTION",)
 
 
-#: FENCE_TYPE's bit of the fences uploaded; 1 is a greatest height, 2 a circle round home, 8 a least height.
+#: FENCE_TYPE's bits: a greatest height, a circle round home, the fences uploaded; 8 is a least height.
+_HEIGHT_FENCE: Final = 1
+_HOME_FENCE: Final = 2
 _DRAWN_FENCES: Final = 4
+#: Fences that are the vehicle's own lie at least this far outside the mission, or it turns back on its way.
+_FENCE_ROOM_M: Final = 20.0
 _SHUTTERS: Final = tuple(f"SERVO{number}_FUNCTION" for number in range(1, 17))
 
 _PAYLOAD: Final = (
@@ -64,7 +70,30 @@ def _judge_fence_type(values: Values, needs: Needs) -> ParameterFinding | None:
     return ParameterFinding("FENCE_TYPE", float(kinds), float(kinds | _DRAWN_FENCES), reason, "warning")
 
 
+def _own_fence(name: str, kind: int, reach_m: Callable[[Needs], float], words: str) -> Rule:
+    """A fence of the vehicle's own that the mission would breach, where its kind is in force."""
+
+    def judge(values: Values, needs: Needs) -> ParameterFinding | None:
+        limit_m, kinds = values.get(name), values.get("FENCE_TYPE")
+        if limit_m is None or kinds is None or not round(kinds) & kind:
+            return None
+        wanted_m = reach_m(needs) + _FENCE_ROOM_M
+        if limit_m >= wanted_m:
+            return None
+        reason = (
+            f"the mission goes {reach_m(needs):.0f} m {words}; FENCE_TYPE {kinds:g} has this limit in force"
+        )
+        enabled = values.get("FENCE_ENABLE", 0.0) > 0.0
+        return ParameterFinding(
+            name, limit_m, float(math.ceil(wanted_m)), reason, "error" if enabled else "warning"
+        )
+
+    return Rule(lambda needs: (name, "FENCE_TYPE", "FENCE_ENABLE"), judge)
+
+
 _FENCE: Final = (
+    _own_fence("FENCE_ALT_MAX", _HEIGHT_FENCE, lambda needs: needs.highest_m, "above home"),
+    _own_fence("FENCE_RADIUS", _HOME_FENCE, lambda needs: needs.farthest_m, "from home"),
     check(
         "FENCE_ENABLE",
         lambda value, needs: value > 0,

@@ -6,12 +6,31 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Final, Literal
 
-from mavlink.items import Command
+from mavlink.geometry import distance_m
+from mavlink.items import Command, Frame
 from mavlink.mission import Mission
 from mavlink.payload import ActuatorPayload, CameraPayload, ImagePayload, Payload, RelayPayload
 from planner.plan import Plan
 
 Values = Mapping[str, float]
+
+#: Items that are flown to.
+_FLOWN_TO: Final = frozenset(
+    {
+        Command.NAV_WAYPOINT,
+        Command.NAV_LOITER_UNLIM,
+        Command.NAV_LOITER_TURNS,
+        Command.NAV_LOITER_TIME,
+        Command.NAV_LOITER_TO_ALT,
+        Command.NAV_TAKEOFF,
+        Command.NAV_LAND,
+        Command.NAV_SPLINE_WAYPOINT,
+        Command.NAV_VTOL_TAKEOFF,
+        Command.NAV_VTOL_LAND,
+    }
+)
+_ABOVE_HOME: Final = frozenset({Frame.GLOBAL_RELATIVE_ALT, Frame.GLOBAL_RELATIVE_ALT_INT})
+_ABOVE_SEA: Final = frozenset({Frame.GLOBAL, Frame.GLOBAL_INT})
 
 #: What else firmware calls a parameter, and how many of that one's units make one of this one's.
 OTHER_NAMES: Final[dict[str, tuple[str, float]]] = {
@@ -59,6 +78,8 @@ class Needs:
         How the sensor is switched, as the autopilot switches it.
     commands
         Of the mission's items.
+    highest_m, farthest_m
+        Of the mission's places, above home and from it; 0 where it has none.
     """
 
     airspeed_m_s: float
@@ -67,6 +88,8 @@ class Needs:
     payload: Payload
     commands: frozenset[int]
     fence: bool
+    highest_m: float = 0.0
+    farthest_m: float = 0.0
 
 
 def needs_of(plan: Plan, mission: Mission, payload: Payload, settle_m: float | None = None) -> Needs:
@@ -74,6 +97,7 @@ def needs_of(plan: Plan, mission: Mission, payload: Payload, settle_m: float | N
     vehicle = next(vehicle for vehicle in plan.vehicles if vehicle.name == mission.vehicle)
     if mission.autopilot == "px4" and isinstance(payload, RelayPayload):
         payload = ActuatorPayload(payload.relay + 1)  # as the encoder says it
+    highest_m, farthest_m = _reach(mission)
     return Needs(
         vehicle.airspeed_m_s,
         vehicle.min_turn_radius_m,
@@ -81,7 +105,24 @@ def needs_of(plan: Plan, mission: Mission, payload: Payload, settle_m: float | N
         payload,
         frozenset(item.command for item in mission.mission),
         bool(mission.fence),
+        highest_m,
+        farthest_m,
     )
+
+
+def _reach(mission: Mission) -> tuple[float, float]:
+    """How high above home and how far from it the mission goes, by its items."""
+    highest_m, farthest_m = 0.0, 0.0
+    for item in mission.mission:
+        if item.command not in _FLOWN_TO:
+            continue
+        if item.frame in _ABOVE_HOME:
+            highest_m = max(highest_m, item.z)
+        elif item.frame in _ABOVE_SEA:
+            highest_m = max(highest_m, item.z - mission.home_altitude_m)
+        if item.x or item.y:
+            farthest_m = max(farthest_m, distance_m(mission.home, (item.y / 1e7, item.x / 1e7)))
+    return highest_m, farthest_m
 
 
 @dataclass(frozen=True, slots=True)

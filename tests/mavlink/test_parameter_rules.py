@@ -6,6 +6,7 @@ import math
 from dataclasses import replace
 
 import pytest
+from pyproj import Geod
 
 from mavlink.dialects import Autopilot
 from mavlink.encode import encode
@@ -27,7 +28,7 @@ from mavlink.payload import (
 )
 from tests.mavlink.plans import make_plan
 
-PLANE = Needs(22.4, 100.0, None, CameraPayload(25.0), frozenset({22, 16, 21, 189}), True)
+PLANE = Needs(22.4, 100.0, None, CameraPayload(25.0), frozenset({22, 16, 21, 189}), True, 500.0, 4000.0)
 SERVO9 = {"SERVO9_FUNCTION": 10.0}
 GOOD: dict[Autopilot, dict[str, float]] = {
     "ardupilot": {
@@ -40,6 +41,8 @@ GOOD: dict[Autopilot, dict[str, float]] = {
         "FENCE_ENABLE": 1.0,
         "FENCE_TYPE": 7.0,
         "FENCE_ACTION": 1.0,
+        "FENCE_ALT_MAX": 600.0,
+        "FENCE_RADIUS": 5000.0,
         "CAM1_TYPE": 1.0,
         "SERVO1_FUNCTION": 4.0,
         "SERVO9_FUNCTION": 10.0,
@@ -230,3 +233,32 @@ def test_a_fence_type_is_advised_with_the_kinds_in_force(kinds: float, advised: 
     assert [(finding.name, finding.value, finding.advised) for finding in found] == [
         ("FENCE_TYPE", kinds, advised)
     ]
+
+
+@pytest.mark.parametrize(
+    ("name", "limit", "kind", "advised"),
+    [("FENCE_ALT_MAX", 100.0, 1, 520.0), ("FENCE_RADIUS", 300.0, 2, 4020.0)],
+)
+def test_a_fence_of_the_vehicles_own_is_not_breached(
+    name: str, limit: float, kind: int, advised: float
+) -> None:
+    """A height or circle that the mission goes beyond is told where its kind counts, an error where it is on."""
+    for kinds, enabled, severity in ((7, 1, "error"), (7 - kind, 1, None), (7, 0, "warning")):
+        values = GOOD["ardupilot"] | {name: limit, "FENCE_TYPE": float(kinds), "FENCE_ENABLE": float(enabled)}
+        for vehicle in ("fixed_wing", "multirotor"):
+            found = [f for f in judge_parameters("ardupilot", vehicle, PLANE, values) if f.name == name]
+            assert [(f.value, f.advised, f.severity) for f in found] == (
+                [] if severity is None else [(limit, advised, severity)]
+            )
+
+
+def test_how_high_and_far_a_mission_goes_is_read_from_its_items() -> None:
+    """The highest and the farthest place above and from home, by an independent geodesic."""
+    plan = make_plan()
+    mission = encode(plan, autopilot="ardupilot")
+    needs = needs_of(plan, mission, RelayPayload(0))
+    flown = [item for item in mission.mission[1:] if item.command == 16]
+    far = max(Geod(ellps="WGS84").inv(*mission.home, item.y / 1e7, item.x / 1e7)[2] for item in flown)
+    assert needs.farthest_m >= far - 1e-6
+    assert needs.farthest_m < far + 2000.0
+    assert needs.highest_m == pytest.approx(max(item.z for item in flown), abs=1.0)
