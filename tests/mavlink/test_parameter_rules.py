@@ -242,7 +242,7 @@ def test_a_fence_type_is_advised_with_the_kinds_in_force(kinds: float, advised: 
 def test_a_fence_of_the_vehicles_own_is_not_breached(
     name: str, limit: float, kind: int, advised: float
 ) -> None:
-    """A height or circle that the mission goes beyond is told where its kind counts, an error where it is on."""
+    """A height or circle that the mission goes beyond is told where its kind counts: an error if it is on."""
     for kinds, enabled, severity in ((7, 1, "error"), (7 - kind, 1, None), (7, 0, "warning")):
         values = GOOD["ardupilot"] | {name: limit, "FENCE_TYPE": float(kinds), "FENCE_ENABLE": float(enabled)}
         for vehicle in ("fixed_wing", "multirotor"):
