@@ -35,7 +35,7 @@ def tables(rows: Iterable[dict[str, Any]]) -> str:
                 f"{row['metres_in_threats']:.0f}",
                 f"{row['least_coverage']:.6f}",
                 f"{row['min_turn_radius_m']:.2f}",
-                "" if row["gap"] is None else f"{100.0 * row['gap']:.0f}",
+                "" if row["gap"] is None else f"{100.0 * row['gap']:.1f}",
                 f"{row['planning_s']:.2f}",
                 f"{row['paper_planning_s']:.1f}",
             ]
