@@ -23,7 +23,7 @@ from planner.pipeline import make_plan
 from planner.warm import warm_up
 
 #: Regions and threats.
-SIZES = ((20, 30), (50, 60), (100, 100))
+SIZES = ((12, 12), (20, 30), (50, 60), (100, 100))
 KM2_PER_REGION = 10.0
 #: Every so many threats one is a hard zone.
 HARD_EVERY = 5

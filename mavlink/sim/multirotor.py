@@ -64,26 +64,9 @@ class MultirotorModel:
         self._drag_per_s = _TILT_AT_FASTEST * self._most_m_s2 / limits.fastest_m_s
         self._thrust = (0.0, 0.0)
         self._learnt = (0.0, 0.0)
-        wind_north, wind_east = wind.step(0.0)
-        self._state = AircraftState(
-            time_s=0.0,
-            lat_deg=start.lat_deg,
-            lon_deg=start.lon_deg,
-            altitude_m=start.altitude_m,
-            heading_rad=math.radians(heading_deg % 360.0),
-            bank_rad=0.0,
-            pitch_rad=0.0,
-            airspeed_m_s=0.0,
-            climb_m_s=0.0,
-            north_m_s=0.0,
-            east_m_s=0.0,
-            wind_north_m_s=wind_north,
-            wind_east_m_s=wind_east,
-            turn_rate_rad_s=0.0,
-            throttle=0.0,
-            power_w=0.0,
-            on_ground=True,
-        )
+        heading_rad = math.radians(heading_deg % 360.0)
+        place = (start.lat_deg, start.lon_deg, start.altitude_m)
+        self._state = _on_ground(0.0, place, heading_rad, wind.step(0.0))
 
     @property
     def state(self) -> AircraftState:
@@ -102,25 +85,8 @@ class MultirotorModel:
     def _standing(self, dt_s: float, wind: tuple[float, float]) -> AircraftState:
         old = self._state
         self._thrust = self._learnt = (0.0, 0.0)
-        return AircraftState(
-            time_s=old.time_s + dt_s,
-            lat_deg=old.lat_deg,
-            lon_deg=old.lon_deg,
-            altitude_m=self._ground_m,
-            heading_rad=old.heading_rad,
-            bank_rad=0.0,
-            pitch_rad=0.0,
-            airspeed_m_s=0.0,
-            climb_m_s=0.0,
-            north_m_s=0.0,
-            east_m_s=0.0,
-            wind_north_m_s=wind[0],
-            wind_east_m_s=wind[1],
-            turn_rate_rad_s=0.0,
-            throttle=0.0,
-            power_w=0.0,
-            on_ground=True,
-        )
+        place = (old.lat_deg, old.lon_deg, self._ground_m)
+        return _on_ground(old.time_s + dt_s, place, old.heading_rad, wind)
 
     def _flown(self, dt_s: float, command: FlightCommand, wind: tuple[float, float]) -> AircraftState:
         old, limits = self._state, self._limits
@@ -222,3 +188,29 @@ def _shortened(vector: tuple[float, float], most: float) -> tuple[float, float]:
     if length <= most:
         return vector
     return vector[0] * most / length, vector[1] * most / length
+
+
+def _on_ground(
+    time_s: float, place: tuple[float, float, float], heading_rad: float, wind: tuple[float, float]
+) -> AircraftState:
+    """Standing, motors off: latitude, longitude and altitude; the wind's north and east."""
+    lat_deg, lon_deg, altitude_m = place
+    return AircraftState(
+        time_s=time_s,
+        lat_deg=lat_deg,
+        lon_deg=lon_deg,
+        altitude_m=altitude_m,
+        heading_rad=heading_rad,
+        bank_rad=0.0,
+        pitch_rad=0.0,
+        airspeed_m_s=0.0,
+        climb_m_s=0.0,
+        north_m_s=0.0,
+        east_m_s=0.0,
+        wind_north_m_s=wind[0],
+        wind_east_m_s=wind[1],
+        turn_rate_rad_s=0.0,
+        throttle=0.0,
+        power_w=0.0,
+        on_ground=True,
+    )

@@ -11,7 +11,7 @@ import shapely
 from numpy.typing import NDArray
 from shapely.geometry.base import BaseGeometry
 
-from planner.coverage.classify import ROUNDING_M
+from planner.coverage.classify import ROUNDING_M, spans_at
 from planner.coverage.segments import Neighbourhood
 from planner.coverage.sweeps import Side, Sweep
 from planner.routing import bound_cells_kernels as kernels
@@ -145,12 +145,8 @@ def _ring(area: BaseGeometry) -> Floats:
 
 def _narrowest_m(hull: Floats) -> float:
     """Least width of a convex ring (V, 2): across one of its edges."""
-    along = np.roll(hull, -1, axis=0) - hull
-    normals = np.stack([-along[:, 1], along[:, 0]], axis=1)
-    lengths = np.hypot(*along.T)
-    normals = normals[lengths > 0.0] / lengths[lengths > 0.0, None]
-    heights = hull @ normals.T
-    return float((heights.max(axis=0) - heights.min(axis=0)).min())
+    east, north = (np.roll(hull, -1, axis=0) - hull).T
+    return float(spans_at(hull, np.arctan2(north, east)).across_m.min())
 
 
 def terminal(where: Terminal) -> Floats:
