@@ -14,7 +14,7 @@ from mavlink.errors import LinkError, NotConnectedError, ReadOnlyError
 from mavlink.items import MissionType
 from mavlink.link import open_link
 from mavlink.messages import Message
-from mavlink.recording import TlogWriter
+from mavlink.recording import TlogWriter, read_tlog
 from tests.mavlink.aircraft import flying
 from tests.mavlink.transfer.vehicle import waypoints
 
@@ -79,7 +79,8 @@ async def test_what_a_client_records_it_can_play(tmp_path: Path) -> None:
     writer.close()
     (path,) = (tmp_path / "uav").iterdir()
     codec = Codec()
-    names = [m.name for m in codec.feed(path.read_bytes())]
+    # By record: a byte of a time may be a frame's first byte, and a codec that reads times as frames loses some.
+    names = [m.name for _, frame in read_tlog(path) for m in codec.feed(frame)]
     assert names.count("MISSION_ITEM_INT") == 3
     assert {"HEARTBEAT", "MISSION_COUNT", "MISSION_ACK"} <= set(names)
     async with VehicleClient(await open_link(f"replay:{path}")) as replayed:
