@@ -79,7 +79,7 @@ async def test_what_a_client_records_it_can_play(tmp_path: Path) -> None:
     writer.close()
     (path,) = (tmp_path / "uav").iterdir()
     codec = Codec()
-    # By record: a byte of a time may be a frame's first byte, and a codec that reads times as frames loses some.
+    # By record: a byte of a time may look like a frame's first, and a codec fed with both loses frames.
     names = [m.name for _, frame in read_tlog(path) for m in codec.feed(frame)]
     assert names.count("MISSION_ITEM_INT") == 3
     assert {"HEARTBEAT", "MISSION_COUNT", "MISSION_ACK"} <= set(names)
