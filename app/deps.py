@@ -10,7 +10,9 @@ from app.services.flights import FlightService
 from app.services.house import House
 from app.services.planning import PlanningService
 from app.services.terrain import TerrainService
+from app.services.vehicles.checks import Checks
 from app.services.vehicles.fleet import Fleet
+from app.services.vehicles.transfers import Transfers
 from app.settings import Settings
 
 
@@ -30,6 +32,14 @@ async def _fleet(house: Annotated[House, Depends(_house)]) -> Fleet:
     return house.fleet
 
 
+async def _transfers(house: Annotated[House, Depends(_house)]) -> Transfers:
+    return house.transfers
+
+
+async def _checks(house: Annotated[House, Depends(_house)]) -> Checks:
+    return house.checks
+
+
 async def _flights(house: Annotated[House, Depends(_house)]) -> FlightService:
     return house.flights
 
@@ -42,5 +52,7 @@ HouseDep = Annotated[House, Depends(_house)]
 SettingsDep = Annotated[Settings, Depends(_settings)]
 PlanningDep = Annotated[PlanningService, Depends(_planning)]
 FleetDep = Annotated[Fleet, Depends(_fleet)]
+TransfersDep = Annotated[Transfers, Depends(_transfers)]
+ChecksDep = Annotated[Checks, Depends(_checks)]
 FlightsDep = Annotated[FlightService, Depends(_flights)]
 TerrainDep = Annotated[TerrainService, Depends(_terrain)]

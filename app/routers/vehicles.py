@@ -10,7 +10,7 @@ from fastapi import APIRouter, Query, Response
 from fastapi.responses import StreamingResponse
 from sse_starlette import EventSourceResponse, ServerSentEvent
 
-from app.deps import FleetDep
+from app.deps import ChecksDep, FleetDep, TransfersDep
 from app.problems import responses
 from app.routers.streams import event_stream, file_stream
 from app.schemas_vehicles import (
@@ -31,6 +31,7 @@ from app.schemas_vehicles import (
     VehicleOut,
 )
 from app.services.missions import MissionChoice
+from app.services.vehicles.orders import give_order
 from mavlink.transfer.command import CommandOutcome
 
 router = APIRouter(prefix="/api/v1/vehicles", tags=["vehicles"])
@@ -99,7 +100,9 @@ async def telemetry(vehicle_id: str, fleet: FleetDep) -> EventSourceResponse:
     responses=responses(404, 409, 422)
     | {202: {"model": UploadOut, "description": "The outcome is unknown until the vehicle comes back."}},
 )
-async def upload(vehicle_id: str, body: MissionIn, fleet: FleetDep, response: Response) -> UploadOut:
+async def upload(
+    vehicle_id: str, body: MissionIn, fleet: FleetDep, transfers: TransfersDep, response: Response
+) -> UploadOut:
     """Encode the plan for the autopilot that is there, upload, read back, compare.
 
     Plans that break a hard constraint, missions for another kind of vehicle and vehicles in flight are
@@ -108,46 +111,59 @@ async def upload(vehicle_id: str, body: MissionIn, fleet: FleetDep, response: Re
     holds.
     """
     choice = MissionChoice(body.vehicle, None, body.payload)
-    report = await fleet.upload(
-        vehicle_id, body.plan_id, body.parts, choice, body.reason if body.override else None
+    report = await transfers.upload(
+        fleet.get(vehicle_id), body.plan_id, body.parts, choice, body.reason if body.override else None
     )
     response.status_code = 202 if report.outcome == "unknown" else 200
     return UploadOut.of(report)
 
 
 @router.get("/{vehicle_id}/mission", summary="Download", responses=responses(404, 409, 422))
-async def download(vehicle_id: str, fleet: FleetDep, part: Parts = ["mission"]) -> HeldOut:  # noqa: B006
+async def download(
+    vehicle_id: str,
+    fleet: FleetDep,
+    transfers: TransfersDep,
+    part: Parts = ["mission"],  # noqa: B006
+) -> HeldOut:
     """What the vehicle holds."""
-    return HeldOut(vehicle_id=vehicle_id, parts=await fleet.download(vehicle_id, list(dict.fromkeys(part))))
+    parts = await transfers.download(fleet.get(vehicle_id), list(dict.fromkeys(part)))
+    return HeldOut(vehicle_id=vehicle_id, parts=parts)
 
 
 @router.delete("/{vehicle_id}/mission", summary="Clear", responses=responses(404, 409, 422))
-async def clear(vehicle_id: str, fleet: FleetDep, part: Parts = ["mission"]) -> ClearedOut:  # noqa: B006
+async def clear(
+    vehicle_id: str,
+    fleet: FleetDep,
+    transfers: TransfersDep,
+    part: Parts = ["mission"],  # noqa: B006
+) -> ClearedOut:
     """Empty the vehicle's lists."""
-    outcomes = await fleet.clear(vehicle_id, list(dict.fromkeys(part)))
+    outcomes = await transfers.clear(fleet.get(vehicle_id), list(dict.fromkeys(part)))
     return ClearedOut(vehicle_id=vehicle_id, parts={name: o.kind for name, o in outcomes.items()})
 
 
 @router.post("/{vehicle_id}/preflight", summary="Check before flight", responses=responses(404, 409, 422))
-async def preflight(vehicle_id: str, body: PreflightIn, fleet: FleetDep) -> PreflightOut:
+async def preflight(vehicle_id: str, body: PreflightIn, fleet: FleetDep, checks: ChecksDep) -> PreflightOut:
     """Plan, dialect, mission and fence as held, parameters, battery, place, fix, altitude datum, wind.
 
     The vehicle is read, never changed. It is `ready` when no check has failed.
     """
     choice = MissionChoice(body.vehicle, None, body.payload)
-    return PreflightOut.of(await fleet.preflight(vehicle_id, body.plan_id, choice))
+    return PreflightOut.of(await checks.preflight(fleet.get(vehicle_id), body.plan_id, choice))
 
 
 @router.get("/{vehicle_id}/parameters", summary="Read parameters", responses=responses(404, 409, 422))
 async def parameters(
     vehicle_id: str,
     fleet: FleetDep,
+    checks: ChecksDep,
     name: Annotated[list[str] | None, Query(max_length=200, description="Repeat for several.")] = None,
     plan_id: Annotated[str | None, Query(max_length=36, description="Read and judge what it needs.")] = None,
     payload: Annotated[str | None, Query(max_length=200)] = None,
 ) -> ParametersOut:
     """Parameters by name; with `plan_id` also those the plan needs, with findings. None is ever changed."""
-    report = await fleet.parameters(vehicle_id, name or [], plan_id, MissionChoice(None, None, payload))
+    choice = MissionChoice(None, None, payload)
+    report = await checks.parameters(fleet.get(vehicle_id), name or [], plan_id, choice)
     return ParametersOut.of(vehicle_id, report)
 
 
@@ -180,7 +196,7 @@ async def get_log(vehicle_id: str, name: str, fleet: FleetDep) -> StreamingRespo
 @router.post("/{vehicle_id}/commands", summary="Command", responses=responses(404, 409, 422))
 async def command(vehicle_id: str, body: CommandIn, fleet: FleetDep) -> CommandOut:
     """An explicit flight command; nothing else arms or moves a vehicle. 409 when the vehicle says no."""
-    outcome = await fleet.command(vehicle_id, body.command, body.seq)
+    outcome = await give_order(fleet.get(vehicle_id), body.command, body.seq)
     known = outcome.accepted if isinstance(outcome, CommandOutcome) else outcome.kind == "accepted"
     return CommandOut(
         vehicle_id=vehicle_id,

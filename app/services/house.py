@@ -20,8 +20,10 @@ from app.services.store.uploads import UploadStore
 from app.services.store.vehicles import VehicleStore
 from app.services.terrain import TerrainService
 from app.services.validation import Verdict, judge
+from app.services.vehicles.checks import Checks
 from app.services.vehicles.fleet import Fleet
 from app.services.vehicles.recordings import Recordings
+from app.services.vehicles.transfers import Transfers
 
 log = structlog.get_logger(__name__)
 
@@ -70,11 +72,14 @@ class House:
         )
         flights = FlightStore(self.database)
         self.flights = FlightService(flights, self.planning)
+        kept = VehicleStore(self.database)
+        self.checks = Checks(self.planning)
+        self.transfers = Transfers(self.planning, UploadStore(self.database), kept)
         self.fleet = Fleet(
             self.planning,
-            UploadStore(self.database),
+            self.transfers,
             flights,
-            VehicleStore(self.database),
+            kept,
             limits.track_interval_s,
             limits.recordings,
         )

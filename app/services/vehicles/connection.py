@@ -21,6 +21,9 @@ from planner.errors import Finding
 #: Latitude, longitude in degrees, metres above sea level.
 Home = tuple[float, float, float]
 
+#: How long a heartbeat is waited for where nobody says.
+CONNECT_S = 10.0
+
 _FORMS = ("udpin", "udpout", "tcp", "tcpin", "serial", "replay")
 
 

@@ -120,6 +120,10 @@ class Vehicle:
         """The flight under way."""
         return self._recorder.flight_id
 
+    def tell(self) -> None:
+        """Show everybody who watches how it stands now."""
+        self._publish(self)
+
     async def open(self, home: Home | None, timeout_s: float) -> None:
         """Open the link, start the simulator where one is asked for, wait for a heartbeat.
 

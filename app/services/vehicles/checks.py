@@ -1,0 +1,59 @@
+"""Vehicles asked whether they are ready to fly a plan; nothing in them is changed."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from collections.abc import Sequence
+
+from app.services.missions import MissionChoice, encode_plan, plan_of
+from app.services.planning import PlanningService
+from app.services.vehicles.inspection import ParameterReport, inspect, mission_needs, read_parameters
+from app.services.vehicles.preflight import Preflight
+from app.services.vehicles.vehicle import Vehicle
+
+
+class Checks:
+    """Pre-flight checks and parameters."""
+
+    def __init__(self, planning: PlanningService) -> None:
+        self._planning = planning
+
+    async def preflight(self, vehicle: Vehicle, plan_id: str, choice: MissionChoice) -> Preflight:
+        """Ask the vehicle whether it is ready to fly a plan; changes nothing in it."""
+        async with vehicle.busy(f"pre-flight check for plan {plan_id}"):
+            plan = plan_of(await self._planning.plan_text(plan_id))
+            choice = for_vehicle(vehicle, choice)
+            mission = await asyncio.to_thread(encode_plan, plan, choice)
+            scenario = json.loads(await self._planning.scenario_text(plan_id))
+            return await inspect(vehicle.client, plan_id, plan, scenario, mission, choice)
+
+    async def parameters(
+        self, vehicle: Vehicle, names: Sequence[str], plan_id: str | None, choice: MissionChoice
+    ) -> ParameterReport:
+        """Parameters by name; with a plan also those it needs, judged.
+
+        Raises
+        ------
+        RefusedError
+            A name cannot be one, or neither names nor a plan are given.
+        LinkError
+            The vehicle is not there, or answers about none of them.
+        """
+        async with vehicle.busy("reading parameters"):
+            if plan_id is None:
+                return await read_parameters(vehicle.client, names, None)
+            plan = plan_of(await self._planning.plan_text(plan_id))
+            choice = for_vehicle(vehicle, choice)
+            mission = await asyncio.to_thread(encode_plan, plan, choice)
+            scenario = json.loads(await self._planning.scenario_text(plan_id))
+            needs = mission_needs(plan, scenario, mission, choice)
+            return await read_parameters(vehicle.client, names, (mission, needs))
+
+
+def for_vehicle(vehicle: Vehicle, choice: MissionChoice) -> MissionChoice:
+    """The choice, encoded for the autopilot that is really there."""
+    autopilot = vehicle.state.autopilot
+    if choice.autopilot is not None or autopilot == "generic":
+        return choice
+    return MissionChoice(choice.vehicle, autopilot, choice.payload)

@@ -1,0 +1,207 @@
+"""Missions into vehicles and out of them: judged, uploaded, read back, cleared, remembered."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from collections.abc import Sequence
+from typing import Any
+
+import structlog
+
+from app.services.errors import ConflictError, LinkError, NotFoundError
+from app.services.metrics import UPLOADS
+from app.services.missions import PARTS, MissionChoice, PartName, encode_plan, plan_of
+from app.services.planning import PlanningService
+from app.services.records import HeldMission, SentMission
+from app.services.store.uploads import UploadStore
+from app.services.store.vehicles import VehicleStore
+from app.services.vehicles.checks import for_vehicle
+from app.services.vehicles.connection import CONNECT_S
+from app.services.vehicles.inspection import inspect
+from app.services.vehicles.items import item_json
+from app.services.vehicles.preflight import Preflight
+from app.services.vehicles.recorder import is_flying
+from app.services.vehicles.uploads import (
+    UploadReport,
+    comparing,
+    judge_upload,
+    new_report,
+    report_json,
+    send_parts,
+)
+from app.services.vehicles.vehicle import Vehicle
+from mavlink import errors as mavlink_errors
+from mavlink.geometry import distance_m
+from mavlink.mission import Mission
+from mavlink.transfer.machine import Progress
+from mavlink.transfer.outcome import Outcome
+from planner.errors import Finding
+from planner.plan import Plan
+
+log = structlog.get_logger(__name__)
+
+#: A simulated aircraft without a home of its own stands where its plan begins; further away, it moves.
+AT_HOME_M = 50.0
+
+
+class Transfers:
+    """Transfers to and from vehicles, and what is remembered of them over a restart."""
+
+    def __init__(self, planning: PlanningService, uploads: UploadStore, kept: VehicleStore) -> None:
+        self._planning = planning
+        self._uploads = uploads
+        self._kept = kept
+
+    async def upload(
+        self,
+        vehicle: Vehicle,
+        plan_id: str,
+        parts: Sequence[PartName],
+        choice: MissionChoice = MissionChoice(),  # noqa: B008 - a frozen value
+        override: str | None = None,
+    ) -> UploadReport:
+        """Put a plan into a vehicle, read it back, compare.
+
+        Raises
+        ------
+        UnsafeError
+            The plan must not be flown without an override.
+        BusyError
+            Another operation is at work on the vehicle.
+        LinkError
+            The vehicle is not there.
+        """
+        async with vehicle.busy(f"upload of plan {plan_id}", changes=True):
+            plan = plan_of(await self._planning.plan_text(plan_id))
+            # Now, as somebody may delete the plan meanwhile.
+            scenario = json.loads(await self._planning.scenario_text(plan_id))
+            if not vehicle.state.connected:
+                raise LinkError(f"{vehicle.name} is not connected")
+            mission = await asyncio.to_thread(encode_plan, plan, for_vehicle(vehicle, choice))
+            findings = judge_upload(plan, mission, parts, vehicle.state, override)
+            await _bring_home(vehicle, plan)
+            report = await self._begin(vehicle, plan_id, mission, parts, override, findings)
+            report.payload = choice.payload
+
+            def tell(part: PartName, made: Progress) -> None:
+                vehicle.progress = {"part": part, "done": made.done, "total": made.total}
+                vehicle.tell()
+
+            if "mission" in parts:
+                vehicle.holds_unknown()
+            try:
+                await send_parts(vehicle.client, report, tell)
+            finally:
+                await self.record(vehicle)
+            if report.outcome == "accepted":
+                report.preflight = await _preflight_behind(vehicle, plan, scenario, report, choice)
+        return report
+
+    async def download(self, vehicle: Vehicle, parts: Sequence[PartName]) -> dict[str, list[dict[str, Any]]]:
+        """What a vehicle holds, part by part."""
+        async with vehicle.busy("download"):
+            try:
+                return {
+                    name: [item_json(item) for item in await vehicle.client.download(PARTS[name])]
+                    for name in parts
+                }
+            except mavlink_errors.TransferFailedError as error:
+                raise LinkError(f"{vehicle.name}: {error}") from error
+
+    async def clear(self, vehicle: Vehicle, parts: Sequence[PartName]) -> dict[str, Outcome]:
+        """Empty a vehicle's lists."""
+        async with vehicle.busy("clearing", changes=True):
+            outcomes: dict[str, Outcome] = {}
+            for name in parts:
+                outcomes[name] = await vehicle.client.clear(PARTS[name])
+                if name == "mission":
+                    vehicle.holds_unknown()
+                    await self._kept.hold(vehicle.id, None)
+                    if outcomes[name].kind == "accepted":
+                        vehicle.sent = None
+                        await self._kept.send(vehicle.id, None)
+            return outcomes
+
+    async def record(self, vehicle: Vehicle) -> None:
+        """Note what became of an upload, also once an unknown outcome has been resolved."""
+        report = vehicle.upload
+        assert report is not None
+        mission = report.parts.get("mission")
+        if mission is not None:
+            held = HeldMission(report.plan_id, report.plan_vehicle, report.payload)
+            if mission.verified:
+                await vehicle.hold(held)
+            vehicle.found(None if mission.differences is None else not mission.differences)
+            vehicle.sent = SentMission(report.plan_id, vehicle.sent_id if mission.verified else None)
+            await self._kept.send(vehicle.id, vehicle.sent)
+            await self._kept.hold(vehicle.id, held if mission.verified else None)
+        outcome = "unknown" if report.outcome == "not_attempted" else report.outcome
+        UPLOADS.labels(outcome=outcome).inc()
+        await self._uploads.end(report.number, outcome, report_json(report))
+        log.info("upload ended", vehicle=vehicle.name, plan_id=report.plan_id, outcome=outcome)
+        vehicle.tell()
+
+    async def still_holds(self, vehicle: Vehicle, held: HeldMission) -> bool | None:
+        """Read back whether a vehicle holds the plan it held before; None when that plan is deleted."""
+        try:
+            plan = plan_of(await self._planning.plan_text(held.plan_id))
+        except (NotFoundError, ConflictError):
+            return None
+        choice = for_vehicle(vehicle, MissionChoice(held.plan_vehicle, None, held.payload))
+        mission = await asyncio.to_thread(encode_plan, plan, choice)
+        meant = mission.items_of(PARTS["mission"])
+        found = await vehicle.client.download(PARTS["mission"])
+        same = not comparing(mission.dialect)(meant, found)
+        if same:
+            vehicle.client.recognise(PARTS["mission"])
+        else:
+            await self._kept.hold(vehicle.id, None)
+        return same
+
+    async def _begin(
+        self,
+        vehicle: Vehicle,
+        plan_id: str,
+        mission: Mission,
+        parts: Sequence[PartName],
+        override: str | None,
+        findings: tuple[Finding, ...],
+    ) -> UploadReport:
+        number = await self._uploads.begin(vehicle.id, vehicle.name, plan_id, parts, override)
+        if override is not None:
+            rules = [finding.rule for finding in findings]
+            log.warning(
+                "upload overrides", vehicle=vehicle.name, plan_id=plan_id, reason=override, rules=rules
+            )
+        report = new_report(number, plan_id, mission, parts, override, findings)
+        vehicle.upload = report
+        return report
+
+
+async def _bring_home(vehicle: Vehicle, plan: Plan) -> None:
+    """A simulated aircraft that stands elsewhere, and was not told where, goes where the plan begins."""
+    if vehicle.simulated is None or vehicle.simulated.home is not None or is_flying(vehicle.state):
+        return
+    state = vehicle.state
+    place = (state.lon_deg or 0.0, state.lat_deg or 0.0)
+    if distance_m(place, plan.home) < AT_HOME_M:
+        return
+    lon_deg, lat_deg = plan.home
+    log.info("simulated aircraft moves to the plan's start", vehicle=vehicle.name)
+    await vehicle.move((lat_deg, lon_deg, 0.0), CONNECT_S)
+
+
+async def _preflight_behind(
+    vehicle: Vehicle,
+    plan: Plan,
+    scenario: dict[str, Any],
+    report: UploadReport,
+    choice: MissionChoice,
+) -> Preflight | None:
+    """The check behind an upload; None when the vehicle vanished, which leaves the upload as it is."""
+    try:
+        return await inspect(vehicle.client, report.plan_id, plan, scenario, report.mission, choice, report)
+    except (mavlink_errors.NotConnectedError, mavlink_errors.BusyError, LinkError):
+        log.warning("no pre-flight check behind the upload", vehicle=vehicle.name)
+        return None
