@@ -10,7 +10,7 @@ from pymavlink import mavutil
 
 from app.main import create_app
 from app.settings import Settings
-from tests.app.conftest import fake_house, serving
+from tests.app.conftest import fake_house, serving, stored
 from tests.app.test_problems import check_problem
 from tests.app.test_vehicles import VEHICLES, connected, until
 
@@ -82,6 +82,21 @@ async def test_recordings_that_are_not_there(client: httpx.AsyncClient, tmp_path
     check_problem(await client.post(VEHICLES, json={"name": "x", "url": "replay:"}), 422, "link-address")
     odd = {"name": "x", "url": "replay:/no.tlog?plan=p&payload=laser"}
     check_problem(await client.post(VEHICLES, json=odd), 422, "payload")
+
+
+async def test_two_recordings_do_not_share_a_name(settings: Settings, plan_file: Path) -> None:
+    """A name is taken at once, also while the plan that a recording flew is still being read."""
+    app = create_app(settings, fake_house)
+    async with serving(app) as client:
+        url = f"replay:/no.tlog?plan={await stored(client, plan_file)}"
+        fleet = app.state.house.fleet
+        outcomes = await asyncio.gather(
+            *(fleet.connect("again", f"{url}&speedup={n}") for n in (1, 2)), return_exceptions=True
+        )
+        said = sorted(str(outcome) for outcome in outcomes)
+        assert said[1] == "there is a vehicle called again already"
+        assert "no.tlog" in said[0]
+        assert fleet.all() == ()
 
 
 async def test_recording_can_be_switched_off(tmp_path: Path) -> None:

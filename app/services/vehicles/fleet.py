@@ -121,10 +121,9 @@ class Fleet:
             if other.url == url and other.simulated is None:
                 raise ConflictError(f"{url} is in use by {other.name}")
         vehicle = self._vehicle(VehicleRecord(str(uuid.uuid4()), name, url, datetime.now(UTC)))
-        if vehicle.replay:
-            vehicle.held = await self._flown_plan(url)
+        # Named before anything is waited for: two of one name must not pass the check above together.
         self._vehicles[vehicle.id] = vehicle
-        opening = asyncio.create_task(vehicle.open(await self._default_home(), timeout_s))
+        opening = asyncio.create_task(self._open_link(vehicle, timeout_s))
         self._opening[vehicle.id] = opening
         try:
             await asyncio.wait((opening,))
@@ -145,6 +144,11 @@ class Fleet:
             await self._kept.add(VehicleRecord(vehicle.id, name, url, vehicle.created_at))
         log.info("vehicle added", vehicle=name, url=url, connected=vehicle.state.connected)
         return vehicle
+
+    async def _open_link(self, vehicle: Vehicle, timeout_s: float) -> None:
+        if vehicle.replay:
+            vehicle.held = await self._flown_plan(vehicle.url)
+        await vehicle.open(await self._default_home(), timeout_s)
 
     async def disconnect(self, vehicle_id: str) -> None:
         """Let a vehicle go; raises NotFoundError."""
