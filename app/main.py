@@ -101,7 +101,9 @@ def create_app(settings: Settings | None = None, build_house: Callable[[Limits],
         max_bytes=settings.max_body_bytes,
         larger={"/api/v1/terrain": settings.max_terrain_bytes},
     )
-    app.add_middleware(middleware.Guard, allowed_hosts=settings.allowed_hosts)
+    app.add_middleware(
+        middleware.Guard, allowed_hosts=settings.allowed_hosts, allowed_origins=settings.allowed_origins
+    )
     app.add_middleware(middleware.RequestLog)
     app.openapi = lambda: _openapi(app)  # type: ignore[method-assign]
     return app

@@ -9,7 +9,8 @@ import re
 import time
 import uuid
 from collections.abc import Mapping, Sequence
-from urllib.parse import urlsplit
+from typing import Final
+from urllib.parse import SplitResult, urlsplit
 
 import structlog
 from starlette.datastructures import Headers, MutableHeaders
@@ -89,40 +90,64 @@ class Guard:
     """Refuses what another web page makes a browser send here.
 
     The service knows no users, so any page open in the operator's browser could otherwise command vehicles:
-    by name rebinding (hence the check of Host) or by a plain cross-site form (hence that of Origin).
+    by name rebinding (hence the check of Host) or by a plain cross-site form (hence that of Origin). Pages of
+    other services of this machine are other pages too: our own come from the name and port they speak to.
     """
 
-    def __init__(self, app: ASGIApp, allowed_hosts: Sequence[str]) -> None:
+    def __init__(self, app: ASGIApp, allowed_hosts: Sequence[str], allowed_origins: Sequence[str]) -> None:
         self._app = app
-        self._allowed = frozenset(name.lower() for name in allowed_hosts)
+        self._hosts = frozenset(name.lower() for name in allowed_hosts)
+        self._origins = frozenset(allowed_origins)
 
-    def _known(self, host: str | None) -> bool:
-        return host is not None and (is_loopback(host) or host.lower() in self._allowed)
+    def _known_host(self, host: str) -> bool:
+        parts = _parts("//" + host)
+        name = None if parts is None else parts.hostname
+        return name is not None and (is_loopback(name) or name in self._hosts)
+
+    def _known_origin(self, origin: str, host: str) -> bool:
+        parts = _parts(origin.lower())
+        if parts is None or parts.scheme not in _WEB_PORTS:
+            return False
+        return origin.lower() in self._origins or _place(parts) == _place(_parts(f"{parts.scheme}://{host}"))
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Serve one request."""
         if scope["type"] == "http":
             headers = Headers(scope=scope)
-            refused = None
-            if not self._known(_hostname("//" + headers.get("host", ""))):
-                refused = (421, "misdirected-request", "Host", "host-unknown")
-            elif (origin := headers.get("origin")) is not None and not self._known(_hostname(origin)):
-                refused = (403, "forbidden", "Origin", "origin-unknown")
-            if refused is not None:
-                status, kind, header, rule = refused
-                message = f"the {header} header names none of this service's hosts"
+            host, origin = headers.get("host", ""), headers.get("origin")
+            if not self._known_host(host):
+                message = "the Host header names none of this service's hosts"
                 fix = "address the service by its own name, or list the name in SWATHPLAN_ALLOWED_HOSTS"
-                entry = {"feature": header.lower(), "rule": rule, "message": message, "fix": fix}
-                await _answer(scope, send, status, kind, "Refused at the door", message, [entry])
+                entry = {"feature": "host", "rule": "host-unknown", "message": message, "fix": fix}
+                await _answer(
+                    scope, send, 421, "misdirected-request", "Refused at the door", message, [entry]
+                )
+                return
+            if origin is not None and not self._known_origin(origin, host):
+                message = f"a page of {origin[:200]} made this request, not one of the service itself"
+                fix = "open the service's own map, or list the page's origin in SWATHPLAN_ALLOWED_ORIGINS"
+                entry = {"feature": "origin", "rule": "origin-unknown", "message": message, "fix": fix}
+                await _answer(scope, send, 403, "forbidden", "Refused at the door", message, [entry])
                 return
         await self._app(scope, receive, send)
 
 
-def _hostname(url: str) -> str | None:
+#: Ports that addresses leave out.
+_WEB_PORTS: Final = {"http": 80, "https": 443}
+
+
+def _parts(url: str) -> SplitResult | None:
     try:
-        return urlsplit(url).hostname
+        parts = urlsplit(url)
+        _ = parts.hostname, parts.port
     except ValueError:
         return None
+    return parts
+
+
+def _place(parts: SplitResult | None) -> tuple[str | None, int | None] | None:
+    """Name and port of an address."""
+    return parts and (parts.hostname, parts.port or _WEB_PORTS[parts.scheme])
 
 
 class BodyCap:

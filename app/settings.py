@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ipaddress
 import os
+import re
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
@@ -27,6 +28,8 @@ def is_loopback(host: str) -> bool:
         return False
 
 
+#: What a browser sends as Origin: no path, not even a slash; "null" is what any sandboxed page sends.
+_ORIGIN = re.compile(r"https?://([A-Za-z0-9._-]+|\[[0-9A-Fa-f:]+\])(:[0-9]{1,5})?")
 #: What the names of environment variables begin with.
 PREFIX = "SWATHPLAN_"
 #: Variables of the tests, which are no settings of the service.
@@ -56,6 +59,12 @@ class Settings(BaseSettings):
         default=(),
         description="Host names, beyond this machine's own, that requests may be addressed to; with commas "
         "between them.",
+    )
+    allowed_origins: Annotated[tuple[str, ...], NoDecode] = Field(
+        default=(),
+        description="Origins whose pages may send requests, and so command vehicles, beside the service's "
+        "own: `https://ops.example:8443`, with commas between them. Needed where a proxy before the service "
+        "changes the `Host` header.",
     )
     database: Path = Field(default=Path("var/swathplan.db"), description="Database file; made when absent.")
     workers: int = Field(
@@ -91,14 +100,25 @@ class Settings(BaseSettings):
         default=2_000_000_000, ge=1_000_000, description="Size of all recordings; the oldest go first."
     )
 
-    @field_validator("allowed_hosts", mode="before")
+    @field_validator("allowed_hosts", "allowed_origins", mode="before")
     @classmethod
     def _split(cls, value: Any) -> Any:
         return (
-            tuple(filter(None, (host.strip() for host in value.split(","))))
+            tuple(filter(None, (name.strip() for name in value.split(","))))
             if isinstance(value, str)
             else value
         )
+
+    @field_validator("allowed_origins")
+    @classmethod
+    def _origins(cls, origins: tuple[str, ...]) -> tuple[str, ...]:
+        for origin in origins:
+            if not _ORIGIN.fullmatch(origin):
+                raise ValueError(
+                    f"{origin} is no origin: write scheme, host and port and nothing behind them, as in "
+                    "https://ops.example:8443"
+                )
+        return tuple(origin.lower() for origin in origins)
 
     @model_validator(mode="after")
     def _refuse_unsafe(self) -> Self:

@@ -28,7 +28,7 @@ def _values(field: FieldInfo) -> str:
         "str": "text",
         "Path": "path",
     }
-    said = "names" if get_origin(kind) is tuple else words[kinds[0].__name__]
+    said = "list" if get_origin(kind) is tuple else words[kinds[0].__name__]
     limits = []
     for rule in field.metadata:
         match rule:

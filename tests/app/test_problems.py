@@ -114,9 +114,22 @@ async def test_validate_answers_warnings(client: httpx.AsyncClient) -> None:
         ({"origin": "https://evil.example"}, 403),
         ({"origin": "null"}, 403),
         ({"origin": "http://[bad"}, 403),
-        ({"origin": "http://localhost:5173"}, 200),
+        ({"origin": "http://[::1]:99999"}, 403),
+        ({"origin": "file://localhost"}, 403),
+        # Another service of this machine: its pages must not command aircraft.
+        ({"host": "localhost:8000", "origin": "http://localhost:5173"}, 403),
+        ({"host": "localhost:8000", "origin": "http://localhost"}, 403),
+        ({"host": "localhost:8000", "origin": "http://127.0.0.1:8000"}, 403),
+        ({"host": "localhost:8000", "origin": "http://localhost:8000.evil.example"}, 403),
+        ({"host": "localhost:8000", "origin": "http://localhost:8000"}, 200),
+        ({"host": "LOCALHOST:8000", "origin": "http://localhost:8000"}, 200),
+        ({"host": "[::1]:8000", "origin": "http://[::1]:8000"}, 200),
+        # Behind a proxy that speaks TLS and keeps the Host header.
+        ({"host": "localhost", "origin": "https://localhost"}, 200),
+        ({"host": "localhost", "origin": "https://localhost:443"}, 200),
         ({"host": "127.0.0.1:8000"}, 200),
         ({"host": "[::1]:8000"}, 200),
+        ({"host": "[::1:8000"}, 421),
     ],
 )
 async def test_other_sites_are_kept_out(
@@ -128,6 +141,24 @@ async def test_other_sites_are_kept_out(
         assert answer.status_code == 200
     else:
         check_problem(answer, status)
+
+
+async def test_a_page_of_another_local_service_commands_nothing(client: httpx.AsyncClient) -> None:
+    """A form a browser posts without asking first, from another port of this machine, reaches no vehicle."""
+    page = {"host": "localhost:8000", "origin": "http://localhost:3000", "content-type": "text/plain"}
+    command = "/api/v1/vehicles/some/commands"
+    answer = await client.post(command, headers=page, content='{"command": "arm"}')
+    check_problem(answer, 403, "origin-unknown")
+    assert "http://localhost:3000" in answer.json()["detail"]
+    check_problem(await client.post(command, headers=page | {"origin": "http://localhost:8000"}), 422)
+
+
+async def test_origins_that_are_allowed(settings: Settings) -> None:
+    """A page whose origin is listed may use the service; one of the same host but another port may not."""
+    allowed = settings.model_copy(update={"allowed_origins": ("https://ops.example:8443",)})
+    async with serving(create_app(allowed, fake_house)) as client:
+        for origin, status in (("https://OPS.example:8443", 200), ("https://ops.example", 403)):
+            assert (await client.get(PLANS, headers={"origin": origin})).status_code == status
 
 
 async def test_unforeseen_error_is_a_bare_500(

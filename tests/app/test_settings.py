@@ -24,6 +24,15 @@ def test_host_names_come_with_commas(monkeypatch: pytest.MonkeyPatch) -> None:
     assert Settings().allowed_hosts == ("planner.example", "10.0.0.7")
 
 
+def test_origins_are_origins(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Several come with commas; what no browser sends as an origin, or every sandboxed page, is refused."""
+    monkeypatch.setenv("SWATHPLAN_ALLOWED_ORIGINS", "https://Ops.example:8443, http://[::1]:9000")
+    assert Settings().allowed_origins == ("https://ops.example:8443", "http://[::1]:9000")
+    for wrong in ("ops.example", "https://ops.example/", "*", "null", "https://ops.example/map"):
+        with pytest.raises(ValueError, match="is no origin"):
+            Settings(allowed_origins=(wrong,))
+
+
 def test_slips_in_variable_names_are_found(monkeypatch: pytest.MonkeyPatch) -> None:
     """A variable that is no setting is named; settings and the tests' own are not."""
     for name in ("SWATHPLAN_PROT", "SWATHPLAN_PORT", "SWATHPLAN_TEST_SPEEDUP", "OTHER"):
