@@ -13,6 +13,7 @@ from mavlink.codec import Codec
 from mavlink.driver import Driver
 from mavlink.errors import NotConnectedError, TransferFailedError, VehicleNotFoundError
 from mavlink.flight import FlightCommands
+from mavlink.forward.hub import Forwards
 from mavlink.items import Command
 from mavlink.link import Link
 from mavlink.outputs import (
@@ -68,6 +69,8 @@ class VehicleClient(MissionTransfers, FlightCommands):
         A vehicle silent this long counts as lost: what is under way ends as unknown.
     tap
         Called with every frame of the link, both ways, e.g. ``TlogWriter.write``.
+    forwards
+        Other ground stations that hear the vehicle too; stays open when the client is closed.
 
     Notes
     -----
@@ -85,11 +88,14 @@ class VehicleClient(MissionTransfers, FlightCommands):
         vehicle_system: int = 0,
         lost_after_s: float = 5.0,
         tap: Callable[[bytes], None] | None = None,
+        forwards: Forwards | None = None,
     ) -> None:
         codec = Codec(system_id)
         codec.tap = tap
         super().__init__()
-        self._driver = Driver(link, codec, clock, self._ask_for_telemetry, vehicle_system, lost_after_s)
+        self._driver = Driver(
+            link, codec, clock, self._ask_for_telemetry, vehicle_system, lost_after_s, forwards
+        )
         self._settings = settings
         self._clock = clock
         self._watched_hz: dict[int, float] = {}

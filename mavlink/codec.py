@@ -132,6 +132,8 @@ class Codec:
         Whole frames skipped because the dialect does not define their message.
     tap
         Called with every whole frame taken in or packed, as it is on the wire; None to do without.
+    heard
+        Called with every whole frame taken in, and its message: None where the dialect does not define it.
     """
 
     def __init__(self, system_id: int = 255, component_id: int = 190) -> None:
@@ -143,6 +145,7 @@ class Codec:
         self.bad_frames = 0
         self.unknown_frames = 0
         self.tap: Callable[[bytes], None] | None = None
+        self.heard: Callable[[bytes, Message | None], None] | None = None
         self._sequence = 0
         self._buffer = bytearray()
 
@@ -207,10 +210,13 @@ class Codec:
             end = frame_end(buffer, position)
             if end is None:
                 break
+            known = len(messages)
             taken = self._decode(buffer, position, end, messages) if end > position else False
             if taken:
                 if self.tap is not None:
                     self.tap(bytes(buffer[position:end]))
+                if self.heard is not None:
+                    self.heard(bytes(buffer[position:end]), messages[-1] if len(messages) > known else None)
                 position = end
             else:
                 self.bad_frames += 1

@@ -16,6 +16,7 @@ from typing import Any, Final, Generic, TypeVar
 from mavlink.codec import Codec
 from mavlink.errors import BusyError, CodecError, LinkError, NotConnectedError, ReadOnlyError
 from mavlink.events import EVENT_MESSAGES, EventOrder
+from mavlink.forward.hub import Forwards
 from mavlink.link import DirectLink, Link, ReplayLink
 from mavlink.list_ids import ListIds
 from mavlink.messages import Message
@@ -31,6 +32,8 @@ End = TypeVar("End")
 
 _HEARTBEAT_EVERY_S: Final = 1.0
 _ACTIVE: Final = 4  # MAV_STATE_ACTIVE
+#: Frames of other ground stations wait for a slow link up to this number, ours among them.
+_MOST_WAITING: Final = 256
 
 
 class _Job(Generic[End]):
@@ -82,6 +85,7 @@ class Driver:
         on_connect: Callable[[], None],
         vehicle_system: int = 0,
         lost_after_s: float = 5.0,
+        forwards: Forwards | None = None,
     ) -> None:
         self.state = VehicleState()
         self._link = link
@@ -90,6 +94,9 @@ class Driver:
         self._due_s = math.inf
         self._error: Exception | None = None
         self._codec = codec
+        self._forwards = forwards
+        if forwards is not None:
+            codec.heard = forwards.heard
         self._clock = clock
         self._on_connect = on_connect
         self._vehicle_system = vehicle_system
@@ -111,6 +118,8 @@ class Driver:
     def start(self) -> None:
         """Begin to read and to send heartbeats; again is harmless."""
         if self._task is None and self._failure is None:
+            if self._forwards is not None:
+                self._forwards.join(self)
             self._task = asyncio.create_task(self._run(), name=f"mavlink {self._link.url}")
 
     async def close(self) -> None:
@@ -166,6 +175,28 @@ class Driver:
         if len(queue) == 1:
             self._send(machine.start(self._clock()), job)
         return job
+
+    def pass_on(self, frame: bytes) -> bool:
+        """Send another ground station's frame as it is, and record it; False when too many wait."""
+        if self._failure is not None or len(self._outgoing) >= _MOST_WAITING:
+            return False
+        if self._codec.tap is not None:
+            self._codec.tap(frame)
+        self._outgoing.append(frame)
+        self._wake()
+        return True
+
+    def reserved(self, *, changes: bool) -> contextlib.AbstractContextManager[None]:
+        """Keep the vehicle's lists to this station while within.
+
+        Raises
+        ------
+        BusyError
+            Another ground station that is forwarded to is at work on them.
+        """
+        if self._forwards is None:
+            return contextlib.nullcontext()
+        return self._forwards.reserved(changes=changes)
 
     def require_free(self) -> None:
         """Raise BusyError when a transfer is under way, and what ``require_connected`` raises."""
@@ -386,6 +417,8 @@ class Driver:
     def _fail(self, reason: str) -> None:
         if self._failure is not None:
             return
+        if self._forwards is not None:
+            self._forwards.leave(self)
         self._failure = reason
         self._set_state(replace(self.state, connected=False))
         self._abandon()

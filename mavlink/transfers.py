@@ -6,6 +6,7 @@ import asyncio
 import contextlib
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager
 from dataclasses import replace
 from typing import Final
 
@@ -88,17 +89,34 @@ class MissionTransfers(ABC):
     async def _send(self, machine: UploadMachine, progress: Callable[[Progress], None] | None) -> Outcome:
         ids, kind = self._driver.list_ids, machine.mission_type
         self._driver.require_free()
-        self._forget(kind)
-        ids.sending(kind, self.state)
-        outcome = await self._driver.transfer(machine, progress)
-        return ids.sent(kind, outcome, machine.opaque_id, self.state)
+        with self.reserved(changes=True):
+            self._forget(kind)
+            ids.sending(kind, self.state)
+            outcome = await self._driver.transfer(machine, progress)
+            return ids.sent(kind, outcome, machine.opaque_id, self.state)
+
+    def reserved(self, *, changes: bool) -> AbstractContextManager[None]:
+        """Keep the vehicle's lists to this station over several transfers, each of which does so by itself.
+
+        Parameters
+        ----------
+        changes
+            Whether they change what the vehicle holds: other stations' orders to fly it are held back too.
+
+        Raises
+        ------
+        BusyError
+            Another ground station that the link is forwarded to is at work on them.
+        """
+        return self._driver.reserved(changes=changes)
 
     async def download(
         self, mission_type: MissionType, progress: Callable[[Progress], None] | None = None
     ) -> tuple[MissionItem, ...]:
         """What the vehicle holds. Raises TransferFailedError, BusyError, NotConnectedError."""
         machine = DownloadMachine(mission_type, *self._target(), self._settings)
-        outcome = await self._driver.transfer(machine, progress)
+        with self.reserved(changes=False):
+            outcome = await self._driver.transfer(machine, progress)
         if outcome.kind != "accepted":
             raise TransferFailedError(f"download of the {mission_type.name.lower()}", outcome)
         self._read_id = machine.opaque_id
@@ -110,9 +128,10 @@ class MissionTransfers(ABC):
         """Empty one of the vehicle's lists. Raises BusyError, NotConnectedError."""
         machine = ClearMachine(mission_type, *self._target(), self._settings)
         self._driver.require_free()
-        self._forget(mission_type)
-        self._driver.list_ids.sending(mission_type, self.state)
-        return await self._driver.transfer(machine)
+        with self.reserved(changes=True):
+            self._forget(mission_type)
+            self._driver.list_ids.sending(mission_type, self.state)
+            return await self._driver.transfer(machine)
 
     def _forget(self, mission_type: MissionType) -> None:
         """What was read of a list no longer counts: it is being changed."""
@@ -128,7 +147,8 @@ class MissionTransfers(ABC):
         known = self._held_mission
         answers = frozenset[int]() if known is None else flown_for(known, seq)
         machine = SetCurrentMachine(seq, *self._target(), self._settings, answers)
-        outcome = await self._driver.transfer(machine)
+        with self.reserved(changes=False):
+            outcome = await self._driver.transfer(machine)
         if known is None and machine.reported and outcome == Unknown("timeout"):
             with contextlib.suppress(TransferFailedError, NotConnectedError):
                 if machine.reported & flown_for(await self.download(MissionType.MISSION), seq):
@@ -155,7 +175,8 @@ class MissionTransfers(ABC):
             Nothing was begun.
         """
         begun_s = self._clock()
-        result = await upload_and_verify(self, items, mission_type, differences, progress)
+        with self.reserved(changes=True):
+            result = await upload_and_verify(self, items, mission_type, differences, progress)
         self._conclude(Pending(tuple(items), mission_type, differences, result.outcome), result)
         judged = mission_type in (MissionType.MISSION, MissionType.FENCE) and self._driver.events.heard
         if judged and result.status == "stored":
@@ -191,7 +212,8 @@ class MissionTransfers(ABC):
         """
         if changed.step != 1 or not 0 <= changed.start < changed.stop <= len(items):
             raise ValueError(f"{changed} names no run of the mission's {len(items)} items")
-        result = await update_and_verify(self, items, changed, differences, progress)
+        with self.reserved(changes=True):
+            result = await update_and_verify(self, items, changed, differences, progress)
         self._conclude(Pending(tuple(items), MissionType.MISSION, differences, result.outcome), result)
         return result
 
@@ -252,6 +274,7 @@ class MissionTransfers(ABC):
             return None
         self._driver.require_connected()
         pending = self._pending
-        result = await resolve(self, pending)
+        with self.reserved(changes=False):
+            result = await resolve(self, pending)
         self._conclude(pending, result)
         return result

@@ -11,6 +11,8 @@ from mavlink.links.inbox import Inbox
 
 _READ_BYTES: Final = 1 << 16
 _RECONNECT_EVERY_S: Final = 1.0
+#: A peer this far behind is stuck; what is sent meanwhile is lost, as on any radio.
+_MOST_WAITING_BYTES: Final = 1 << 20
 
 
 class TcpClientLink:
@@ -32,11 +34,25 @@ class TcpClientLink:
         return f"tcp:{self._host}:{self._port}"
 
     async def send(self, data: bytes) -> None:
-        """Write; dropped while the peer is away."""
+        """Write; dropped while the peer is away, or stuck."""
+        self.send_now(data)
+
+    def send_now(self, data: bytes) -> None:
+        """The same without waiting."""
         if self._closed:
             raise LinkError("link closed")
-        if self._writer is not None and not self._writer.is_closing():
+        if self.peers and self._writer is not None and self.waiting_bytes < _MOST_WAITING_BYTES:
             self._writer.write(data)
+
+    @property
+    def peers(self) -> int:
+        """1 while connected, else 0."""
+        return int(self._writer is not None and not self._writer.is_closing())
+
+    @property
+    def waiting_bytes(self) -> int:
+        """Bytes the system has not taken yet."""
+        return 0 if self._writer is None else self._writer.transport.get_write_buffer_size()
 
     async def receive(self) -> bytes:
         """Wait for bytes, connecting anew when the peer has gone."""
@@ -136,11 +152,25 @@ class TcpServerLink:
         self._inbox.put(data)
 
     async def send(self, data: bytes) -> None:
-        """Write to the peer; dropped while there is none."""
+        """Write to the peer; dropped while there is none, or it is stuck."""
+        self.send_now(data)
+
+    def send_now(self, data: bytes) -> None:
+        """The same without waiting."""
         if self._closed:
             raise LinkError("link closed")
-        if self._peer is not None and not self._peer.transport.is_closing():
+        if self.peers and self._peer is not None and self.waiting_bytes < _MOST_WAITING_BYTES:
             self._peer.transport.write(data)
+
+    @property
+    def peers(self) -> int:
+        """1 while a peer is connected, else 0."""
+        return int(self._peer is not None and not self._peer.transport.is_closing())
+
+    @property
+    def waiting_bytes(self) -> int:
+        """Bytes the system has not taken yet."""
+        return 0 if self._peer is None else self._peer.transport.get_write_buffer_size()
 
     async def receive(self) -> bytes:
         """Wait for bytes."""

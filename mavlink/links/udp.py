@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import ipaddress
 import socket
 from collections.abc import Callable
 from typing import Any, Final
@@ -29,11 +30,14 @@ class UdpLink:
     It reads its socket itself: asyncio's transport reserves 256 KiB for every datagram.
     """
 
-    def __init__(self, form: str, host: str, sock: socket.socket, peer: Address | None) -> None:
+    def __init__(
+        self, form: str, host: str, sock: socket.socket, peer: Address | None, answers_only: bool = False
+    ) -> None:
         self._form = form
         self._host = host
         self._socket = sock
         self._fixed_peer = peer
+        self._answers_only = answers_only
         self._peers: dict[Address, float] = {}
         self._inbox = Inbox()
         self._listener: Callable[[bytes], None] | None = None
@@ -53,6 +57,16 @@ class UdpLink:
         """The port bound on this machine."""
         return self._port
 
+    @property
+    def peers(self) -> int:
+        """How many are sent to."""
+        return len(self._peers) if self._fixed_peer is None else 1
+
+    @property
+    def waiting_bytes(self) -> int:
+        """None: datagrams that cannot be sent at once are lost."""
+        return 0
+
     def _readable(self) -> None:
         try:
             data, peer = self._socket.recvfrom(_MOST_BYTES)
@@ -60,6 +74,8 @@ class UdpLink:
             return  # a peer that is not listening (yet): like a radio out of range, it may come back
         if self._fixed_peer is None:
             self._hear(peer)
+        elif self._answers_only and peer[:2] != self._fixed_peer[:2]:
+            return
         if self._listener is None:
             self._inbox.put(data)
         else:
@@ -109,19 +125,27 @@ class UdpLink:
             self._inbox.fail("link closed")
 
 
-async def open_udp(host: str, port: int, *, listen: bool) -> UdpLink:
-    """Bind (``listen``) or aim at a host and port. Raises OSError."""
+async def open_udp(host: str, port: int, *, listen: bool, answers_only: bool = False) -> UdpLink:
+    """Bind (``listen``) or aim at a host and port. Raises OSError.
+
+    Parameters
+    ----------
+    answers_only
+        Of an aimed link: be deaf to all but the peer, and, where that is on this machine, bound to it alone.
+    """
     loop = asyncio.get_running_loop()
     found = await loop.getaddrinfo(host, port, type=socket.SOCK_DGRAM, proto=socket.IPPROTO_UDP)
     family, _, _, _, address = found[0]
-    any_address = ("::", 0) if family == socket.AF_INET6 else ("0.0.0.0", 0)
+    source: tuple[str, int] = ("::", 0) if family == socket.AF_INET6 else ("0.0.0.0", 0)
+    if answers_only and ipaddress.ip_address(address[0]).is_loopback:
+        source = (str(address[0]), 0)
     sock = socket.socket(family, socket.SOCK_DGRAM)
     try:
         sock.setblocking(False)
         sock.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, _RECEIVE_BUFFER_BYTES)
         sock.setsockopt(socket.SOL_SOCKET, socket.SO_BROADCAST, 1)
-        sock.bind(address if listen else any_address)
+        sock.bind(address if listen else source)
     except OSError:
         sock.close()
         raise
-    return UdpLink("udpin" if listen else "udpout", host, sock, None if listen else address)
+    return UdpLink("udpin" if listen else "udpout", host, sock, None if listen else address, answers_only)
