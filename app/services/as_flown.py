@@ -32,7 +32,7 @@ ALONG_COSINE = math.cos(math.radians(45.0))
 #: places a second does not tell better where the sensor was switched.
 SLIVER_M = 5.0
 SLIVER_M2 = 100.0
-#: A region is seen when no more than this is missing.
+#: A region counts as seen from this part of it on: what is missing then is slivers along its edges.
 SEEN_FRACTION = 0.995
 
 

@@ -12,7 +12,7 @@ from shapely import transform
 from shapely.geometry import mapping
 from shapely.geometry.base import BaseGeometry
 
-from app.services.as_flown import gaps, regions_json, triggers
+from app.services.as_flown import SEEN_FRACTION, SLIVER_M, SLIVER_M2, gaps, regions_json, triggers
 from app.services.documents import read_object
 from app.services.errors import ConflictError, NotFoundError
 from app.services.gpx import write_gpx
@@ -215,8 +215,8 @@ def _coverage(flight: _Flown) -> dict[str, Any]:
 
     Members: ``coverage`` {region: fraction as flown}, ``planned_coverage``, ``collects`` with the
     distance of the track from each planned line while the sensor was on, ``triggers`` with how the sensor
-    was switched over each and which photos are missing, and ``regions`` with what was wanted of each and
-    what is missing.
+    was switched over each and which photos are missing, and ``regions`` with what was wanted of each, what
+    is missing, and whether it counts as ``seen``: from ``seen_fraction`` of it on.
     """
     record, samples = flight.record, flight.samples
     scenario = read_scenario(read_object(flight.scenario_text), flight.terrain)
@@ -240,6 +240,7 @@ def _coverage(flight: _Flown) -> dict[str, Any]:
         "planned_coverage": plan.metrics.coverage,
         "collects": [asdict(collect) for collect in result.passes],
         "triggers": [asdict(trigger) for trigger in switched],
+        "seen_fraction": SEEN_FRACTION,
         "regions": regions_json(scenario, plan, result),
         "features": features,
     }
@@ -250,7 +251,10 @@ def _refly(flight: _Flown, here: tuple[float, float, float | None] | None) -> di
     scenario = read_scenario(document, flight.terrain)
     missing = gaps(scenario, seen_by(scenario, plan_of(flight.plan_text), flight.samples))
     if not missing:
-        raise ConflictError("nothing is left to fly again for: every region was seen, but for slivers")
+        raise ConflictError(
+            "nothing is left to fly again for: what was not seen are slivers, each narrower "
+            f"than {2 * SLIVER_M:g} m or smaller than {SLIVER_M2:g} m²"
+        )
     return refly_scenario(document, missing, scenario.frame, flight.record.plan_vehicle, here)
 
 

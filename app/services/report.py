@@ -84,6 +84,7 @@ def write_flight_report(
         name=scenario.get("name") or "Flight",
         map=draw_map(scenario, {"features": features}),
         regions=coverage["regions"],
+        seen_percent=f"{100 * coverage['seen_fraction']:g}",
         triggers=[trigger | {"line": lines.get(trigger["seq"])} for trigger in coverage["triggers"]],
         photos=any(t["photos_taken"] or t["photos_expected"] for t in coverage["triggers"]),
         missed=[trigger for trigger in coverage["triggers"] if trigger["state"] != "ok"],

@@ -84,9 +84,10 @@ async def test_a_whole_flight_leaves_nothing_to_fly_again_for(flown: Flown) -> N
     assert all(region["seen"] for region in coverage["regions"])
     refused = await flown.client.post(place + "/refly")
     check_problem(refused, 409)
-    assert "nothing is left" in refused.json()["detail"]
+    assert "slivers, each narrower than 10 m or smaller than 100 m²" in refused.json()["detail"]
     page = await flown.client.get(place + "/report.html")
-    assert "Every region was seen" in page.text
+    assert coverage["seen_fraction"] == 0.995
+    assert "At least 99.5 % of every region was seen" in page.text
     assert "default-src 'none'" in page.headers["content-security-policy"]
 
 
@@ -101,7 +102,7 @@ async def test_a_missed_collect_is_named_and_flown_again(flown: Flown) -> None:
     unseen = {region["roi"] for region in coverage["regions"] if not region["seen"]}
     assert unseen == set(missed.regions)
     page = (await flown.client.get(place + "/report.html")).text
-    assert "not seen whole" in page
+    assert f"{len(unseen)} regions seen to less than 99.5 %".replace("1 regions", "1 region") in page
     assert ">missed<" in page
     assert "<script" not in page
     answer = await flown.client.post(place + "/refly", params={"wait": 60})

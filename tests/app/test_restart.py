@@ -231,6 +231,9 @@ async def test_a_vehicle_that_fell_silent_is_not_taken_for_the_one_that_comes_ba
         async with holding(SimSettings(), f"udpout:{url}"):
             back = await until(client, lambda body: body["connected"])
             assert (back["sent"]["standing"], back["sent"]["read_back_at"]) == ("unknown", None)
+            await client.post(f"{VEHICLES}/{vehicle['id']}/preflight", json={"plan_id": plan_id})
+            read = (await until(client, lambda body: body["operation"] is None))["sent"]
+            assert (read["standing"], read["shown_by"]) == ("differs", "read_back")
 
 
 async def test_a_deleted_plan_leaves_the_id_to_tell(settings: Settings, plan_file: Path) -> None:

@@ -11,6 +11,7 @@ from app.services.planning import PlanningService
 from app.services.vehicles.inspection import ParameterReport, inspect, mission_needs, read_parameters
 from app.services.vehicles.preflight import Preflight
 from app.services.vehicles.vehicle import Vehicle
+from mavlink.mission import Mission
 
 
 class Checks:
@@ -20,13 +21,20 @@ class Checks:
         self._planning = planning
 
     async def preflight(self, vehicle: Vehicle, plan_id: str, choice: MissionChoice) -> Preflight:
-        """Ask the vehicle whether it is ready to fly a plan; changes nothing in it."""
+        """Ask the vehicle whether it is ready to fly a plan; changes nothing in it.
+
+        What is read back for it also tells whether the vehicle still holds what it was sent.
+        """
         async with vehicle.busy(f"pre-flight check for plan {plan_id}"):
             plan = plan_of(await self._planning.plan_text(plan_id))
             choice = for_vehicle(vehicle, choice)
             mission = await asyncio.to_thread(encode_plan, plan, choice)
             scenario = json.loads(await self._planning.scenario_text(plan_id))
-            return await inspect(vehicle.client, plan_id, plan, scenario, mission, choice)
+            report = await inspect(vehicle.client, plan_id, plan, scenario, mission, choice)
+            if report.mission_held is not None and _as_sent(vehicle, plan_id, mission, choice):
+                vehicle.found(report.mission_held)
+                vehicle.tell()
+            return report
 
     async def parameters(
         self, vehicle: Vehicle, names: Sequence[str], plan_id: str | None, choice: MissionChoice
@@ -49,6 +57,18 @@ class Checks:
             scenario = json.loads(await self._planning.scenario_text(plan_id))
             needs = mission_needs(plan, scenario, mission, choice)
             return await read_parameters(vehicle.client, names, (mission, needs))
+
+
+def _as_sent(vehicle: Vehicle, plan_id: str, mission: Mission, choice: MissionChoice) -> bool:
+    """Whether a mission asked about is the one last sent, payload and all."""
+    sent = vehicle.upload
+    return (
+        sent is not None
+        and vehicle.sent is not None
+        and vehicle.sent.plan_id == sent.plan_id == plan_id
+        and (sent.plan_vehicle, sent.payload) == (mission.vehicle, choice.payload)
+        and "mission" in sent.parts
+    )
 
 
 def for_vehicle(vehicle: Vehicle, choice: MissionChoice) -> MissionChoice:

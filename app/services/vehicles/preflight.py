@@ -42,11 +42,18 @@ class Check:
 
 @dataclass(frozen=True, slots=True)
 class Preflight:
-    """All answers; a vehicle is ready when none has failed."""
+    """All answers; a vehicle is ready when none has failed.
+
+    Parameters
+    ----------
+    mission_held
+        Whether reading back showed the plan's mission in the vehicle; None when it could not be read.
+    """
 
     plan_id: str
     checks: tuple[Check, ...]
     parameters: tuple[ParameterFinding, ...] = ()
+    mission_held: bool | None = None
 
     @property
     def ready(self) -> bool:
@@ -109,7 +116,8 @@ def preflight(
         _datum(plan, scenario, state),
         *_wind(plan, scenario, mission),
     )
-    return Preflight(plan_id, checks, found)
+    differences = observed.held.get("mission")
+    return Preflight(plan_id, checks, found, None if differences is None else not differences)
 
 
 def _plan(plan: Plan) -> Check:
