@@ -21,7 +21,14 @@ from mavlink.encoding.stops import Stop, stops_along
 from mavlink.encoding.task import Task, task_of
 from mavlink.items import Command, Frame, MissionItem, MissionResult, MissionType
 from mavlink.mission import Mission, home_item, numbered, placed
-from mavlink.payload import ActuatorPayload, Payload, PayloadError, RelayPayload, switch_items
+from mavlink.payload import (
+    ActuatorPayload,
+    Payload,
+    PayloadError,
+    RelayPayload,
+    ServoPayload,
+    switch_items,
+)
 from planner.plan import LonLat, Plan
 
 __all__ = ["EncodeError", "EncodeOptions", "Finish", "Mission", "encode"]
@@ -111,8 +118,13 @@ def _switches(task: Task, payload: Payload) -> tuple[MissionItem, MissionItem]:
         # Numbered as if in flight: item 0 of ArduPilot is never looked at.
         result = task.dialect.answer(replace(item, seq=1))
         if result != MissionResult.ACCEPTED:
+            hint = (
+                "; name one of PX4's outputs, main:9 or aux:1"
+                if task.is_px4 and isinstance(payload, ServoPayload)
+                else ""
+            )
             raise EncodeError(
-                f"{task.dialect.name} refuses the payload's command {item.command}: {result.name}"
+                f"{task.dialect.name} refuses the payload's command {item.command}: {result.name}{hint}"
             )
     return switches
 
@@ -151,7 +163,7 @@ def _pass_by_notes(task: Task) -> tuple[str, ...]:
     early_m = task.turns_early_m
     if not (early_m > 0.0 and task.collects):
         return ()
-    kind = "multirotors" if task.hovers else "fixed wings"
+    kind = {"multirotor": "multirotors", "vtol": "VTOLs"}.get(task.vehicle.type, "fixed wings")
     if task.off_delay_m < early_m:
         return (
             f"PX4's {kind} count a waypoint as reached some {early_m:.0f} m early: the sensor goes off"

@@ -17,10 +17,12 @@ from typing import Final
 from mavlink.messages import Message
 from mavlink.modes import Autopilot
 from mavlink.payload import (
+    PX4_OUTPUTS,
     ActuatorPayload,
     CameraPayload,
     ImagePayload,
     Payload,
+    Px4Output,
     RelayPayload,
     ServoPayload,
 )
@@ -32,9 +34,7 @@ RELAY_STATUS: Final = 376
 _CHANNELS: Final = 16
 #: An output without pulses, and one that is not there.
 _NO_PULSE_US: Final = frozenset({0, 65535})
-_GROUPS: Final = ("PWM_MAIN", "PWM_AUX")
-_OUTPUTS_A_GROUP: Final = 8
-_FIRST_ACTUATOR_FUNCTION: Final = 301
+_GROUPS: Final = tuple(PX4_OUTPUTS)
 _PX4_PULSES_US: Final = (1000.0, 2000.0)
 #: CAMERA_CAPTURE_STATUS.image_status from here on: an interval is set.
 _INTERVAL_SET: Final = 2
@@ -117,17 +117,26 @@ def function_parameters(payload: Payload, autopilot: Autopilot) -> tuple[str, ..
     """Parameters that say which output a payload is; none where the payload says so itself."""
     if autopilot != "px4" or not isinstance(payload, ActuatorPayload):
         return ()
-    return tuple(f"{group}_FUNC{n}" for group in _GROUPS for n in range(1, _OUTPUTS_A_GROUP + 1))
+    return tuple(output.function_parameter for output in px4_outputs(payload))
+
+
+def px4_outputs(payload: ActuatorPayload) -> tuple[Px4Output, ...]:
+    """The outputs that may follow an actuator: the one that is named, else all."""
+    if payload.output is not None:
+        return (payload.output,)
+    return tuple(Px4Output(group, n) for group, count in PX4_OUTPUTS.items() for n in range(1, count + 1))
 
 
 def pulse_parameters(
     payload: Payload, autopilot: Autopilot, functions: Mapping[str, float]
 ) -> tuple[str, ...]:
     """Parameters that say how the output's values become pulses, once its function is known."""
-    place = _place(payload, functions) if function_parameters(payload, autopilot) else None
+    if autopilot != "px4" or not isinstance(payload, ActuatorPayload):
+        return ()
+    place = _place(payload, functions)
     if place is None:
         return ()
-    group, number = place
+    group, number = f"PWM_{place.group.upper()}", place.number
     return (f"{group}_MIN{number}", f"{group}_MAX{number}", f"{group}_REV")
 
 
@@ -160,7 +169,7 @@ def _actuator(payload: ActuatorPayload, values: Mapping[str, float]) -> ServoOut
     place = _place(payload, values)
     if place is None:
         return None
-    group, number = place
+    group, number = f"PWM_{place.group.upper()}", place.number
     least_us = values.get(f"{group}_MIN{number}", _PX4_PULSES_US[0])
     most_us = values.get(f"{group}_MAX{number}", _PX4_PULSES_US[1])
     turned = round(values.get(f"{group}_REV", 0.0)) >> (number - 1) & 1
@@ -169,15 +178,14 @@ def _actuator(payload: ActuatorPayload, values: Mapping[str, float]) -> ServoOut
         part = (1.0 - value if turned else 1.0 + value) / 2.0
         return least_us + part * (most_us - least_us)
 
-    return ServoOutput(_GROUPS.index(group), number, pulse_us(payload.on_value), pulse_us(payload.off_value))
+    return ServoOutput(
+        _GROUPS.index(place.group), number, pulse_us(payload.on_value), pulse_us(payload.off_value)
+    )
 
 
-def _place(payload: Payload, values: Mapping[str, float]) -> tuple[str, int] | None:
-    """Group and number of the first output with the actuator's function."""
-    assert isinstance(payload, ActuatorPayload)
-    function = _FIRST_ACTUATOR_FUNCTION + payload.actuator - 1
-    for group in _GROUPS:
-        for number in range(1, _OUTPUTS_A_GROUP + 1):
-            if round(values.get(f"{group}_FUNC{number}", 0.0)) == function:
-                return group, number
+def _place(payload: ActuatorPayload, values: Mapping[str, float]) -> Px4Output | None:
+    """The first output with the actuator's function."""
+    for output in px4_outputs(payload):
+        if round(values.get(output.function_parameter, 0.0)) == payload.function:
+            return output
     return None

@@ -24,11 +24,14 @@ __all__ = [
     "unanswered",
 ]
 
-#: Rules by autopilot and type of vehicle; a VTOL is judged as the fixed wing it is between the regions.
+#: Rules by autopilot and type of vehicle.
 RULES: Final[dict[tuple[Autopilot, VehicleType], tuple[Rule, ...]]] = {
     ("ardupilot", "fixed_wing"): ardupilot.PLANE,
+    # A quadplane is judged as the fixed wing it is between the regions.
+    ("ardupilot", "vtol"): ardupilot.PLANE,
     ("ardupilot", "multirotor"): ardupilot.COPTER,
     ("px4", "fixed_wing"): px4.FIXED_WING,
+    ("px4", "vtol"): px4.VTOL,
     ("px4", "multirotor"): px4.MULTIROTOR,
 }
 
@@ -59,5 +62,4 @@ def judge_parameters(
 
 
 def _rules(autopilot: Autopilot, vehicle_type: VehicleType, needs: Needs) -> tuple[Rule, ...]:
-    rules = RULES[autopilot, "multirotor" if vehicle_type == "multirotor" else "fixed_wing"]
-    return tuple(rule for rule in rules if rule.applies(needs))
+    return tuple(rule for rule in RULES[autopilot, vehicle_type] if rule.applies(needs))

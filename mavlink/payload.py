@@ -3,13 +3,21 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Literal
 
 from mavlink.items import Command, Frame, MissionItem
 
 Parameters = tuple[float, float, float, float, float, float, float]
 
 _NOTHING: Parameters = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+
+OutputGroup = Literal["main", "aux"]
+#: PX4's groups of outputs, in the order of SERVO_OUTPUT_RAW's ports, and the most outputs a board has there.
+PX4_OUTPUTS: Mapping[OutputGroup, int] = {"main": 16, "aux": 8}
+_FIRST_ACTUATOR_FUNCTION = 301
 
 
 class PayloadError(ValueError):
@@ -44,16 +52,44 @@ class ServoPayload:
 
 
 @dataclass(frozen=True, slots=True)
+class Px4Output:
+    """One of PX4's outputs by the name on its case, MAIN or AUX, and its number there from 1."""
+
+    group: OutputGroup
+    number: int
+
+    def __post_init__(self) -> None:
+        most = PX4_OUTPUTS[self.group]
+        if not 1 <= self.number <= most:
+            raise PayloadError(f"{self}: {self.group.upper()} outputs are numbered 1 to {most}")
+
+    def __str__(self) -> str:
+        return f"{self.group.upper()} {self.number}"
+
+    @property
+    def function_parameter(self) -> str:
+        """The parameter that says what the output follows."""
+        return f"PWM_{self.group.upper()}_FUNC{self.number}"
+
+
+@dataclass(frozen=True, slots=True)
 class ActuatorPayload:
     """One of PX4's actuators by function, values -1 to 1: DO_SET_ACTUATOR.
 
     Actuators 5 and 6 travel in the integers of an item, where "unchanged" cannot be said: each order centres
     them, so they must not be in use for anything else.
+
+    Parameters
+    ----------
+    output
+        The output that must follow the actuator; None for whichever does. No mission item names outputs: the
+        vehicle's own parameters say what each of them follows.
     """
 
     actuator: int = 1
     on_value: float = 1.0
     off_value: float = -1.0
+    output: Px4Output | None = None
 
     def __post_init__(self) -> None:
         if not 1 <= self.actuator <= 4:
@@ -61,6 +97,11 @@ class ActuatorPayload:
         for value in (self.on_value, self.off_value):
             if not -1.0 <= value <= 1.0:
                 raise PayloadError(f"actuator value {value}: between -1 and 1 is meant")
+
+    @property
+    def function(self) -> int:
+        """What an output's parameter holds when it follows this actuator: 301 is Actuator Set 1."""
+        return _FIRST_ACTUATOR_FUNCTION + self.actuator - 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,6 +183,7 @@ def parse_payload(text: str) -> Payload:
     """The payload of a specification.
 
     ``relay:0`` · ``servo:9:1900:1100`` (output, on, off in µs) · ``actuator:1:1:-1`` (number, on, off) ·
+    ``aux:3:1:1:-1`` or ``main:…`` (PX4's output, the actuator it follows, on, off) ·
     ``camera:distance=25`` (m) · ``image:interval=2`` (s) · ``command:2000:0,2,0/2001:0`` (command and
     parameters for on, then for off; the off command may be left out when it is the same).
 
@@ -158,7 +200,11 @@ def parse_payload(text: str) -> Payload:
             return ServoPayload(*(int(part) for part in rest.split(":")))
         if kind == "actuator":
             number, *values = rest.split(":") if rest else ["1"]
-            return ActuatorPayload(int(number), *(float(value) for value in values))
+            return ActuatorPayload(int(number), *_on_off(values))
+        for group in PX4_OUTPUTS:
+            if kind == group:
+                output, number, *values = rest.split(":") if ":" in rest else [rest, "1"]
+                return ActuatorPayload(int(number), *_on_off(values), Px4Output(group, int(output)))
         if kind == "camera":
             return CameraPayload(_named(rest, "distance"))
         if kind == "image":
@@ -170,8 +216,16 @@ def parse_payload(text: str) -> Payload:
     except (TypeError, ValueError) as error:
         raise PayloadError(f"payload {text!r}: {error}") from error
     raise PayloadError(
-        f"payload {text!r}: begins with none of relay, servo, actuator, camera, image, command"
+        f"payload {text!r}: begins with none of relay, servo, actuator, main, aux, camera, image, command"
     )
+
+
+def _on_off(values: Sequence[str]) -> tuple[float, float]:
+    """The values for on and off that were written, else those of an actuator's ends."""
+    on, off, *others = [*values, *("1", "-1")[len(values) :]]
+    if others:
+        raise PayloadError(f"an actuator has a value for on and one for off, not {len(values)}")
+    return float(on), float(off)
 
 
 def _parse_command(text: str) -> CommandPayload:

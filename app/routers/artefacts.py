@@ -50,6 +50,7 @@ PayloadQuery = Annotated[
     str | None,
     Query(
         description="How the sensor is switched: relay:0, servo:9:1900:1100, actuator:1:1:-1, "
+        "aux:1 or main:9 (an output of PX4's), "
         "camera:distance=25, image:interval=2, command:….",
         max_length=200,
     ),

@@ -66,7 +66,7 @@ def encode_plan(plan: Plan, choice: MissionChoice) -> Mission:
         )
         return encode(plan, vehicle=vehicle, autopilot=choice.autopilot, options=options)
     except PayloadError as error:
-        fix = "write e.g. relay:0, servo:9:1900:1100, camera:distance=25 or image:interval=2"
+        fix = "write e.g. relay:0, servo:9:1900:1100, aux:1, camera:distance=25 or image:interval=2"
         raise RefusedError(str(error), (Finding("payload", "payload", str(error), fix),)) from error
     except EncodeError as error:
         fix = "plan for another autopilot or payload"

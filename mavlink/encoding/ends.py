@@ -21,6 +21,8 @@ _KEEP_THROTTLE = -1.0
 _VTOL_SLOPE_DEG = 45.0
 #: Q_TRANS_DECEL of ArduPlane and VT_B_DEC_MSS of PX4, by default.
 _VTOL_BRAKING_M_S2 = 2.0
+#: PX4's VTOLs speed up towards their take-off's place, for VT_TRANS_TIMEOUT at most; half of that is usual.
+_VTOL_SPEED_UP_S = 7.5
 #: ArduPlane refuses to arm with an approach under 0.75 of the stopping distance.
 _VTOL_STOPS = 1.5
 
@@ -67,13 +69,20 @@ def beginning(task: Task) -> End:
 def _takeoff(task: Task, angle_rad: float) -> MissionItem:
     height_m = min(task.options.takeoff_altitude_m, task.altitude_over_home_m)
     parameters = (0.0, 0.0, 0.0, task.any_yaw)
-    if task.vehicle.type == "vtol":
+    vtol = task.vehicle.type == "vtol"
+    if vtol and not task.is_px4:
         return placed(
             Command.NAV_VTOL_TAKEOFF, task.plan.home, height_m, Frame.GLOBAL_RELATIVE_ALT, parameters
         )
-    run_m = height_m / math.tan(math.radians(max(1.0, task.vehicle.max_climb_deg)))
+    # PX4 hovers up where it stands, turns to the take-off's place, and speeds up towards it.
+    command = Command.NAV_VTOL_TAKEOFF if vtol else Command.NAV_TAKEOFF
+    run_m = (
+        _VTOL_SPEED_UP_S * task.vehicle.airspeed_m_s
+        if vtol
+        else height_m / math.tan(math.radians(max(1.0, task.vehicle.max_climb_deg)))
+    )
     place = task.local.lonlat(takeoff_place(_HOME, angle_rad, run_m, task.room))
-    return placed(Command.NAV_TAKEOFF, place, height_m, Frame.GLOBAL_RELATIVE_ALT, parameters)
+    return placed(command, place, height_m, Frame.GLOBAL_RELATIVE_ALT, parameters)
 
 
 def _loiter_to(task: Task, centre: Xy, radius_m: float, altitude_m: float, frame: int) -> MissionItem:

@@ -52,9 +52,7 @@ class Task:
         """How far before a waypoint the vehicle turns to the next one, whatever the item says."""
         if self.is_px4 and self.hovers:
             return _PX4_ACCEPTANCE_M
-        if not (self.is_px4 and self.vehicle.type == "fixed_wing"):
-            return 0.0
-        return _PX4_TURNS_EARLY_S * self.vehicle.airspeed_m_s
+        return _PX4_TURNS_EARLY_S * self.vehicle.airspeed_m_s if self.is_px4 else 0.0
 
     @property
     def off_delay_m(self) -> float:

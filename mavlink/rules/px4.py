@@ -1,26 +1,53 @@
-"""PX4's rules, version 1.16: fixed wings and multirotors."""
+"""PX4's rules, version 1.16: fixed wings, VTOLs and multirotors."""
 
 from __future__ import annotations
 
+import math
 from typing import Final
 
 from mavlink.items import Command
+from mavlink.outputs import px4_outputs
 from mavlink.payload import ActuatorPayload, CameraPayload
-from mavlink.rules.base import Needs, Rule, any_of, check, lands
+from mavlink.rules.base import Needs, ParameterFinding, Rule, Values, check, lands
 from mavlink.rules.flight import SWITCH_DISTANCE, bank, corners, loiter, speed
 
 _APPROACH_SLOPE_DEG: Final = 4.0
+_APPROACH_M: Final = 40.0
+#: A VTOL's approach is 1.5 times as long as it takes to stop at 2 m/s².
+_BRAKING_M_S2: Final = 2.0 / 1.5
+#: Functions of outputs that missions can set: Peripheral via Actuator Set 1 to 4.
+_ACTUATORS: Final = range(301, 305)
 
 
-def _actuator_number(needs: Needs) -> int:
-    return needs.payload.actuator if isinstance(needs.payload, ActuatorPayload) else 0
+def _judge_output(values: Values, needs: Needs) -> ParameterFinding | None:
+    """Whether an output follows the actuator that switches the sensor; the named one, where one is."""
+    payload = needs.payload
+    assert isinstance(payload, ActuatorPayload)
+    found = [
+        (output.function_parameter, values[output.function_parameter])
+        for output in px4_outputs(payload)
+        if output.function_parameter in values
+    ]
+    if not found or any(round(value) == payload.function for _, value in found):
+        return None
+    name, value = found[0]
+    actuator = f"actuator set {payload.actuator}, which switches the sensor"
+    if payload.output is None:
+        reason = f"no output has function {payload.function} ({actuator})"
+        return ParameterFinding(name, value, None, reason, "error")
+    reason = f"output {payload.output} does not follow {actuator}"
+    if round(value) in _ACTUATORS:
+        group, number, other = payload.output.group, payload.output.number, round(value) - _ACTUATORS[0] + 1
+        reason += f", but set {other}: plan with {group}:{number}:{other}, or change the vehicle"
+    elif round(value):
+        reason += ": it is in use for something else"
+    return ParameterFinding(name, value, float(payload.function), reason, "error")
 
 
-_OUTPUTS: Final = tuple(
-    f"{group}_FUNC{number}"
-    for group, count in (("PWM_MAIN", 8), ("PWM_AUX", 8))
-    for number in range(1, count + 1)
-)
+def _outputs(needs: Needs) -> tuple[str, ...]:
+    assert isinstance(needs.payload, ActuatorPayload)
+    return tuple(output.function_parameter for output in px4_outputs(needs.payload))
+
 
 _COMMON: Final = (
     check(
@@ -38,15 +65,7 @@ _COMMON: Final = (
         "error",
         lambda needs: isinstance(needs.payload, CameraPayload),
     ),
-    any_of(
-        lambda needs: _OUTPUTS,
-        lambda value, needs: round(value) == 300 + _actuator_number(needs),
-        lambda needs: (
-            f"no output has function {300 + _actuator_number(needs)} (actuator set "
-            f"{_actuator_number(needs)}), which switches the sensor"
-        ),
-        lambda needs: isinstance(needs.payload, ActuatorPayload),
-    ),
+    Rule(_outputs, _judge_output, lambda needs: isinstance(needs.payload, ActuatorPayload)),
     check(
         "COM_DISARM_PRFLT",
         lambda value, needs: value <= 0 or value >= 5.0,
@@ -100,15 +119,42 @@ _SLOPE: Final = check(
     lands,
 )
 
-FIXED_WING: Final[tuple[Rule, ...]] = (
+_WINGS: Final = (
     corners("NAV_ACC_RAD"),
     SWITCH_DISTANCE,
     _PERIOD,
     speed("FW_AIRSPD_TRIM"),
     bank("FW_R_LIM"),
     loiter("NAV_LOITER_RAD"),
-    _SLOPE,
     _LANDING,
-    *_COMMON,
 )
+_TRANSITION: Final = (
+    check(
+        "VT_ARSP_TRANS",
+        lambda value, needs: value <= needs.airspeed_m_s,
+        lambda needs: (
+            "the transition to flight on wings ends at this airspeed, above the plan's"
+            f" {needs.airspeed_m_s:g} m/s"
+        ),
+        lambda needs: float(math.floor(needs.airspeed_m_s)),
+    ),
+    check(
+        "VT_FW_MIN_ALT",
+        lambda value, needs: value < _APPROACH_M,
+        lambda needs: f"it would fall back to hovering on its approach, {_APPROACH_M:g} m over the ground",
+        lambda needs: 0.0,
+        "error",
+        lands,
+    ),
+    check(
+        "VT_B_DEC_MSS",
+        lambda value, needs: value >= _BRAKING_M_S2,
+        lambda needs: "the approach is too short for it to stop in, and it overshoots the landing's place",
+        lambda needs: 2.0,
+        applies=lands,
+    ),
+)
+
+FIXED_WING: Final[tuple[Rule, ...]] = (*_WINGS, _SLOPE, *_COMMON)
+VTOL: Final[tuple[Rule, ...]] = (*_WINGS, *_TRANSITION, *_COMMON)
 MULTIROTOR: Final[tuple[Rule, ...]] = (_LANDING, *_COMMON)

@@ -15,14 +15,17 @@ from contextlib import asynccontextmanager, contextmanager
 from pathlib import Path
 
 from mavlink.client import VehicleClient
+from mavlink.encoding.options import DEFAULT_PAYLOAD
 from mavlink.link import open_link
-from mavlink.payload import RelayPayload
+from mavlink.payload import Payload
 from tests.flows.flying import Flight, until_disarmed
 
 BINARY = os.environ.get("SWATHPLAN_PX4", "")
 ROMFS = os.environ.get("SWATHPLAN_PX4_ROMFS", "")
 FIRST_PORT = 14540
 HOME_ALTITUDE_M = 30.0
+#: Airframes of the SIH model.
+AEROPLANE, MULTIROTOR, VTOL = "10041", "10040", "10043"
 #: Nobody holds a remote control (NAV_RCL_ACT, COM_RCL_EXCEPT: mission, hold); output 5 follows actuator 1, so
 #: that the simulator tells when the sensor is on; nothing is logged (SDLOG_MODE).
 PARAMETERS: Mapping[str, float] = {
@@ -36,6 +39,11 @@ NOT_NEEDED = (31, 32, 62, 83, 85, 105, 132, 141, 331)
 SET_INTERVAL = 511
 #: Until position and attitude have settled.
 READY_S = 60.0
+
+
+def has_module(name: str) -> bool:
+    """Whether the simulator was built with a module: each has a command of its own beside the binary."""
+    return Path(BINARY).resolve().with_name(f"px4-{name}").exists()
 
 
 def free_instance() -> int:
@@ -57,9 +65,9 @@ def px4(
     home: tuple[float, float],
     speedup: float = 1.0,
     parameters: Mapping[str, float] = PARAMETERS,
-    airframe: str = "10041",
+    airframe: str = AEROPLANE,
 ) -> Iterator[subprocess.Popen[bytes]]:
-    """Run the simulator in a folder of its own; ``home`` is (lon, lat), 10041 the SIH aeroplane."""
+    """Run the simulator in a folder of its own; ``home`` is (lon, lat)."""
     environment = {
         **{f"PX4_PARAM_{name}": f"{value:g}" for name, value in parameters.items()},
         "PATH": f"{Path(BINARY).resolve().parent}:{os.environ['PATH']}",
@@ -92,17 +100,18 @@ def px4(
 
 
 @asynccontextmanager
-async def aeroplane(
+async def simulated(
     folder: Path,
     home: tuple[float, float],
     speedup: float,
     parameters: Mapping[str, float] = PARAMETERS,
+    airframe: str = AEROPLANE,
 ) -> AsyncIterator[VehicleClient]:
     """A simulator that is ready to fly, and a client of it."""
     instance = free_instance()
     link = await open_link(f"udpin:127.0.0.1:{FIRST_PORT + instance}")
     async with VehicleClient(link) as client:
-        with px4(folder, instance, home, speedup, parameters):
+        with px4(folder, instance, home, speedup, parameters, airframe):
             await client.connect(30.0)
             await client.wait_for(lambda state: state.home_lat_deg is not None, READY_S)
             for message_id in NOT_NEEDED:
@@ -110,9 +119,9 @@ async def aeroplane(
             yield client
 
 
-async def fly(client: VehicleClient) -> Flight:
+async def fly(client: VehicleClient, payload: Payload = DEFAULT_PAYLOAD) -> Flight:
     """Start the mission, which arms PX4, and wait until the vehicle has landed and disarmed."""
-    output = await client.sensor_output(RelayPayload())
+    output = await client.sensor_output(payload)
     assert output is not None
     recorder = client.start_recording(output)
     for _ in range(120):

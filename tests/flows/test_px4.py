@@ -28,7 +28,7 @@ from planner.pipeline import make_plan
 from planner.plan import Plan
 from planner.scenario import Scenario
 from tests.flows.flying import CASES, Figures, case_document, figures, from_end_m, inside_fence, store
-from tests.flows.px4 import BINARY, ROMFS, aeroplane, fly
+from tests.flows.px4 import BINARY, ROMFS, fly, simulated
 
 pytestmark = [
     pytest.mark.px4,
@@ -62,7 +62,7 @@ def compare(meant: tuple[MissionItem, ...], held: tuple[MissionItem, ...]) -> Se
 async def flown(folder: Path, scenario: Scenario, plan: Plan) -> Figures:
     """Store a plan, fly it, and judge it: inside the fence, at its height, sensor on, landed at its end."""
     mission = encode(plan, autopilot="px4")
-    async with aeroplane(folder, plan.home, SPEEDUP) as client:
+    async with simulated(folder, plan.home, SPEEDUP) as client:
         await store(client, mission)
         flight = await fly(client)
     samples = flight.samples()
@@ -100,7 +100,7 @@ async def test_its_parameters_are_judged_by_what_it_holds(tmp_path: Path) -> Non
     mission = encode(plan, autopilot="px4")
     needs = needs_of(plan, mission, ActuatorPayload(1), 100.0)
     names = names_to_read("px4", "fixed_wing", needs)
-    async with aeroplane(tmp_path, plan.home, 1.0) as client:
+    async with simulated(tmp_path, plan.home, 1.0) as client:
         values = {name: read.value for name, read in (await client.read_parameters(names)).items()}
     assert {name for name in names if not name.startswith("PWM_AUX")} <= values.keys()
     assert values["PWM_MAIN_FUNC5"] == 301.0
@@ -130,7 +130,7 @@ async def test_an_infeasible_mission_is_told_in_words(tmp_path: Path) -> None:
         "the take-off is not its first place": late_takeoff,
         "a return stands behind": early_return,
     }
-    async with aeroplane(tmp_path, plan.home, 2.0) as client:
+    async with simulated(tmp_path, plan.home, 2.0) as client:
         for words, items in cases.items():
             # Our own check foretells it; what counts here is what the vehicle says.
             assert AEROPLANE.check(items)

@@ -19,14 +19,17 @@ from app.routers.bodies import EXAMPLE
 from app.settings import Settings
 from tests.app.conftest import fake_house, serving
 from tests.flows.px4 import (
+    AEROPLANE,
     BINARY,
     FIRST_PORT,
+    MULTIROTOR,
     NOT_NEEDED,
     PARAMETERS,
     READY_S,
     ROMFS,
     SET_INTERVAL,
     free_instance,
+    has_module,
     px4,
 )
 
@@ -38,8 +41,13 @@ pytestmark = [
 ]
 
 SPEEDUP = 10.0
-#: The simulator's small aeroplane, with some straight flight before each collect.
-VEHICLE = {"autopilot": "px4", "airspeed_m_s": 14.0, "min_turn_radius_m": 100.0, "settle_m": 150.0}
+#: The simulator's small aeroplane, with some straight flight before each collect, and its multirotor.
+VEHICLES = {
+    AEROPLANE: {"airspeed_m_s": 14.0, "min_turn_radius_m": 100.0, "settle_m": 150.0},
+    MULTIROTOR: {"type": "multirotor", "airspeed_m_s": 10.0, "min_turn_radius_m": 30.0},
+}
+#: Triggers by distance have to be there at the start; the last photo falls short of a pass's end.
+CAMERA = {"TRIG_MODE": 4.0, "TRIG_INTERFACE": 3.0}
 MARGINS = {"pointing_margin_deg": 2.0, "position_margin_m": 5.0}
 
 
@@ -52,20 +60,29 @@ async def until(client: httpx.AsyncClient, path: str, ready: Callable[[Any], boo
 
 
 @pytest.mark.parametrize(
-    ("payload", "parameters", "least_seen"),
+    ("airframe", "payload", "parameters", "least_seen"),
     [
-        (None, {}, 0.995),
-        # Triggers by distance have to be there at the start; the last photo falls short of a pass's end.
-        ("camera:distance=10", {"TRIG_MODE": 4.0, "TRIG_INTERFACE": 3.0}, 0.95),
+        (AEROPLANE, None, {}, 0.995),
+        (AEROPLANE, "camera:distance=10", CAMERA, 0.95),
+        pytest.param(
+            MULTIROTOR,
+            "camera:distance=10",
+            CAMERA,
+            0.95,
+            marks=pytest.mark.skipif(
+                bool(BINARY) and not has_module("mc_rate_control"),
+                reason="the simulator was built without multirotors",
+            ),
+        ),
     ],
-    ids=["output", "photos"],
+    ids=["output", "photos", "multirotor-photos"],
 )
 async def test_what_px4_saw_is_known_to_the_service(
-    tmp_path: Path, payload: str | None, parameters: Mapping[str, float], least_seen: float
+    tmp_path: Path, airframe: str, payload: str | None, parameters: Mapping[str, float], least_seen: float
 ) -> None:
     """Planned, uploaded, flown and judged over HTTP: every trigger in order, every region seen."""
     scenario = json.loads(json.dumps(EXAMPLE))
-    scenario["vehicles"][0].update(VEHICLE)
+    scenario["vehicles"][0].update({"autopilot": "px4", **VEHICLES[airframe]})
     scenario["sensors"][0].update(MARGINS)
     settings = Settings(database=tmp_path / "plans.db", workers=1, static_dir=tmp_path, log_level="error")
     app = create_app(settings, fake_house)
@@ -77,7 +94,8 @@ async def test_what_px4_saw_is_known_to_the_service(
         plan = (await client.get(record["links"]["plan.geojson"])).json()
         home = next(f for f in scenario["features"] if f["properties"]["role"] == "start")
         lon_deg, lat_deg = home["geometry"]["coordinates"][:2]
-        with px4(tmp_path / "px4", instance, (lon_deg, lat_deg), SPEEDUP, {**PARAMETERS, **parameters}):
+        set_up = {**PARAMETERS, **parameters}
+        with px4(tmp_path / "px4", instance, (lon_deg, lat_deg), SPEEDUP, set_up, airframe):
             body = {"name": "px4", "url": f"udpin:127.0.0.1:{FIRST_PORT + instance}", "timeout_s": 30}
             answer = await client.post("/api/v1/vehicles", json=body)
             assert answer.json()["connected"], answer.text

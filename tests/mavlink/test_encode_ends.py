@@ -91,6 +91,21 @@ def test_a_vtol_has_room_to_stop_before_it_lands(autopilot: Autopilot, airspeed_
     assert math.dist(local(land), FRAME.to_local(plan.end)) < 0.05
 
 
+def test_a_vtol_of_px4s_speeds_up_along_its_path_inside_the_fence() -> None:
+    """PX4 turns to the take-off's place and flies there on wings; ArduPlane takes off where it stands."""
+    ahead = encode(make_plan(autopilot="px4", vehicle_type="vtol", start=Pose(0.0, 0.0, 0.4))).mission[0]
+    assert ahead.command == Command.NAV_VTOL_TAKEOFF
+    east_m, north_m = local(ahead)
+    assert math.hypot(east_m, north_m) == pytest.approx(7.5 * 20.0, abs=0.1)
+    assert math.atan2(north_m, east_m) == pytest.approx(0.4, abs=0.001)
+    edge = make_plan(autopilot="px4", vehicle_type="vtol", start=Pose(5950.0, 0.0, 0.0))
+    aside = encode(edge).mission[0]
+    assert room_of(edge).contains(Point(local(aside)))
+    here = encode(make_plan(vehicle_type="vtol")).mission[1]
+    assert here.command == Command.NAV_VTOL_TAKEOFF
+    assert math.hypot(*local(here)) < 0.05
+
+
 @pytest.mark.parametrize(("kind", "words"), [("fixed_wing", "circles over home"), ("vtol", "Q_RTL_MODE")])
 def test_a_return_that_does_not_land_is_said(kind: VehicleType, words: str) -> None:
     """ArduPlane's return ends in circles over home: the notes say who lands, and what else there is."""

@@ -68,5 +68,6 @@ def test_px4_is_given_an_actuator_for_a_relay_and_told_so() -> None:
 )
 def test_payloads_that_the_autopilot_refuses_are_refused_here(autopilot: Autopilot, payload: object) -> None:
     """A servo on PX4 and a PX4 actuator on ArduPilot draw UNSUPPORTED before anything is sent."""
-    with pytest.raises(EncodeError, match="UNSUPPORTED"):
+    with pytest.raises(EncodeError, match="UNSUPPORTED") as refused:
         encode(make_plan(), autopilot=autopilot, options=EncodeOptions(payload=payload))
+    assert ("aux:1" in str(refused.value)) == (autopilot == "px4"), "what to write instead"

@@ -81,6 +81,16 @@ def test_an_actuator_is_found_by_its_function() -> None:
     assert output_of(half, "px4", functions) == ServoOutput(1, 6, 1750.0, 1500.0)
 
 
+def test_a_named_output_alone_is_asked_for_and_watched() -> None:
+    """Others that follow the same actuator are left alone; one that follows another shows nothing."""
+    payload = switched_by(parse_payload("aux:3:2"), "px4")
+    assert function_parameters(payload, "px4") == ("PWM_AUX_FUNC3",)
+    functions = {"PWM_AUX_FUNC3": 302.0, "PWM_MAIN_FUNC1": 302.0}
+    assert pulse_parameters(payload, "px4", functions) == ("PWM_AUX_MIN3", "PWM_AUX_MAX3", "PWM_AUX_REV")
+    assert output_of(payload, "px4", functions) == ServoOutput(1, 3, 2000.0, 1000.0)
+    assert output_of(payload, "px4", {**functions, "PWM_AUX_FUNC3": 301.0}) is None
+
+
 def test_an_actuator_without_output_shows_nowhere() -> None:
     """No output has its function: there is nothing to watch."""
     payload = ActuatorPayload(1)

@@ -25,6 +25,7 @@ from mavlink.payload import (
     CameraPayload,
     RelayPayload,
     ServoPayload,
+    parse_payload,
 )
 from tests.mavlink.plans import make_plan
 
@@ -140,6 +141,44 @@ def test_px4s_actuator_needs_an_output(function: float, wrong: bool) -> None:
     needs = replace(PLANE, payload=ActuatorPayload(2))
     found = judge_parameters("px4", "fixed_wing", needs, {"PWM_MAIN_FUNC1": 101.0, "PWM_AUX_FUNC1": function})
     assert bool(found) is wrong
+
+
+@pytest.mark.parametrize(
+    ("function", "words"),
+    [
+        (302.0, None),
+        (0.0, "output AUX 3 does not follow actuator set 2"),
+        (304.0, "plan with aux:3:4, or change the vehicle"),
+        (101.0, "in use for something else"),
+    ],
+)
+def test_px4s_named_output_must_follow_its_actuator(function: float, words: str | None) -> None:
+    """Whatever other outputs follow; the finding advises the function, and says what is there instead."""
+    needs = replace(PLANE, payload=parse_payload("aux:3:2"))
+    assert [n for n in names_to_read("px4", "fixed_wing", needs) if n.startswith("PWM")] == ["PWM_AUX_FUNC3"]
+    values = {"PWM_AUX_FUNC3": function, "PWM_MAIN_FUNC1": 302.0}
+    found = judge_parameters("px4", "fixed_wing", needs, values)
+    assert bool(found) is (words is not None)
+    for finding in found:
+        assert (finding.name, finding.advised, finding.severity) == ("PWM_AUX_FUNC3", 302.0, "error")
+        assert words in finding.reason
+        assert judge_parameters("px4", "fixed_wing", needs, {**values, "PWM_AUX_FUNC3": 302.0}) == ()
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "severity"),
+    [("VT_ARSP_TRANS", 25.0, "warning"), ("VT_FW_MIN_ALT", 50.0, "error"), ("VT_B_DEC_MSS", 1.0, "warning")],
+)
+def test_px4s_vtols_are_judged_by_their_transitions(name: str, value: float, severity: str) -> None:
+    """On wings as a fixed wing, but for the slope of a landing it does not make; then by both transitions."""
+    needs = replace(PLANE, commands=frozenset({84, 16, 85, 189}))
+    good = GOOD["px4"] | {"VT_ARSP_TRANS": 10.0, "VT_FW_MIN_ALT": 0.0, "VT_B_DEC_MSS": 2.0, "FW_LND_ANG": 2.0}
+    assert judge_parameters("px4", "vtol", needs, good) == ()
+    assert name not in names_to_read("px4", "fixed_wing", needs)
+    (finding,) = judge_parameters("px4", "vtol", needs, good | {name: value})
+    assert (finding.name, finding.severity) == (name, severity)
+    assert finding.advised is not None
+    assert judge_parameters("px4", "vtol", needs, good | {name: finding.advised}) == ()
 
 
 @pytest.mark.parametrize(
