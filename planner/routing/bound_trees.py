@@ -1,10 +1,12 @@
 """The lower bound for many passes: trees over regions, lines between cells of neighbours.
 
 A tour is a tree over the nodes, with a line from the start and one to the end, that leaves every node by the
-cell it enters it by. The least tree is found at once; that every node has two lines and is left as it was
-entered is paid for by prices and potentials (M. Held, R. M. Karp, "The traveling-salesman problem and minimum
-spanning trees", Operations Research 18, 1970; the potentials are the same for cells). Any of them give a
-bound; subgradient ascent looks for the best.
+cell it enters it by, and for another node than it came from. The least tree is found at once; that every node
+has two lines and is left as it was entered is paid for by prices and potentials (M. Held, R. M. Karp, "The
+traveling-salesman problem and minimum spanning trees", Operations Research 18, 1970; the potentials are the
+same for cells). With these alone trees go to a neighbour and back half of the time, to be in another cell
+after it; prices of turning back, by cell and neighbour, are for that. Any of them give a bound; subgradient
+ascent looks for the best.
 
 Potentials, slopes and the first splits come from the tour in a good order; then cells that trees use are
 split.
@@ -49,22 +51,25 @@ class _Cells:
         self.values: Floats = np.empty((0, cells_of.WIDTH))
         self.slopes: Floats = np.empty((0, 2))
         self.potential: Floats = np.empty(0)
+        self.back: Floats = np.empty((0, 0))
         self.offsets: Ints = np.zeros(len(nodes) + 1, dtype=np.int64)
         boxes = [node.boxes(headings) for node in nodes]
-        self._fill([(own, np.zeros((len(own), 2)), np.zeros(len(own))) for own in boxes])
+        self._fill(
+            [(own, np.zeros((len(own), 2)), np.zeros(len(own)), np.zeros((len(own), 0))) for own in boxes]
+        )
 
     @property
     def spans(self) -> list[tuple[int, int]]:
         """Where the cells of each node begin and end."""
         return list(itertools.pairwise(self.offsets.tolist()))
 
-    def _fill(self, columns: list[tuple[Floats, Floats, Floats]]) -> None:
+    def _fill(self, columns: list[tuple[Floats, Floats, Floats, Floats]]) -> None:
         rows = []
-        for node, (boxes, slopes, potential) in zip(self.nodes, columns, strict=True):
+        for node, (boxes, slopes, potential, back) in zip(self.nodes, columns, strict=True):
             cells = cells_of.cells(node.ring, node.hull, node.families, boxes)
             holds = cells[:, cells_of.HOLDS] > 0.0
-            rows.append((boxes[holds], cells[holds], slopes[holds], potential[holds]))
-        self.boxes, self.values, self.slopes, self.potential = (
+            rows.append((boxes[holds], cells[holds], slopes[holds], potential[holds], back[holds]))
+        self.boxes, self.values, self.slopes, self.potential, self.back = (
             np.concatenate(column) for column in zip(*rows, strict=True)
         )
         self.offsets = np.concatenate([[0], np.cumsum([len(row[0]) for row in rows])]).astype(np.int64)
@@ -73,16 +78,20 @@ class _Cells:
         """Put the parts of the chosen cells in their places."""
         columns = []
         for begin, end in self.spans:
-            boxes, slopes, potential = [], [], []
+            boxes, slopes, of = [], [], []
             for k in range(begin, end):
                 parts, sloped = self.boxes[k : k + 1], self.slopes[k : k + 1]
                 if chosen[k]:
                     parts, sloped = divided(self.boxes[k], self.values[k], self.slopes[k])
                 boxes.append(parts)
                 slopes.append(sloped)
-                potential.append(np.full(len(parts), self.potential[k]))
-            columns.append((np.concatenate(boxes), np.concatenate(slopes), np.concatenate(potential)))
+                of += [k] * len(parts)
+            columns.append((np.concatenate(boxes), np.concatenate(slopes), self.potential[of], self.back[of]))
         self._fill(columns)
+
+
+def _unpriced(boxes: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+    return boxes, np.zeros((len(boxes), 2)), np.zeros(len(boxes)), np.zeros((len(boxes), 0))
 
 
 def trees_bound_m(
@@ -113,6 +122,7 @@ def trees_bound_m(
     gaps_m = np.hypot(*(middles[:, None, :] - middles[None, :, :]).transpose(2, 0, 1))
     pairs = _pairs(gaps_m, order)
     price = np.zeros(len(nodes))
+    cells.back = np.zeros((len(cells.potential), kernels.places(pairs, len(nodes))[1]))
     best_m, spent = 0.0, 0
     for _ in range(ROUNDS):
         raise_if(stop)
@@ -122,7 +132,7 @@ def trees_bound_m(
         if spent > effort and best_m > 0.0:
             break
         between = kernels.blocks(cells.values, cells.slopes, cells.offsets, region, pairs, begins, radius_m)
-        bound_m, price, cells.potential, used, came, went = kernels.ascent(
+        bound_m, price, cells.potential, back, used, came, went = kernels.ascent(
             between,
             begins,
             pairs,
@@ -133,9 +143,11 @@ def trees_bound_m(
             cells.offsets,
             price,
             cells.potential,
+            np.ascontiguousarray(cells.back.T),
             known_m,
             STEPS,
         )
+        cells.back = back.T
         gained = bound_m - best_m
         best_m = max(best_m, bound_m)
         if gained < LEAST_GAIN * known_m:

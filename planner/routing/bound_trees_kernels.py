@@ -105,6 +105,118 @@ def reach(cells: Floats, middle: Floats) -> tuple[float, float]:
 
 
 @njit(cache=True)
+def places(pairs: Ints, nodes: int) -> tuple[Ints, int]:
+    """Of each pair, which of its neighbours either node counts the other as, (P, 2); the most there are."""
+    counts = np.zeros(nodes, dtype=np.int64)
+    known = np.full((nodes, nodes), -1)
+    for p in range(len(pairs)):
+        b, c = pairs[p, 0], pairs[p, 1]
+        known[b, c] = counts[b]
+        counts[b] += 1
+    out = np.empty((len(pairs), 2), dtype=np.int64)
+    for p in range(len(pairs)):
+        b, c = pairs[p, 0], pairs[p, 1]
+        out[p, 0], out[p, 1] = known[b, c], known[c, b]
+    return out, counts.max()
+
+
+@njit(cache=True)
+def _far_lines(
+    base: Floats, offsets: Ints, leave: Floats, arrive: Floats, slack: Floats, lines: Floats, ends: Ints
+) -> None:
+    """Least lines between all nodes by how far apart they are: fills lines (C, C), their cells (C, C, 2)."""
+    n = len(base)
+    low, high = np.empty(n), np.empty(n)
+    at = np.empty((n, 2), dtype=np.int64)
+    for c in range(n):
+        low[c], high[c] = np.inf, np.inf
+        for i in range(offsets[c], offsets[c + 1]):
+            if leave[i] - slack[i] < low[c]:
+                low[c], at[c, 0] = leave[i] - slack[i], i
+            if arrive[i] - slack[i] < high[c]:
+                high[c], at[c, 1] = arrive[i] - slack[i], i
+    for b in range(n):
+        for c in range(n):
+            lines[b, c] = base[b, c] + low[b] + high[c]
+            ends[b, c, 0], ends[b, c, 1] = at[b, 0], at[c, 1]
+
+
+@njit(cache=True)
+def _near_lines(
+    flat: Floats,
+    begins: Ints,
+    pairs: Ints,
+    place: Ints,
+    offsets: Ints,
+    leave: Floats,
+    arrive: Floats,
+    back: Floats,
+    lines: Floats,
+    ends: Ints,
+) -> None:
+    """Least lines of pairs, over what ``_far_lines`` has filled in."""
+    widest = 0
+    for c in range(len(offsets) - 1):
+        widest = max(widest, offsets[c + 1] - offsets[c])
+    inward = np.empty(widest)
+    for p in range(len(pairs)):
+        b, c = pairs[p, 0], pairs[p, 1]
+        begin, wide = offsets[c], offsets[c + 1] - offsets[c]
+        for j in range(wide):
+            inward[j] = arrive[begin + j] + back[place[p, 1], begin + j]
+        at = begins[p]
+        lines[b, c] = np.inf
+        for i in range(offsets[b], offsets[b + 1]):
+            least, least_at = np.inf, 0
+            for j in range(wide):
+                if flat[at + j] + inward[j] < least:
+                    least, least_at = flat[at + j] + inward[j], j
+            at += wide
+            least += leave[i] + back[place[p, 0], i]
+            if least < lines[b, c]:
+                lines[b, c], ends[b, c, 0], ends[b, c, 1] = least, i, begin + least_at
+
+
+@njit(cache=True)
+def _least_tree(lines: Floats, price: Floats, chosen: Ints) -> float:
+    """Cost of the least tree; the lines it is of, from and to, fill ``chosen`` (C − 1, 2)."""
+    n = len(price)
+    key, parent = np.full(n, np.inf), np.full(n, -1)
+    done = np.zeros(n, dtype=np.bool_)
+    key[0], total = 0.0, 0.0
+    for k in range(n):
+        u = -1
+        for v in range(n):
+            if not done[v] and (u < 0 or key[v] < key[u]):
+                u = v
+        done[u] = True
+        total += key[u]
+        if k > 0:
+            v = parent[u]
+            if lines[u, v] < lines[v, u]:
+                chosen[k - 1, 0], chosen[k - 1, 1] = u, v
+            else:
+                chosen[k - 1, 0], chosen[k - 1, 1] = v, u
+        for v in range(n):
+            if not done[v]:
+                cost = min(lines[u, v], lines[v, u]) + price[u] + price[v]
+                if cost < key[v]:
+                    key[v], parent[v] = cost, u
+    return total
+
+
+@njit(cache=True)
+def _least_end(ends: Floats, level: Floats, offsets: Ints, price: Floats) -> tuple[float, int, int]:
+    """The least line from the start or to the end: its cost, cell and node."""
+    least, at, node = np.inf, 0, 0
+    for c in range(len(price)):
+        for i in range(offsets[c], offsets[c + 1]):
+            if ends[i] + level[i] + price[c] < least:
+                least, at, node = ends[i] + level[i] + price[c], i, c
+    return least, at, node
+
+
+@njit(cache=True)
 def ascent(
     flat: Floats,
     begins: Ints,
@@ -116,14 +228,18 @@ def ascent(
     offsets: Ints,
     price: Floats,
     potential: Floats,
+    back: Floats,
     target: float,
     steps: int,
-) -> tuple[float, Floats, Floats, Ints, Ints, Ints]:
-    """Subgradient ascent on prices of nodes and potentials of cells.
+) -> tuple[float, Floats, Floats, Floats, Ints, Ints, Ints]:
+    """Subgradient ascent on prices of nodes, potentials of cells and prices of turning back.
 
     A tour is a tree over the nodes with a line from the start and one to the end, every node with two lines,
-    one into and one out of the same cell. Prices on lines at a node and potentials of cells, added to lines
-    out and taken from lines in, change all tours alike. Any give a bound: the least tree of the least lines.
+    one into and one out of the same cell, to other nodes than it comes from. Prices on lines at a node and
+    potentials of cells, added to lines out and taken from lines in, change all tours alike. A price of
+    turning back, of a cell and a neighbour, is paid by lines of the cell to and from that neighbour and given
+    back by every visit of the cell: no tour pays it twice, a tree may. Any of them give a bound: the least
+    tree of the least lines.
 
     Parameters
     ----------
@@ -135,8 +251,8 @@ def ascent(
         From the start to each cell's exits, from these to the end, (N,).
     slack
         What slopes can make of a line at most, by cell, (N,).
-    price, potential
-        To begin with, (C,) and (N,).
+    price, potential, back
+        To begin with, (C,), (N,) and, by neighbour (see ``places``) and cell, (S, N), the last not negative.
     target
         Length of a known tour: sets the step.
 
@@ -144,113 +260,81 @@ def ascent(
     -------
     float
         The best bound met.
-    ndarray, ndarray
-        Prices and potentials that give it.
+    ndarray, ndarray, ndarray
+        Prices, potentials and prices of turning back that give it.
     ndarray, ndarray, ndarray
         How often each cell was in a tree, and the last cells before and after it there, −1 for the ends and
         −2 where there was none; int64 (N,).
     """
-    n = len(price)
-    price, potential = price.copy(), potential.copy()
-    best_price, best_potential = price.copy(), potential.copy()
-    used = np.zeros(len(potential), dtype=np.int64)
-    came, went = np.full(len(potential), -2), np.full(len(potential), -2)
-    best = -np.inf
-    scale, idle = 1.0, 0
-    key, parent = np.empty(n), np.empty(n, dtype=np.int64)
-    done = np.empty(n, dtype=np.bool_)
+    n, count = len(price), len(potential)
+    price, potential, back = price.copy(), potential.copy(), back.copy()
+    best_price, best_potential, best_back = price.copy(), potential.copy(), back.copy()
+    place, _ = places(pairs, n)
+    number = np.full((n, n), -1)
+    for p in range(len(pairs)):
+        number[pairs[p, 0], pairs[p, 1]] = p
+    used = np.zeros(count, dtype=np.int64)
+    came, went = np.full(count, -2), np.full(count, -2)
+    best, scale, idle = -np.inf, 1.0, 0
     lines = np.empty((n, n))
-    leaves, arrives = np.empty((n, n), dtype=np.int64), np.empty((n, n), dtype=np.int64)
-    low, low_at = np.empty(n), np.empty(n, dtype=np.int64)
-    high, high_at = np.empty(n), np.empty(n, dtype=np.int64)
-    turn = np.empty(len(potential))
+    ends = np.empty((n, n, 2), dtype=np.int64)
+    tree = np.empty((n - 1, 2), dtype=np.int64)
+    turn, visits = np.empty(count), np.empty(count)
+    turned = np.zeros(back.shape)
     for _ in range(steps):
-        for c in range(n):
-            low[c], high[c] = np.inf, -np.inf
-            for i in range(offsets[c], offsets[c + 1]):
-                if potential[i] - slack[i] < low[c]:
-                    low[c], low_at[c] = potential[i] - slack[i], i
-                if potential[i] + slack[i] > high[c]:
-                    high[c], high_at[c] = potential[i] + slack[i], i
-        for b in range(n):
-            for c in range(n):
-                lines[b, c] = base[b, c] + low[b] - high[c]
-                leaves[b, c], arrives[b, c] = low_at[b], high_at[c]
-        for p in range(len(pairs)):
-            b, c = pairs[p, 0], pairs[p, 1]
-            at = begins[p]
-            wide = offsets[c + 1] - offsets[c]
-            least, leave, arrive = np.inf, 0, 0
-            for i in range(offsets[b], offsets[b + 1]):
-                row_least, row_at = np.inf, 0
-                for j in range(wide):
-                    cost = flat[at + j] - potential[offsets[c] + j]
-                    if cost < row_least:
-                        row_least, row_at = cost, j
-                at += wide
-                if row_least + potential[i] < least:
-                    least, leave, arrive = row_least + potential[i], i, offsets[c] + row_at
-            lines[b, c], leaves[b, c], arrives[b, c] = least, leave, arrive
-        degree = np.zeros(n, dtype=np.int64)
-        turn[:] = 0.0
-        key[:] = np.inf
-        parent[:] = -1
-        done[:] = False
-        key[0] = 0.0
-        total = 0.0
-        for _ in range(n):
-            u = -1
-            for v in range(n):
-                if not done[v] and (u < 0 or key[v] < key[u]):
-                    u = v
-            done[u] = True
-            total += key[u]
-            if parent[u] >= 0:
-                v = parent[u]
-                degree[u] += 1
-                degree[v] += 1
-                b, c = (u, v) if lines[u, v] < lines[v, u] else (v, u)
-                turn[leaves[b, c]] += 1.0
-                turn[arrives[b, c]] -= 1.0
-                used[leaves[b, c]] += 1
-                used[arrives[b, c]] += 1
-                went[leaves[b, c]], came[arrives[b, c]] = arrives[b, c], leaves[b, c]
-            for v in range(n):
-                if not done[v]:
-                    cost = min(lines[u, v], lines[v, u]) + price[u] + price[v]
-                    if cost < key[v]:
-                        key[v], parent[v] = cost, u
-        for arriving in (True, False):
-            least, at, node = np.inf, 0, 0
-            for c in range(n):
-                for i in range(offsets[c], offsets[c + 1]):
-                    cost = (first[i] - potential[i] if arriving else last[i] + potential[i]) + price[c]
-                    if cost < least:
-                        least, at, node = cost, i, c
-            total += least
-            degree[node] += 1
-            turn[at] += -1.0 if arriving else 1.0
-            if arriving:
-                came[at] = -1
-            else:
-                went[at] = -1
-        bound = total - 2.0 * price.sum()
+        given = 0.5 * back.sum(axis=0)
+        leave, arrive = potential - given, -potential - given
+        _far_lines(base, offsets, leave, arrive, slack, lines, ends)
+        _near_lines(flat, begins, pairs, place, offsets, leave, arrive, back, lines, ends)
+        bound = _least_tree(lines, price, tree) - 2.0 * price.sum()
+        degree = np.full(n, -2.0)
+        turn[:], visits[:], turned[:] = 0.0, 0.0, 0.0
+        for k in range(n - 1):
+            b, c = tree[k, 0], tree[k, 1]
+            i, j = ends[b, c, 0], ends[b, c, 1]
+            degree[b] += 1.0
+            degree[c] += 1.0
+            turn[i] += 1.0
+            turn[j] -= 1.0
+            visits[i] += 0.5
+            visits[j] += 0.5
+            used[i] += 1
+            used[j] += 1
+            went[i], came[j] = j, i
+            if number[b, c] >= 0:
+                turned[place[number[b, c], 0], i] += 1.0
+                turned[place[number[b, c], 1], j] += 1.0
+        cost, j, c = _least_end(first, arrive, offsets, price)
+        bound, came[j] = bound + cost, -1
+        degree[c] += 1.0
+        turn[j] -= 1.0
+        visits[j] += 0.5
+        cost, i, b = _least_end(last, leave, offsets, price)
+        bound, went[i] = bound + cost, -1
+        degree[b] += 1.0
+        turn[i] += 1.0
+        visits[i] += 0.5
         if bound > best + 1e-6 * target:
             best, idle = bound, 0
-            best_price[:], best_potential[:] = price, potential
+            best_price[:], best_potential[:], best_back[:] = price, potential, back
         else:
             idle += 1
             if idle >= 15:
                 scale, idle = scale * 0.7, 0
-        norm = 0.0
-        for v in range(n):
-            norm += float((degree[v] - 2) ** 2)
-        norm += (turn**2).sum()
+        norm = (degree**2).sum() + (turn**2).sum()
+        for i in range(count):
+            if visits[i] > 0.0:
+                for k in range(len(back)):
+                    turned[k, i] -= visits[i]
+                    if back[k, i] > 0.0 or turned[k, i] > 0.0:
+                        norm += turned[k, i] ** 2
         if norm == 0.0 or scale < 1e-4:
             break
         step = scale * max(target - bound, 1e-3 * target) / norm
-        for v in range(n):
-            price[v] += step * (degree[v] - 2)
-        for i in range(len(potential)):
-            potential[i] += step * turn[i]
-    return best, best_price, best_potential, used, came, went
+        price += step * degree
+        potential += step * turn
+        for i in range(count):
+            if visits[i] > 0.0:
+                for k in range(len(back)):
+                    back[k, i] = max(back[k, i] + step * turned[k, i], 0.0)
+    return best, best_price, best_potential, best_back, used, came, went

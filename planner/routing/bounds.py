@@ -40,7 +40,7 @@ MOST_STRIPS = 8
 #: Gaps worth proving, the last first only where that takes little.
 GAPS = (0.049, 0.02)
 #: Lines between cells to evaluate: exactly over the order up to so many passes; over trees, for each pass.
-EFFORT_EXACT, EFFORT_TREES = {9: 2_500_000, EXACT_UP_TO: 8_000_000}, 100_000
+EFFORT_EXACT, EFFORT_TREES = {9: 2_500_000, EXACT_UP_TO: 8_000_000}, 120_000
 #: Where the exact search comes out further below than this, trees may do better.
 POOR_GAP = 0.15
 
@@ -83,8 +83,3 @@ def lower_bound_m(
         work = effort or EFFORT_TREES * len(passes)
         best_m = max(best_m, trees_bound_m(passes, *ends, radius_m, known_m, work, stop))
     return min(best_m, known_m)
-
-
-def bounded(scenario: Scenario) -> bool:
-    """Whether passes are as the bound takes them: abeam, and not longer than a strip asks for."""
-    return all(sensor.squint_rad == 0.0 and sensor.mode != "spotlight" for sensor in scenario.sensors)
