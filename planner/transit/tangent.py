@@ -108,11 +108,12 @@ def _solve(start: Anchor, goal: Anchor, zones: KeepOut, radius_m: float, stop: S
     if zones.clear(words[0]):
         return words[0]
     found = [word for word in words[1:] if zones.clear(word)][:1]
+    most_m = found[0].length_m if found else math.inf
     every = {name for name, _ in _named(zones)}
     minded = {conflict.zone for conflict in zones.conflicts(words[0])} - {AREA}
     while True:
         raise_if(stop)
-        path = _search(start, goal, zones.without(every - minded), radius_m)
+        path = _search(start, goal, zones.without(every - minded), radius_m, most_m)
         entered = {conflict.zone for conflict in zones.conflicts(path)} if path else set()
         if not entered - minded:
             break
@@ -122,8 +123,8 @@ def _solve(start: Anchor, goal: Anchor, zones: KeepOut, radius_m: float, stop: S
     return min(found, key=lambda path: path.length_m, default=None)
 
 
-def _search(start: Anchor, goal: Anchor, zones: KeepOut, radius_m: float) -> Path | None:
-    """The shortest line over the circles of these zones."""
+def _search(start: Anchor, goal: Anchor, zones: KeepOut, radius_m: float, most_m: float) -> Path | None:
+    """The shortest line over the circles of these zones; None where none is shorter than ``most_m``."""
     obstacles = obstacles_of(zones, radius_m)
     first = end_of(start, radius_m, zones, goal=False)
     last = end_of(goal, radius_m, zones, goal=True)
@@ -137,9 +138,11 @@ def _search(start: Anchor, goal: Anchor, zones: KeepOut, radius_m: float) -> Pat
         wheels,
         _entry_rows(first, 0),
         _entry_rows(last, len(first.wheels)),
-        np.array(goal.position),
+        np.array([*goal.position, math.nan if goal.angle_rad is None else goal.angle_rad]),
+        radius_m,
         obstacles.discs,
         obstacles.edges,
+        most_m,
     )
     if not math.isfinite(length_m):
         return None

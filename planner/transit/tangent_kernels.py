@@ -10,12 +10,14 @@ the second, of length p: centres = e^{iφ} (p - i (s1 - s2)).
 
 from __future__ import annotations
 
-import heapq
 import math
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
+
+from planner.dubins.kernels import dubins_length
+from planner.transit.kernels import pop, push
 
 TWO_PI = 2.0 * math.pi
 
@@ -25,7 +27,11 @@ TOUCHING_M = 1e-6
 #: Arcs this close to a full turn, in radians, are arcs of no length.
 FULL_TURN_SNAP = 1e-10
 
+#: Bounds of what is left to fly are taken with a turn radius less by this part.
+RADIUS_SLACK = 1e-6
+
 Array = NDArray[np.float64]
+Index = NDArray[np.int64]
 
 
 @njit(cache=True)
@@ -119,13 +125,102 @@ def _free_turn(wheel: Array, arriving_rad: float, discs: Array, edges: Array) ->
 
 
 @njit(cache=True)
+def least_to_go(east_m: float, north_m: float, angle_rad: float, goal: Array, radius_m: float) -> float:
+    """No line from a pose to the goal is shorter: the Dubins line, zones aside.
+
+    Parameters
+    ----------
+    goal
+        Shape (3,): east_m, north_m, angle_rad; NaN where the direction is free.
+    radius_m
+        Smallest turn radius; taken a little less, so that wheels which only just touch bound nothing.
+    """
+    radius_m *= 1.0 - RADIUS_SLACK
+    if not math.isnan(goal[2]):
+        return dubins_length(east_m, north_m, angle_rad, goal[0], goal[1], goal[2], radius_m)
+    return _least_to_place(east_m, north_m, angle_rad, goal, radius_m)
+
+
+@njit(cache=True)
+def _least_to_place(east_m: float, north_m: float, angle_rad: float, goal: Array, radius_m: float) -> float:
+    """The shortest of the words LS, RS, LR and RL; see ``words.candidates_to_point``."""
+    away_e, away_n = (goal[0] - east_m) / radius_m, (goal[1] - north_m) / radius_m
+    best = np.inf
+    for k in range(2):
+        s = 1.0 - 2.0 * k
+        to_e, to_n = away_e + s * math.sin(angle_rad), away_n - s * math.cos(angle_rad)
+        square = to_e * to_e + to_n * to_n
+        if square >= 1.0 - 3.0 * RADIUS_SLACK:
+            p = math.sqrt(max(square - 1.0, 0.0))
+            phi = math.atan2(to_n * p + s * to_e, to_e * p - s * to_n)
+            best = min(best, p + turn_between(s, angle_rad, phi))
+        distance = math.sqrt(square)
+        if 1.0 <= distance <= 3.0:
+            gamma = math.acos(min(1.0, (square + 3.0) / (4.0 * distance)))
+            for lean in (gamma, -gamma):
+                toward = math.atan2(to_n, to_e) + lean
+                last = math.atan2(to_n - 2.0 * math.sin(toward), to_e - 2.0 * math.cos(toward))
+                phi = toward + s * 0.5 * math.pi
+                back = last - s * 0.5 * math.pi
+                best = min(best, turn_between(s, angle_rad, phi) + turn_between(-s, phi, back))
+    return radius_m * best
+
+
+@njit(cache=True)
+def _more(rows: Array, fill: float) -> Array:
+    """Twice the room, the new half filled."""
+    more = np.full((2 * rows.shape[0], rows.shape[1]), fill)
+    more[: rows.shape[0]] = rows
+    return more
+
+
+@njit(cache=True)
+def _longer(values: Array) -> Array:
+    more = np.empty(2 * len(values))
+    more[: len(values)] = values
+    return more
+
+
+@njit(cache=True)
+def _longer_indices(values: Index) -> Index:
+    more = np.empty(2 * len(values), dtype=np.int64)
+    more[: len(values)] = values
+    return more
+
+
+@njit(cache=True)
+def _passed_before(
+    signed_m: float, newest: int, arriving_rad: float, flown_m: float, passed: Array, older: Index
+) -> bool:
+    """Whether an earlier arrival on a wheel can be followed to a place on it, for no more than ``flown_m``.
+
+    ``passed`` (N, 3): direction of the arrival, metres flown until there, free turn from there.
+    """
+    while newest >= 0:
+        turn = turn_between(signed_m, passed[newest, 0], arriving_rad)
+        if turn <= passed[newest, 2] and passed[newest, 1] + abs(signed_m) * turn <= flown_m:
+            return True
+        newest = older[newest]
+    return False
+
+
+@njit(cache=True)
 def search(
-    wheels: Array, starts: Array, goals: Array, goal_place: Array, discs: Array, edges: Array
+    wheels: Array,
+    starts: Array,
+    goals: Array,
+    goal: Array,
+    radius_m: float,
+    discs: Array,
+    edges: Array,
+    most_m: float,
 ) -> tuple[float, Array]:
     """Shortest way from one of ``starts`` over tangents and arcs to one of ``goals`` (A*).
 
     A state is the arrival on a wheel by one tangent. Tangents are tested against the zones when first taken
-    from the queue; how far a wheel can be followed is found once a state.
+    from the queue; how far a wheel can be followed is found once a state. An arrival at a place of a wheel
+    that an earlier one reaches for less by going on round it leads nowhere new and is left; what is left to
+    fly is bounded by the Dubins line, zones aside.
 
     Parameters
     ----------
@@ -133,10 +228,14 @@ def search(
         Shape (W, 3): east_m, north_m, signed radius.
     starts, goals
         Shape (S, 3), (G, 3): wheel, direction of flight on it, metres flown before (after).
-    goal_place
-        Shape (2,): where the way ends, for the heuristic.
+    goal
+        Shape (3,): where the way ends, and in which direction; NaN for any.
+    radius_m
+        No wheel but a place is tighter.
     discs, edges
         Shape (K, 3), (E, 4): what the way may not enter or cross.
+    most_m
+        Ways of this length and more are not wanted; inf for any.
 
     Returns
     -------
@@ -145,77 +244,117 @@ def search(
         order wheel, arriving and leaving direction. Empty where there is no way.
     """
     count = wheels.shape[0]
-    begin = count * count
-    size = begin + starts.shape[0]
-    done = np.zeros(size, dtype=np.bool_)
-    best = np.full(size, np.inf)
-    parent = np.full(size, -1, dtype=np.int64)
-    tangent_phi = np.empty((count, count))
-    tangent_p = np.empty((count, count))
-    known = np.zeros(count, dtype=np.bool_)
-    goal_best = np.full(goals.shape[0], np.inf)
+    # A row for each wheel followed so far: the tangents out of it, and the best way to the end of each.
+    rows = 0
+    row_of = np.full(count, -1, dtype=np.int64)
+    wheel_of = np.empty(count, dtype=np.int64)
+    phis, lengths = np.empty((8, count)), np.empty((8, count))
+    to_go, best = np.empty((8, count)), np.empty((8, count))
+    parent = np.empty((8, count))
+    newest = np.full(count, -1, dtype=np.int64)
+    passed, older = np.empty((64, 3)), np.empty(64, dtype=np.int64)
+    kept = 0
+    goal_best = np.full(goals.shape[0], most_m)
     goal_parent = np.full(goals.shape[0], -1, dtype=np.int64)
-    queue = [(0.0, np.int64(-1), np.int64(-1))]
-    queue.clear()
-    for k in range(starts.shape[0]):
-        best[begin + k] = starts[k, 2]
+    least_m = most_m
+    # Items: state row * count + wheel from ``first`` on, starts before, goals below 0.
+    first = starts.shape[0]
+    keys, items = np.empty(1024), np.empty(1024, dtype=np.int64)
+    size = 0
+    for k in range(first):
         wheel = wheels[int(starts[k, 0])]
         at_e = wheel[0] + wheel[2] * math.sin(starts[k, 1])
         at_n = wheel[1] - wheel[2] * math.cos(starts[k, 1])
-        to_go = math.hypot(goal_place[0] - at_e, goal_place[1] - at_n)
-        heapq.heappush(queue, (starts[k, 2] + to_go, np.int64(begin + k), np.int64(-1)))
-    while len(queue) > 0:
-        entry = heapq.heappop(queue)
-        state, goal = int(entry[1]), int(entry[2])
-        if goal >= 0:
-            return goal_best[goal], _visits(
-                starts, goals, parent, int(goal_parent[goal]), goal, begin, count, tangent_phi
-            )
-        if done[state]:
-            continue
-        done[state] = True
-        if state >= begin:
-            j = int(starts[state - begin, 0])
-            arriving = starts[state - begin, 1]
+        if wheel[2] == 0.0:
+            left_m = math.hypot(goal[0] - at_e, goal[1] - at_n)
         else:
-            i, j = state // count, state % count
-            arriving = tangent_phi[i, j]
-            from_e = wheels[i, 0] + wheels[i, 2] * math.sin(arriving)
-            from_n = wheels[i, 1] - wheels[i, 2] * math.cos(arriving)
-            if not _straight_clear(from_e, from_n, arriving, tangent_p[i, j], discs, edges):
+            left_m = least_to_go(at_e, at_n, starts[k, 1], goal, radius_m)
+        if starts[k, 2] + left_m < least_m:
+            if size == len(keys):
+                keys, items = _longer(keys), _longer_indices(items)
+            size = push(keys, items, size, starts[k, 2] + left_m, k)
+    while size > 0:
+        item, size = pop(keys, items, size)
+        if item < 0:
+            k = -1 - item
+            return goal_best[k], _visits(
+                starts, goals, parent, wheel_of, goal_parent[k], k, first, count, phis
+            )
+        if item < first:
+            j = int(starts[item, 0])
+            arriving, flown_m = starts[item, 1], starts[item, 2]
+        else:
+            row, j = (item - first) // count, (item - first) % count
+            arriving, flown_m = phis[row, j], best[row, j]
+            # Done with, whatever comes later.
+            best[row, j] = -np.inf
+            if flown_m < 0.0:
                 continue
         wheel = wheels[j]
         radius = abs(wheel[2])
+        if _passed_before(wheel[2], newest[j], arriving, flown_m, passed, older):
+            continue
+        if item >= first:
+            i = wheel_of[row]
+            from_e = wheels[i, 0] + wheels[i, 2] * math.sin(arriving)
+            from_n = wheels[i, 1] - wheels[i, 2] * math.cos(arriving)
+            if not _straight_clear(from_e, from_n, arriving, lengths[row, j], discs, edges):
+                continue
         free = _free_turn(wheel, arriving, discs, edges)
+        if kept == len(older):
+            passed, older = _more(passed, 0.0), _longer_indices(older)
+        passed[kept, 0], passed[kept, 1], passed[kept, 2] = arriving, flown_m, free
+        older[kept] = newest[j]
+        newest[j] = kept
+        kept += 1
         for k in range(goals.shape[0]):
             if int(goals[k, 0]) == j:
                 turn = turn_between(wheel[2], arriving, goals[k, 1])
-                length = best[state] + radius * turn + goals[k, 2]
+                length = flown_m + radius * turn + goals[k, 2]
                 if turn <= free and length < goal_best[k]:
                     goal_best[k] = length
-                    goal_parent[k] = state
-                    heapq.heappush(queue, (length, np.int64(state), np.int64(k)))
-        if not known[j]:
-            known[j] = True
+                    goal_parent[k] = item
+                    least_m = min(least_m, length)
+                    if size == len(keys):
+                        keys, items = _longer(keys), _longer_indices(items)
+                    size = push(keys, items, size, length, -1 - k)
+        if row_of[j] < 0:
+            if rows == phis.shape[0]:
+                phis, lengths, to_go = _more(phis, 0.0), _more(lengths, 0.0), _more(to_go, 0.0)
+                best, parent = _more(best, 0.0), _more(parent, 0.0)
             for k in range(count):
                 phi, p = tangent(wheels, j, k) if k != j else (0.0, -1.0)
-                tangent_phi[j, k] = phi
-                tangent_p[j, k] = p
+                phis[rows, k] = phi
+                lengths[rows, k] = p
+                to_go[rows, k] = -1.0
+                best[rows, k] = np.inf
+            row_of[j] = rows
+            wheel_of[rows] = j
+            rows += 1
+        row = row_of[j]
         for k in range(count):
-            p = tangent_p[j, k]
-            onward = j * count + k
-            if p < 0.0 or done[onward]:
+            p = lengths[row, k]
+            if p < 0.0 or best[row, k] < 0.0:
                 continue
-            phi = tangent_phi[j, k]
+            phi = phis[row, k]
             turn = turn_between(wheel[2], arriving, phi)
-            length = best[state] + radius * turn + p
-            if turn <= free and length < best[onward]:
-                best[onward] = length
-                parent[onward] = state
+            length = flown_m + radius * turn + p
+            if turn > free or length >= best[row, k] or length >= least_m:
+                continue
+            if to_go[row, k] < 0.0:
                 at_e = wheels[k, 0] + wheels[k, 2] * math.sin(phi)
                 at_n = wheels[k, 1] - wheels[k, 2] * math.cos(phi)
-                to_go = math.hypot(goal_place[0] - at_e, goal_place[1] - at_n)
-                heapq.heappush(queue, (length + to_go, np.int64(onward), np.int64(-1)))
+                if wheels[k, 2] == 0.0:
+                    to_go[row, k] = math.hypot(goal[0] - at_e, goal[1] - at_n)
+                else:
+                    to_go[row, k] = least_to_go(at_e, at_n, phi, goal, radius_m)
+            if length + to_go[row, k] >= least_m:
+                continue
+            best[row, k] = length
+            parent[row, k] = item
+            if size == len(keys):
+                keys, items = _longer(keys), _longer_indices(items)
+            size = push(keys, items, size, length + to_go[row, k], first + row * count + k)
     return np.inf, np.empty((0, 3))
 
 
@@ -223,33 +362,35 @@ def search(
 def _visits(
     starts: Array,
     goals: Array,
-    parent: NDArray[np.int64],
+    parent: Array,
+    wheel_of: Index,
     last: int,
     goal: int,
-    begin: int,
+    first: int,
     count: int,
-    tangent_phi: Array,
+    phis: Array,
 ) -> Array:
-    """Wheels of the way that ends with state ``last``, after a first row (start, goal, 0)."""
-    steps = 0
-    state = last
-    while state >= 0:
+    """Wheels of the way that ends with item ``last``, after a first row (start, goal, 0)."""
+    steps = 1
+    item = last
+    while item >= first:
         steps += 1
-        state = parent[state]
+        item = int(parent[(item - first) // count, (item - first) % count])
     visits = np.empty((steps + 1, 3))
     leaving = goals[goal, 1]
-    state = last
+    item = last
     for row in range(steps, 0, -1):
         visits[row, 2] = leaving
-        if state >= begin:
-            visits[row, 0] = starts[state - begin, 0]
-            visits[row, 1] = starts[state - begin, 1]
-            visits[0, 0] = state - begin
+        if item < first:
+            visits[row, 0] = starts[item, 0]
+            visits[row, 1] = starts[item, 1]
+            visits[0, 0] = item
         else:
-            visits[row, 0] = state % count
-            visits[row, 1] = tangent_phi[state // count, state % count]
+            at, wheel = (item - first) // count, (item - first) % count
+            visits[row, 0] = wheel
+            visits[row, 1] = phis[at, wheel]
+            item = int(parent[at, wheel])
         leaving = visits[row, 1]
-        state = parent[state]
     visits[0, 1] = goal
     visits[0, 2] = 0.0
     return visits

@@ -12,9 +12,10 @@ from hypothesis import strategies as st
 from shapely.geometry import LineString, Point, Polygon, box
 
 from planner.dubins.path import Path, Segment
+from planner.dubins.words import candidates_between
 from planner.environment.zones import ring_edges
-from planner.route import Pose
-from planner.transit.tangent_kernels import search, tangent, turn_between
+from planner.route import Anchor, Pose
+from planner.transit.tangent_kernels import RADIUS_SLACK, least_to_go, search, tangent, turn_between
 
 coordinate = st.floats(-1000.0, 1000.0)
 wheels = st.tuples(coordinate, coordinate, st.sampled_from([-300.0, -100.0, 0.0, 100.0, 250.0]))
@@ -105,18 +106,44 @@ def test_search_is_the_best_sequence(seed: int) -> None:
         for pose in (start, goal)
         for s in (r, -r)
     ]
-    length_m, visits = search(
+    arguments = (
         np.array([*ends, *rows]),
         np.array([[0.0, start.angle_rad, 0.0], [1.0, start.angle_rad, 0.0]]),
         np.array([[2.0, goal.angle_rad, 0.0], [3.0, goal.angle_rad, 0.0]]),
-        np.array(goal.position),
+        np.array([goal.east_m, goal.north_m, goal.angle_rad]),
+        r,
         discs - np.array([0.0, 0.0, 1e-3]),
         ring_edges(wall),
     )
+    length_m, visits = search(*arguments, math.inf)
+    below = search(*arguments, length_m)
+    assert math.isinf(below[0])
+    assert len(below[1]) == 0
+    assert search(*arguments, 1.001 * length_m)[0] == length_m
     # The plain twin visits at most two circles between the ends.
     assert length_m <= expected_m + 1e-6
     if len(visits) <= 5:
         assert length_m == pytest.approx(expected_m, abs=1e-6)
+
+
+poses = st.builds(Pose, coordinate, coordinate, st.floats(-math.pi, math.pi))
+
+
+@settings(deadline=None)
+@given(poses, poses, st.booleans())
+def test_the_bound_is_the_dubins_line(pose: Pose, goal: Pose, free: bool) -> None:
+    """What is left to fly is bounded by the shortest plain word, and by hardly less."""
+    angle_rad = None if free else goal.angle_rad
+    anchors = Anchor(pose.east_m, pose.north_m, pose.angle_rad), Anchor(goal.east_m, goal.north_m, angle_rad)
+    word_m = candidates_between(*anchors, 100.0)[0].length_m
+    tight_m = candidates_between(*anchors, 100.0 * (1.0 - RADIUS_SLACK))[0].length_m
+    row = np.array([goal.east_m, goal.north_m, math.nan if free else goal.angle_rad])
+    bound_m = least_to_go(pose.east_m, pose.north_m, pose.angle_rad, row, 100.0)
+    assert bound_m <= word_m + 1e-6
+    # A place on a turning circle is at a jump of the length: there less is as good a bound.
+    centres = [on_wheel(np.array([pose.east_m, pose.north_m, s]), pose.angle_rad) for s in (-100.0, 100.0)]
+    if not free or all(abs(math.dist(row[:2], centre) - 100.0) > 0.01 for centre in centres):
+        assert bound_m == pytest.approx(tight_m, abs=1e-4)
 
 
 def test_turns_are_counted_the_way_flown() -> None:
@@ -133,9 +160,11 @@ def test_no_way_is_infinite() -> None:
         np.array([[0.0, 0.0, 0.0], [1000.0, 0.0, 0.0]]),
         np.array([[0.0, 0.0, 0.0]]),
         np.array([[1.0, 0.0, 0.0]]),
-        np.array([1000.0, 0.0]),
+        np.array([1000.0, 0.0, math.nan]),
+        100.0,
         np.empty((0, 3)),
         ring_edges(box(900, -100, 1100, 100)),
+        math.inf,
     )
     assert math.isinf(length_m)
     assert visits.shape == (0, 3)
