@@ -98,6 +98,10 @@ class ParametersMachine(_Reader):
     stays without answer while others are answered is therefore ``missing``; where none is answered, the
     outcome is unknown.
 
+    Autopilots answer in the order they are asked. A name is therefore asked for again as soon as one asked
+    for later is answered, and a name known to be answered is asked for once more behind the last: three
+    round trips tell what is missing, where three times ``timeout_s`` would pass else.
+
     Attributes
     ----------
     missing
@@ -119,6 +123,7 @@ class ParametersMachine(_Reader):
         self.names = tuple(dict.fromkeys(names))
         self.missing: tuple[str, ...] = ()
         self._waiting = list(self.names)
+        # How often each name on its way was asked for, in the order of asking.
         self._asked: dict[str, int] = {}
         self._silent: list[str] = []
 
@@ -132,35 +137,54 @@ class ParametersMachine(_Reader):
         return self._go_on(now_s, [])
 
     def receive(self, message: Message, now_s: float) -> list[Message]:
-        """Take a value, ask for the next."""
+        """Take a value; ask again for what should have been answered before it, and for the next."""
         parameter = self._parameter(message)
-        if parameter is None or parameter.name not in self._asked:
+        if parameter is None:
             return []
-        del self._asked[parameter.name]
-        self.values[parameter.name] = parameter
-        return self._go_on(now_s, [])
+        name = parameter.name
+        if name in self._silent:
+            # Late, but not too late.
+            self._silent.remove(name)
+            self.values[name] = parameter
+        if name not in self._asked:
+            return []
+        overtaken = list(self._asked)[: list(self._asked).index(name)]
+        del self._asked[name]
+        self.values[name] = parameter
+        return self._go_on(now_s, self._again(overtaken), marker=name)
 
     def tick(self, now_s: float) -> list[Message]:
         """Ask again for what was not answered; give up what was asked for often enough."""
         if now_s < self.deadline_s:
             return []
-        for name, times in list(self._asked.items()):
-            if times > self.settings.retries:
-                del self._asked[name]
-                self._silent.append(name)
-            else:
-                self._asked[name] = times + 1
-        return self._go_on(now_s, list(self._asked))
+        return self._go_on(now_s, self._again(list(self._asked)))
 
-    def _go_on(self, now_s: float, again: list[str]) -> list[Message]:
+    def _again(self, names: Sequence[str]) -> list[str]:
+        """Those of some unanswered names that are asked for once more; the others are given up."""
+        again = []
+        for name in names:
+            times = self._asked.pop(name)
+            if times <= self.settings.retries:
+                self._asked[name] = times + 1
+                again.append(name)
+            elif name not in self.values:
+                self._silent.append(name)
+        return again
+
+    def _go_on(self, now_s: float, again: list[str], marker: str | None = None) -> list[Message]:
+        """Ask for what there is room for; ``marker`` is a name to be put behind the last of all."""
         while self._waiting and len(self._asked) < WINDOW:
             name = self._waiting.pop(0)
             self._asked[name] = 1
             again.append(name)
-        if not self._asked:
+        if self._asked.keys() <= self.values.keys():
             self.missing = tuple(self._silent)
             self._end(Accepted() if self.values or not self.names else Unknown("timeout"))
-        elif again or self.deadline_s == math.inf:
+            return []
+        if marker is not None and not self._waiting and not self._asked.keys() & self.values.keys():
+            self._asked[marker] = 1
+            again.append(marker)
+        if again or self.deadline_s == math.inf:
             self.deadline_s = now_s + self.settings.timeout_s
         return [self._ask(name, -1) for name in again]
 

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 from mavlink.codec import Codec
 from mavlink.messages import Message
+from mavlink.transfer.machine import TransferSettings
 from mavlink.transfer.outcome import Accepted, Unknown
 from mavlink.transfer.parameters import ParameterListMachine, ParametersMachine
 
@@ -69,14 +70,14 @@ def run(machine: ParametersMachine | ParameterListMachine, holder: Holder) -> fl
 
 
 def test_names_are_read_in_one_go() -> None:
-    """Every name asked for is read, each asked for once, and none beside."""
+    """Every name asked for is read, each asked for once, and one once more to mark the end."""
     names = [f"PARAM_{number:03d}" for number in range(0, 60, 2)]
     holder = Holder()
     machine = ParametersMachine(names, 1, 1)
     run(machine, holder)
     assert machine.outcome == Accepted()
     assert {name: p.value for name, p in machine.values.items()} == {name: HELD[name] for name in names}
-    assert (holder.asked, machine.missing) == (len(names), ())
+    assert (holder.asked, machine.missing) == (len(names) + 1, ())
 
 
 def test_unknown_names_are_missing_not_awaited_for_ever() -> None:
@@ -86,6 +87,54 @@ def test_unknown_names_are_missing_not_awaited_for_ever() -> None:
     assert machine.outcome == Accepted()
     assert set(machine.values) == {"PARAM_001"}
     assert set(machine.missing) == {"NO_SUCH", "NOR_THIS"}
+
+
+@pytest.mark.parametrize("place", [0, 7, 59])
+def test_what_is_missing_is_known_without_waiting(place: int) -> None:
+    """Names that stay silent among answered ones are asked for three times in all, and no time-out passes."""
+    names = list(HELD)
+    names[place:place] = ["NO_SUCH", "NOR_THIS"]
+    machine = ParametersMachine(names, 1, 1, settings=TransferSettings(retries=2))
+    asked: list[str] = []
+    outgoing = machine.start(0.0)
+    while outgoing:
+        asked += [message.text("param_id") for message in outgoing]
+        incoming = [answer for message in outgoing for answer in Holder().answers(message)]
+        outgoing = [message for answer in incoming for message in machine.receive(answer, 0.0)]
+    assert machine.outcome == Accepted()
+    assert set(machine.missing) == {"NO_SUCH", "NOR_THIS"}
+    assert machine.values.keys() == HELD.keys()
+    assert (asked.count("NO_SUCH"), asked.count("NOR_THIS")) == (3, 3)
+    assert len(asked) <= len(HELD) + 12
+
+
+def test_a_late_answer_is_taken() -> None:
+    """An answer that comes after its name was given up counts while the reading goes on."""
+    machine = ParametersMachine(
+        ["PARAM_001", "PARAM_002", "PARAM_003"], 1, 1, settings=TransferSettings(retries=0)
+    )
+    machine.start(0.0)
+    machine.receive(value_of("PARAM_002", 2.0), 0.1)
+    machine.receive(value_of("PARAM_001", 1.0), 0.2)
+    machine.receive(value_of("PARAM_003", 3.0), 0.3)
+    assert machine.outcome == Accepted()
+    assert ({*machine.values}, machine.missing) == ({"PARAM_001", "PARAM_002", "PARAM_003"}, ())
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.sampled_from([0.05, 0.3]), st.integers(0, 10_000))
+def test_names_end_read_or_missing_whatever_is_lost(loss: float, seed: int) -> None:
+    """Every name is read with its value or told as missing; one the vehicle lacks is never read."""
+    names = [*list(HELD)[::3], "NO_SUCH"]
+    machine = ParametersMachine(names, 1, 1)
+    run(machine, Holder(loss, seed))
+    assert machine.outcome == Accepted()
+    assert machine.values.keys() | set(machine.missing) == set(names)
+    assert not machine.values.keys() & set(machine.missing)
+    assert {name: p.value for name, p in machine.values.items()} == {
+        name: HELD[name] for name in machine.values
+    }
+    assert len(machine.missing) <= (1 if loss == 0.05 else 5)
 
 
 @pytest.mark.parametrize("machine", [ParametersMachine(["PARAM_001"], 1, 1), ParameterListMachine(1, 1)])
