@@ -11,12 +11,14 @@ import math
 from collections import deque
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from typing import Any, Final, Generic, TypeVar
+from typing import Any, Final
 
 from mavlink.codec import Codec
 from mavlink.errors import BusyError, CodecError, LinkError, NotConnectedError, ReadOnlyError
 from mavlink.events import EVENT_MESSAGES, EventOrder
 from mavlink.forward.hub import Forwards
+from mavlink.identity import Identity
+from mavlink.jobs import Job
 from mavlink.link import DirectLink, Link, ReplayLink
 from mavlink.list_ids import ListIds
 from mavlink.messages import Message
@@ -28,42 +30,10 @@ from mavlink.transfer.machine import Machine, Progress
 from mavlink.transfer.outcome import Outcome, Unknown
 from mavlink.transfer.upload import UploadMachine
 
-End = TypeVar("End")
-
 _HEARTBEAT_EVERY_S: Final = 1.0
 _ACTIVE: Final = 4  # MAV_STATE_ACTIVE
 #: Frames of other ground stations wait for a slow link up to this number, ours among them.
 _MOST_WAITING: Final = 256
-
-
-class _Job(Generic[End]):
-    """A machine under way and who waits for it."""
-
-    def __init__(self, machine: Machine[End], progress: Callable[[Progress], None] | None) -> None:
-        self.machine = machine
-        self.done: asyncio.Future[End] = asyncio.get_running_loop().create_future()
-        self._progress = progress
-        self._reported: Progress | None = None
-
-    def report(self) -> None:
-        """Tell of progress made and of the end."""
-        if self._progress is not None:
-            progress = self.machine.progress
-            if progress != self._reported:
-                self._reported = progress
-                self._progress(progress)
-        if self.machine.outcome is not None:
-            self.finish(self.machine.outcome)
-
-    def finish(self, outcome: End) -> None:
-        """Give the waiter its answer."""
-        if not self.done.done():
-            self.done.set_result(outcome)
-
-    def fail(self, error: CodecError) -> None:
-        """Give the waiter the reason why its messages cannot be sent."""
-        if not self.done.done():
-            self.done.set_exception(error)
 
 
 class Driver:
@@ -99,7 +69,7 @@ class Driver:
             codec.heard = forwards.heard
         self._clock = clock
         self._on_connect = on_connect
-        self._vehicle_system = vehicle_system
+        self._identity = Identity(vehicle_system, lost_after_s)
         self._lost_after_s = lost_after_s
         self._task: asyncio.Task[None] | None = None
         self._timeout: asyncio.Timeout | None = None
@@ -107,9 +77,9 @@ class Driver:
         self._outgoing: deque[bytes] = deque()
         self._heard_s = -math.inf
         self._heartbeat_s = -math.inf
-        self._transfer: _Job[Any] | None = None
+        self._transfer: Job[Any] | None = None
         self._lingering: UploadMachine | None = None
-        self._commands: dict[int, deque[_Job[CommandOutcome]]] = {}
+        self._commands: dict[int, deque[Job[CommandOutcome]]] = {}
         self._watchers: set[asyncio.Event] = set()
         self._recorders: set[TrackRecorder] = set()
         self.events = EventOrder()
@@ -142,7 +112,7 @@ class Driver:
     ) -> Outcome:
         """Run a transfer to its end. Raises BusyError when another one is under way."""
         self.require_free()
-        job = _Job(machine, progress)
+        job = Job(machine, progress)
         self._transfer, self._lingering = job, None
         self._send(machine.start(self._clock()), job)
         try:
@@ -167,10 +137,10 @@ class Driver:
                 self._next_command(machine.command)
             raise
 
-    def post(self, machine: CommandMachine) -> _Job[CommandOutcome]:
+    def post(self, machine: CommandMachine) -> Job[CommandOutcome]:
         """Queue a command without waiting for it."""
         queue = self._commands.setdefault(machine.command, deque())
-        job = _Job(machine, None)
+        job = Job(machine, None)
         queue.append(job)
         if len(queue) == 1:
             self._send(machine.start(self._clock()), job)
@@ -211,7 +181,24 @@ class Driver:
         if self._failure is not None:
             raise NotConnectedError(self._failure)
         if not self.state.connected:
-            raise NotConnectedError("no vehicle is connected")
+            raise NotConnectedError(self._identity.absence(self.state))
+
+    def adopt(self, system_id: int) -> None:
+        """Take the system heard in the vehicle's place for the vehicle, of which nothing is known yet.
+
+        Raises
+        ------
+        NotConnectedError
+            No such system is heard there.
+        """
+        if self._failure is not None:
+            raise NotConnectedError(self._failure)
+        if self.state.connected or self.state.other_system != system_id:
+            raise NotConnectedError(f"no autopilot of system {system_id} is heard in the vehicle's place")
+        self._abandon()
+        self.events, self.list_ids = EventOrder(), ListIds()
+        self._identity.adopt(system_id)
+        self._set_state(VehicleState())
 
     @contextlib.contextmanager
     def watching(self) -> Iterator[asyncio.Event]:
@@ -283,12 +270,12 @@ class Driver:
         while self._outgoing:
             await self._link.send(self._outgoing.popleft())
 
-    def _send(self, messages: list[Message], job: _Job[Any]) -> None:
+    def _send(self, messages: list[Message], job: Job[Any]) -> None:
         """Queue a job's messages for the task, and wake it should it be waiting."""
         self._queue(messages, job)
         self._wake()
 
-    def _queue(self, messages: list[Message], job: _Job[Any]) -> None:
+    def _queue(self, messages: list[Message], job: Job[Any]) -> None:
         try:
             self._outgoing.extend([self._codec.pack(message) for message in messages])
         except CodecError as error:
@@ -298,7 +285,7 @@ class Driver:
         if self._timeout is not None and not self._timeout.expired():
             self._timeout.reschedule(asyncio.get_running_loop().time())
 
-    def _machines(self) -> Iterator[_Job[Any]]:
+    def _machines(self) -> Iterator[Job[Any]]:
         if self._transfer is not None:
             yield self._transfer
         for queue in self._commands.values():
@@ -323,27 +310,29 @@ class Driver:
         self._due_s = math.inf
         if self.state.connected and now_s >= self._heard_s + self._lost_after_s:
             self._lose()
+        self._change(self._identity.waited(self.state, now_s))
         for job in list(self._machines()):
             if now_s >= job.machine.deadline_s:
                 self._send(job.machine.tick(now_s), job)
                 self._settle(job)
 
     def _take(self, message: Message) -> None:
-        if not self._from_vehicle(message):
+        now_s = self._clock()
+        if not self._identity.speaks(message, self.state):
             if message.name in CAMERA_MESSAGES and message.system_id == self.state.system_id:
                 for recorder in self._recorders:
                     recorder.take(message, self.state)
+            self._change(self._identity.watched(self.state, message, now_s))
             return
-        now_s = self._clock()
         self._heard_s = now_s
         if message.name in EVENT_MESSAGES and not self._event_is_new(message):
             return
         state = self.list_ids.watched(updated(self.state, message, now_s), message, now_s)
         if not self.state.connected:
-            self._set_state(replace(state, connected=True))
+            self._set_state(replace(state, connected=True, other_system=None))
             self._on_connect()
-        elif state is not self.state:
-            self._set_state(state)
+        else:
+            self._change(state)
         for recorder in self._recorders:
             recorder.take(message, self.state)
         if message.fields.get("target_system", 0) not in (0, self._codec.system_id):
@@ -366,19 +355,7 @@ class Driver:
             self._outgoing.extend([self._codec.pack(request) for request in requests])
         return new
 
-    def _from_vehicle(self, message: Message) -> bool:
-        """True for the autopilot's messages; its heartbeat makes the acquaintance, anew after a loss."""
-        state = self.state
-        if state.connected:
-            return (message.system_id, message.component_id) == (state.system_id, state.component_id)
-        if message.name != "HEARTBEAT" or message.integer("autopilot") == NO_AUTOPILOT:
-            return False
-        if message.integer("type") == GROUND_STATION_TYPE:
-            return False
-        expected = self._vehicle_system or state.system_id
-        return expected in (0, message.system_id)
-
-    def _settle(self, job: _Job[Any]) -> None:
+    def _settle(self, job: Job[Any]) -> None:
         job.report()
         machine = job.machine
         if machine.outcome is None:
@@ -422,6 +399,11 @@ class Driver:
         self._failure = reason
         self._set_state(replace(self.state, connected=False))
         self._abandon()
+
+    def _change(self, state: VehicleState) -> None:
+        """Take over a state that may be the same."""
+        if state is not self.state:
+            self._set_state(state)
 
     def _set_state(self, state: VehicleState) -> None:
         self.state = state

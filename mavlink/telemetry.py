@@ -46,6 +46,8 @@ class VehicleState:
     ----------
     connected
         Something was heard from it lately; decided by the client.
+    other_system
+        System id of another autopilot that answers while the vehicle is silent: a swapped aircraft.
     heard_s
         When it last told something of itself, in the client's clock.
     time_s
@@ -79,6 +81,7 @@ class VehicleState:
     system_id: int = 0
     component_id: int = 0
     connected: bool = False
+    other_system: int | None = None
     heard_s: float | None = None
     time_s: float | None = None
     autopilot: Autopilot = "generic"

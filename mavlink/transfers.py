@@ -42,6 +42,10 @@ class MissionTransfers(ABC):
     _clock: Callable[[], float]
 
     def __init__(self) -> None:
+        self._forget_lists()
+
+    def _forget_lists(self) -> None:
+        """Nothing is known of what the vehicle holds."""
         self._pending: Pending | None = None
         self._read_id: int | None = None
         self._held_mission: tuple[MissionItem, ...] | None = None
@@ -59,6 +63,22 @@ class MissionTransfers(ABC):
     @abstractmethod
     def _target(self) -> tuple[int, int]:
         """System and component to talk to. Raises NotConnectedError while there is none."""
+
+    def adopt(self, system_id: int) -> None:
+        """Take the aircraft heard in the vehicle's place for the vehicle: nothing is known of it yet.
+
+        Parameters
+        ----------
+        system_id
+            As ``state.other_system`` has it. It connects with its next heartbeat.
+
+        Raises
+        ------
+        NotConnectedError
+            It is not heard there.
+        """
+        self._driver.adopt(system_id)
+        self._forget_lists()
 
     async def upload(
         self,

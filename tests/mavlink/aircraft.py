@@ -35,7 +35,9 @@ class Aircraft:
         Every message received.
     """
 
-    def __init__(self, link: Link, vehicle: StubVehicle, autopilot: int = 3, kind: int = 1) -> None:
+    def __init__(
+        self, link: Link, vehicle: StubVehicle, autopilot: int = 3, kind: int = 1, system_id: int = 1
+    ) -> None:
         self.link = link
         self.vehicle = vehicle
         self.autopilot = autopilot
@@ -44,7 +46,7 @@ class Aircraft:
         self.results: dict[int, int | None] = {}
         self.heard: list[Message] = []
         self.vanish_at_item: int | None = None
-        self._codec = Codec(1, 1)
+        self._codec = Codec(system_id, 1)
         self._tasks: list[asyncio.Task[None]] = []
 
     async def __aenter__(self) -> Self:
