@@ -17,7 +17,7 @@ from planner.plan import Plan
 from planner.progress import Progress, Stop, never, raise_if, silent
 from planner.publish import Leg, assemble, uncovered, whole_path
 from planner.route import Anchor, CollectPass, Route
-from planner.routing.bounds import bounded, lower_bound_m
+from planner.routing.bounds import lower_bound_m
 from planner.routing.greedy import greedy
 from planner.routing.hidden import hidden_findings
 from planner.routing.joint import joint_route, sides_of
@@ -155,9 +155,7 @@ def _bound_m(
     length_m: float,
     stop: Stop,
 ) -> float | None:
-    """What no plan is shorter than; None for sensors whose passes the bound does not know."""
-    if not bounded(scenario) or any(sensor.crabs for sensor in scenario.sensors):
-        return None
+    """What no plan is shorter than."""
     if sides is None:
         # The paper's choices are among its own neighbourhoods.
         by_paper = replace(scenario, method=replace(scenario.method, coverage="li2018"))

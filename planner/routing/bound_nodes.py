@@ -16,10 +16,14 @@ from planner.coverage.segments import Neighbourhood
 from planner.coverage.sweeps import Side, Sweep
 from planner.routing import bound_cells_kernels as kernels
 from planner.scenario import Terminal
+from planner.sensors.sar import Look, SarSensor
+from planner.sensors.strip import Strip, strip_on
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
+#: Where strips that change with the heading are sampled.
+HEADINGS_RAD = np.arange(1440) * (2.0 * math.pi / 1440)
 #: A pair of strips has no least width that asks for it.
 ANY_WIDTH = 1e6
 
@@ -35,7 +39,7 @@ class Node:
     ring, hull
         The region's and its convex hull's, (V, 2), counter-clockwise, relative to ``middle``.
     families
-        See ``bound_cells_kernels``, (F, 11).
+        See ``bound_cells_kernels``, (F, ``FIXED``) or wider.
     group
         Of each family: the passes of one region are of families of one group, int64 (F,).
     approach_rad
@@ -78,7 +82,7 @@ class Node:
         kind, side = self.families[family, :2]
         if kind == kernels.WHOLE:
             return True
-        strips, _, index = self.families[family, 8:]
+        strips, _, index = self.families[family, 8:11]
         northward = theta % (2.0 * math.pi) < math.pi - 1e-9
         from_left = index if (side > 0.0) == northward else strips - 1.0 - index
         return bool(from_left == {0: 0.0, 1: 0.0, 2: strips - 1.0}.get(self.strip, self.strip - 2.0)) and (
@@ -93,10 +97,10 @@ def nodes(sides: Sequence[Side], settle_m: float, region_index: int, most: int =
     middle = 0.5 * (ring.min(axis=0) + ring.max(axis=0))
     ring = ring - middle
     around = _ring(shapely.convex_hull(shapely.Polygon(ring)))
-    swath_m = sensor.swath_m(height_m)
+    strip = strip_on(sensor, height_m, HEADINGS_RAD if sensor.crabs else 0.0, "right")
     extras = sorted({side.extra for side in sides if isinstance(side, Sweep)})
-    fewest = max(math.ceil((_narrowest_m(around) - ROUNDING_M) / swath_m), 1)
-    widest = math.ceil(2.0 * float(np.hypot(*around.T).max()) / swath_m)
+    fewest = max(math.ceil((_narrowest_m(around) - ROUNDING_M) / float(strip.swath_m.max())), 1)
+    widest = math.ceil(2.0 * float(np.hypot(*around.T).max()) / float(strip.swath_m.min()))
     # Kind, how many strips, how many of them beyond the fewest, which one, group.
     kinds: list[tuple[float, int, float, int, int]] = []
     strips = [fewest + extra for extra in extras]
@@ -110,21 +114,62 @@ def nodes(sides: Sequence[Side], settle_m: float, region_index: int, most: int =
         for count in range(2, widest + extra + 1):
             group = 2 + len(kinds)
             kinds += [(kernels.STRIP, count, float(extra), index, group) for index in range(count)]
-    fixed = (sensor.near_m(height_m), swath_m, sensor.run_in_m(height_m), settle_m, *middle)
-    families = np.array(
-        [
-            (kind, 1.0 if look == "right" else -1.0, *fixed, count, extra, index)
-            for look in sensor.looks
-            for kind, count, extra, index, _ in kinds
-        ],
-        dtype=np.float64,
-    )
+    rows = []
+    for look in sensor.looks:
+        (near_m, swath_m, run_in_m, run_out_m), more = _passes(sensor, height_m, look)
+        fixed = (1.0 if look == "right" else -1.0, near_m, swath_m, run_in_m, settle_m, *middle)
+        rows += [
+            (kind, *fixed, count, extra, index, run_out_m, *more) for kind, count, extra, index, _ in kinds
+        ]
+    families = np.array(rows, dtype=np.float64)
     groups = np.array([kind[4] for _ in sensor.looks for kind in kinds], dtype=np.int64)
     flown = min(min(strips), max(most, 2))
     return [
         Node(region_index, ring, around, families, groups, region.approach_rad, strip)
         for strip in (range(1, flown + 1) if flown > 1 else (0,))
     ]
+
+
+def _passes(sensor: SarSensor, height_m: float, look: Look) -> tuple[tuple[float, ...], Floats]:
+    """Near edge, swath, run-in and run-out of passes, and samples where they change with the heading."""
+    if not sensor.crabs:
+        values = strip_on(sensor, height_m, 0.0, look)
+        return tuple(float(value[0]) for value in _columns(values)), np.empty(0)
+    samples = np.stack(_columns(strip_on(sensor, height_m, HEADINGS_RAD, look)))
+    # Between two samples a value is off the straight line through them by half a step's worth at most.
+    off_m = np.array(slopes_m(sensor, height_m)) * math.pi / len(HEADINGS_RAD)
+    return tuple(samples.mean(axis=1)), np.concatenate([off_m, samples.ravel()])
+
+
+def _columns(strip: Strip) -> tuple[Floats, Floats, Floats, Floats]:
+    return strip.near_m, strip.swath_m, strip.run_in_m, strip.run_out_m
+
+
+def slopes_m(sensor: SarSensor, height_m: float) -> tuple[float, float, float, float]:
+    """How much near edge, swath, run-in and run-out can change at most, for a radian of the heading.
+
+    The crab ψ = asin(k sin δ) changes by no more than k for a radian of the heading, k the wind by the
+    airspeed. A ray's place beside the track, d (tan θ cos ψ − tan θ_sq sin ψ / cos θ), changes with ψ by no
+    more than d √(tan² θ + tan² θ_sq / cos² θ). Ground beside the track at y is seen x ahead; with ψ that
+    changes by y + |x| tan(|ψ| + |θ_sq|) at most, with y by tan(|ψ| + |θ_sq|). The aperture's derivative is
+    that of ``sar_modes.crabbed_aperture_m``.
+    """
+    crab_rad, margin_rad = math.asin(min(sensor.drift, 1.0)), sensor.pointing_margin_rad
+    low_m = height_m + sensor.relief_m
+    squint = abs(math.tan(sensor.squint_rad))
+    edges_m = [
+        low_m * math.hypot(math.tan(look_rad), squint / math.cos(look_rad))
+        for look_rad in (sensor.steepest_rad, sensor.flattest_rad)
+    ]
+    leaning = math.tan(min(crab_rad + abs(sensor.squint_rad) + margin_rad, math.radians(89.9)))
+    reach_m = math.hypot(edges_m[1], low_m) * leaning * (1.0 + leaning**2)
+    lead_m = edges_m[1] + reach_m * leaning + leaning * max(edges_m)
+    cos, sin = math.cos(sensor.squint_rad), math.sin(abs(sensor.squint_rad)) * math.sin(sensor.incidence_rad)
+    turned = max(cos * math.cos(crab_rad) - sin * math.sin(crab_rad), 1e-3)
+    abeam_m = low_m / math.cos(sensor.incidence_rad) * sensor.azimuth_beamwidth_rad / cos
+    along_m = lead_m + abeam_m * math.hypot(cos, sin) / turned**2 / 2.0
+    k = sensor.drift
+    return k * edges_m[0], k * sum(edges_m), k * along_m, k * along_m
 
 
 def divided(box: Floats, cell: Floats, slopes: Floats) -> tuple[Floats, Floats]:

@@ -13,11 +13,17 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from shapely.geometry import MultiPoint
 
+from planner.coverage.classify import spans_at
+from planner.coverage.segments import Neighbourhood, segment
 from planner.dubins.kernels import dubins_length
+from planner.errors import InfeasibleError
 from planner.routing import bound_cells_kernels as cells_of
 from planner.routing import bound_lines_kernels as lines
 from planner.routing import bound_tours_kernels as tours
-from planner.routing.bound_nodes import divided
+from planner.routing.bound_nodes import divided, nodes, slopes_m
+from planner.sensors.sar import SarSensor
+from planner.sensors.strip import strip_on
+from tests.planner.coverage.shapes import as_merged
 
 Floats = NDArray[np.float64]
 
@@ -41,7 +47,7 @@ def family(
     ring: Floats, side: float, middle: tuple[float, float], kind: float = cells_of.WHOLE, strips: float = 1.0
 ) -> Floats:
     """Passes of a sensor with a swath of 700 m from 300 m off, 40 m of aperture and 50 m to settle."""
-    return np.array([kind, side, 300.0, 700.0, 20.0, 50.0, *middle, strips, 1e6, 0.0])
+    return np.array([kind, side, 300.0, 700.0, 20.0, 50.0, *middle, strips, 1e6, 0.0, 20.0])
 
 
 def flown(ring: Floats, of: Floats, theta: float, eta: float) -> tuple[Floats, Floats] | None:
@@ -120,6 +126,85 @@ def test_no_line_between_passes_of_two_cells_costs_less(
         out = lines.from_terminal(start, cells[0], cells_of.EXIT, slope0, RADIUS_M, two)
         flight = dubins_length(*leaves, -700.0, 400.0, 2.0, RADIUS_M)
         assert flight + slope0 @ np.array(inside[:2]) >= out - 1e-6
+
+
+@st.composite
+def crabbing(draw: st.DrawFn) -> SarSensor:
+    """Antennas fixed to an aircraft in a wind, squinted or not, with margins or without."""
+    return SarSensor(
+        "sar",
+        math.radians(45.0),
+        math.radians(30.0),
+        math.radians(10.0),
+        (draw(st.sampled_from(["left", "right"])),),
+        squint_rad=draw(st.sampled_from([0.0, 0.3, -0.2])),
+        pointing_margin_rad=draw(st.sampled_from([0.0, 0.03])),
+        position_margin_m=draw(st.sampled_from([0.0, 20.0])),
+        drift=draw(st.floats(0.05, 0.6)),
+        toward_rad=draw(angle),
+    )
+
+
+@given(sensor=crabbing(), at=st.lists(angle, min_size=2, max_size=2), between=st.floats(0.0, 1.0))
+@settings(max_examples=200, deadline=None)
+def test_a_strip_changes_with_the_heading_no_faster_than_said(
+    sensor: SarSensor, at: list[float], between: float
+) -> None:
+    """Near edge, swath, run-in and run-out at near and far headings; their bound is what samples rest on."""
+    most = slopes_m(sensor, 500.0)
+    headings = np.array([at[0], at[1], at[0] + 0.01 * between])
+    strip = strip_on(sensor, 500.0, headings, sensor.looks[0])
+    for values, slope in zip(
+        (strip.near_m, strip.swath_m, strip.run_in_m, strip.run_out_m), most, strict=True
+    ):
+        assert abs(values[2] - values[0]) <= slope * 0.01 * between + 1e-6
+        assert abs(values[1] - values[0]) <= slope * abs(at[1] - at[0]) + 1e-6
+
+
+@given(
+    sensor=crabbing(),
+    ring=hulls(),
+    theta=angle,
+    alpha=st.sampled_from([0.0, 0.01, 0.1, 0.3]),
+    half=st.sampled_from([0.0, 0.1, 0.5]),
+    inside=st.lists(unit, min_size=2, max_size=2),
+    slopes=st.lists(unit, min_size=2, max_size=2),
+    own=st.booleans(),
+)
+@settings(max_examples=300, deadline=None)
+def test_no_line_to_a_crabbing_pass_costs_less(
+    sensor: SarSensor,
+    ring: Floats,
+    theta: float,
+    alpha: float,
+    half: float,
+    inside: list[float],
+    slopes: list[float],
+    own: bool,
+) -> None:
+    """Passes of an antenna that crabs, as the planner lays them: none is below its cell's bound."""
+    region = as_merged(shapely.Polygon(ring))
+    heading, eta = theta + inside[0] * alpha, 0.5 + inside[1] * half
+    try:
+        collect = segment(region, sensor, 500.0, heading, sensor.looks[0], eta)
+    except InfeasibleError:
+        return
+    angles_rad = np.array([heading])
+    side = Neighbourhood(region, sensor, 500.0, sensor.looks[0], 0, angles_rad, spans_at(ring, angles_rad))
+    node = nodes((side,), 50.0, 0)[0]
+    cell = cells_of.cell(node.ring, node.hull, node.families[0], np.array([0.0, theta, alpha, 0.5, half]))
+    assert cell[cells_of.HOLDS] == 1.0
+    entry = np.array(collect.start) - 50.0 * np.array([math.cos(heading), math.sin(heading)])
+    inner = math.dist(entry, collect.end)
+    start, gains = np.array([-900.0, 700.0, 1.0, 2.0]), np.empty(2)
+    lines.from_terminal(start, cell, cells_of.ENTRY, np.zeros(2), RADIUS_M, gains)
+    slope = gains.copy() if own else 500.0 * np.array(slopes)
+    into = lines.from_terminal(start, cell, cells_of.ENTRY, slope, RADIUS_M, gains)
+    flown_m = dubins_length(-900.0, 700.0, 2.0, *entry, heading, RADIUS_M) + inner
+    assert flown_m - slope @ np.array(inside) >= into - 1e-6
+    out = lines.from_terminal(start, cell, cells_of.EXIT, slope, RADIUS_M, gains)
+    flown_m = dubins_length(*collect.end, heading, -900.0, 700.0, 2.0, RADIUS_M)
+    assert flown_m + slope @ np.array(inside) >= out - 1e-6
 
 
 @given(
