@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planner.angles import wrap_pi
+from planner.dubins.sample_kernels import sampled
 from planner.route import Pose
 
 SegmentKind = Literal["straight", "left", "right"]
@@ -125,17 +126,13 @@ class Path:
             float64, shape (N, 4): east_m, north_m, angle_rad, distance_m along the path. Each segment's
             ends are among them.
         """
-        rows: list[tuple[float, float, float, float]] = []
-        travelled_m = 0.0
-        for segment in self.segments:
-            spacing_m = max_straight_m if segment.kind == "straight" else max_chord_m
-            pieces = max(1, math.ceil(segment.length_m / spacing_m)) if math.isfinite(spacing_m) else 1
-            for piece in range(0 if not rows else 1, pieces + 1):
-                along_m = segment.length_m * piece / pieces
-                pose = segment.at(along_m)
-                rows.append((pose.east_m, pose.north_m, pose.angle_rad, travelled_m + along_m))
-            travelled_m += segment.length_m
-        return np.array(rows, dtype=np.float64)
+        sides = {"straight": 0.0, "left": 1.0, "right": -1.0}
+        rows = [
+            (sides[s.kind], *s.start.position, s.start.angle_rad, s.length_m, s.radius_m)
+            for s in self.segments
+        ]
+        points: NDArray[np.float64] = sampled(np.array(rows), max_chord_m, max_straight_m)
+        return points
 
 
 def join(*paths: Path) -> Path:
