@@ -11,16 +11,35 @@ from pydantic import BaseModel, Field, field_validator, model_validator
 
 from app.schemas import FindingOut, Strict
 from app.services.records import FlightRecord
+from app.services.vehicles.forwarding import MOST_FORWARDS
 from app.services.vehicles.inspection import ParameterReport
 from app.services.vehicles.items import state_json
 from app.services.vehicles.preflight import Preflight
 from app.services.vehicles.uploads import UploadReport
 from app.services.vehicles.vehicle import Vehicle
 from app.services.work import finding_json
+from mavlink.forward.outlet import Outlet
 from mavlink.parameter_rules import ParameterFinding
 
 Part = Literal["mission", "fence", "rally"]
 CommandName = Literal["arm", "disarm", "start", "pause", "resume", "rtl", "goto_item"]
+
+
+class ForwardIn(Strict):
+    """An address to forward a vehicle's link to, for another ground station."""
+
+    url: str = Field(
+        min_length=1,
+        max_length=300,
+        description="udpout:host:port, udpin:host:port, tcpin:host:port or tcp:host:port; without a host "
+        "it is 127.0.0.1.",
+        examples=["udpout:127.0.0.1:14550"],
+    )
+    write: bool = Field(
+        default=False,
+        description="Whether stations there may command the vehicle; else they only watch. While a mission "
+        "is exchanged from here, what they send of the mission protocol is held back.",
+    )
 
 
 class VehicleIn(Strict):
@@ -44,6 +63,9 @@ class VehicleIn(Strict):
     )
     timeout_s: float = Field(
         default=10.0, ge=0.1, le=60, description="How long to wait for its first heartbeat."
+    )
+    forward: list[ForwardIn] = Field(
+        default=[], max_length=MOST_FORWARDS, description="Other ground stations that hear it too."
     )
 
 
@@ -244,6 +266,60 @@ class SentOut(BaseModel):
         )
 
 
+class ForwardFigures(BaseModel):
+    """Frames counted since the address was first forwarded to."""
+
+    sent: int = Field(description="From the vehicle to stations.")
+    dropped: int = Field(description="Meant for a station that did not keep up; the oldest go first.")
+    passed: int = Field(description="From stations on to the vehicle.")
+    refused: int = Field(description="From stations that only watch, or meant for another vehicle.")
+    held_back: int = Field(description="From stations while a mission was exchanged from here.")
+    lost: int = Field(description="From stations: unreadable, or too many for the link to the vehicle.")
+
+
+class ForwardOut(BaseModel):
+    """An address a vehicle's link is forwarded to, and how it goes."""
+
+    url: str
+    address: str = Field(description="The same with the port really used.")
+    write: bool = Field(description="Stations there may command the vehicle.")
+    failure: str | None = Field(description="Why it is not open; it is tried again and again.")
+    peers: int = Field(description="How many it is sent to; one that is called counts, there or not.")
+    stations: list[int] = Field(description="System ids heard from there.")
+    frames: ForwardFigures
+
+    @classmethod
+    def of(cls, outlet: Outlet) -> Self:
+        """The answer for an address at work."""
+        return cls(
+            url=outlet.address.url,
+            address=outlet.url,
+            write=outlet.address.write,
+            failure=outlet.failure,
+            peers=outlet.peers,
+            stations=outlet.stations,
+            frames=ForwardFigures(**outlet.figures.as_dict()),
+        )
+
+
+class ForwardsIn(Strict):
+    """Where to forward a vehicle's link to: these addresses and no others."""
+
+    forward: list[ForwardIn] = Field(max_length=MOST_FORWARDS)
+
+
+class ForwardsOut(BaseModel):
+    """Where a vehicle's link is forwarded to."""
+
+    vehicle_id: str
+    forward: list[ForwardOut]
+
+    @classmethod
+    def of(cls, vehicle: Vehicle) -> Self:
+        """The answer for a vehicle."""
+        return cls(vehicle_id=vehicle.id, forward=[ForwardOut.of(o) for o in vehicle.forwards.outlets])
+
+
 class VehicleOut(BaseModel):
     """A vehicle and how it is."""
 
@@ -261,6 +337,7 @@ class VehicleOut(BaseModel):
     plan_id: str | None = Field(description="The plan it holds, read back and compared.")
     sent: SentOut | None = Field(description="The mission last sent from here; null: none, or cleared.")
     flight_id: str | None = Field(description="The flight being recorded.")
+    forward: list[ForwardOut] = Field(description="Other ground stations its link is forwarded to.")
     upload: UploadOut | None = Field(description="The last upload, without its items.")
     state: dict[str, Any] = Field(description="Position, attitude, mode, mission, battery …; null: not said.")
 
@@ -282,6 +359,7 @@ class VehicleOut(BaseModel):
             plan_id=vehicle.held.plan_id if vehicle.held else None,
             sent=SentOut.of(vehicle),
             flight_id=vehicle.flight_id,
+            forward=ForwardsOut.of(vehicle).forward,
             upload=UploadOut.of(vehicle.upload, items=False) if vehicle.upload else None,
             state=state_json(vehicle.state),
         )

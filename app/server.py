@@ -7,6 +7,7 @@ import hashlib
 import socket
 from collections.abc import Callable, Coroutine, Mapping
 from dataclasses import dataclass
+from itertools import count
 from typing import Any
 
 import structlog
@@ -31,21 +32,48 @@ class StartError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Welcome:
-    """What a fresh service does by itself: connect simulated aircraft, plan a scenario."""
+    """What a fresh service does by itself: connect vehicles, plan a scenario.
+
+    Parameters
+    ----------
+    vehicle
+        Address of a vehicle to connect unless it is known already; kept for the next start.
+    forward
+        Where to forward its link to, or else that of the simulated aircraft: addresses, and whether stations
+        there may command.
+    """
 
     simulated: int = 0
     sim_url: str = "sim:"
     scenario: Mapping[str, Any] | None = None
+    vehicle: str | None = None
+    forward: tuple[tuple[str, bool], ...] = ()
 
 
 async def _greet(house: House, welcome: Welcome) -> None:
     try:
         if welcome.scenario is not None:
             await _plan_sample(house, welcome.scenario)
+        forward = welcome.forward
+        if welcome.vehicle is not None:
+            await _connect(house, welcome.vehicle, forward)
+            forward = ()
         for number in range(1, welcome.simulated + 1):
-            await house.fleet.connect(f"sim-{number}", welcome.sim_url, keep=False)
+            await house.fleet.connect(f"sim-{number}", welcome.sim_url, keep=False, forward=forward)
     except ServiceError as error:
         log.error("start-up wish not fulfilled", reason=str(error))
+
+
+async def _connect(house: House, url: str, forward: tuple[tuple[str, bool], ...]) -> None:
+    """Connect a vehicle; one known from before is only forwarded, where that is wished for."""
+    known = {vehicle.url: vehicle for vehicle in house.fleet.all()}
+    if url in known:
+        if forward:
+            await house.fleet.forward(known[url].id, forward)
+        return
+    names = {vehicle.name for vehicle in known.values()}
+    name = next(name for number in count(1) if (name := f"uav-{number}") not in names)
+    await house.fleet.connect(name, url, forward=forward)
 
 
 async def _plan_sample(house: House, scenario: Mapping[str, Any]) -> None:

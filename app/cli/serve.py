@@ -24,6 +24,22 @@ def serve(
     sim_url: Annotated[
         str, typer.Option(help="What the simulated aircraft are, e.g. sim:?autopilot=px4&speedup=10.")
     ] = "sim:",
+    vehicle: Annotated[
+        str | None,
+        typer.Option(help="Connect the vehicle at this address, unless it is known already.", metavar="URL"),
+    ] = None,
+    forward: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Let another ground station watch that vehicle, or the simulated aircraft: "
+            "udpout:127.0.0.1:14550, udpin:…, tcpin:… May be repeated.",
+            metavar="URL",
+        ),
+    ] = None,
+    forward_write: Annotated[
+        list[str] | None,
+        typer.Option(help="The same, and let it command the vehicle, too.", metavar="URL"),
+    ] = None,
     scenario: Annotated[
         str | None, typer.Option(help="Plan this scenario at the start.", metavar="FILE")
     ] = None,
@@ -50,10 +66,18 @@ def serve(
     for variable in unknown_variables():
         say(f"warning: {variable} is no setting and does nothing; docs/settings.md lists them")
     _check_wishes(document, settings.database, sim_url)
+    forwards = [(url, False) for url in forward or ()] + [(url, True) for url in forward_write or ()]
+    _check_vehicle(vehicle, forwards, sim_count if sim else 0)
 
     from app.server import StartError, Welcome, run_server
 
-    welcome = Welcome(simulated=sim_count if sim else 0, sim_url=sim_url, scenario=document)
+    welcome = Welcome(
+        simulated=sim_count if sim else 0,
+        sim_url=sim_url,
+        scenario=document,
+        vehicle=vehicle,
+        forward=tuple(forwards),
+    )
 
     def announce(address: str) -> None:
         emit(f'{{"address": "{address}"}}' if as_json else f"Swathplan is at {address}")
@@ -82,6 +106,26 @@ def _check_wishes(scenario: dict[str, Any] | None, database: Path, sim_url: str)
         verdict = judge(scenario, str(terrain_folder(database)))
         if verdict.errors:
             raise CommandError("the scenario is refused", Exit.BAD_INPUT, verdict.errors)
+
+
+def _check_vehicle(vehicle: str | None, forwards: list[tuple[str, bool]], simulated: int) -> None:
+    """The same for a vehicle and where it is forwarded to."""
+    from app.services.errors import RefusedError
+    from app.services.vehicles.connection import is_replay, simulated_of
+    from app.services.vehicles.forwarding import read_forwards, refuse_loops
+
+    try:
+        if vehicle is not None:
+            simulated_of(vehicle)
+        addresses = read_forwards(forwards, replay=vehicle is not None and is_replay(vehicle))
+        refuse_loops([] if vehicle is None else [vehicle], addresses)
+    except RefusedError as error:
+        raise CommandError(str(error), Exit.BAD_INPUT, error.findings) from error
+    if forwards and vehicle is None and simulated != 1:
+        raise CommandError(
+            "--forward needs one vehicle to forward: give --vehicle, or --sim with one aircraft",
+            Exit.BAD_INPUT,
+        )
 
 
 def register(cli: typer.Typer) -> None:

@@ -17,6 +17,8 @@ from app.schemas_vehicles import (
     ClearedOut,
     CommandIn,
     CommandOut,
+    ForwardsIn,
+    ForwardsOut,
     HeldOut,
     LogList,
     LogOut,
@@ -47,7 +49,8 @@ async def connect(body: VehicleIn, fleet: FleetDep, response: Response) -> Vehic
 
     A vehicle that stays silent is listed as not connected, and connects when it is heard.
     """
-    vehicle = await fleet.connect(body.name, body.url, body.timeout_s)
+    forward = [(each.url, each.write) for each in body.forward]
+    vehicle = await fleet.connect(body.name, body.url, body.timeout_s, forward=forward)
     response.headers["Location"] = f"/api/v1/vehicles/{vehicle.id}"
     return VehicleOut.of(vehicle)
 
@@ -68,6 +71,23 @@ async def get_vehicle(vehicle_id: str, fleet: FleetDep) -> VehicleOut:
 async def disconnect(vehicle_id: str, fleet: FleetDep) -> None:
     """Close the link; a simulated aircraft ends. The vehicle itself gets no command."""
     await fleet.disconnect(vehicle_id)
+
+
+@router.get("/{vehicle_id}/forward", summary="List forwards", responses=responses(404))
+async def list_forwards(vehicle_id: str, fleet: FleetDep) -> ForwardsOut:
+    """Other ground stations that hear the vehicle, with what was sent, dropped, passed on and held back."""
+    return ForwardsOut.of(fleet.get(vehicle_id))
+
+
+@router.put("/{vehicle_id}/forward", summary="Forward to others", responses=responses(404, 409, 422))
+async def set_forwards(vehicle_id: str, body: ForwardsIn, fleet: FleetDep) -> ForwardsOut:
+    """Forward the link to these addresses and no others; those there already stay open.
+
+    Stations only watch unless `write` says otherwise: then they may arm and move the vehicle as over a radio
+    of their own. What they send is recorded with the rest.
+    """
+    forward = [(each.url, each.write) for each in body.forward]
+    return ForwardsOut.of(await fleet.forward(vehicle_id, forward))
 
 
 @router.get(

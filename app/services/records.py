@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from datetime import datetime
 from typing import Any, Literal
 
+from mavlink.forward.address import ForwardAddress
+
 PlanState = Literal["queued", "running", "done", "failed", "cancelled"]
 ENDED: frozenset[PlanState] = frozenset({"done", "failed", "cancelled"})
 
@@ -112,7 +114,10 @@ class SentMission:
 
 @dataclass(frozen=True, slots=True)
 class VehicleRecord:
-    """One vehicle as it was added; ``held`` is None where no plan was seen in it."""
+    """One vehicle as it was added; ``held`` is None where no plan was seen in it.
+
+    ``forward``: where its link is forwarded to.
+    """
 
     id: str
     name: str
@@ -120,6 +125,7 @@ class VehicleRecord:
     created_at: datetime
     held: HeldMission | None = None
     sent: SentMission | None = None
+    forward: tuple[ForwardAddress, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

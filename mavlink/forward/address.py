@@ -94,7 +94,10 @@ def _sockets(urls: Iterable[str]) -> Iterator[tuple[str, str, str, int, bool]]:
         form = url.partition(":")[0]
         kind = _CALLING.get(form) or _LISTENING.get(form)
         if kind is not None:
-            _, host, port = parse_address(url)
+            try:
+                _, host, port = parse_address(url)
+            except AddressError:
+                continue  # it will not be opened
             yield url, kind, host.removeprefix("[").removesuffix("]"), port, form in _CALLING
 
 

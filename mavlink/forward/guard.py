@@ -76,6 +76,7 @@ class Guard:
 
     def __init__(self) -> None:
         self._exchanges: dict[Sender, float] = {}
+        self._changers: set[Sender] = set()
         self._reading = 0
         self._changing = 0
 
@@ -102,11 +103,17 @@ class Guard:
             else:
                 self._exchanges[sender] = now_s
 
-    def exchanging(self, now_s: float) -> int | None:
-        """The system id of a station that is exchanging a list with the vehicle."""
-        for (system_id, _), heard_s in self._exchanges.items():
-            if now_s - heard_s < EXCHANGE_OVER_S:
-                return system_id
+    def exchanging(self, now_s: float, *, changes: bool = False) -> int | None:
+        """The system id of a station that is exchanging a list with the vehicle; None when none is.
+
+        Parameters
+        ----------
+        changes
+            Whether to ask for those alone that change what the vehicle holds.
+        """
+        for sender, heard_s in self._exchanges.items():
+            if now_s - heard_s < EXCHANGE_OVER_S and (sender in self._changers or not changes):
+                return sender[0]
         return None
 
     def reserve(self, now_s: float, *, changes: bool) -> None:
@@ -141,6 +148,10 @@ class Guard:
             for ended in over:
                 del self._exchanges[ended]
             self._exchanges[sender] = now_s
+            if message.name in CHANGES:
+                self._changers.add(sender)
+            else:
+                self._changers.discard(sender)
         elif message.name == "MISSION_ACK":
             self._exchanges.pop(sender, None)
         elif sender in self._exchanges:

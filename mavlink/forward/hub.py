@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import asyncio
 import contextlib
 import time
 from collections.abc import Callable, Iterator, Sequence
 from typing import Protocol
 
+from mavlink.errors import LinkError
 from mavlink.forward.address import ForwardAddress
 from mavlink.forward.guard import Guard, Verdict
 from mavlink.forward.outlet import Outlet
@@ -52,6 +54,8 @@ class Forwards:
         self._guard = Guard()
         self._outlets: dict[str, Outlet] = {}
         self._carrier: Carrier | None = None
+        self._turn = asyncio.Lock()
+        self._closed = False
 
     @property
     def outlets(self) -> tuple[Outlet, ...]:
@@ -63,14 +67,25 @@ class Forwards:
         """The system id of a station that is exchanging a list with the vehicle; None when none is."""
         return self._guard.exchanging(self._clock())
 
+    @property
+    def changing(self) -> int | None:
+        """The same of one that changes a list."""
+        return self._guard.exchanging(self._clock(), changes=True)
+
     async def set(self, addresses: Sequence[ForwardAddress]) -> None:
         """Forward to these and no others; those there already stay open.
 
         Raises
         ------
         LinkError
-            One cannot be opened: all is as before.
+            One cannot be opened, or all are closed: all is as before.
         """
+        async with self._turn:
+            await self._set(addresses)
+
+    async def _set(self, addresses: Sequence[ForwardAddress]) -> None:
+        if self._closed:
+            raise LinkError("the forwards are closed")
         new = {a.url: Outlet(a, self._take) for a in addresses if a.url not in self._outlets}
         try:
             for outlet in new.values():
@@ -95,10 +110,12 @@ class Forwards:
                 outlet.start()
 
     async def close(self) -> None:
-        """Close every address; closing twice is harmless."""
-        outlets, self._outlets = self._outlets, {}
-        for outlet in outlets.values():
-            await outlet.close()
+        """Close every address for good; closing twice is harmless."""
+        self._closed = True
+        async with self._turn:
+            outlets, self._outlets = self._outlets, {}
+            for outlet in outlets.values():
+                await outlet.close()
 
     def join(self, carrier: Carrier) -> None:
         """Forward this link from now on."""

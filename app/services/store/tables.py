@@ -78,6 +78,7 @@ class VehicleRow(Base):
     held_payload: Mapped[str | None] = mapped_column(String(200))
     last_plan_id: Mapped[str | None] = mapped_column(String(36))
     last_list_id: Mapped[int | None] = mapped_column(Integer)
+    forward: Mapped[list[dict[str, Any]] | None] = mapped_column(JSON)
 
 
 class UploadRow(Base):

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from sqlalchemy import delete, select, update
 
 from app.services.records import HeldMission, SentMission, VehicleRecord
 from app.services.store.database import Database
 from app.services.store.tables import VehicleRow
+from mavlink.forward.address import ForwardAddress
 
 
 def _record(row: VehicleRow) -> VehicleRecord:
@@ -14,7 +17,12 @@ def _record(row: VehicleRow) -> VehicleRecord:
     if row.held_plan_id is not None and row.held_plan_vehicle is not None:
         held = HeldMission(row.held_plan_id, row.held_plan_vehicle, row.held_payload)
     sent = None if row.last_plan_id is None else SentMission(row.last_plan_id, row.last_list_id)
-    return VehicleRecord(row.id, row.name, row.url, row.created_at, held, sent)
+    forward = tuple(ForwardAddress(entry["url"], entry["write"]) for entry in row.forward or ())
+    return VehicleRecord(row.id, row.name, row.url, row.created_at, held, sent, forward)
+
+
+def _forward_json(forward: tuple[ForwardAddress, ...]) -> list[dict[str, Any]]:
+    return [{"url": address.url, "write": address.write} for address in forward]
 
 
 class VehicleStore:
@@ -25,7 +33,13 @@ class VehicleStore:
 
     async def add(self, record: VehicleRecord) -> None:
         """A new vehicle."""
-        row = VehicleRow(id=record.id, name=record.name, url=record.url, created_at=record.created_at)
+        row = VehicleRow(
+            id=record.id,
+            name=record.name,
+            url=record.url,
+            created_at=record.created_at,
+            forward=_forward_json(record.forward),
+        )
         async with self._database.session() as session:
             session.add(row)
 
@@ -51,6 +65,12 @@ class VehicleStore:
             "last_plan_id": sent.plan_id if sent else None,
             "last_list_id": sent.list_id if sent else None,
         }
+        async with self._database.session() as session:
+            await session.execute(update(VehicleRow).where(VehicleRow.id == vehicle_id).values(**values))
+
+    async def forward(self, vehicle_id: str, forward: tuple[ForwardAddress, ...]) -> None:
+        """Note where a vehicle's link is forwarded to."""
+        values = {"forward": _forward_json(forward)}
         async with self._database.session() as session:
             await session.execute(update(VehicleRow).where(VehicleRow.id == vehicle_id).values(**values))
 

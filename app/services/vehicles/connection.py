@@ -13,6 +13,7 @@ from app.services.errors import LinkError, RefusedError
 from app.services.vehicles.simulated import SimulatedAircraft, SimulatorProcess, parse_simulated
 from mavlink import errors as mavlink_errors
 from mavlink.client import VehicleClient
+from mavlink.forward.hub import Forwards
 from mavlink.link import FORMS, open_link
 from mavlink.links.replay import parse_replay
 from mavlink.payload import PayloadError, parse_payload
@@ -86,7 +87,11 @@ class Connection:
 
 
 async def connect(
-    url: str, home: Home | None, timeout_s: float, tap: Callable[[bytes], None] | None = None
+    url: str,
+    home: Home | None,
+    timeout_s: float,
+    tap: Callable[[bytes], None] | None = None,
+    forwards: Forwards | None = None,
 ) -> Connection:
     """Open the link, start the simulator where one is asked for, wait for a heartbeat.
 
@@ -98,6 +103,8 @@ async def connect(
         Where a simulated aircraft stands whose address does not say.
     tap
         Called with every frame of the link.
+    forwards
+        Other ground stations that hear the vehicle.
 
     Raises
     ------
@@ -115,7 +122,7 @@ async def connect(
         raise _refused(error, f"write {FORMS} or sim:") from error
     except mavlink_errors.LinkError as error:
         raise LinkError(str(error)) from error
-    client = VehicleClient(link, tap=tap)
+    client = VehicleClient(link, tap=tap, forwards=forwards)
     try:
         simulator = None
         if aircraft is not None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import json
 import uuid
-from collections.abc import AsyncGenerator
+from collections.abc import AsyncGenerator, Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -19,11 +19,13 @@ from app.services.planning import PlanningService
 from app.services.records import VehicleRecord
 from app.services.store.flights import FlightStore
 from app.services.store.vehicles import VehicleStore
-from app.services.vehicles.connection import CONNECT_S, Home, replayed_plan
+from app.services.vehicles.connection import CONNECT_S, Home, is_replay, replayed_plan
+from app.services.vehicles.forwarding import read_forwards, refuse_loops
 from app.services.vehicles.recorder import HeldPlan
 from app.services.vehicles.recordings import RecordingFile, Recordings
 from app.services.vehicles.transfers import Transfers
 from app.services.vehicles.vehicle import Vehicle
+from mavlink.forward.address import ForwardAddress
 from mavlink.outputs import output_of
 from mavlink.payload import parse_payload
 
@@ -95,7 +97,13 @@ class Fleet:
         return vehicle
 
     async def connect(
-        self, name: str, url: str, timeout_s: float = CONNECT_S, *, keep: bool = True
+        self,
+        name: str,
+        url: str,
+        timeout_s: float = CONNECT_S,
+        *,
+        keep: bool = True,
+        forward: Sequence[tuple[str, bool]] = (),
     ) -> Vehicle:
         """Connect a vehicle; when it stays silent it is known all the same, and listened for.
 
@@ -103,13 +111,15 @@ class Fleet:
         ----------
         keep
             Whether the next service shall know it too.
+        forward
+            Where to forward its link to: addresses, and whether stations there may command it.
 
         Raises
         ------
         ConflictError
-            The name or the address is in use.
+            The name or an address is in use.
         RefusedError, LinkError
-            The address is malformed, or the link cannot be opened.
+            An address is malformed, or the link cannot be opened.
         """
         if self._ended:
             raise ConflictError(_ENDING)
@@ -120,7 +130,10 @@ class Fleet:
                 raise ConflictError(f"there is a vehicle called {name} already")
             if other.url == url and other.simulated is None:
                 raise ConflictError(f"{url} is in use by {other.name}")
-        vehicle = self._vehicle(VehicleRecord(str(uuid.uuid4()), name, url, datetime.now(UTC)))
+        addresses = read_forwards(forward, replay=is_replay(url))
+        record = VehicleRecord(str(uuid.uuid4()), name, url, datetime.now(UTC), forward=addresses)
+        vehicle = self._vehicle(record)
+        self._refuse_loops(vehicle, addresses)
         # Named before anything is waited for: two of one name must not pass the check above together.
         self._vehicles[vehicle.id] = vehicle
         opening = asyncio.create_task(self._open_link(vehicle, timeout_s))
@@ -141,7 +154,7 @@ class Fleet:
         finally:
             del self._opening[vehicle.id]
         if keep and not vehicle.replay:
-            await self._kept.add(VehicleRecord(vehicle.id, name, url, vehicle.created_at))
+            await self._kept.add(record)
         log.info("vehicle added", vehicle=name, url=url, connected=vehicle.state.connected)
         return vehicle
 
@@ -149,6 +162,29 @@ class Fleet:
         if vehicle.replay:
             vehicle.held = await self._flown_plan(vehicle.url)
         await vehicle.open(await self._default_home(), timeout_s)
+
+    async def forward(self, vehicle_id: str, forward: Sequence[tuple[str, bool]]) -> Vehicle:
+        """Forward a vehicle's link to these addresses and no others; the same again changes nothing.
+
+        Raises
+        ------
+        RefusedError
+            An address is malformed, or would send frames round for ever.
+        ConflictError
+            An address cannot be opened; all is as before.
+        """
+        vehicle = self.get(vehicle_id)
+        addresses = read_forwards(forward, replay=vehicle.replay)
+        self._refuse_loops(vehicle, addresses)
+        await vehicle.forward_to(addresses)
+        await self._kept.forward(vehicle_id, addresses)
+        vehicle.tell()
+        return vehicle
+
+    def _refuse_loops(self, vehicle: Vehicle, addresses: tuple[ForwardAddress, ...]) -> None:
+        others = [other for other in self._vehicles.values() if other is not vehicle]
+        theirs = [outlet.address for other in others for outlet in other.forwards.outlets]
+        refuse_loops([vehicle.url, *(other.url for other in others)], [*addresses, *theirs])
 
     async def disconnect(self, vehicle_id: str) -> None:
         """Let a vehicle go; raises NotFoundError."""

@@ -15,6 +15,7 @@ from app.services.errors import BusyError, ConflictError, LinkError, ServiceErro
 from app.services.records import HeldMission, VehicleRecord
 from app.services.store.flights import FlightStore
 from app.services.vehicles.connection import Connection, Home, connect, is_replay, simulated_of
+from app.services.vehicles.forwarding import changes_mission, tell_order
 from app.services.vehicles.recorder import FlightRecorder, HeldPlan
 from app.services.vehicles.recordings import Recordings
 from app.services.vehicles.simulated import SimulatedAircraft
@@ -22,7 +23,11 @@ from app.services.vehicles.uploads import UploadReport, read_back
 from mavlink import errors as mavlink_errors
 from mavlink.client import VehicleClient
 from mavlink.encoding.options import DEFAULT_PAYLOAD
+from mavlink.forward.address import ForwardAddress
+from mavlink.forward.hub import Forwards
+from mavlink.forward.outlet import Outlet
 from mavlink.items import MissionType
+from mavlink.messages import Message
 from mavlink.payload import parse_payload
 from mavlink.recording import TlogWriter
 from mavlink.telemetry import VehicleState
@@ -84,6 +89,8 @@ class Vehicle:
         self._gone = False
         self.simulated: SimulatedAircraft | None = simulated_of(url)
         self.replay = is_replay(url)
+        self.forwards = Forwards(self._station_said)
+        self._forward = record.forward
         self._recordings = None if self.replay else recordings
         self._writer: TlogWriter | None = None
         self._recorder = FlightRecorder(flights, record.id, record.name, track_interval_s)
@@ -135,10 +142,13 @@ class Vehicle:
             The address has none of the known forms.
         LinkError
             The link cannot be opened, or the simulator ended.
+        ConflictError
+            An address to forward to cannot be opened.
         """
         if self._recordings is not None:
             self._writer = self._recordings.writer(self.id)
-        connection = await connect(self.url, home, timeout_s, self._tap)
+        await self.forward_to(self._forward)
+        connection = await connect(self.url, home, timeout_s, self._tap, self.forwards)
         if self._gone:
             await connection.close()
             raise LinkError(f"{self.name} was let go")
@@ -146,7 +156,8 @@ class Vehicle:
         self._tasks = [asyncio.create_task(self._watch()), asyncio.create_task(self._record())]
 
     def resume(self, home: Home | None, timeout_s: float) -> None:
-        """Open the link in the background, again and again until it opens."""
+        """Open the link in the background, again and again until it opens; so with its forwards."""
+        self.forwards.begin(self._forward)
         if self._recordings is not None:
             self._writer = self._recordings.writer(self.id)
         self._tasks = [
@@ -162,7 +173,7 @@ class Vehicle:
         """Open the link; when it cannot be, say why once and try again."""
         while self._connection is None:
             try:
-                self._connection = await connect(self.url, home, timeout_s, self._tap)
+                self._connection = await connect(self.url, home, timeout_s, self._tap, self.forwards)
             except ServiceError as error:
                 if self.link_failure != str(error):
                     log.warning("link not open", vehicle=self.name, url=self.url, reason=str(error))
@@ -176,6 +187,7 @@ class Vehicle:
         """Let it go for good: close the link, end the simulator, close the flight."""
         self._gone = True
         await self._shut()
+        await self.forwards.close()
 
     async def _shut(self) -> None:
         for task in self._tasks:
@@ -199,6 +211,38 @@ class Vehicle:
         """Put everything recorded so far where readers see it."""
         if self._writer is not None:
             self._writer.flush()
+
+    async def forward_to(self, addresses: tuple[ForwardAddress, ...]) -> None:
+        """Forward the link to these addresses and no others.
+
+        Raises
+        ------
+        ConflictError
+            One cannot be opened; all is as before.
+        """
+        before = {outlet.address for outlet in self.forwards.outlets}
+        try:
+            await self.forwards.set(addresses)
+        except mavlink_errors.LinkError as error:
+            raise ConflictError(f"forward {error}") from error
+        self._forward = addresses
+        for address in addresses:
+            if address not in before:
+                tell = log.warning if address.write else log.info
+                tell("link forwarded", vehicle=self.name, to=address.url, may_command=address.write)
+
+    def _station_said(self, outlet: Outlet, message: Message) -> None:
+        """Another ground station has spoken to it: tell what it orders, and doubt what it changes."""
+        tell_order(self.name, outlet, message)
+        if changes_mission(message):
+            held = self.held
+            if held is not None:
+                self._believed = HeldMission(held.plan_id, held.plan_vehicle, held.payload)
+            believed = self._believed
+            self.holds_unknown()
+            # Read back once the station is done.
+            self._believed = believed
+            self.tell()
 
     def holds_unknown(self) -> None:
         """Believe nothing about the mission it holds: it is being changed."""
@@ -264,7 +308,8 @@ class Vehicle:
             raise BusyError(f"{self.name} is busy: the order {self._orders[0]} is not answered yet")
         self.operation, self._changing = operation, changes
         try:
-            yield
+            with self.forwards.reserved(changes=changes):
+                yield
         except mavlink_errors.BusyError as error:
             raise BusyError(f"{self.name} is busy: {error}") from error
         except (mavlink_errors.NotConnectedError, mavlink_errors.LinkError) as error:
@@ -279,6 +324,12 @@ class Vehicle:
         """An order to fly is under way; raises BusyError while what is to be flown is being changed."""
         if self._changing:
             raise BusyError(f"{self.name} is busy: {self.operation}; {order} waits for its end")
+        station = self.forwards.changing
+        if station is not None:
+            raise BusyError(
+                f"{self.name} is busy: another ground station (system {station}) is changing its mission; "
+                f"{order} waits for its end"
+            )
         self._orders.append(order)
         try:
             yield
@@ -311,7 +362,7 @@ class Vehicle:
                 elif self.pending and self.operation is None and tries:
                     tries -= 1
                     await self._resolve(client)
-                elif self._believed is not None and self.operation is None:
+                elif self._believed is not None and self.operation is None and not self.forwards.exchanging:
                     tries -= 1
                     await self._confirm(self._believed, last=tries <= 0)
                 await asyncio.sleep(TELEMETRY_S)

@@ -61,7 +61,11 @@ def test_others_are_refused(url: str) -> None:
         (["udpin:127.0.0.1:14550"], ["tcp:127.0.0.1:14550"], False),
         (["udpin:127.0.0.1:14550"], ["udpout:127.0.0.1:14551", "tcpin:127.0.0.1:14550"], False),
         (["udpin:127.0.0.1:5000", "udpout:127.0.0.1:5000"], [], False),
-        (["serial:/dev/ttyS0:57600", "replay:a.tlog"], ["udpout:127.0.0.1:14550"], False),
+        (
+            ["serial:/dev/ttyS0:57600", "replay:a.tlog", "udpin:x", "pigeon:post"],
+            ["udpout:127.0.0.1:14550"],
+            False,
+        ),
     ],
 )
 def test_loops_are_found(vehicles: list[str], forwards: list[str], meet: bool) -> None:

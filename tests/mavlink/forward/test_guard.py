@@ -24,16 +24,15 @@ ANY_NAME = st.sampled_from(
 
 def said(name: str, sender: tuple[int, int] = STATION, target: int = 1, **fields: float) -> Message:
     """A station's message to the vehicle."""
-    parameters: dict[str, float] = {f"param{number}": 0.0 for number in range(1, 8)} | {"command": 0.0}
-    if not name.startswith("COMMAND"):
-        parameters = {}
+    names = ("command", *(f"param{number}" for number in range(1, 8)))
+    parameters: dict[str, float] = dict.fromkeys(names, 0.0) if name.startswith("COMMAND") else {}
     return Message(name, parameters | {"target_system": target, **fields}, *sender)
 
 
 def answer(name: str, **fields: float) -> Message:
     """The vehicle's message to the station."""
-    to = {"target_system": STATION[0], "target_component": STATION[1]}
-    return Message(name, to | fields, 1, 1)
+    to = {"target_system": STATION[0], "target_component": STATION[1], **fields}
+    return Message(name, to, 1, 1)
 
 
 @given(ANY_NAME, st.integers(1, 255), st.integers(0, 255), st.booleans(), st.floats(0, 1e6))

@@ -43,11 +43,12 @@ class Station:
         return frame
 
     async def until(self, name: str) -> Message:
-        """The next message of a name."""
+        """The next message of a name that is for this station, or for all."""
         async with asyncio.timeout(20):
             while True:
                 for message in self.codec.feed(await self.link.receive()):
-                    if message.name == name:
+                    target = message.fields.get("target_system", 0)
+                    if message.name == name and target in (0, self.codec.system_id):
                         return message
 
 
@@ -145,9 +146,7 @@ async def test_a_watcher_cannot_command_until_it_may() -> None:
         assert forwards.outlets == (outlet,)
         order = peer.say("COMMAND_LONG", command=RETURN)
         answered = await peer.until("COMMAND_ACK")
-        while answered.integer("command") != RETURN:  # those are of our own wishes for telemetry
-            answered = await peer.until("COMMAND_ACK")
-        assert answered.integer("target_system") == 245
+        assert (answered.integer("command"), answered.integer("target_system")) == (RETURN, 245)
         commanded = [number for number, _ in aircraft.commands if number != 511]
         assert commanded == [RETURN]
         assert [message.integer("command") for message in passed] == [RETURN]
@@ -260,6 +259,18 @@ async def test_peers_that_come_and_go() -> None:
             await link.close()
             await until(lambda: outlet.peers == 0)
         assert outlet.figures.dropped == 0
+
+
+async def test_closed_is_closed() -> None:
+    """What is asked for while all are being closed opens nothing that nobody would close."""
+    forwards = Forwards()
+    await forwards.set([parse_forward("udpin:0")])
+    closing = asyncio.create_task(forwards.close())
+    await asyncio.sleep(0)
+    with pytest.raises(LinkError, match="closed"):
+        await forwards.set([parse_forward("udpin:0")])
+    await closing
+    assert forwards.outlets == ()
 
 
 async def test_a_called_station_alone_is_answered_to() -> None:

@@ -1,0 +1,93 @@
+"""Forwarding of vehicles' links to other ground stations: what is asked for, and what is told of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import Final
+
+import structlog
+
+from app.services.errors import RefusedError
+from mavlink.errors import AddressError
+from mavlink.forward.address import FORMS, ForwardAddress, looped, parse_forward
+from mavlink.forward.guard import CHANGES
+from mavlink.forward.outlet import Outlet
+from mavlink.items import Command
+from mavlink.messages import Message
+from planner.errors import Finding
+
+log = structlog.get_logger(__name__)
+
+MOST_FORWARDS: Final = 8
+
+_ALL_TYPES: Final = 255
+_ORDERS: Final = CHANGES | {"COMMAND_LONG", "COMMAND_INT", "SET_MODE", "PARAM_SET", "MISSION_SET_CURRENT"}
+#: Stations ask for data all the time; that is no news.
+_WISHES: Final = frozenset({int(Command.SET_MESSAGE_INTERVAL), int(Command.REQUEST_MESSAGE)})
+
+
+def read_forwards(entries: Iterable[tuple[str, bool]], *, replay: bool = False) -> tuple[ForwardAddress, ...]:
+    """Addresses from what a client wrote: address, and whether stations there may command the vehicle.
+
+    Parameters
+    ----------
+    replay
+        Whether the vehicle is a recording, which nobody can command.
+
+    Raises
+    ------
+    RefusedError
+        With a finding for each that is malformed, given twice or not possible.
+    """
+    addresses: list[ForwardAddress] = []
+    findings = []
+    for url, write in entries:
+        try:
+            address = parse_forward(url, write=write)
+        except AddressError as error:
+            findings.append(Finding("forward", "forward-address", str(error), f"write {FORMS}"))
+            continue
+        if address.url in {other.url for other in addresses}:
+            message = f"{address.url} is given twice"
+            findings.append(Finding("forward", "forward-twice", message, "give each address once"))
+        elif write and replay:
+            message = f"{address.url}: a recording takes no commands"
+            findings.append(Finding("forward", "forward-write", message, "forward it to watch alone"))
+        addresses.append(address)
+    if len(addresses) > MOST_FORWARDS:
+        message = f"{len(addresses)} addresses; {MOST_FORWARDS} are the most of one vehicle"
+        findings.append(Finding("forward", "forward-many", message, "let a router distribute the rest"))
+    if findings:
+        raise RefusedError(f"the forwards are refused: {findings[0].message}", tuple(findings))
+    return tuple(addresses)
+
+
+def refuse_loops(urls: Sequence[str], forwards: Sequence[ForwardAddress]) -> None:
+    """Raise RefusedError when two addresses of this service would talk to each other."""
+    pair = looped(urls, forwards)
+    if pair is not None:
+        message = f"{pair[0]} and {pair[1]} are both of this service: frames would go round for ever"
+        finding = Finding("forward", "forward-loop", message, "take another port")
+        raise RefusedError(message, (finding,))
+
+
+def tell_order(vehicle: str, outlet: Outlet, message: Message) -> None:
+    """Log what another station orders the vehicle to do."""
+    if message.name not in _ORDERS:
+        return
+    command = message.fields.get("command")
+    if command in _WISHES:
+        return
+    log.info(
+        "order of another ground station",
+        vehicle=vehicle,
+        forward=outlet.address.url,
+        station=message.system_id,
+        message=message.name,
+        command=command,
+    )
+
+
+def changes_mission(message: Message) -> bool:
+    """Whether another station's frame changes the mission the vehicle holds."""
+    return message.name in CHANGES and message.fields.get("mission_type", 0) in (0, _ALL_TYPES)
