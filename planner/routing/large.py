@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -79,23 +78,21 @@ def large_order(
     for c in range(count):
         near[c, nearest[c, :NEIGHBOURS]] = True
     near |= near.T
-    ends: tuple[Any, ...] = (
-        padded([first[at[c] : at[c + 1]] for c in range(count)], np.inf),
-        padded([last[at[c] : at[c + 1]] for c in range(count)], np.inf),
+    web = kernels.Web(
+        first=padded([first[at[c] : at[c + 1]] for c in range(count)], np.inf),
+        last=padded([last[at[c] : at[c + 1]] for c in range(count)], np.inf),
+        pool=np.empty((capacity, width, width), dtype=np.float32),
+        slots=np.full((count, count), -1, dtype=np.int64),
+        used=np.zeros(1, dtype=np.int64),
+        exits=padded([o.exits for o in options], 0.0),
+        entries=padded([o.entries for o in options], 0.0),
+        inner=padded([o.inner_m for o in options], np.inf),
+        counts=sizes,
+        radius=around.radius_m,
+        discs=discs,
+        wind=_wind(around),
     )
-    shared: tuple[Any, ...] = (
-        np.empty((capacity, width, width), dtype=np.float32),
-        np.full((count, count), -1, dtype=np.int64),
-        np.zeros(1, dtype=np.int64),
-        padded([o.exits for o in options], 0.0),
-        padded([o.entries for o in options], 0.0),
-        padded([o.inner_m for o in options], np.inf),
-        sizes,
-        around.radius_m,
-        discs,
-        _wind(around),
-    )
-    tried = [kernels.reverse_runs(order, LONGEST_RUN, near, *ends, *shared) for order in orders]
+    tried = [kernels.reverse_runs(order, LONGEST_RUN, near, web) for order in orders]
     cost_m, order = min(tried, key=lambda found: float(found[0]))
     most = max(1, min(MOST_OUT, 3 * count // 4))
     iterations = max(1, PUT_BACK // (ROUNDS * most))
@@ -106,9 +103,9 @@ def large_order(
             break
         heat_m = 0.002 * float(cost_m) * (1.0 - index / ROUNDS) / max(1.0, count / 10.0)
         cost_m, order = kernels.ruin_and_recreate(
-            order, iterations, seed * ROUNDS + index, most, heat_m, near, nearest, *ends, *shared
+            order, iterations, seed * ROUNDS + index, most, heat_m, near, nearest, web
         )
-    cost_m, order = kernels.reverse_runs(order, LONGEST_RUN, near, *ends, *shared)
+    cost_m, order = kernels.reverse_runs(order, LONGEST_RUN, near, web)
     return float(cost_m), order
 
 

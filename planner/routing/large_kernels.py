@@ -11,6 +11,7 @@ using the ruin and recreate principle", Journal of Computational Physics 159 (20
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -25,6 +26,47 @@ Flags = NDArray[np.bool_]
 
 #: An insertion is passed over with this chance, so that recreation does not always end alike.
 BLINK = 0.02
+
+
+class Web(NamedTuple):
+    """Options of all regions and what there is to know of lines between them.
+
+    Attributes
+    ----------
+    first, last
+        Costs from the start to each option, its own included, and from it to the end, (C, K).
+    pool
+        Blocks of costs between two regions, (P, K, K).
+    slots
+        Where in the pool the block of two regions is, −1 where it is not, (C, C).
+    used
+        How many places of the pool are taken, (1,).
+    exits, entries
+        Poses of options, (C, K, 3).
+    inner
+        What options cost by themselves, (C, K).
+    counts
+        How many options each region has, (C,).
+    radius
+        Of turns.
+    discs
+        What to go round, (D, 3) or wider.
+    wind
+        See ``in_wind``.
+    """
+
+    first: Floats
+    last: Floats
+    pool: Halves
+    slots: Ints
+    used: Ints
+    exits: Floats
+    entries: Floats
+    inner: Floats
+    counts: Ints
+    radius: float
+    discs: Floats
+    wind: Floats
 
 
 @njit(cache=True)
@@ -66,38 +108,25 @@ def in_wind(length: float, offset_e: float, offset_n: float, wind: Floats) -> fl
 
 
 @njit(cache=True)
-def block(
-    a: int,
-    b: int,
-    pool: Halves,
-    slots: Ints,
-    used: Ints,
-    exits: Floats,
-    entries: Floats,
-    inner: Floats,
-    counts: Ints,
-    radius: float,
-    discs: Floats,
-    wind: Floats,
-) -> Halves:
+def block(a: int, b: int, web: Web) -> Halves:
     """Costs from every option of region a to every option of region b, b's own cost included."""
-    if slots[a, b] < 0:
-        if used[0] == pool.shape[0]:
-            slots[:, :] = -1
-            used[0] = 0
-        slot = used[0]
-        used[0] += 1
-        slots[a, b] = slot
-        here, there = exits[a, : counts[a]], entries[b, : counts[b]]
-        costs = transit_costs(here, there, radius, discs_between(here, there, discs, 0.0))
-        for i in range(counts[a]):
-            for j in range(counts[b]):
+    if web.slots[a, b] < 0:
+        if web.used[0] == web.pool.shape[0]:
+            web.slots[:, :] = -1
+            web.used[0] = 0
+        slot = web.used[0]
+        web.used[0] += 1
+        web.slots[a, b] = slot
+        here, there = web.exits[a, : web.counts[a]], web.entries[b, : web.counts[b]]
+        costs = transit_costs(here, there, web.radius, discs_between(here, there, web.discs, 0.0))
+        for i in range(web.counts[a]):
+            for j in range(web.counts[b]):
                 cost = costs[i, j]
-                if wind[2] > 0.0:
+                if web.wind[2] > 0.0:
                     offset_e, offset_n = there[j, 0] - here[i, 0], there[j, 1] - here[i, 1]
-                    cost = in_wind(cost, offset_e, offset_n, wind)
-                pool[slot, i, j] = cost + inner[b, j]
-    found: Halves = pool[slots[a, b]]
+                    cost = in_wind(cost, offset_e, offset_n, web.wind)
+                web.pool[slot, i, j] = cost + web.inner[b, j]
+    found: Halves = web.pool[web.slots[a, b]]
     return found
 
 
@@ -128,61 +157,29 @@ def backward(after: Floats, costs: Halves, rows: int, columns: int, out: Floats)
 
 
 @njit(cache=True)
-def sweep_forward(
-    order: Ints,
-    size: int,
-    begin: int,
-    pre: Floats,
-    first: Floats,
-    pool: Halves,
-    slots: Ints,
-    used: Ints,
-    exits: Floats,
-    entries: Floats,
-    inner: Floats,
-    counts: Ints,
-    radius: float,
-    discs: Floats,
-    wind: Floats,
-) -> None:
+def sweep_forward(order: Ints, size: int, begin: int, pre: Floats, web: Web) -> None:
     """Fill ``pre`` from place ``begin`` on."""
     for p in range(begin, size):
         c = order[p]
         if p == 0:
-            pre[0] = first[c]
+            pre[0] = web.first[c]
             continue
         b = order[p - 1]
-        costs = block(b, c, pool, slots, used, exits, entries, inner, counts, radius, discs, wind)
-        forward(pre[p - 1], costs, counts[b], counts[c], pre[p])
+        costs = block(b, c, web)
+        forward(pre[p - 1], costs, web.counts[b], web.counts[c], pre[p])
 
 
 @njit(cache=True)
-def sweep_backward(
-    order: Ints,
-    size: int,
-    begin: int,
-    suf: Floats,
-    last: Floats,
-    pool: Halves,
-    slots: Ints,
-    used: Ints,
-    exits: Floats,
-    entries: Floats,
-    inner: Floats,
-    counts: Ints,
-    radius: float,
-    discs: Floats,
-    wind: Floats,
-) -> None:
+def sweep_backward(order: Ints, size: int, begin: int, suf: Floats, web: Web) -> None:
     """Fill ``suf`` from place ``begin`` back to the first."""
     for p in range(begin, -1, -1):
         c = order[p]
         if p == size - 1:
-            suf[p] = last[c]
+            suf[p] = web.last[c]
             continue
         d = order[p + 1]
-        costs = block(c, d, pool, slots, used, exits, entries, inner, counts, radius, discs, wind)
-        backward(suf[p + 1], costs, counts[c], counts[d], suf[p])
+        costs = block(c, d, web)
+        backward(suf[p + 1], costs, web.counts[c], web.counts[d], suf[p])
 
 
 @njit(cache=True)
@@ -194,18 +191,7 @@ def ruin_and_recreate(
     heat: float,
     near: Flags,
     nearest: Ints,
-    first: Floats,
-    last: Floats,
-    pool: Halves,
-    slots: Ints,
-    used: Ints,
-    exits: Floats,
-    entries: Floats,
-    inner: Floats,
-    counts: Ints,
-    radius: float,
-    discs: Floats,
-    wind: Floats,
+    web: Web,
 ) -> tuple[float, Ints]:
     """Take out some regions that lie together, put each back where it costs least; keep what is shorter.
 
@@ -226,17 +212,15 @@ def ruin_and_recreate(
     """
     np.random.seed(seed)
     n = len(order)
-    k = first.shape[1]
+    k = web.first.shape[1]
     pre = np.empty((n, k))
     suf = np.empty((n, k))
     vector = np.empty(k)
     now = order.copy()
-    sweep_forward(
-        now, n, 0, pre, first, pool, slots, used, exits, entries, inner, counts, radius, discs, wind
-    )
+    sweep_forward(now, n, 0, pre, web)
     now_cost = np.inf
-    for j in range(counts[now[n - 1]]):
-        now_cost = min(now_cost, pre[n - 1, j] + last[now[n - 1], j])
+    for j in range(web.counts[now[n - 1]]):
+        now_cost = min(now_cost, pre[n - 1, j] + web.last[now[n - 1], j])
     best, best_cost = now.copy(), now_cost
     out = np.zeros(n, dtype=np.bool_)
     removed = np.empty(n, dtype=np.int64)
@@ -264,26 +248,8 @@ def ruin_and_recreate(
             if not out[now[p]]:
                 trial[size] = now[p]
                 size += 1
-        sweep_forward(
-            trial, size, 0, pre, first, pool, slots, used, exits, entries, inner, counts, radius, discs, wind
-        )
-        sweep_backward(
-            trial,
-            size,
-            size - 1,
-            suf,
-            last,
-            pool,
-            slots,
-            used,
-            exits,
-            entries,
-            inner,
-            counts,
-            radius,
-            discs,
-            wind,
-        )
+        sweep_forward(trial, size, 0, pre, web)
+        sweep_backward(trial, size, size - 1, suf, web)
         cost = np.inf
         for r in range(count):
             c = removed[r]
@@ -296,23 +262,21 @@ def ruin_and_recreate(
                         if np.random.random() < BLINK:
                             continue
                     if gap == 0:
-                        vector[:] = first[c]
+                        vector[:] = web.first[c]
                     else:
                         a = trial[gap - 1]
-                        costs = block(
-                            a, c, pool, slots, used, exits, entries, inner, counts, radius, discs, wind
-                        )
-                        forward(pre[gap - 1], costs, counts[a], counts[c], vector)
+                        costs = block(a, c, web)
+                        forward(pre[gap - 1], costs, web.counts[a], web.counts[c], vector)
                     if gap == size:
-                        for j in range(counts[c]):
-                            if vector[j] + last[c, j] < cost:
-                                cost, where = vector[j] + last[c, j], gap
+                        for j in range(web.counts[c]):
+                            if vector[j] + web.last[c, j] < cost:
+                                cost, where = vector[j] + web.last[c, j], gap
                         continue
                     d = trial[gap]
-                    costs = block(c, d, pool, slots, used, exits, entries, inner, counts, radius, discs, wind)
-                    for i in range(counts[c]):
+                    costs = block(c, d, web)
+                    for i in range(web.counts[c]):
                         if vector[i] < cost:
-                            for j in range(counts[d]):
+                            for j in range(web.counts[d]):
                                 through = vector[i] + costs[i, j] + suf[gap, j]
                                 if through < cost:
                                     cost, where = through, gap
@@ -327,40 +291,8 @@ def ruin_and_recreate(
             trial[where] = c
             size += 1
             if r + 1 < count:
-                sweep_forward(
-                    trial,
-                    size,
-                    where,
-                    pre,
-                    first,
-                    pool,
-                    slots,
-                    used,
-                    exits,
-                    entries,
-                    inner,
-                    counts,
-                    radius,
-                    discs,
-                    wind,
-                )
-                sweep_backward(
-                    trial,
-                    size,
-                    where,
-                    suf,
-                    last,
-                    pool,
-                    slots,
-                    used,
-                    exits,
-                    entries,
-                    inner,
-                    counts,
-                    radius,
-                    discs,
-                    wind,
-                )
+                sweep_forward(trial, size, where, pre, web)
+                sweep_backward(trial, size, where, suf, web)
         if not cost < np.inf:
             continue
         warmth = heat * (1.0 - (iteration + 1.0) / iterations)
@@ -372,41 +304,21 @@ def ruin_and_recreate(
 
 
 @njit(cache=True)
-def reverse_runs(
-    order: Ints,
-    longest: int,
-    near: Flags,
-    first: Floats,
-    last: Floats,
-    pool: Halves,
-    slots: Ints,
-    used: Ints,
-    exits: Floats,
-    entries: Floats,
-    inner: Floats,
-    counts: Ints,
-    radius: float,
-    discs: Floats,
-    wind: Floats,
-) -> tuple[float, Ints]:
+def reverse_runs(order: Ints, longest: int, near: Flags, web: Web) -> tuple[float, Ints]:
     """One round of 2-opt: fly runs of regions the other way round where that is shorter.
 
     Runs up to ``longest`` that bring two neighbours side by side are tried.
     """
     n = len(order)
-    k = first.shape[1]
+    k = web.first.shape[1]
     pre = np.empty((n, k))
     suf = np.empty((n, k))
     here, there = np.empty(k), np.empty(k)
     now = order.copy()
-    sweep_forward(
-        now, n, 0, pre, first, pool, slots, used, exits, entries, inner, counts, radius, discs, wind
-    )
-    sweep_backward(
-        now, n, n - 1, suf, last, pool, slots, used, exits, entries, inner, counts, radius, discs, wind
-    )
+    sweep_forward(now, n, 0, pre, web)
+    sweep_backward(now, n, n - 1, suf, web)
     best = np.inf
-    for j in range(counts[now[0]]):
+    for j in range(web.counts[now[0]]):
         best = min(best, pre[0, j] + suf[0, j])
     for i in range(n):
         for j in range(i + 1, min(n, i + longest)):
@@ -417,61 +329,29 @@ def reverse_runs(
             for p in range(j, i - 1, -1):
                 c = now[p]
                 if p == j and before < 0:
-                    here[:] = first[c]
+                    here[:] = web.first[c]
                     continue
                 b = now[before] if p == j else now[p + 1]
-                costs = block(b, c, pool, slots, used, exits, entries, inner, counts, radius, discs, wind)
+                costs = block(b, c, web)
                 if p == j:
-                    forward(pre[before], costs, counts[b], counts[c], here)
+                    forward(pre[before], costs, web.counts[b], web.counts[c], here)
                 else:
-                    forward(here, costs, counts[b], counts[c], there)
+                    forward(here, costs, web.counts[b], web.counts[c], there)
                     here[:] = there
             c = now[i]
             total = np.inf
             if j + 1 == n:
-                for q in range(counts[c]):
-                    total = min(total, here[q] + last[c, q])
+                for q in range(web.counts[c]):
+                    total = min(total, here[q] + web.last[c, q])
             else:
                 d = now[j + 1]
-                costs = block(c, d, pool, slots, used, exits, entries, inner, counts, radius, discs, wind)
-                forward(here, costs, counts[c], counts[d], there)
-                for q in range(counts[d]):
+                costs = block(c, d, web)
+                forward(here, costs, web.counts[c], web.counts[d], there)
+                for q in range(web.counts[d]):
                     total = min(total, there[q] + suf[j + 1, q])
             if total < best - 1e-3:
                 best = total
                 now[i : j + 1] = now[i : j + 1][::-1].copy()
-                sweep_forward(
-                    now,
-                    n,
-                    i,
-                    pre,
-                    first,
-                    pool,
-                    slots,
-                    used,
-                    exits,
-                    entries,
-                    inner,
-                    counts,
-                    radius,
-                    discs,
-                    wind,
-                )
-                sweep_backward(
-                    now,
-                    n,
-                    j,
-                    suf,
-                    last,
-                    pool,
-                    slots,
-                    used,
-                    exits,
-                    entries,
-                    inner,
-                    counts,
-                    radius,
-                    discs,
-                    wind,
-                )
+                sweep_forward(now, n, i, pre, web)
+                sweep_backward(now, n, j, suf, web)
     return best, now
