@@ -58,6 +58,16 @@ def nearest_along(piece: Array, east_m: float, north_m: float) -> tuple[float, f
 
 
 @njit(cache=True)
+def distances_from(pieces: Array, places: Array) -> Array:
+    """Least distance of a line from each of many places (N, 2 or more: east_m, north_m); float64 (N,)."""
+    out = np.full(places.shape[0], np.inf)
+    for s in range(pieces.shape[0]):
+        for k in range(places.shape[0]):
+            out[k] = min(out[k], nearest_along(pieces[s], places[k, 0], places[k, 1])[0])
+    return out
+
+
+@njit(cache=True)
 def crossings(piece: Array, edge: Array, out: Array, count: int) -> int:
     """Append to ``out`` the distances along a piece at which it meets an edge; returns the new count."""
     ee, en = edge[2] - edge[0], edge[3] - edge[1]

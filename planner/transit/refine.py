@@ -18,7 +18,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,7 +26,8 @@ from numpy.typing import NDArray
 from planner.dubins.path import Path
 from planner.environment import kernels
 from planner.environment.threats import threat_arrays
-from planner.environment.zones import TOUCH_M, KeepOut
+from planner.environment.zone_kernels import distances_from
+from planner.environment.zones import TOUCH_M, KeepOut, pieces_of
 from planner.errors import InfeasibleError
 from planner.progress import Stop, never, raise_if
 from planner.route import Anchor
@@ -114,14 +115,9 @@ def connect_by_cost(
     if not risk.yielding and not crossed:
         return path
 
-    def line(radii: Mapping[str, float]) -> Path | None:
-        raise_if(stop)
-        discs = tuple(replace(d, radius_m=radii.get(d.name, d.radius_m)) for d in zones.discs)
-        try:
-            return connect(start, goal, replace(zones, discs=discs), radius_m, stop)
-        except InfeasibleError:
-            return None
-
+    lines = _Lines(start, goal, zones, radius_m, stop)
+    lines.keep(path, lines.radii({}))
+    line = lines.line
     best, best_m, radii = path, risk.cost_m(path), {}
     direct = line(dict.fromkeys(risk.yielding, 0.0))
     if direct is not None:
@@ -147,6 +143,51 @@ def connect_by_cost(
             if not improved:
                 break
     return best
+
+
+@dataclass(slots=True)
+class _Lines:
+    """Lines between two ends past discs of other radii; what was found once serves where it must be again."""
+
+    start: Anchor
+    goal: Anchor
+    zones: KeepOut
+    radius_m: float
+    stop: Stop
+    _found: dict[tuple[float, ...], Path | None] = field(default_factory=dict)
+    _clear: list[tuple[Array, Array, Path]] = field(default_factory=list)
+
+    def radii(self, chosen: Mapping[str, float]) -> tuple[float, ...]:
+        """Of all discs in turn."""
+        return tuple(chosen.get(disc.name, disc.radius_m) for disc in self.zones.discs)
+
+    def line(self, chosen: Mapping[str, float]) -> Path | None:
+        """The connector's line where some discs have other radii; None where it finds none."""
+        raise_if(self.stop)
+        radii = self.radii(chosen)
+        if radii not in self._found and not self._serves(radii):
+            discs = tuple(replace(d, radius_m=r) for d, r in zip(self.zones.discs, radii, strict=True))
+            zones = replace(self.zones, discs=discs)
+            try:
+                self.keep(connect(self.start, self.goal, zones, self.radius_m, self.stop), radii)
+            except InfeasibleError:
+                self._found[radii] = None
+        return self._found[radii]
+
+    def keep(self, path: Path, radii: tuple[float, ...]) -> None:
+        """Remember the line found for some radii."""
+        self._found[radii] = path
+        self._clear.append((np.array(radii), distances_from(pieces_of(path), self.zones.disc_array()), path))
+
+    def _serves(self, radii: tuple[float, ...]) -> bool:
+        """Whether a line found past smaller discs, clear of them, is clear of these too: none is shorter."""
+        wanted = np.array(radii)
+        for fewer, away_m, path in self._clear:
+            grown = wanted != fewer
+            if (fewer <= wanted)[grown].all() and (wanted <= away_m + TOUCH_M)[grown].all():
+                self._found[radii] = path
+                return True
+        return False
 
 
 def _largest_m(east_m: float, north_m: float, radius_m: float, start: Anchor, goal: Anchor) -> float:

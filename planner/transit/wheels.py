@@ -17,6 +17,7 @@ from shapely.geometry.polygon import orient
 from planner.dubins.path import Path, Segment
 from planner.environment.zones import TOUCH_M, Ground, KeepOut, ring_edges
 from planner.route import Anchor, Pose
+from planner.transit.wheels_kernels import touching
 
 #: Round a corner sharper than this, and round small discs, circles stand every so many radians.
 STEP_RAD = math.radians(30.0)
@@ -178,23 +179,5 @@ def between(ends: Array, others: Array, radius_m: float) -> Array:
     ndarray
         Wheels, shape (C, 3).
     """
-    found = [np.empty((0, 3))]
-    for end in ends[ends[:, 2] != 0.0]:
-        same = others[others[:, 2] * end[2] > 0.0]
-        offset = same[:, :2] - end[:2]
-        distance = np.hypot(offset[:, 0], offset[:, 1])
-        # A triangle of the two centres and the one between, of sides near, far and distance.
-        near, far = abs(end[2]) + radius_m, np.abs(same[:, 2]) + radius_m
-        possible = np.flatnonzero(
-            (distance > np.abs(far - near)) & (distance < near + far) & (distance > 0.0)
-        )
-        possible = possible[np.argsort((distance - far)[possible], kind="stable")][:NEAREST]
-        offset, distance, far = offset[possible], distance[possible], far[possible]
-        along = (near**2 - far**2 + distance**2) / (2.0 * distance)
-        aside = np.sqrt(np.maximum(near**2 - along**2, 0.0))
-        unit = offset / distance[:, None]
-        for side in (1.0, -1.0):
-            across = side * aside[:, None] * np.column_stack([-unit[:, 1], unit[:, 0]])
-            centres = end[:2] + along[:, None] * unit + across
-            found.append(np.column_stack([centres, np.full(len(centres), -math.copysign(radius_m, end[2]))]))
-    return np.concatenate(found)
+    middles: Array = touching(ends, others, radius_m, NEAREST)
+    return middles

@@ -19,8 +19,10 @@ from planner.environment.zones import Disc, KeepOut
 from planner.errors import CancelledError, InfeasibleError
 from planner.geojson import read_scenario
 from planner.pipeline import make_plan
+from planner.progress import Stop, never
 from planner.route import Anchor
 from planner.scenario import Objective, Threat
+from planner.transit import refine
 from planner.transit.refine import RISK_M, Risk, connect_by_cost
 from planner.transit.tangent import connect
 from tests.planner.scenarios import feature, small
@@ -190,3 +192,22 @@ def test_stops_when_told() -> None:
     """The stop is asked between searches."""
     with pytest.raises(CancelledError):
         connect_by_cost(START, GOAL, soft(MISSILE), 100.0, risk(MISSILE, missile=0.1), lambda: True)
+
+
+def test_a_line_found_serves_for_discs_that_grow_out_of_its_way(monkeypatch: pytest.MonkeyPatch) -> None:
+    """No search is made twice, and none where the line found past smaller discs is clear of the larger."""
+    searched: list[tuple[float, ...]] = []
+
+    def counted(start: Anchor, goal: Anchor, zones: KeepOut, radius_m: float, stop: Stop = never) -> Path:
+        searched.append(tuple(disc.radius_m for disc in zones.discs))
+        return connect(start, goal, zones, radius_m, stop)
+
+    monkeypatch.setattr(refine, "connect", counted)
+    # The line never comes near the second missile, whatever becomes of the first.
+    aside = Threat("n", "missile", (0.0, 2500.0), 900.0)
+    terms = risk(MISSILE, aside, missile=0.05)
+    path = connect_by_cost(START, GOAL, soft(MISSILE, aside), 60.0, terms)
+    assert len(searched) == len(set(searched))
+    assert {radii[1] for radii in searched} <= {902.0, 0.0}
+    alone = connect_by_cost(START, GOAL, soft(MISSILE), 60.0, risk(MISSILE, missile=0.05))
+    assert path == alone
