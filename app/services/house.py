@@ -11,7 +11,7 @@ import structlog
 from app.services import work
 from app.services.flights import FlightService
 from app.services.planning import PlanningService, Task
-from app.services.pool import WorkerPool
+from app.services.pool import Pool, WorkerPool
 from app.services.store.database import Database
 from app.services.store.flights import FlightStore
 from app.services.store.plans import PlanStore
@@ -55,9 +55,10 @@ class House:
         task: Task = work.plan_scenario,
         judge_scenario: Callable[..., Verdict] = judge,
         initialiser: Callable[[], None] = work.initialise,
+        pool: Pool | None = None,
     ) -> None:
         self.database = Database(limits.database)
-        self.pool = WorkerPool(limits.workers, initialiser)
+        self.pool = pool or WorkerPool(limits.workers, initialiser)
         folder = terrain_folder(limits.database)
         self.terrain = TerrainService(TerrainStore(self.database), folder)
         self.planning = PlanningService(

@@ -18,7 +18,7 @@ from app.services.documents import write_json
 from app.services.errors import ConflictError, NotFoundError, OverloadedError, RefusedError
 from app.services.hub import Hub
 from app.services.metrics import PLANNING_SECONDS, PLANS_ENDED, PLANS_RUNNING
-from app.services.pool import WorkerDiedError, WorkerPool
+from app.services.pool import Pool, WorkerDiedError
 from app.services.progress_pipe import progress_pipe
 from app.services.rasters import stored_terrain
 from app.services.records import PlanRecord
@@ -61,7 +61,7 @@ class PlanningService:
     def __init__(
         self,
         store: PlanStore,
-        pool: WorkerPool,
+        pool: Pool,
         *,
         workers: int,
         time_limit_s: float,

@@ -7,7 +7,7 @@ import multiprocessing
 from collections.abc import Callable
 from concurrent.futures import Future
 from concurrent.futures.process import BrokenProcessPool
-from typing import Any
+from typing import Any, Protocol
 
 import structlog
 from pebble import ProcessExpired, ProcessPool
@@ -19,6 +19,23 @@ log = structlog.get_logger(__name__)
 
 class WorkerDiedError(RuntimeError):
     """The process ended in the middle of its work."""
+
+
+class Pool(Protocol):
+    """Where plans are made."""
+
+    def warm(self) -> None:
+        """Get ready, without waiting for it."""
+
+    @property
+    def ready(self) -> bool:
+        """Whether plans can be made at once."""
+
+    async def run(self, function: Callable[..., Any], args: tuple[Any, ...], timeout_s: float) -> Any:
+        """The result of a function; TimeoutError after a time, WorkerDiedError when its process ended."""
+
+    async def stop(self) -> None:
+        """End what runs."""
 
 
 class WorkerPool:

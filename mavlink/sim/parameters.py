@@ -64,7 +64,10 @@ def _ardupilot(settings: SimSettings) -> dict[str, float]:
         {
             "SYSID_THISMAV": float(settings.system_id),
             "FENCE_ENABLE": 1.0,
-            "FENCE_TYPE": 7.0,
+            # The fences uploaded alone are in force, as ArduPlane has it at first.
+            "FENCE_TYPE": 4.0,
+            "FENCE_ALT_MAX": 100.0,
+            "FENCE_RADIUS": 300.0,
             "FENCE_ACTION": 1.0,
             "CAM1_TYPE": 1.0,
         }
@@ -98,19 +101,26 @@ def _copter(settings: SimSettings) -> dict[str, float]:
 
 
 def _px4(settings: SimSettings) -> dict[str, float]:
-    return {
-        "MAV_SYS_ID": float(settings.system_id),
-        "NAV_LOITER_RAD": settings.turn_radius_m,
-        "RTL_RETURN_ALT": settings.rtl_altitude_m,
-        "GF_ACTION": 3.0,
-        "TRIG_MODE": 4.0,
-        "COM_DISARM_PRFLT": 10.0,
-        "COM_DISARM_LAND": 2.0,
-    } | {
-        f"PWM_{group}_FUNC{output}": 296.0 + output if group == "MAIN" and output > 4 else 0.0
-        for group in ("MAIN", "AUX")
-        for output in range(1, 9)
-    }
+    outputs = [(group, output) for group in ("MAIN", "AUX") for output in range(1, 9)]
+    return (
+        {
+            "MAV_SYS_ID": float(settings.system_id),
+            "NAV_LOITER_RAD": settings.turn_radius_m,
+            "RTL_RETURN_ALT": settings.rtl_altitude_m,
+            "GF_ACTION": 3.0,
+            "TRIG_MODE": 4.0,
+            "COM_DISARM_PRFLT": 10.0,
+            "COM_DISARM_LAND": 2.0,
+            "PWM_MAIN_REV": 0.0,
+            "PWM_AUX_REV": 0.0,
+        }
+        | {
+            f"PWM_{group}_FUNC{output}": 296.0 + output if group == "MAIN" and output > 4 else 0.0
+            for group, output in outputs
+        }
+        | {f"PWM_{group}_MIN{output}": 1000.0 for group, output in outputs}
+        | {f"PWM_{group}_MAX{output}": 2000.0 for group, output in outputs}
+    )
 
 
 def _px4_plane(settings: SimSettings) -> dict[str, float]:

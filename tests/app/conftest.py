@@ -22,7 +22,12 @@ from tests.app import fakes
 
 
 def fake_house(limits: Limits) -> House:
-    """Services whose planner is a stand-in."""
+    """Services whose planner is a stand-in, and plans in the process of the test."""
+    return House(limits, task=fakes.task, judge_scenario=fakes.judge, pool=fakes.ThreadPool())
+
+
+def pooled_house(limits: Limits) -> House:
+    """Services whose planner is a stand-in, in planning processes that can be killed."""
     return House(limits, task=fakes.task, judge_scenario=fakes.judge, initialiser=fakes.no_warm_up)
 
 

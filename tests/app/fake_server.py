@@ -20,10 +20,10 @@ def main(database: str) -> None:
 
     from app.server import Welcome, run_server
     from app.settings import Settings
-    from tests.app.conftest import fake_house
+    from tests.app.conftest import pooled_house
 
     settings = Settings(database=Path(database), workers=1, port=0, log_level="error")
-    run_server(settings, Welcome(), announce, fake_house)
+    run_server(settings, Welcome(), announce, pooled_house)
 
 
 if __name__ == "__main__":

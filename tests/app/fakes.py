@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +18,22 @@ from planner.errors import Finding
 
 def no_warm_up() -> None:
     """Compile nothing."""
+
+
+class ThreadPool:
+    """Runs plans in threads: ready at once, but what it runs can be neither stopped nor killed."""
+
+    ready = True
+
+    def warm(self) -> None:
+        """Nothing to start."""
+
+    async def run(self, function: Callable[..., Any], args: tuple[Any, ...], timeout_s: float) -> Any:
+        """Run a function to its end."""
+        return await asyncio.to_thread(function, *args)
+
+    async def stop(self) -> None:
+        """Nothing to end."""
 
 
 def judge(document: Mapping[str, Any], *folders: str) -> Verdict:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+from collections.abc import AsyncIterator
 from typing import Any
 
 import httpx
@@ -12,9 +13,16 @@ import pytest
 from app.main import create_app
 from app.services.store.database import Database, DatabaseInUseError
 from app.settings import Settings
-from tests.app.conftest import fake_house, serving
+from tests.app.conftest import pooled_house, serving
 
 PLANS = "/api/v1/plans"
+
+
+@pytest.fixture
+async def client(settings: Settings) -> AsyncIterator[httpx.AsyncClient]:
+    """A client of a service that plans in processes, which can be killed."""
+    async with serving(create_app(settings, pooled_house)) as client:
+        yield client
 
 
 def scenario(fake: str = "done", **members: Any) -> dict[str, Any]:
@@ -102,7 +110,7 @@ async def test_failed_plan_tells_why_and_the_next_one_runs(
 async def test_time_limit_fails_the_plan(settings: Settings) -> None:
     """A plan that takes too long is stopped and says so."""
     limited = settings.model_copy(update={"plan_time_limit_s": 0.5})
-    async with serving(create_app(limited, fake_house)) as client:
+    async with serving(create_app(limited, pooled_house)) as client:
         record = (await client.post(PLANS, json=scenario("slow"), params={"wait": 20})).json()
         assert record["error"]["type"] == "time-limit"
         assert (await client.post(PLANS, json=scenario(), params={"wait": 20})).json()["state"] == "done"
@@ -110,12 +118,12 @@ async def test_time_limit_fails_the_plan(settings: Settings) -> None:
 
 async def test_plans_survive_a_restart(settings: Settings) -> None:
     """After a restart done plans are there, and those cut off or waiting are made."""
-    async with serving(create_app(settings, fake_house)) as client:
+    async with serving(create_app(settings, pooled_house)) as client:
         done = (await client.post(PLANS, json=scenario(), params={"wait": 20})).json()
         cut = (await client.post(PLANS, json=scenario("slow"))).headers["location"]
         await state_of(client, cut, "running")
         waiting = (await client.post(PLANS, json=scenario())).headers["location"]
-    async with serving(create_app(settings, fake_house)) as client:
+    async with serving(create_app(settings, pooled_house)) as client:
         assert (await client.get(f"{PLANS}/{done['id']}")).json() == done
         await state_of(client, cut, "running")
         await client.delete(cut)
@@ -142,7 +150,9 @@ async def test_idempotency_key(client: httpx.AsyncClient) -> None:
 
 async def test_full_queue_is_a_429(settings: Settings) -> None:
     """When too many plans wait, the next is refused and told when to come back."""
-    async with serving(create_app(settings.model_copy(update={"max_queued_plans": 1}), fake_house)) as client:
+    async with serving(
+        create_app(settings.model_copy(update={"max_queued_plans": 1}), pooled_house)
+    ) as client:
         slow = (await client.post(PLANS, json=scenario("slow"))).headers["location"]
         await state_of(client, slow, "running")
         assert (await client.post(PLANS, json=scenario())).status_code == 202
