@@ -20,8 +20,9 @@ from planner.route import Anchor, CollectPass, Route
 from planner.routing.bounds import lower_bound_m
 from planner.routing.greedy import greedy
 from planner.routing.hidden import hidden_findings
-from planner.routing.joint import joint_route, sides_of
+from planner.routing.joint import joint_route
 from planner.routing.legs import TRANSIT_MARGIN_M as TRANSIT_MARGIN_M
+from planner.routing.visible import sides_of
 from planner.scenario import Method, Scenario
 from planner.transit import ssas_connector
 from planner.transit.refine import Risk, connect_by_cost

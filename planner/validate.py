@@ -8,7 +8,7 @@ from planner.coverage.neighbourhood import can_be_seen
 from planner.environment.terrain import Terrains
 from planner.errors import Finding, InfeasibleError, ScenarioError
 from planner.geojson import read_scenario
-from planner.routing.joint import sides_of
+from planner.routing.visible import sides_of
 from planner.scenario import Scenario
 from planner.sensors.view import sensing
 from planner.vehicle.wind import in_wind

@@ -15,7 +15,7 @@ from shapely.geometry import LineString, Point, Polygon, box
 from planner.environment.zones import keep_out
 from planner.geojson import read_scenario
 from planner.pipeline import make_plan
-from planner.routing import joint
+from planner.routing import visible
 from planner.routing.barriers import COLUMNS, polygon_rows, rows_of
 from planner.routing.joint_kernels import detour_m
 from tests.planner.scenarios import feature, small, square
@@ -97,7 +97,7 @@ def test_the_order_knows_of_walls(monkeypatch: pytest.MonkeyPatch) -> None:
     document["features"][2]["geometry"]["coordinates"] = square(-0.07, -0.07, 0.16)
     scenario = read_scenario(document)
     knowing = make_plan(scenario)
-    monkeypatch.setattr(joint, "polygon_rows", lambda polygons: np.empty((0, COLUMNS)))
+    monkeypatch.setattr(visible, "polygon_rows", lambda polygons: np.empty((0, COLUMNS)))
     blind = make_plan(scenario)
     assert knowing.hard_violations == ()
     assert knowing.metrics.length_m <= blind.metrics.length_m + 1.0

@@ -23,8 +23,8 @@ from planner.routing import bounds, joint_kernels
 from planner.routing.bound_nodes import nodes, terminal
 from planner.routing.bound_search import exact_bound_m
 from planner.routing.bound_trees import trees_bound_m
-from planner.routing.joint import sides_of, surroundings
 from planner.routing.options import Surroundings, collect_passes, make_options
+from planner.routing.visible import sides_of, surroundings
 from planner.sensors.sar import SarSensor
 from tests.planner.coverage.shapes import HEIGHT_M, as_merged, paper_sensor
 from tests.planner.coverage.test_sweeps import stars

@@ -17,9 +17,9 @@ from planner.geojson import read_scenario
 from planner.progress import never
 from planner.route import Anchor, CollectPass
 from planner.routing.chain import FADE_M, TRUE_WITHIN_M, Layers, from_start, layers_of, to_end, true_choice
-from planner.routing.joint import sides_of, surroundings
 from planner.routing.legs import Legs
 from planner.routing.options import Options, collect_passes, make_options
+from planner.routing.visible import sides_of, surroundings
 from tests.planner.scenarios import feature, small, square
 
 HEADINGS_RAD = np.arange(-math.pi, math.pi - 1e-9, math.radians(45.0))

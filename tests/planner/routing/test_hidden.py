@@ -25,8 +25,8 @@ from planner.pipeline import make_plan
 from planner.plan import Plan
 from planner.progress import never
 from planner.routing.hidden import Sight, hidden_findings, see_hidden
-from planner.routing.joint import surroundings
 from planner.routing.legs import Legs
+from planner.routing.visible import surroundings
 from planner.scenario import Scenario
 from planner.sensors.view import sensing
 from tests.planner.scenarios import small, square

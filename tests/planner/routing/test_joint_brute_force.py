@@ -15,9 +15,10 @@ from planner.progress import never
 from planner.route import Anchor
 from planner.routing import joint_kernels as kernels
 from planner.routing.chain import from_start, to_end
-from planner.routing.joint import joint_route, sides_of, surroundings
+from planner.routing.joint import joint_route
 from planner.routing.legs import Legs
 from planner.routing.options import Options, make_options
+from planner.routing.visible import sides_of, surroundings
 from planner.scenario import Scenario
 from tests.planner.scenarios import case, feature, small, square
 

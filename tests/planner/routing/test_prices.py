@@ -14,8 +14,8 @@ from planner.geojson import read_scenario
 from planner.pipeline import make_plan
 from planner.plan import Plan
 from planner.route import Pose
-from planner.routing.joint import surroundings
 from planner.routing.prices import INSIDE_FACTOR, TURN_M, risk_m, soft_prices, turns_m
+from planner.routing.visible import surroundings
 from planner.scenario import Objective, Scenario
 from tests.planner.scenarios import feature, small
 

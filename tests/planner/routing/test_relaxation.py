@@ -12,8 +12,8 @@ from planner.environment.shapes import hard_shapes
 from planner.errors import InfeasibleError
 from planner.geojson import read_scenario
 from planner.pipeline import make_plan
-from planner.routing.joint import sides_of
 from planner.routing.relaxation import at, moved, shrunk
+from planner.routing.visible import sides_of
 from planner.scenario import Scenario
 from planner.validate import findings
 from tests.planner.scenarios import feature, small, square
