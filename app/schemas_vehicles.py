@@ -327,6 +327,11 @@ class VehicleOut(BaseModel):
     name: str
     url: str
     connected: bool
+    system_id: int | None = Field(description="Its MAVLink system; null: not heard yet.")
+    other_system: int | None = Field(
+        description="Another autopilot that answers in its place while it is silent: a swapped aircraft. It "
+        "is not talked to until it is acknowledged, or let go and connected as another vehicle."
+    )
     link_failure: str | None = Field(description="Why its link is not open; it is tried again and again.")
     simulated: bool
     replay: bool = Field(description="It is a recording: it takes no transfers and no commands.")
@@ -349,6 +354,8 @@ class VehicleOut(BaseModel):
             name=vehicle.name,
             url=vehicle.url,
             connected=vehicle.state.connected,
+            system_id=vehicle.state.system_id or vehicle.system_id or None,
+            other_system=vehicle.state.other_system,
             link_failure=vehicle.link_failure,
             simulated=vehicle.simulated is not None,
             replay=vehicle.replay,
@@ -386,6 +393,12 @@ class LogList(BaseModel):
     vehicle_id: str
     failure: str | None = Field(description="Why the link is no longer recorded, e.g. a full disk.")
     logs: list[LogOut]
+
+
+class IdentityIn(Strict):
+    """The aircraft that is the vehicle from now on."""
+
+    system_id: int = Field(ge=1, le=255, description="As other_system says.")
 
 
 class HeldOut(BaseModel):

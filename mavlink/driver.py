@@ -181,7 +181,12 @@ class Driver:
         if self._failure is not None:
             raise NotConnectedError(self._failure)
         if not self.state.connected:
-            raise NotConnectedError(self._identity.absence(self.state))
+            raise NotConnectedError(self.absence)
+
+    @property
+    def absence(self) -> str:
+        """Why a vehicle that is not connected cannot be talked to."""
+        return self._failure or self._identity.absence(self.state)
 
     def adopt(self, system_id: int) -> None:
         """Take the system heard in the vehicle's place for the vehicle, of which nothing is known yet.

@@ -64,6 +64,11 @@ class MissionTransfers(ABC):
     def _target(self) -> tuple[int, int]:
         """System and component to talk to. Raises NotConnectedError while there is none."""
 
+    @property
+    def absence(self) -> str:
+        """Why a vehicle that is not connected cannot be talked to."""
+        return self._driver.absence
+
     def adopt(self, system_id: int) -> None:
         """Take the aircraft heard in the vehicle's place for the vehicle: nothing is known of it yet.
 

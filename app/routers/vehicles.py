@@ -20,6 +20,7 @@ from app.schemas_vehicles import (
     ForwardsIn,
     ForwardsOut,
     HeldOut,
+    IdentityIn,
     LogList,
     LogOut,
     MissionIn,
@@ -211,6 +212,22 @@ async def list_logs(vehicle_id: str, fleet: FleetDep) -> LogList:
 async def get_log(vehicle_id: str, name: str, fleet: FleetDep) -> StreamingResponse:
     """A .tlog, as MAVProxy, Mission Planner, QGroundControl and pymavlink read it."""
     return file_stream(fleet.recording(vehicle_id, name), TLOG)
+
+
+@router.post(
+    "/{vehicle_id}/identity", summary="Acknowledge another aircraft", responses=responses(404, 409, 422)
+)
+async def acknowledge(
+    vehicle_id: str, body: IdentityIn, fleet: FleetDep, transfers: TransfersDep
+) -> VehicleOut:
+    """Take the aircraft that answers in the vehicle's place (`other_system`) for the vehicle.
+
+    Until then it gets no order and no mission. The flight of the aircraft before it ends; that one's plan,
+    upload and what was sent to it are not taken for this one's. 409 when that system does not answer there.
+    """
+    vehicle = fleet.get(vehicle_id)
+    await transfers.acknowledge(vehicle, body.system_id)
+    return VehicleOut.of(vehicle)
 
 
 @router.post("/{vehicle_id}/commands", summary="Command", responses=responses(404, 409, 422))

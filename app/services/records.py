@@ -116,7 +116,7 @@ class SentMission:
 class VehicleRecord:
     """One vehicle as it was added; ``held`` is None where no plan was seen in it.
 
-    ``forward``: where its link is forwarded to.
+    ``forward``: where its link is forwarded to; ``system_id``: 0 while it was not heard.
     """
 
     id: str
@@ -126,6 +126,7 @@ class VehicleRecord:
     held: HeldMission | None = None
     sent: SentMission | None = None
     forward: tuple[ForwardAddress, ...] = ()
+    system_id: int = 0
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,6 +7,9 @@ folder. PX4 sends to port 14540 plus its instance on loopback, where the test li
 from __future__ import annotations
 
 import asyncio
+import json
+import lzma
+import math
 import os
 import socket
 import subprocess
@@ -15,8 +18,10 @@ from contextlib import asynccontextmanager, contextmanager
 from pathlib import Path
 
 from mavlink.client import VehicleClient
+from mavlink.codec import Codec
 from mavlink.encoding.options import DEFAULT_PAYLOAD
 from mavlink.link import open_link
+from mavlink.messages import Message
 from mavlink.payload import Payload
 from tests.flows.flying import Flight, until_disarmed
 
@@ -37,6 +42,10 @@ PARAMETERS: Mapping[str, float] = {
 #: Sent up to fifty times a second of the simulator's time, which runs fast; nobody here reads them.
 NOT_NEEDED = (31, 32, 62, 83, 85, 105, 132, 141, 331)
 SET_INTERVAL = 511
+#: PX4's port for the link to ground stations, one more for each instance.
+FIRST_STATION_PORT = 18570
+REAL32 = 9  # MAV_PARAM_TYPE
+CALM_BELOW_M = 50.0
 #: Until position and attitude have settled.
 READY_S = 60.0
 
@@ -44,6 +53,15 @@ READY_S = 60.0
 def has_module(name: str) -> bool:
     """Whether the simulator was built with a module: each has a command of its own beside the binary."""
     return Path(BINARY).resolve().with_name(f"px4-{name}").exists()
+
+
+def has_parameter(name: str) -> bool:
+    """Whether the simulator has a parameter, by what it carries about itself."""
+    packed = Path(ROMFS) / "extras/parameters.json.xz"
+    if not (ROMFS and packed.is_file()):
+        return False
+    known = json.loads(lzma.decompress(packed.read_bytes()))["parameters"]
+    return any(parameter["name"] == name for parameter in known)
 
 
 def free_instance() -> int:
@@ -117,6 +135,40 @@ async def simulated(
             for message_id in NOT_NEEDED:
                 await client.command(SET_INTERVAL, (float(message_id), -1.0))
             yield client
+
+
+@asynccontextmanager
+async def wind(client: VehicleClient, speed_m_s: float, from_deg: float) -> AsyncIterator[None]:
+    """A steady wind in the simulator (SIH_WIND_N, SIH_WIND_E: where it comes from), by the vehicle's height.
+
+    None on the ground, where SIH's aeroplane has no friction and would be blown along; all from 150 m on.
+    """
+    codec = Codec(254, 190)
+    # The link that PX4 keeps for ground stations, by instance; its system id is one more.
+    station = ("127.0.0.1", FIRST_STATION_PORT + client.state.system_id - 1)
+    north, east = math.cos(math.radians(from_deg)), math.sin(math.radians(from_deg))
+
+    async def blow(sender: socket.socket) -> None:
+        set_m_s = 0.0
+        while True:
+            part = ((client.state.relative_altitude_m or 0.0) - CALM_BELOW_M) / CALM_BELOW_M / 2.0
+            wanted_m_s = speed_m_s * min(max(part, 0.0), 1.0)
+            # In steps, but to both ends exactly.
+            if wanted_m_s != set_m_s and (abs(wanted_m_s - set_m_s) >= 0.5 or part <= 0.0 or part >= 1.0):
+                set_m_s = wanted_m_s
+                for name, value in (("SIH_WIND_N", north * set_m_s), ("SIH_WIND_E", east * set_m_s)):
+                    fields = {"target_system": client.state.system_id, "target_component": 1}
+                    typed = {"param_id": name, "param_value": value, "param_type": REAL32}
+                    sender.sendto(codec.pack(Message("PARAM_SET", {**fields, **typed})), station)
+            await asyncio.sleep(0.1)
+
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
+        blowing = asyncio.create_task(blow(sender))
+        try:
+            yield
+        finally:
+            blowing.cancel()
+            await asyncio.gather(blowing, return_exceptions=True)
 
 
 async def fly(client: VehicleClient, payload: Payload = DEFAULT_PAYLOAD) -> Flight:

@@ -79,6 +79,7 @@ class VehicleRow(Base):
     last_plan_id: Mapped[str | None] = mapped_column(String(36))
     last_list_id: Mapped[int | None] = mapped_column(Integer)
     forward: Mapped[list[dict[str, Any]] | None] = mapped_column(JSON)
+    system_id: Mapped[int | None] = mapped_column(Integer)
 
 
 class UploadRow(Base):

@@ -18,7 +18,7 @@ def _record(row: VehicleRow) -> VehicleRecord:
         held = HeldMission(row.held_plan_id, row.held_plan_vehicle, row.held_payload)
     sent = None if row.last_plan_id is None else SentMission(row.last_plan_id, row.last_list_id)
     forward = tuple(ForwardAddress(entry["url"], entry["write"]) for entry in row.forward or ())
-    return VehicleRecord(row.id, row.name, row.url, row.created_at, held, sent, forward)
+    return VehicleRecord(row.id, row.name, row.url, row.created_at, held, sent, forward, row.system_id or 0)
 
 
 def _forward_json(forward: tuple[ForwardAddress, ...]) -> list[dict[str, Any]]:
@@ -39,6 +39,7 @@ class VehicleStore:
             url=record.url,
             created_at=record.created_at,
             forward=_forward_json(record.forward),
+            system_id=record.system_id or None,
         )
         async with self._database.session() as session:
             session.add(row)
@@ -71,6 +72,12 @@ class VehicleStore:
     async def forward(self, vehicle_id: str, forward: tuple[ForwardAddress, ...]) -> None:
         """Note where a vehicle's link is forwarded to."""
         values = {"forward": _forward_json(forward)}
+        async with self._database.session() as session:
+            await session.execute(update(VehicleRow).where(VehicleRow.id == vehicle_id).values(**values))
+
+    async def identify(self, vehicle_id: str, system_id: int) -> None:
+        """Note which system a vehicle is."""
+        values = {"system_id": system_id}
         async with self._database.session() as session:
             await session.execute(update(VehicleRow).where(VehicleRow.id == vehicle_id).values(**values))
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import math
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 from dataclasses import dataclass
@@ -92,6 +93,7 @@ async def connect(
     timeout_s: float,
     tap: Callable[[bytes], None] | None = None,
     forwards: Forwards | None = None,
+    vehicle_system: int = 0,
 ) -> Connection:
     """Open the link, start the simulator where one is asked for, wait for a heartbeat.
 
@@ -105,6 +107,8 @@ async def connect(
         Called with every frame of the link.
     forwards
         Other ground stations that hear the vehicle.
+    vehicle_system
+        The system id to talk to; 0 takes the first autopilot heard.
 
     Raises
     ------
@@ -122,7 +126,7 @@ async def connect(
         raise _refused(error, f"write {FORMS} or sim:") from error
     except mavlink_errors.LinkError as error:
         raise LinkError(str(error)) from error
-    client = VehicleClient(link, tap=tap, forwards=forwards)
+    client = VehicleClient(link, tap=tap, forwards=forwards, vehicle_system=vehicle_system)
     try:
         simulator = None
         if aircraft is not None:
@@ -140,21 +144,26 @@ async def connect(
 async def _first_heartbeat(
     client: VehicleClient, simulator: SimulatorProcess | None, timeout_s: float
 ) -> None:
-    """Wait for a heartbeat, but not for one of a simulator that has ended."""
+    """Wait for a heartbeat, but not while another aircraft answers, or for a simulator that has ended."""
     hearing = asyncio.create_task(client.connect(timeout_s))
+    # Ended by the first of the others, and not by its own time.
+    other = asyncio.create_task(client.wait_for(lambda state: state.other_system is not None, math.inf))
     ending = asyncio.create_task(simulator.wait()) if simulator is not None else None
     try:
         await asyncio.wait(
-            (hearing,) if ending is None else (hearing, ending), return_when=asyncio.FIRST_COMPLETED
+            [task for task in (hearing, other, ending) if task is not None],
+            return_when=asyncio.FIRST_COMPLETED,
         )
         if simulator is not None and not hearing.done():
             await simulator.raise_last_words()
+        if client.state.other_system is not None:
+            return
         with contextlib.suppress(mavlink_errors.VehicleNotFoundError):
             await hearing
     except mavlink_errors.NotConnectedError as error:
         raise LinkError(str(error)) from error
     finally:
-        for task in (hearing, ending):
+        for task in (hearing, other, ending):
             if task is not None:
                 task.cancel()
                 await asyncio.gather(task, return_exceptions=True)

@@ -6,6 +6,7 @@ import asyncio
 import json
 import uuid
 from collections.abc import AsyncGenerator, Sequence
+from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -154,7 +155,7 @@ class Fleet:
         finally:
             del self._opening[vehicle.id]
         if keep and not vehicle.replay:
-            await self._kept.add(record)
+            await self._kept.add(replace(record, system_id=vehicle.system_id))
         log.info("vehicle added", vehicle=name, url=url, connected=vehicle.state.connected)
         return vehicle
 
@@ -261,6 +262,7 @@ class Fleet:
             self._publish,
             self._transfers.record,
             self._transfers.still_holds,
+            self._transfers.identified,
             self._recordings,
         )
 

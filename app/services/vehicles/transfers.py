@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import json
 from collections.abc import Sequence
 from typing import Any
@@ -41,6 +42,8 @@ from planner.plan import Plan
 
 log = structlog.get_logger(__name__)
 
+#: How long an aircraft just acknowledged is waited for.
+HEARD_S = 3.0
 #: A simulated aircraft without a home of its own stands where its plan begins; further away, it moves.
 AT_HOME_M = 50.0
 
@@ -77,7 +80,7 @@ class Transfers:
             # Now, as somebody may delete the plan meanwhile.
             scenario = json.loads(await self._planning.scenario_text(plan_id))
             if not vehicle.state.connected:
-                raise LinkError(f"{vehicle.name} is not connected")
+                raise LinkError(f"{vehicle.name}: {vehicle.client.absence}")
             mission = await asyncio.to_thread(encode_plan, plan, for_vehicle(vehicle, choice))
             findings = judge_upload(plan, mission, parts, vehicle.state, override)
             await _bring_home(vehicle, plan)
@@ -158,6 +161,36 @@ class Transfers:
         else:
             await self._kept.hold(vehicle.id, None)
         return same
+
+    async def identified(self, vehicle: Vehicle) -> None:
+        """Note which system a vehicle is."""
+        await self._kept.identify(vehicle.id, vehicle.system_id)
+
+    async def acknowledge(self, vehicle: Vehicle, system_id: int) -> None:
+        """Take the aircraft that answers in a vehicle's place for the vehicle; nothing is known of it yet.
+
+        Raises
+        ------
+        ConflictError
+            No such system answers there, or it is a recording.
+        BusyError
+            Another operation is at work on the vehicle.
+        LinkError
+            There is no link.
+        """
+        async with vehicle.busy("acknowledging another aircraft", changes=True):
+            if vehicle.state.connected or vehicle.state.other_system != system_id:
+                raise ConflictError(f"no system {system_id} answers in the place of {vehicle.name}")
+            await vehicle.begin_anew()
+            await self._kept.hold(vehicle.id, None)
+            await self._kept.send(vehicle.id, None)
+            before = vehicle.system_id
+            vehicle.client.adopt(system_id)
+            vehicle.system_id = system_id
+            await self.identified(vehicle)
+            log.warning("another aircraft", vehicle=vehicle.name, before=before, system_id=system_id)
+            with contextlib.suppress(TimeoutError):
+                await vehicle.client.wait_for(lambda state: state.connected, HEARD_S)
 
     async def _begin(
         self,

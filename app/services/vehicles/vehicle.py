@@ -61,6 +61,8 @@ class Vehicle:
         Called when an upload whose outcome was unknown has been resolved by reading back.
     still_holds
         Asked, once the vehicle is heard, whether it holds the plan it held before; None: nobody can tell.
+    identified
+        Called when its system id has become known, or is another by somebody's word.
     recordings
         Where the link is recorded; None not to. A recording is not recorded again.
     """
@@ -73,6 +75,7 @@ class Vehicle:
         publish: Callable[[Vehicle], None],
         resolved: Callable[[Vehicle], Awaitable[None]],
         still_holds: Callable[[Vehicle, HeldMission], Awaitable[bool | None]],
+        identified: Callable[[Vehicle], Awaitable[None]],
         recordings: Recordings | None = None,
     ) -> None:
         self.id = record.id
@@ -89,6 +92,9 @@ class Vehicle:
         self._gone = False
         self.simulated: SimulatedAircraft | None = simulated_of(url)
         self.replay = is_replay(url)
+        #: Another system is not taken for it; 0 while it was not heard, and for what is no aircraft.
+        self.system_id = record.system_id if self._is_itself else 0
+        self._identified = identified
         self.forwards = Forwards(self._station_said)
         self._forward = record.forward
         self._recordings = None if self.replay else recordings
@@ -116,6 +122,11 @@ class Vehicle:
         if self._connection is None:
             raise LinkError(f"{self.name} has no link")
         return self._connection.client
+
+    @property
+    def _is_itself(self) -> bool:
+        """Whether it is an aircraft of its own: simulated ones and recordings are whatever answers."""
+        return self.simulated is None and not self.replay
 
     @property
     def pending(self) -> bool:
@@ -148,7 +159,7 @@ class Vehicle:
         if self._recordings is not None:
             self._writer = self._recordings.writer(self.id)
         await self.forward_to(self._forward)
-        connection = await connect(self.url, home, timeout_s, self._tap, self.forwards)
+        connection = await self._connect(home, timeout_s)
         if self._gone:
             await connection.close()
             raise LinkError(f"{self.name} was let go")
@@ -173,7 +184,7 @@ class Vehicle:
         """Open the link; when it cannot be, say why once and try again."""
         while self._connection is None:
             try:
-                self._connection = await connect(self.url, home, timeout_s, self._tap, self.forwards)
+                self._connection = await self._connect(home, timeout_s)
             except ServiceError as error:
                 if self.link_failure != str(error):
                     log.warning("link not open", vehicle=self.name, url=self.url, reason=str(error))
@@ -182,6 +193,12 @@ class Vehicle:
                 await asyncio.sleep(REOPEN_S)
         self.link_failure = None
         self._publish(self)
+
+    async def _connect(self, home: Home | None, timeout_s: float) -> Connection:
+        connection = await connect(self.url, home, timeout_s, self._tap, self.forwards, self.system_id)
+        if self._is_itself:
+            self.system_id = connection.client.state.system_id or self.system_id
+        return connection
 
     async def close(self) -> None:
         """Let it go for good: close the link, end the simulator, close the flight."""
@@ -248,6 +265,12 @@ class Vehicle:
         """Believe nothing about the mission it holds: it is being changed."""
         self.held = self._believed = None
         self.found(None)
+
+    async def begin_anew(self) -> None:
+        """Another aircraft is in its place: what was known of this one is not that one's."""
+        await self._recorder.end(self.client, "interrupted")
+        self.holds_unknown()
+        self.sent = self.upload = None
 
     def found(self, same: bool | None) -> None:
         """Reading back has shown whether it holds what was sent; None: it has not."""
@@ -359,6 +382,9 @@ class Vehicle:
                     tries = RESOLVE_TRIES
                     # What comes back may be another aircraft, or this one with another mission.
                     self.found(None)
+                elif self._is_itself and state.system_id != self.system_id:
+                    self.system_id = state.system_id
+                    await self._identified(self)
                 elif self.pending and self.operation is None and tries:
                     tries -= 1
                     await self._resolve(client)
