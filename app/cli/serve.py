@@ -113,14 +113,18 @@ def _check_vehicle(vehicle: str | None, forwards: list[tuple[str, bool]], simula
     from app.services.errors import RefusedError
     from app.services.vehicles.connection import is_replay, simulated_of
     from app.services.vehicles.forwarding import read_forwards, refuse_loops
+    from mavlink.errors import AddressError
+    from mavlink.link import parse_address
 
     try:
-        if vehicle is not None:
-            simulated_of(vehicle)
+        if vehicle is not None and simulated_of(vehicle) is None and not is_replay(vehicle):
+            parse_address(vehicle)
         addresses = read_forwards(forwards, replay=vehicle is not None and is_replay(vehicle))
         refuse_loops([] if vehicle is None else [vehicle], addresses)
     except RefusedError as error:
         raise CommandError(str(error), Exit.BAD_INPUT, error.findings) from error
+    except AddressError as error:
+        raise CommandError(f"--vehicle: {error}", Exit.BAD_INPUT) from error
     if forwards and vehicle is None and simulated != 1:
         raise CommandError(
             "--forward needs one vehicle to forward: give --vehicle, or --sim with one aircraft",

@@ -6,6 +6,7 @@ import asyncio
 import contextlib
 from collections import deque
 from collections.abc import Callable
+from contextvars import Context
 from dataclasses import dataclass, fields
 from typing import Final, Protocol
 
@@ -147,7 +148,9 @@ class Outlet:
     def start(self) -> None:
         """Open in the background, and stay open."""
         if self._task is None:
-            self._task = asyncio.create_task(self._serve(), name=f"forward {self.address.url}")
+            # What a station sends is no part of the request that asked for the forward: a context of its own.
+            name = f"forward {self.address.url}"
+            self._task = asyncio.create_task(self._serve(), name=name, context=Context())
 
     async def close(self) -> None:
         """Close the socket; what waits is dropped."""

@@ -309,6 +309,12 @@ def test_demo_says_why_it_flies_no_vtol(swathplan: Command, scenario_file: Path)
         (("--scenario", "-"), "crossing"),
         (("--sim", "--sim-url", "udpin:127.0.0.1:0"), "not the address of a simulated aircraft"),
         (("--sim", "--sim-url", "sim:?colour=red"), "has no option colour"),
+        (("--vehicle", "pigeon:post"), "no link address"),
+        (("--vehicle", "udpin:127.0.0.1:99999"), "not in 0 to 65535"),
+        (("--sim", "--forward", "serial:/dev/ttyS0:57600"), "no address to forward to"),
+        (("--sim", "--sim-count", "2", "--forward", "udpout:14550"), "needs one vehicle"),
+        (("--forward-write", "udpout:14550"), "needs one vehicle"),
+        (("--vehicle", "udpin:127.0.0.1:14550", "--forward", "udpout:14550"), "for ever"),
     ],
 )
 def test_serve_refuses_wishes_it_cannot_fulfil(

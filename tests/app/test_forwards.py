@@ -12,14 +12,17 @@ from typing import Any
 import httpx
 import pytest
 
+from app.main import create_app
+from app.server import Welcome, _greet
 from app.settings import Settings
 from mavlink.codec import Codec
 from mavlink.links.udp import open_udp
 from mavlink.messages import Message
 from mavlink.recording import STAMP
 from mavlink.sim.settings import SimSettings
+from tests.app.conftest import fake_house, serving
 from tests.app.test_problems import check_problem
-from tests.app.test_restart import free_port, service
+from tests.app.test_restart import autopilot, free_port, service
 from tests.app.test_two_operators import uploading
 from tests.app.test_vehicles import VEHICLES, faulty_vehicle, until
 from tests.mavlink.forward.test_hub import Station
@@ -211,3 +214,32 @@ async def test_a_recording_is_watched_and_not_commanded(client: httpx.AsyncClien
         watching = await client.post(VEHICLES, json=body | {"forward": [{"url": url}]})
         assert watching.status_code == 201, watching.text
         await peer.until("GLOBAL_POSITION_INT")
+
+
+async def test_serve_connects_and_forwards_at_every_start(settings: Settings) -> None:
+    """The vehicle of the command line is connected once, however often the service starts, and forwarded."""
+    url = f"udpin:127.0.0.1:{free_port()}"
+    async with autopilot(f"udpout:{url.removeprefix('udpin:')}"), station() as (peer, to):
+        ids = set()
+        for write in (False, True):
+            app = create_app(settings, fake_house)
+            async with serving(app) as client:
+                await _greet(app.state.house, Welcome(vehicle=url, forward=((to, write),)))
+                (vehicle,) = (await client.get(VEHICLES)).json()["vehicles"]
+                ids.add(vehicle["id"])
+                assert (vehicle["name"], vehicle["url"]) == ("uav-1", url)
+                assert [(each["url"], each["write"]) for each in vehicle["forward"]] == [(to, write)]
+                await until(client, f"{VEHICLES}/{vehicle['id']}", lambda body: body["connected"])
+                await peer.until("HEARTBEAT")
+        assert len(ids) == 1
+
+
+async def test_serve_forwards_its_simulated_aircraft(settings: Settings) -> None:
+    """Without a vehicle of its own it is the simulated aircraft that is forwarded."""
+    async with station() as (peer, to):
+        app = create_app(settings, fake_house)
+        async with serving(app) as client:
+            await _greet(app.state.house, Welcome(simulated=1, forward=((to, False),)))
+            (vehicle,) = (await client.get(VEHICLES)).json()["vehicles"]
+            assert (vehicle["name"], len(vehicle["forward"])) == ("sim-1", 1)
+            await peer.until("HEARTBEAT")

@@ -12,7 +12,6 @@ from mavlink.errors import AddressError
 from mavlink.forward.address import FORMS, ForwardAddress, looped, parse_forward
 from mavlink.forward.guard import CHANGES
 from mavlink.forward.outlet import Outlet
-from mavlink.items import Command
 from mavlink.messages import Message
 from planner.errors import Finding
 
@@ -22,8 +21,9 @@ MOST_FORWARDS: Final = 8
 
 _ALL_TYPES: Final = 255
 _ORDERS: Final = CHANGES | {"COMMAND_LONG", "COMMAND_INT", "SET_MODE", "PARAM_SET", "MISSION_SET_CURRENT"}
-#: Stations ask for data all the time; that is no news.
-_WISHES: Final = frozenset({int(Command.SET_MESSAGE_INTERVAL), int(Command.REQUEST_MESSAGE)})
+#: Stations ask for data all the time; that is no news. GET_HOME_POSITION, and 510 to 528, from
+#: GET_MESSAGE_INTERVAL to the REQUEST_… commands.
+_WISHES: Final = frozenset({410, *range(510, 529)})
 
 
 def read_forwards(entries: Iterable[tuple[str, bool]], *, replay: bool = False) -> tuple[ForwardAddress, ...]:
