@@ -1,7 +1,7 @@
 /** The aircraft on the map: its symbol, its track, the ground it has really seen. */
 import { Marker, type Map as MapLibreMap } from "maplibre-gl";
 import { h } from "./dom";
-import { watched } from "./fleet";
+import { vehicles, watched } from "./fleet";
 import { flown } from "./flights";
 import { setData } from "./map";
 import { Track } from "./track";
@@ -10,7 +10,7 @@ import type { Position } from "./types";
 const SVG = "http://www.w3.org/2000/svg";
 const SHAPE = "M17 1.500 19.500 12 33 20v3.500L19.500 20l-.8 8 4.300 3v2L17 31.500 11 33v-2l4.300-3-.8-8L1 23.500V20l13.500-8z";
 
-function symbol(): HTMLElement {
+function symbol(other?: string): HTMLElement {
   const svg = document.createElementNS(SVG, "svg");
   svg.setAttribute("viewBox", "0 0 34 34");
   const path = document.createElementNS(SVG, "path");
@@ -18,15 +18,44 @@ function symbol(): HTMLElement {
     path.setAttribute(name, value);
   }
   svg.append(path);
-  const element = h("div", { class: "aircraft", role: "img", "aria-label": "Aircraft" });
+  const element = h("div", { class: other === undefined ? "aircraft" : "other-aircraft", role: "img", "aria-label": other ?? "Aircraft", title: other });
   element.append(svg);
   return element;
+}
+
+/** The other vehicles, fainter and by name, as the list last told. */
+function showOthers(map: MapLibreMap): void {
+  const markers = new Map<string, Marker>();
+  const draw = (): void => {
+    const others = vehicles.value.filter(({ id, state }) => id !== watched.value?.id && state.lon_deg !== null && state.lat_deg !== null);
+    for (const [id, marker] of markers) {
+      if (others.some((vehicle) => vehicle.id === id)) continue;
+      marker.remove();
+      markers.delete(id);
+    }
+    for (const { id, name, state } of others) {
+      const known = markers.get(id);
+      const marker = known ?? new Marker({ element: symbol(name), rotationAlignment: "map" });
+      marker.setLngLat([state.lon_deg as number, state.lat_deg as number]).setRotation(state.heading_deg ?? 0);
+      if (known) continue;
+      markers.set(id, marker);
+      marker.addTo(map);
+    }
+  };
+  vehicles.watch(draw);
+  let shown: string | null = null;
+  watched.watch((vehicle) => {
+    if ((vehicle?.id ?? null) === shown) return;
+    shown = vehicle?.id ?? null;
+    draw();
+  });
 }
 
 /** The live track of the flight going on; a flight shown afterwards brings its own. */
 export const track = new Track();
 
 export function showAircraft(map: MapLibreMap): void {
+  showOthers(map);
   const marker = new Marker({ element: symbol(), rotationAlignment: "map" });
   let shownId: string | null = null;
   let flightId: string | null = null;

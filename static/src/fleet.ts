@@ -2,9 +2,9 @@
 import { connection, follow, get, list, post, remove } from "./api";
 import { attempt, report } from "./notices";
 import { Signal } from "./signal";
-import type { Preflight, Upload, Vehicle } from "./types";
+import type { HeldItem, Part, Preflight, Recording, Upload, Vehicle } from "./types";
 
-export type Command = "arm" | "disarm" | "start" | "pause" | "resume" | "rtl";
+export type Command = "arm" | "disarm" | "start" | "pause" | "resume" | "rtl" | "goto_item";
 
 export interface CommandAnswer {
   outcome: "accepted" | "unknown";
@@ -57,10 +57,11 @@ export async function refreshVehicles(): Promise<void> {
   if (!known) watchVehicle(vehicles.value[0]?.id ?? null);
 }
 
-export async function connectVehicle(name: string, url: string): Promise<void> {
+export async function connectVehicle(name: string, url: string): Promise<Vehicle> {
   const vehicle = await post<Vehicle>("/vehicles", { name, url });
   await refreshVehicles();
   watchVehicle(vehicle.id);
+  return vehicle;
 }
 
 export async function letGo(id: string): Promise<void> {
@@ -69,19 +70,34 @@ export async function letGo(id: string): Promise<void> {
   await refreshVehicles();
 }
 
-export function upload(id: string, planId: string, parts: string[], override: Override | null): Promise<Upload> {
+export function upload(id: string, planId: string, parts: Part[], payload: string | null, override: Override | null): Promise<Upload> {
   const excuse = override ? { override: true, reason: override.reason } : {};
-  return post<Upload>(path(id, "/mission"), { plan_id: planId, parts, ...excuse });
+  return post<Upload>(path(id, "/mission"), { plan_id: planId, parts, payload, ...excuse });
 }
 
 /** Ask the vehicle whether it is ready to fly a plan; nothing in it is changed. */
-export function preflight(id: string, planId: string): Promise<Preflight> {
-  return post<Preflight>(path(id, "/preflight"), { plan_id: planId });
+export function preflight(id: string, planId: string, payload: string | null): Promise<Preflight> {
+  return post<Preflight>(path(id, "/preflight"), { plan_id: planId, payload });
 }
 
-export function command(id: string, name: Command): Promise<CommandAnswer> {
-  return post<CommandAnswer>(path(id, "/commands"), { command: name });
+export function command(id: string, name: Command, seq: number | null = null): Promise<CommandAnswer> {
+  return post<CommandAnswer>(path(id, "/commands"), { command: name, seq });
 }
+
+const PARTS: Part[] = ["mission", "fence", "rally"];
+const query = (parts: Part[]): string => parts.map((part) => `part=${part}`).join("&");
+
+/** Read what the vehicle holds, part by part. */
+export async function download(id: string): Promise<Record<Part, HeldItem[]>> {
+  return (await get<{ parts: Record<Part, HeldItem[]> }>(path(id, `/mission?${query(PARTS)}`))).parts;
+}
+
+/** Empty the vehicle's lists. */
+export async function clear(id: string): Promise<Record<Part, "accepted" | "refused" | "unknown">> {
+  return ((await remove(path(id, `/mission?${query(PARTS)}`))) as { parts: Record<Part, "accepted" | "refused" | "unknown"> }).parts;
+}
+
+export const recordings = (id: string): Promise<{ failure: string | null; logs: Recording[] }> => get(path(id, "/logs"));
 
 export const readVehicle = (id: string): Promise<Vehicle> => get<Vehicle>(path(id));
 

@@ -3,7 +3,7 @@ import type { ExpressionSpecification, FilterSpecification, LayerSpecification, 
 import { FONT, repaint } from "./map";
 import { onThemeChange, palette, type Palette } from "./theme";
 
-export const SOURCES = ["scenario", "plan", "compared", "waypoints", "seen", "track"] as const;
+export const SOURCES = ["scenario", "plan", "compared", "held", "waypoints", "seen", "track"] as const;
 
 export interface Group {
   id: string;
@@ -27,6 +27,7 @@ export const GROUPS: Group[] = [
   { id: "uncovered", label: "Not covered", swatch: "area", colour: "uncovered", layers: ["uncovered-fill", "uncovered-line"] },
   { id: "path", label: "Path", swatch: "line", colour: "path", layers: ["path-line", "path-arrow"] },
   { id: "compared", label: "Path compared with", swatch: "line", colour: "area", layers: ["compared-line"] },
+  { id: "held", label: "Mission read from the vehicle", swatch: "dashed", colour: "held", layers: ["held-line"] },
   { id: "collect", label: "Collect (sensor on)", swatch: "thick", colour: "collect", layers: ["collect-line", "collect-label"] },
   { id: "waypoints", label: "Waypoints", swatch: "dot", colour: "path", layers: ["waypoint"] },
   { id: "track", label: "Flown track", swatch: "line", colour: "track", layers: ["track-off"] },
@@ -70,6 +71,11 @@ function layers(c: Palette): LayerSpecification[] {
       id: "compared-line", type: "line", source: "compared",
       layout: { "line-join": "round" },
       paint: { "line-color": c.area, "line-width": 3.5, "line-opacity": 0.55, "line-dasharray": [2, 1.2] },
+    },
+    {
+      id: "held-line", type: "line", source: "held",
+      layout: { "line-join": "round" },
+      paint: { "line-color": c.held, "line-width": 5, "line-opacity": 0.75, "line-dasharray": [1.2, 0.8] },
     },
     {
       id: "path-line", type: "line", source: "plan", filter: roleIs("path"),

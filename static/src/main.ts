@@ -8,6 +8,7 @@ import { acceptDrops } from "./drop";
 import { keepVehicles } from "./fleet";
 import { keepFlights, refreshFlights } from "./flights";
 import { boundsOf } from "./geo";
+import { held, heldFeatures } from "./held";
 import { buildHeader } from "./header";
 import { installHook } from "./hook";
 import { addLayers } from "./layers";
@@ -57,6 +58,7 @@ async function start(): Promise<void> {
     const points = shown?.waypoints ?? [];
     setData(map, "waypoints", points.map((coordinates) => ({ type: "Feature", properties: {}, geometry: { type: "Point", coordinates } })));
   });
+  held.watch((found) => setData(map, "held", found ? heldFeatures(found.items) : []));
   compared.watch((other) => setData(map, "compared", (other?.plan.features ?? []).filter((feature) => feature.properties?.["role"] === "path")));
   showAircraft(map);
   keepFlights();

@@ -41,7 +41,10 @@ export function warn(title: string, ...lines: string[]): void {
 /** Say what went wrong: title and detail of a problem document, and each of its errors. */
 export function report(doing: string, error: unknown): void {
   if (error instanceof ApiError) {
-    const lines = [error.problem.title, error.problem.detail ?? "", ...error.errors.map(findingText)];
+    const found = error.errors.map(findingText);
+    const detail = error.problem.detail ?? "";
+    // The detail most often is the first finding's message once more.
+    const lines = [error.problem.title, found.some((line) => line.includes(detail)) ? "" : detail, ...found];
     show("error", doing, lines.filter((line) => line !== ""));
   } else {
     show("error", doing, [error instanceof Error ? error.message : String(error)]);

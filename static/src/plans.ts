@@ -133,6 +133,15 @@ export async function cancelPlan(): Promise<void> {
   if (record) await remove(`/plans/${encodeURIComponent(record.id)}`);
 }
 
+/** Delete a plan that has ended; it leaves the map when it is there. */
+export async function deletePlan(id: string): Promise<void> {
+  await remove(`/plans/${encodeURIComponent(id)}`);
+  if (open.value?.record.id === id) open.set(null);
+  if (compared.value?.record.id === id) compared.set(null);
+  if (running.value?.id === id) running.set(null);
+  await refresh();
+}
+
 /** Plan features for the map: collects carry the number of their place in flight order. */
 export function planFeatures(plan: PlanCollection): Feature[] {
   const numbers = new Map<Feature, number>();

@@ -17,6 +17,7 @@ export interface Palette {
   importance: string;
   path: string;
   collect: string;
+  held: string;
   footprint: string;
   uncovered: string;
   track: string;
@@ -41,6 +42,7 @@ const LIGHT: Palette = {
   importance: "#7a6a00",
   path: "#26323a",
   collect: "#008f7a",
+  held: "#d08a00",
   footprint: "#00a892",
   uncovered: "#e0361f",
   track: "#7b3fd1",
@@ -65,6 +67,7 @@ const DARK: Palette = {
   importance: "#e0cf4e",
   path: "#dfe8ec",
   collect: "#2fe0c4",
+  held: "#ffd166",
   footprint: "#2fe0c4",
   uncovered: "#ff7a5c",
   track: "#bb93ff",

@@ -83,6 +83,7 @@ export interface PlanRecord {
   metrics?: Metrics | null;
   error?: Problem | string | null;
   created_at?: string;
+  started_at?: string | null;
 }
 
 export interface Violation {
@@ -111,6 +112,7 @@ export interface VehicleState {
   armed: boolean;
   mode: string;
   autopilot: string;
+  type: string;
   landed: boolean | null;
   lon_deg: number | null;
   lat_deg: number | null;
@@ -121,7 +123,11 @@ export interface VehicleState {
   ground_speed_m_s: number | null;
   airspeed_m_s: number | null;
   battery_percent: number | null;
+  battery_voltage_v: number | null;
   gps_fix: string | null;
+  satellites: number | null;
+  home_lon_deg: number | null;
+  home_lat_deg: number | null;
   mission_current: number | null;
   mission_total: number | null;
   mission_state: string | null;
@@ -153,6 +159,32 @@ export interface Upload {
   preflight: Preflight | null;
 }
 
+/** What the service knows of the mission last sent to a vehicle. */
+export interface Sent {
+  plan_id: string;
+  standing: "held" | "differs" | "unknown";
+  shown_by: "read_back" | "id" | null;
+  read_back_at: string | null;
+}
+
+export type Part = "mission" | "fence" | "rally";
+
+export interface HeldItem {
+  seq: number;
+  command: number;
+  command_name: string | null;
+  lat_deg?: number;
+  lon_deg?: number;
+  altitude_m: number | null;
+}
+
+export interface Recording {
+  name: string;
+  size_bytes: number;
+  ended_at: string;
+  url: string;
+}
+
 export interface Vehicle {
   id: string;
   name: string;
@@ -165,6 +197,7 @@ export interface Vehicle {
   transfer: { part: string; done: number; total: number } | null;
   pending: boolean;
   plan_id: string | null;
+  sent: Sent | null;
   flight_id: string | null;
   upload: Upload | null;
   state: VehicleState;
@@ -186,5 +219,7 @@ export interface SeenCollection extends FeatureCollection<Geometry, Record<strin
   plan: string;
   coverage: Record<string, number>;
   planned_coverage: Record<string, number>;
+  seen_fraction: number;
+  regions: { roi: string; seen: boolean }[];
   collects: { seq: number; roi: string; cross_track_p95_m: number; cross_track_max_m: number; sensor_on_m: number }[];
 }

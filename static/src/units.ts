@@ -20,6 +20,11 @@ export function percent(fraction: number | null | undefined, digits = 1): string
   return `${(fraction * 100).toFixed(digits)} %`;
 }
 
+/** Rounded down, so that what is not whole never reads 100 %. */
+export function percentDown(fraction: number | null | undefined): string {
+  return percent(typeof fraction === "number" ? Math.floor(fraction * 1e4 + 1e-6) / 1e4 : fraction, 2);
+}
+
 export function number(value: number | null | undefined, digits = 1, unit = ""): string {
   if (value === null || value === undefined || !Number.isFinite(value)) return "–";
   return unit ? `${value.toFixed(digits)} ${unit}` : value.toFixed(digits);

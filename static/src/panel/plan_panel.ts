@@ -2,13 +2,14 @@
 import { ask } from "../dialog";
 import { button, fill, h, section } from "../dom";
 import { attempt, findingText } from "../notices";
-import { cancelPlan, open, openPlan, planUrl, problemOf, recent, refresh, running, startPlan, type OpenPlan } from "../plans";
+import { cancelPlan, deletePlan, open, openPlan, planUrl, problemOf, recent, refresh, running, startPlan, type OpenPlan } from "../plans";
 import { scenarios } from "../scenario";
 import { readFindings } from "../api";
 import type { PlanRecord, Position, Problem, Violation } from "../types";
-import { metres, number, percent, seconds } from "../units";
+import { metres, number, percent, percentDown, seconds } from "../units";
 import { judgement } from "../validation";
 import { comparison } from "./compare";
+import { moreOf } from "./more";
 import { operatingStrip } from "./strip";
 
 export interface PlanView {
@@ -23,7 +24,7 @@ const FILES = [
   ["mission.kml", "KML"],
 ] as const;
 const MOVING = new Set(["queued", "running"]);
-const RECENT_SHOWN = 12;
+const SECOND_MS = 1000;
 const COVERED = 0.9999;
 
 function failure(problem: Problem, view: PlanView): HTMLElement {
@@ -46,6 +47,17 @@ function progress(view: PlanView): HTMLElement {
   const cancel = button("Cancel planning", () => void attempt("The plan was not cancelled", cancelPlan), { class: "danger", id: "plan-cancel" });
   const reasons = h("div", {});
   const box = h("div", { id: "progress" }, bar, words, reasons, cancel);
+  const say = (record: PlanRecord, fraction: number, moving: boolean): void => {
+    const since = record.started_at ?? record.created_at;
+    const passed = since ? seconds(Math.max(0, Math.round((Date.now() - Date.parse(since)) / 1000))) : "";
+    const at = record.state === "queued" ? "waiting for a free worker" : (record.stage ?? "starting");
+    const text = moving ? [at, percent(fraction, 0), passed].filter(Boolean).join(" · ") : `Plan ${record.state}`;
+    if (words.textContent !== text) words.textContent = text;
+  };
+  setInterval(() => {
+    const record = running.value;
+    if (record && MOVING.has(record.state)) say(record, record.progress ?? 0, true);
+  }, SECOND_MS);
   running.watch((record) => {
     box.hidden = record === null;
     if (!record) return;
@@ -55,8 +67,7 @@ function progress(view: PlanView): HTMLElement {
     bar.hidden = !moving;
     cancel.hidden = !moving;
     bar.value = fraction;
-    const text = moving ? `${record.stage ?? record.state} – ${percent(fraction, 0)}` : `Plan ${record.state}`;
-    if (words.textContent !== text) words.textContent = text;
+    say(record, fraction, moving);
     fill(reasons, problem && record.state === "failed" ? failure(problem, view) : null);
   });
   return box;
@@ -86,7 +97,7 @@ function coverage(fractions: Record<string, number>): HTMLElement {
       { class: fraction >= COVERED ? "" : "short" },
       h("th", { scope: "row" }, roi),
       h("td", {}, h("meter", { min: 0, max: 1, value: fraction, "aria-label": `Coverage of ${roi}` })),
-      h("td", {}, percent(Math.floor(fraction * 1e4) / 1e4, 2)),
+      h("td", {}, percentDown(fraction)),
     ),
   );
   return h("table", { class: "coverage" }, h("tbody", {}, ...rows));
@@ -138,16 +149,21 @@ function line(record: PlanRecord): HTMLElement {
     await attempt("The plan was not opened", () => openPlan(record.id));
   };
   const label = `${record.name ?? record.id} · ${record.state}${length}`;
-  return h("li", {}, button(label, () => void show(), { class: "link", "aria-current": open.value?.record.id === record.id }), h("span", { class: "quiet" }, ` ${time}`));
+  const gone = async (): Promise<void> => {
+    const lines = ["The plan and its files are deleted; a mission in a vehicle stays as it is. Flights of it keep their tracks, but what they saw can no longer be judged."];
+    if ((await ask({ title: `Delete ${record.name ?? "this plan"}?`, lines, go: "Delete" })) !== null) await attempt("The plan was not deleted", () => deletePlan(record.id));
+  };
+  return h(
+    "li",
+    {},
+    button(label, () => void show(), { class: "link", "aria-current": open.value?.record.id === record.id }),
+    h("span", { class: "quiet" }, ` ${time} `),
+    MOVING.has(record.state) ? null : button("Delete", () => void gone(), { class: "link quiet", "aria-label": `Delete plan ${record.name ?? record.id}, ${time}` }),
+  );
 }
 
 function earlier(): HTMLElement {
-  const items = h("ul", { class: "plain", id: "recent" });
-  const draw = (): void =>
-    fill(items, ...recent.value.slice(0, RECENT_SHOWN).map(line), recent.value.length === 0 ? h("li", { class: "quiet" }, "None yet.") : null);
-  recent.watch(draw);
-  open.watch(draw);
-  return section("Recent plans", true, items, button("Refresh", () => void attempt("The plans were not listed", refresh)));
+  return section("Recent plans", true, moreOf("recent", recent, line, [open]), button("Refresh", () => void attempt("The plans were not listed", refresh)));
 }
 
 export function planPanel(view: PlanView): HTMLElement {

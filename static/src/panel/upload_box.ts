@@ -5,7 +5,7 @@ import { button, fill, h, section } from "../dom";
 import { preflight, upload, watched, type Override } from "../fleet";
 import { attempt, findingText, report } from "../notices";
 import { open } from "../plans";
-import type { Preflight, Upload, Vehicle } from "../types";
+import type { Part, Preflight, Upload, Vehicle } from "../types";
 import { number } from "../units";
 
 const DIFFERENCES_SHOWN = 8;
@@ -72,9 +72,27 @@ function answer(result: Upload, plan: string | undefined): HTMLElement {
   );
 }
 
-export function uploadBox(): HTMLElement {
-  const part = (name: string, checked = true): HTMLInputElement => h("input", { type: "checkbox", id: `part-${name}`, checked, disabled: name === "mission" });
-  const parts = { mission: part("mission"), fence: part("fence"), rally: part("rally", false) };
+/** Ways to switch the sensor, to be filled in; the first is what an empty field means. */
+const SWITCHES = ["relay:0", "servo:9:1900:1100", "camera:distance=25", "image:interval=2", "actuator:1", "aux:1"];
+const SWITCHED = "What the autopilot switches at both ends of every pass. relay:number · servo:output:on:off in µs · camera:distance=metres between photos · image:interval=seconds · PX4: actuator:number, aux:output or main:output · command:number:parameters";
+
+/** The controls, and what is answered to them: apart, as long answers must not move controls. */
+export function uploadBox(): { controls: HTMLElement; answers: HTMLElement } {
+  const part = (name: Part, title: string, checked = true): HTMLInputElement => h("input", { type: "checkbox", id: `part-${name}`, checked, title, onchange: () => update() });
+  const parts: Record<Part, HTMLInputElement> = { 
+    mission: part("mission", "The flight, with the sensor switched at both ends of every pass"),
+    fence: part("fence", "Operating area, no-fly zones, obstacles and hard threats, as the vehicle's own fence"),
+    rally: part("rally", "Plans have none: this clears the vehicle's rally points, so that a return leads home", false),
+  };
+  const payload = h("input", { id: "payload", type: "text", list: "payloads", placeholder: SWITCHES[0], maxlength: 200, autocomplete: "off", spellcheck: "false", "aria-describedby": "payload-hint" });
+  const switching = section(
+    "Payload: how it is switched",
+    false,
+    h("div", { class: "field" }, h("label", { for: "payload" }, `Output or command (${SWITCHES[0]} when empty)`), payload),
+    h("datalist", { id: "payloads" }, ...SWITCHES.map((value) => h("option", { value }))),
+    h("p", { class: "quiet", id: "payload-hint" }, SWITCHED),
+  );
+  const asked = (): string | null => payload.value.trim() || null;
   const result = h("div", { id: "upload-result", "aria-live": "polite" });
   const moving = h("div", {});
   const go = button("Upload the plan", () => void send(null), { class: "primary", id: "upload" });
@@ -86,22 +104,22 @@ export function uploadBox(): HTMLElement {
     const vehicle = watched.value;
     const plan = open.value;
     if (!vehicle || !plan) return;
-    const asked = subject();
+    const about = subject();
     fill(checked, h("p", {}, `Asking ${vehicle.name} …`));
-    const found = await attempt(`${vehicle.name} was not checked`, () => preflight(vehicle.id, plan.record.id));
+    const found = await attempt(`${vehicle.name} was not checked`, () => preflight(vehicle.id, plan.record.id, asked()));
     // The answer is of this vehicle and this plan alone.
-    if (subject() === asked) fill(checked, found ? readiness(found) : null);
+    if (subject() === about) fill(checked, found ? readiness(found) : null);
   };
 
   const send = async (override: Override | null): Promise<void> => {
     const vehicle = watched.value;
     const plan = open.value;
     if (!vehicle || !plan) return;
-    const chosen = Object.entries(parts).filter(([, box]) => box.checked).map(([name]) => name);
+    const chosen = (Object.keys(parts) as Part[]).filter((name) => parts[name].checked);
     go.disabled = true;
     fill(result, h("p", {}, `Uploading to ${vehicle.name} …`));
     try {
-      fill(result, answer(await upload(vehicle.id, plan.record.id, chosen, override), open.value?.record.id));
+      fill(result, answer(await upload(vehicle.id, plan.record.id, chosen, asked(), override), open.value?.record.id));
     } catch (error) {
       fill(result);
       if (error instanceof ApiError && error.problem.type?.endsWith(":unsafe") && !override) await offerOverride(error);
@@ -128,8 +146,9 @@ export function uploadBox(): HTMLElement {
   const update = (): void => {
     const vehicle: Vehicle | null = watched.value;
     const busy = vehicle?.operation ?? null;
-    go.disabled = check.disabled = !vehicle?.connected || vehicle.replay || !open.value || busy !== null;
-    fill(why, !vehicle ? "No vehicle is chosen." : !vehicle.connected ? "The vehicle is not heard." : vehicle.replay ? "A recording takes no uploads." : !open.value ? "No plan is on the map." : busy ? `At work: ${busy}` : "");
+    check.disabled = !vehicle?.connected || vehicle.replay || !open.value || busy !== null;
+    go.disabled = check.disabled || !Object.values(parts).some((box) => box.checked);
+    fill(why, !vehicle ? "No vehicle is chosen." : !vehicle.connected ? "The vehicle is not heard." : vehicle.replay ? "A recording takes no uploads." : !open.value ? "No plan is on the map: make one under Plan." : busy ? `At work: ${busy}` : "");
     fill(moving, vehicle?.transfer ? h("progress", { max: Math.max(1, vehicle.transfer.total), value: vehicle.transfer.done, "aria-label": "Upload progress" }) : null);
     const turned = subject() !== shownSubject;
     shownSubject = subject();
@@ -142,6 +161,9 @@ export function uploadBox(): HTMLElement {
   };
   watched.watch(update);
   open.watch(update);
-  const tick = (name: keyof typeof parts, label: string): HTMLElement => h("span", { class: "field tick" }, parts[name], h("label", { for: `part-${name}` }, label));
-  return h("div", {}, h("div", { class: "row" }, go, tick("mission", "mission"), tick("fence", "fence"), tick("rally", "rally"), check), why, moving, result, checked);
+  const tick = (name: Part, label: string): HTMLElement => h("span", { class: "field tick" }, parts[name], h("label", { for: `part-${name}` }, label));
+  return {
+    controls: h("div", { role: "group", "aria-label": "Upload and check" }, h("div", { class: "row" }, go, check), h("div", { class: "row" }, tick("mission", "mission"), tick("fence", "fence"), tick("rally", "rally")), switching),
+    answers: h("div", {}, why, moving, result, checked),
+  };
 }

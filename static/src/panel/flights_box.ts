@@ -1,0 +1,67 @@
+/** Flights: which there were, and the ground really seen by one of them. */
+import { ask } from "../dialog";
+import { button, fill, h, section } from "../dom";
+import { flights, flightUrl, flown, refly, refreshFlights, showFlight, type Flown } from "../flights";
+import { attempt } from "../notices";
+import { openPlan } from "../plans";
+import { moreOf } from "./more";
+import { number, percent, percentDown } from "../units";
+
+function flownTable({ flight, seen }: Flown, planned: () => void): HTMLElement {
+  const short = new Set(seen.regions.filter((region) => !region.seen).map(({ roi }) => roi));
+  const least = percent(seen.seen_fraction, 1);
+  const again = async (): Promise<void> => {
+    const lines = ["A new scenario is made of what was not seen, and planned. It takes the place of the one on the page; Undo brings that back."];
+    if ((await ask({ title: "Plan the gaps?", lines, go: "Plan the gaps" })) === null) return;
+    const record = await attempt("The gaps were not planned", () => refly(flight.id));
+    if (record && (await attempt("The plan of the gaps was not opened", () => openPlan(record.id)))) planned();
+  };
+  return h(
+    "div",
+    { class: "card", id: "flown" },
+    h("p", {}, `Ground really seen by ${flight.vehicle_name}`),
+    h("p", { class: short.size > 0 ? "error" : "good" }, short.size > 0 ? `Less than ${least} seen of ${[...short].join(", ")}.` : `At least ${least} of every region was seen.`),
+    h(
+      "table",
+      {},
+      h("thead", {}, h("tr", {}, h("th", {}, "Region"), h("td", {}, "seen"), h("td", {}, "planned"))),
+      h(
+        "tbody",
+        {},
+        ...Object.entries(seen.coverage).map(([roi, fraction]) =>
+          h("tr", { class: short.has(roi) ? "short" : "" }, h("th", { scope: "row" }, roi), h("td", {}, percentDown(fraction)), h("td", {}, percentDown(seen.planned_coverage[roi]))),
+        ),
+      ),
+    ),
+    h(
+      "div",
+      { class: "row files" },
+      button("Plan the gaps …", () => void again(), { id: "refly", class: short.size > 0 ? "primary" : "", title: "Plan a flight over what was not seen" }),
+      h("a", { href: flightUrl(flight.id, "report.html"), target: "_blank", rel: "noopener" }, "Report"),
+      h("a", { href: flightUrl(flight.id, "track.gpx"), download: `${flight.vehicle_name}.gpx` }, "Track (GPX)"),
+      h("a", { href: flightUrl(flight.id, "track.geojson"), download: `${flight.vehicle_name}-track.geojson` }, "Track (GeoJSON)"),
+      h("a", { href: flightUrl(flight.id, "coverage.geojson"), download: `${flight.vehicle_name}-coverage.geojson` }, "Coverage (GeoJSON)"),
+    ),
+    h("p", { class: "quiet" }, `Furthest from the line while the sensor was on: ${number(Math.max(0, ...seen.collects.map((c) => c.cross_track_max_m)), 1, "m")}`),
+  );
+}
+
+export function flightsBox(planned: () => void): HTMLElement {
+  const shown = h("div", {});
+  const items = moreOf(
+    "flights",
+    flights,
+    (flight) =>
+      h(
+        "li",
+        {},
+        flight.plan_id === null
+          ? h("span", {}, `${flight.vehicle_name} · ${flight.state} · without a plan`)
+          : button(`${flight.vehicle_name} · ${flight.state}`, () => void attempt("What the flight saw cannot be shown", () => showFlight(flight)), { class: "link", "aria-current": flown.value?.flight.id === flight.id }),
+        h("span", { class: "quiet" }, ` ${new Date(flight.started_at).toLocaleString()}`),
+      ),
+    [flown],
+  );
+  flown.watch((result) => fill(shown, result ? flownTable(result, planned) : null));
+  return section("Flights", true, shown, items, button("Refresh", () => void attempt("The flights were not listed", refreshFlights)));
+}

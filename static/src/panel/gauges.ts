@@ -1,0 +1,69 @@
+/** The watched vehicle in figures, what stands in its way, and what it says. */
+import { fill, h } from "../dom";
+import { stream, watched } from "../fleet";
+import { distance_m } from "../geo";
+import type { Vehicle } from "../types";
+import { metres, number } from "../units";
+
+const TEXTS_SHOWN = 4;
+const ERROR_SEVERITY = 3;
+const TITLES: Record<string, string> = { Height: "Over home", "From home": "Over ground, to where it would return to", Sensor: "As the output that switches it is reported" };
+const AUTOPILOTS: Record<string, string> = { ardupilot: "ArduPilot", px4: "PX4" };
+
+function figures({ state: s }: Vehicle): [string, string, boolean?][] {
+  const home = s.home_lon_deg !== null && s.home_lat_deg !== null && s.lon_deg !== null && s.lat_deg !== null
+    ? distance_m([s.lon_deg, s.lat_deg], [s.home_lon_deg, s.home_lat_deg])
+    : null;
+  return [
+    ["Mode", s.mode || "–"],
+    ["Armed", s.armed ? "ARMED" : "no", s.armed],
+    ["Sensor", s.sensor_on === null ? "–" : s.sensor_on ? "ON" : "off", s.sensor_on === true],
+    ["Height", metres(s.relative_altitude_m)],
+    ["Ground speed", number(s.ground_speed_m_s, 1, "m/s")],
+    ["Airspeed", number(s.airspeed_m_s, 1, "m/s")],
+    ["Mission item", s.mission_current === null ? "–" : s.mission_total === null ? String(s.mission_current) : `${s.mission_current} of ${s.mission_total}`],
+    ["From home", metres(home)],
+    ["Heading", number(s.heading_deg, 0, "°")],
+    ["Battery", number(s.battery_percent, 0, "%")],
+    ["Voltage", number(s.battery_voltage_v, 1, "V")],
+    ["GPS", s.satellites === null ? (s.gps_fix ?? "–") : `${s.gps_fix ?? "–"} · ${s.satellites} sat.`],
+  ];
+}
+
+/** What kind of vehicle it says it is. */
+export function kindOf({ connected, state }: Vehicle): string {
+  return connected ? [AUTOPILOTS[state.autopilot] ?? "unknown autopilot", state.type.replaceAll("_", " ")].join(", ") : "";
+}
+
+export function gauges(): HTMLElement {
+  const box = h("div", { id: "gauges" });
+  watched.watch((vehicle) => {
+    fill(
+      box,
+      vehicle
+        ? h("dl", { class: "gauges" }, ...figures(vehicle).map(([name, value, on]) => h("div", { class: on ? "gauge on" : "gauge" }, h("dt", {}, name), h("dd", { title: TITLES[name] ?? value }, value))))
+        : null,
+    );
+  });
+  return box;
+}
+
+/** Warnings and the vehicle's own words; they stand under the controls, so that these never move. */
+export function words(): HTMLElement {
+  const box = h("div", { id: "words" });
+  const draw = (): void => {
+    const vehicle = watched.value;
+    if (!vehicle) return fill(box);
+    const loud = vehicle.state.texts.slice(-TEXTS_SHOWN).reverse();
+    fill(
+      box,
+      vehicle.connected ? null : h("p", { class: "error" }, vehicle.link_failure ? `No link: ${vehicle.link_failure}; trying again …` : `The vehicle is not heard at ${vehicle.url}; it is listened for.`),
+      stream.value === "broken" ? h("p", { class: "error" }, "The telemetry is interrupted; trying again …") : null,
+      vehicle.pending ? h("p", { class: "warning" }, "The last upload's outcome is unknown; it is read back when the vehicle is heard.") : null,
+      loud.length > 0 ? h("ul", { class: "plain quiet", "aria-label": "What the vehicle says" }, ...loud.map(({ severity, text }) => h("li", { class: severity <= ERROR_SEVERITY ? "error" : "" }, text))) : null,
+    );
+  };
+  watched.watch(draw);
+  stream.watch(draw);
+  return box;
+}
