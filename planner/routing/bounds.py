@@ -29,6 +29,7 @@ from planner.coverage.sweeps import Side
 from planner.progress import Stop, never
 from planner.routing.bound_nodes import nodes, terminal
 from planner.routing.bound_search import exact_bound_m
+from planner.routing.bound_sweeps import MOST_ORDERED, sweeps_bound_m
 from planner.routing.bound_trees import trees_bound_m
 from planner.scenario import Scenario
 from planner.vehicle.aircraft import Aircraft
@@ -64,21 +65,19 @@ def lower_bound_m(
     effort
         Lines between cells to evaluate, about two million a second.
     """
-    for most in (*range(MOST_STRIPS, 1, -1), MOST_STRIPS):
-        passes = [
-            node
-            for index, of_region in enumerate(sides)
-            for node in nodes(of_region, aircraft.settle_m, index, most)
-        ]
-        if len(passes) <= EXACT_UP_TO:
-            break
+    by_strips = [nodes(each, aircraft.settle_m, index, MOST_STRIPS) for index, each in enumerate(sides)]
+    passes = [node for of_region in by_strips for node in of_region]
     ends = (terminal(scenario.start), terminal(scenario.end))
     radius_m = aircraft.planned_turn_radius_m
     best_m = 0.0
-    if len(passes) <= EXACT_UP_TO:
+    if len(passes) > len(by_strips):
+        best_m = sweeps_bound_m([of_region[0] for of_region in by_strips], *ends, radius_m, stop)
+        if len(passes) > EXACT_UP_TO and len(by_strips) <= MOST_ORDERED:
+            return min(best_m, known_m)
+    if len(passes) <= EXACT_UP_TO and best_m < known_m * (1.0 - GAPS[0]):
         targets_m = tuple(known_m * (1.0 - gap) for gap in GAPS)
         work = effort or next(most for up_to, most in EFFORT_EXACT.items() if len(passes) <= up_to)
-        best_m = exact_bound_m(passes, *ends, radius_m, targets_m, work, stop)
+        best_m = max(best_m, exact_bound_m(passes, *ends, radius_m, targets_m, work, stop))
     if len(passes) > 1 and best_m < known_m * (1.0 - POOR_GAP):
         work = effort or EFFORT_TREES * len(passes)
         best_m = max(best_m, trees_bound_m(passes, *ends, radius_m, known_m, work, stop))
