@@ -37,7 +37,7 @@ def never() -> bool:
 @given(least=st.floats(0.0, 600.0), width=st.sampled_from([0.0, 20.0, 200.0]))
 @settings(max_examples=30, deadline=None)
 def test_turning_back_onto_a_line_takes_no_less(least: float, width: float) -> None:
-    """Dubins lines to places all along lines at such distances: none is shorter, the shortest hardly longer."""
+    """Dubins lines to places along lines at such distances: none is shorter, the shortest hardly longer."""
     along = np.linspace(-500.0, 500.0, 401)
     shortest = min(
         dubins_length(0.0, 0.0, 0.0, x, off, math.pi, RADIUS_M)
