@@ -81,6 +81,10 @@ def parse_address(url: str) -> tuple[str, str, int]:
         if number == 0:
             raise AddressError(f"{url!r}: a serial port needs a baud rate above 0")
         return form, address, number
+    try:
+        address.encode("idna")
+    except UnicodeError as error:
+        raise AddressError(f"{url[:80]!r}: {address[:40]!r} cannot be the name of a host") from error
     lowest = 0 if form.endswith("in") else 1
     if not lowest <= number <= 65535:
         raise AddressError(f"{url!r}: port {number} is not in {lowest} to 65535")

@@ -35,6 +35,7 @@ async def exchange(first: Link, second: Link) -> None:
         ("udpin:127.0.0.1:70000", "0 to 65535"),
         ("udpout:127.0.0.1:0", "1 to 65535"),
         ("tcp:127.0.0.1:0", "1 to 65535"),
+        ("udpout:no..host:14550", "name of a host"),
         ("serial:/dev/ttyUSB0", "forms are"),
         ("serial:/dev/ttyUSB0:fast", "baud rate 'fast'"),
         ("serial:/dev/ttyUSB0:0", "baud rate above 0"),
@@ -242,3 +243,18 @@ async def test_a_reader_that_never_comes_does_not_fill_the_memory() -> None:
         inbox.put(bytes(100_000))
     assert inbox.dropped_bytes > 0
     assert len(await inbox.get()) + inbox.dropped_bytes == 5_000_000
+
+
+async def test_a_stuck_tcp_peer_does_not_fill_the_memory() -> None:
+    """What a peer that never reads cannot take is lost; no more than a bound waits for it."""
+    server = await open_tcp_server("127.0.0.1", 0)
+    client = await open_link(f"tcp:127.0.0.1:{server.local_port}")
+    assert isinstance(client, TcpClientLink)
+    async with asyncio.timeout(20):
+        while not server.peers:
+            await asyncio.sleep(0.01)
+    for _ in range(400):
+        await server.send(b"\0" * 65536)
+    assert 0 < server.waiting_bytes < (1 << 20) + 65536
+    await client.close()
+    await server.close()

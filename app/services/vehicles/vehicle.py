@@ -385,10 +385,12 @@ class Vehicle:
                 elif self._is_itself and state.system_id != self.system_id:
                     self.system_id = state.system_id
                     await self._identified(self)
-                elif self.pending and self.operation is None and tries:
+                elif self.operation is not None or self.forwards.exchanging is not None:
+                    pass  # somebody is at the lists: what they hold is read afterwards
+                elif self.pending and tries:
                     tries -= 1
                     await self._resolve(client)
-                elif self._believed is not None and self.operation is None and not self.forwards.exchanging:
+                elif self._believed is not None:
                     tries -= 1
                     await self._confirm(self._believed, last=tries <= 0)
                 await asyncio.sleep(TELEMETRY_S)

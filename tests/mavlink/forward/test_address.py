@@ -34,6 +34,7 @@ def test_without_a_host_it_is_this_machine(given: str, meant: str) -> None:
         "udpout:",
         "udpout:0",
         "udpout:host",
+        "udpout:no..host:14550",
         "udpin:x",
         "udp:127.0.0.1:14550",
         "tcpin:70000",
