@@ -98,7 +98,7 @@ class Guard:
             return
         partner = _number(message, "target_system"), _number(message, "target_component")
         for sender in [sender for sender in self._exchanges if _meant(partner, sender)]:
-            if message.name == "MISSION_ACK" and _number(message, "type") != _INVALID_SEQUENCE:
+            if _is_last_word(message):
                 del self._exchanges[sender]
             else:
                 self._exchanges[sender] = now_s
@@ -188,6 +188,13 @@ def _for_vehicle(message: Message, state: VehicleState) -> bool:
     if (message.system_id, message.component_id) == (state.system_id, state.component_id):
         return False
     return _number(message, "target_system") in (0, state.system_id)
+
+
+def _is_last_word(message: Message) -> bool:
+    """Whether nothing follows from the vehicle; of an empty list not every station says that it has it."""
+    if message.name == "MISSION_ACK":
+        return _number(message, "type") != _INVALID_SEQUENCE
+    return message.name == "MISSION_COUNT" and _number(message, "count") == 0
 
 
 def _meant(partner: Sender, sender: Sender) -> bool:

@@ -88,6 +88,16 @@ def test_a_station_at_the_lists_has_them_to_itself(beginning: str) -> None:
     guard.reserve(21.0, changes=False)
 
 
+def test_an_empty_list_is_soon_read() -> None:
+    """Told that there is nothing, a station may say no more (as MAVProxy): it is done."""
+    guard = Guard()
+    guard.judge(said("MISSION_REQUEST_LIST"), VEHICLE, True, 0.0)
+    guard.heard(answer("MISSION_COUNT", count=1), 0.1)
+    assert guard.exchanging(0.1) == 245
+    guard.heard(answer("MISSION_COUNT", count=0), 0.2)
+    assert guard.exchanging(0.2) is None
+
+
 def test_another_stations_last_word_ends_nothing() -> None:
     """An acknowledgement to somebody else leaves the exchange as it is."""
     guard = Guard()
