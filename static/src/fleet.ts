@@ -80,6 +80,11 @@ export function preflight(id: string, planId: string, payload: string | null): P
   return post<Preflight>(path(id, "/preflight"), { plan_id: planId, payload });
 }
 
+/** Take the aircraft that answers in the vehicle's place for the vehicle. */
+export function acknowledge(id: string, systemId: number): Promise<Vehicle> {
+  return post<Vehicle>(path(id, "/identity"), { system_id: systemId });
+}
+
 export function command(id: string, name: Command, seq: number | null = null): Promise<CommandAnswer> {
   return post<CommandAnswer>(path(id, "/commands"), { command: name, seq });
 }

@@ -190,6 +190,9 @@ export interface Vehicle {
   name: string;
   url: string;
   connected: boolean;
+  /** Its MAVLink system, and another one that answers in its place while it is silent. */
+  system_id: number | null;
+  other_system: number | null;
   link_failure: string | null;
   simulated: boolean;
   replay: boolean;

@@ -1,7 +1,9 @@
 /** The watched vehicle in figures, what stands in its way, and what it says. */
-import { fill, h } from "../dom";
-import { stream, watched } from "../fleet";
+import { ask } from "../dialog";
+import { button, fill, h } from "../dom";
+import { acknowledge, stream, watched } from "../fleet";
 import { distance_m } from "../geo";
+import { attempt } from "../notices";
 import type { Vehicle } from "../types";
 import { metres, number } from "../units";
 
@@ -48,6 +50,23 @@ export function gauges(): HTMLElement {
   return box;
 }
 
+async function take(vehicle: Vehicle, systemId: number): Promise<void> {
+  const lines = ["Its mission is not known: neither the plan of the aircraft before it nor that one's upload count for it.", "Let the vehicle go instead, and connect it under a name of its own, to keep both apart."];
+  const sure = await ask({ title: `Is system ${systemId} ${vehicle.name} from now on?`, lines, go: "Acknowledge" });
+  if (sure !== null) await attempt("The other aircraft was not acknowledged", () => acknowledge(vehicle.id, systemId));
+}
+
+/** Why the vehicle is not connected, and what can be done about it. */
+function absence(vehicle: Vehicle): HTMLElement | null {
+  if (vehicle.connected) return null;
+  const other = vehicle.other_system;
+  if (other !== null) {
+    const says = `Another aircraft, system ${other}, answers where ${vehicle.name}, system ${vehicle.system_id ?? "unknown"}, did. It gets no order and no mission until it is acknowledged. `;
+    return h("p", { class: "error" }, says, button("Acknowledge …", () => void take(vehicle, other)));
+  }
+  return h("p", { class: "error" }, vehicle.link_failure ? `No link: ${vehicle.link_failure}; trying again …` : `The vehicle is not heard at ${vehicle.url}; it is listened for.`);
+}
+
 /** Warnings and the vehicle's own words; they stand under the controls, so that these never move. */
 export function words(): HTMLElement {
   const box = h("div", { id: "words" });
@@ -57,7 +76,7 @@ export function words(): HTMLElement {
     const loud = vehicle.state.texts.slice(-TEXTS_SHOWN).reverse();
     fill(
       box,
-      vehicle.connected ? null : h("p", { class: "error" }, vehicle.link_failure ? `No link: ${vehicle.link_failure}; trying again …` : `The vehicle is not heard at ${vehicle.url}; it is listened for.`),
+      absence(vehicle),
       stream.value === "broken" ? h("p", { class: "error" }, "The telemetry is interrupted; trying again …") : null,
       vehicle.pending ? h("p", { class: "warning" }, "The last upload's outcome is unknown; it is read back when the vehicle is heard.") : null,
       loud.length > 0 ? h("ul", { class: "plain quiet", "aria-label": "What the vehicle says" }, ...loud.map(({ severity, text }) => h("li", { class: severity <= ERROR_SEVERITY ? "error" : "" }, text))) : null,

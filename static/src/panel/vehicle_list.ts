@@ -8,6 +8,7 @@ import { connectForm } from "./connect_form";
 
 function standing(vehicle: Vehicle): string {
   if (vehicle.connected) return vehicle.replay ? "recording" : vehicle.simulated ? "simulated" : "connected";
+  if (vehicle.other_system !== null) return "another aircraft";
   return vehicle.link_failure ? "no link" : "not heard";
 }
 

@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+import socket
+import time
+from collections.abc import Callable, Iterator
+from typing import Any
 
 import httpx
 import pytest
 from playwright.sync_api import Page, expect
 
+from mavlink.codec import Codec
+from mavlink.messages import Message
 from tests.app.browser.conftest import EXAMPLES, Service
 from tests.app.browser.helpers import await_hook, open_scenario
 
@@ -95,6 +100,47 @@ def test_a_vehicle_nobody_hears_is_said_to_be_so(flying: Page, service: Service)
     expect(flying.locator("#words")).to_contain_text("not heard at udpin:127.0.0.1:0")
     for control in ("#upload", "#preflight", "#read-held", "[data-command=arm]", "[data-command=goto_item]"):
         expect(flying.locator(control)).to_be_disabled()
+    row.get_by_role("button").click()
+    flying.click("#dialog-go")
+    expect(row).to_have_count(0)
+
+
+def beat_until(service: Service, name: str, system_id: int, ready: Callable[[Any], bool]) -> None:
+    """Send heartbeats of a system to a vehicle's address until its record is so."""
+    place = vehicles_of(service)[name]
+    port = int(httpx.get(place, timeout=20.0).json()["url"].rpartition(":")[2])
+    heartbeat = Codec(system_id, 1).pack(Message("HEARTBEAT", {"type": 1, "autopilot": 3}))
+    deadline_s = time.monotonic() + LIMIT_MS / 1000.0
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as air:
+        while not ready(httpx.get(place, timeout=20.0).json()):
+            assert time.monotonic() < deadline_s, "nothing came of the heartbeats"
+            air.sendto(heartbeat, ("127.0.0.1", port))
+            time.sleep(0.1)
+
+
+def test_a_swapped_aircraft_is_acknowledged(flying: Page, service: Service) -> None:
+    """Another system at a vehicle's address is named, and is the vehicle once the operator says so.
+
+    It takes the five seconds after which a silent vehicle is lost.
+    """
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        probe.bind(("127.0.0.1", 0))
+        port = probe.getsockname()[1]
+    there = {"name": "swapped", "url": f"udpin:127.0.0.1:{port}", "timeout_s": 0.1}
+    assert httpx.post(f"{service.address}/api/v1/vehicles", json=there, timeout=20.0).status_code == 201
+    beat_until(service, "swapped", 1, lambda vehicle: bool(vehicle["connected"]))
+    beat_until(service, "swapped", 2, lambda vehicle: bool(vehicle["other_system"] == 2))
+    flying.get_by_role("button", name="Refresh the list").click()
+    row = flying.locator("#vehicles .vehicle", has_text="swapped")
+    row.locator("input").check()
+    words = flying.locator("#words")
+    beat_until(service, "swapped", 2, lambda vehicle: "system 2, answers where" in words.inner_text())
+    expect(flying.locator("[data-command=arm]")).to_be_disabled()
+    words.get_by_role("button", name="Acknowledge").click()
+    beat_until(service, "swapped", 2, lambda vehicle: flying.locator("#dialog-go").is_visible())
+    flying.click("#dialog-go")
+    beat_until(service, "swapped", 2, lambda vehicle: bool(vehicle["connected"]))
+    beat_until(service, "swapped", 2, lambda vehicle: "another aircraft" not in words.inner_text().lower())
     row.get_by_role("button").click()
     flying.click("#dialog-go")
     expect(row).to_have_count(0)
