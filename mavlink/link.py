@@ -23,6 +23,7 @@ __all__ = [
     "Link",
     "LinkFaults",
     "MemoryLink",
+    "PacedLink",
     "ReplayLink",
     "memory_pair",
     "open_link",
@@ -59,6 +60,15 @@ class DirectLink(Link, Protocol):
 
     def send_now(self, data: bytes) -> None:
         """Send without waiting."""
+
+
+@runtime_checkable
+class PacedLink(Link, Protocol):
+    """A link that knows what has not gone out yet."""
+
+    @property
+    def waiting_bytes(self) -> int:
+        """Bytes the system has not taken yet."""
 
 
 def parse_address(url: str) -> tuple[str, str, int]:

@@ -120,6 +120,14 @@ class TrackRecorder:
         """What was recorded so far."""
         return Track(tuple(self._points), tuple(self._events))
 
+    def forget(self) -> None:
+        """Drop what was recorded so far, but not how relays stand; a sensor that is on is on anew."""
+        self._points.clear()
+        self._events.clear()
+        self._images.clear()
+        self._sensor_on = self._output_on = None
+        self._keep_every, self._skipped = 1, 0
+
     def take(self, message: Message, state: VehicleState) -> None:
         """Take one message, and the state it led to."""
         if message.name == "GLOBAL_POSITION_INT":

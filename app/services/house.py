@@ -23,6 +23,7 @@ from app.services.validation import Verdict, judge
 from app.services.vehicles.checks import Checks
 from app.services.vehicles.fleet import Fleet
 from app.services.vehicles.recordings import Recordings
+from app.services.vehicles.times import DEFAULT_TIMES, LinkTimes
 from app.services.vehicles.transfers import Transfers
 
 log = structlog.get_logger(__name__)
@@ -56,6 +57,7 @@ class House:
         judge_scenario: Callable[..., Verdict] = judge,
         initialiser: Callable[[], None] = work.initialise,
         pool: Pool | None = None,
+        times: LinkTimes = DEFAULT_TIMES,
     ) -> None:
         self.database = Database(limits.database)
         self.pool = pool or WorkerPool(limits.workers, initialiser)
@@ -83,6 +85,7 @@ class House:
             kept,
             limits.track_interval_s,
             limits.recordings,
+            times,
         )
 
     async def open(self) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import socket
 from typing import Final, cast
 
 from mavlink.errors import LinkError
@@ -13,6 +14,8 @@ _READ_BYTES: Final = 1 << 16
 _RECONNECT_EVERY_S: Final = 1.0
 #: A peer this far behind is stuck; what is sent meanwhile is lost, as on any radio.
 _MOST_WAITING_BYTES: Final = 1 << 20
+#: What waits in the system's buffers grows old there and nobody knows of it: they are kept small.
+_SYSTEM_BYTES: Final = 1 << 14
 
 
 class TcpClientLink:
@@ -88,7 +91,7 @@ class TcpClientLink:
 
     async def _connect_later(self) -> tuple[asyncio.StreamReader, asyncio.StreamWriter]:
         await asyncio.sleep(_RECONNECT_EVERY_S)
-        return await asyncio.open_connection(self._host, self._port)
+        return await _connection(self._host, self._port)
 
     async def close(self) -> None:
         """Close the connection and stop making it anew."""
@@ -103,8 +106,17 @@ class TcpClientLink:
 
 async def open_tcp_client(host: str, port: int) -> TcpClientLink:
     """Connect. Raises OSError."""
+    return TcpClientLink(host, port, *await _connection(host, port))
+
+
+async def _connection(host: str, port: int) -> tuple[asyncio.StreamReader, asyncio.StreamWriter]:
     reader, writer = await asyncio.open_connection(host, port)
-    return TcpClientLink(host, port, reader, writer)
+    _keep_small(writer.get_extra_info("socket"))
+    return reader, writer
+
+
+def _keep_small(sock: socket.socket) -> None:
+    sock.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, _SYSTEM_BYTES)
 
 
 class TcpServerLink:
@@ -129,10 +141,13 @@ class TcpServerLink:
             raise LinkError(f"tcpin:{self._host} is not open")
         return int(self._server.sockets[0].getsockname()[1])
 
-    async def listen(self, port: int) -> None:
+    async def bind(self, port: int) -> None:
         """Bind and accept. Raises OSError."""
         loop = asyncio.get_running_loop()
         self._server = await loop.create_server(lambda: _Peer(self), self._host, port)
+        for sock in self._server.sockets:
+            # Handed on to the connections accepted.
+            sock.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, _SYSTEM_BYTES)
 
     def joined(self, peer: _Peer) -> None:
         """A peer has connected: it takes the place of the one before."""
@@ -197,6 +212,7 @@ class _Peer(asyncio.Protocol):
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         self.transport = cast(asyncio.Transport, transport)
+        _keep_small(transport.get_extra_info("socket"))
         self._link.joined(self)
 
     def data_received(self, data: bytes) -> None:
@@ -209,5 +225,5 @@ class _Peer(asyncio.Protocol):
 async def open_tcp_server(host: str, port: int) -> TcpServerLink:
     """Listen. Raises OSError."""
     link = TcpServerLink(host)
-    await link.listen(port)
+    await link.bind(port)
     return link

@@ -10,7 +10,7 @@ from dataclasses import replace
 
 from mavlink.codec import Codec
 from mavlink.errors import CodecError, LinkError
-from mavlink.link import Link, open_link, parse_address
+from mavlink.link import Link, PacedLink, open_link, parse_address
 from mavlink.messages import Message
 from mavlink.sim.autopilot import SimulatedAircraft
 from mavlink.sim.faults import Fault
@@ -79,6 +79,7 @@ class _Session:
         self._aircraft = aircraft
         self._codec = codec
         self._now_s = 0.0
+        self._paced = link if isinstance(link, PacedLink) else None
 
     async def listen(self) -> None:
         while True:
@@ -98,6 +99,10 @@ class _Session:
         while True:
             await asyncio.sleep(_TICK_S)
             now_s = clock()
+            if self._paced is not None and self._paced.waiting_bytes > 0:
+                # A slower listener, too: nothing is sent faster than it is heard, where the link can tell.
+                last_s = now_s
+                continue
             self._now_s += min(now_s - last_s, _LONGEST_TICK_S)
             last_s = now_s
             await self._send(self._aircraft.advance(self._now_s))

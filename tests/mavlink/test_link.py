@@ -179,6 +179,14 @@ async def test_closing_ends_a_waiting_receive(url: str) -> None:
     await link.close()
 
 
+@pytest.mark.parametrize("url", URLS)
+async def test_only_links_that_hand_over_at_once_are_direct(url: str) -> None:
+    """A method of the same name for something else does not make a link direct."""
+    link: Link = memory_pair()[0] if url == "memory" else await open_link(url)
+    assert isinstance(link, DirectLink) == url.startswith("udp")
+    await link.close()
+
+
 async def test_a_direct_link_hands_over_at_once() -> None:
     """A listener gets the bytes instead of the reader, until it is taken off."""
     link = await open_udp("127.0.0.1", 0, listen=True)

@@ -12,6 +12,7 @@ from urllib.parse import urlencode
 
 from app.services.errors import LinkError, RefusedError
 from app.services.vehicles.simulated import SimulatedAircraft, SimulatorProcess, parse_simulated
+from app.services.vehicles.times import DEFAULT_TIMES, LinkTimes
 from mavlink import errors as mavlink_errors
 from mavlink.client import VehicleClient
 from mavlink.forward.hub import Forwards
@@ -94,6 +95,7 @@ async def connect(
     tap: Callable[[bytes], None] | None = None,
     forwards: Forwards | None = None,
     vehicle_system: int = 0,
+    times: LinkTimes = DEFAULT_TIMES,
 ) -> Connection:
     """Open the link, start the simulator where one is asked for, wait for a heartbeat.
 
@@ -109,6 +111,8 @@ async def connect(
         Other ground stations that hear the vehicle.
     vehicle_system
         The system id to talk to; 0 takes the first autopilot heard.
+    times
+        How patient its client is.
 
     Raises
     ------
@@ -121,12 +125,19 @@ async def connect(
     if is_replay(url):
         url, *_ = replayed_plan(url)
     try:
-        link = await open_link(url if aircraft is None else "udpin:127.0.0.1:0")
+        link = await open_link(url if aircraft is None else "tcpin:127.0.0.1:0")
     except mavlink_errors.AddressError as error:
         raise _refused(error, f"write {FORMS} or sim:") from error
     except mavlink_errors.LinkError as error:
         raise LinkError(str(error)) from error
-    client = VehicleClient(link, tap=tap, forwards=forwards, vehicle_system=vehicle_system)
+    client = VehicleClient(
+        link,
+        tap=tap,
+        forwards=forwards,
+        vehicle_system=vehicle_system,
+        settings=times.transfers,
+        lost_after_s=times.lost_after_s,
+    )
     try:
         simulator = None
         if aircraft is not None:

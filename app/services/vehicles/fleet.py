@@ -24,6 +24,7 @@ from app.services.vehicles.connection import CONNECT_S, Home, is_replay, replaye
 from app.services.vehicles.forwarding import read_forwards, refuse_loops
 from app.services.vehicles.recorder import HeldPlan
 from app.services.vehicles.recordings import RecordingFile, Recordings
+from app.services.vehicles.times import DEFAULT_TIMES, LinkTimes
 from app.services.vehicles.transfers import Transfers
 from app.services.vehicles.vehicle import Vehicle
 from mavlink.forward.address import ForwardAddress
@@ -51,6 +52,7 @@ class Fleet:
         kept: VehicleStore,
         track_interval_s: float,
         recordings: Recordings | None = None,
+        times: LinkTimes = DEFAULT_TIMES,
     ) -> None:
         self._planning = planning
         self._transfers = transfers
@@ -58,6 +60,7 @@ class Fleet:
         self._kept = kept
         self._track_interval_s = track_interval_s
         self._recordings = recordings
+        self._times = times
         self._vehicles: dict[str, Vehicle] = {}
         self._hub: Hub[Vehicle] = Hub()
         self._opening: dict[str, asyncio.Task[None]] = {}
@@ -264,6 +267,7 @@ class Fleet:
             self._transfers.still_holds,
             self._transfers.identified,
             self._recordings,
+            self._times,
         )
 
     def _publish(self, vehicle: Vehicle) -> None:

@@ -63,6 +63,7 @@ class FlightRecorder:
         self._vehicle_id = vehicle_id
         self._vehicle_name = vehicle_name
         self._interval_s = interval_s
+        self._client: VehicleClient | None = None
         self._recorder: TrackRecorder | None = None
         self._plan: HeldPlan | None = None
         self._events_saved = 0
@@ -76,21 +77,28 @@ class FlightRecorder:
         """Begin, go on with or end a flight, as the vehicle's state says; call about once a second.
 
         A plan uploaded in flight ends one flight and begins another: each is judged by the plan it followed.
+        Before a flight, what the vehicle sends is recorded from one look to the next, so that a flight has
+        its very beginning however late it is looked at.
         """
         async with self._turn:
             state = client.state
             if self.flight_id is None:
-                if client.failure is None and state.connected and is_flying(state):
-                    await self._begin(client, plan)
+                if client.failure is not None or not state.connected:
+                    return
+                recorder = self._listening(client, plan)
+                if is_flying(state):
+                    await self._begin(plan)
+                else:
+                    recorder.forget()
                 return
-            await self._save()
             if client.failure is not None:
-                await self._end(client, "interrupted")
+                await self._end("interrupted")
             elif state.connected and self._landed(state):
-                await self._end(client, "ended")
+                await self._end("ended")
             elif state.connected and plan is not None and plan != self._plan:
-                await self._end(client, "ended")
-                await self._begin(client, plan)
+                await self._change(client, plan)
+            else:
+                await self._save()
 
     def _landed(self, state: VehicleState) -> bool:
         """Whether a flight under way is over; one that does not say whether it has landed ends disarmed."""
@@ -98,8 +106,31 @@ class FlightRecorder:
         self._landed_looks = self._landed_looks + 1 if on_ground else 0
         return not state.armed or self._landed_looks >= LANDED_LOOKS
 
-    async def _begin(self, client: VehicleClient, plan: HeldPlan | None) -> None:
-        recorder = client.start_recording(plan.output if plan else None)
+    def _listening(self, client: VehicleClient, plan: HeldPlan | None) -> TrackRecorder:
+        """A recorder on a link, for what shows a plan's payload; the one there is, where it suits."""
+        if self._recorder is None or self._client is not client or self._plan != plan:
+            self._stop_listening()
+            self._client, self._plan = client, plan
+            self._recorder = client.start_recording(plan.output if plan else None)
+        return self._recorder
+
+    def _stop_listening(self) -> None:
+        if self._client is not None and self._recorder is not None:
+            self._client.stop_recording(self._recorder)
+        self._client = self._recorder = self._plan = None
+
+    async def _change(self, client: VehicleClient, plan: HeldPlan) -> None:
+        """End the flight under way and begin another; nothing is missed while the first is being stored."""
+        recorder = client.start_recording(plan.output)
+        try:
+            await self._end("ended")
+        except BaseException:
+            client.stop_recording(recorder)
+            raise
+        self._client, self._recorder, self._plan = client, recorder, plan
+        await self._begin(plan)
+
+    async def _begin(self, plan: HeldPlan | None) -> None:
         try:
             self.flight_id = await self._store.begin(
                 self._vehicle_id,
@@ -109,9 +140,8 @@ class FlightRecorder:
                 plan.payload if plan else None,
             )
         except BaseException:
-            client.stop_recording(recorder)
+            self._stop_listening()
             raise
-        self._recorder, self._plan = recorder, plan
         self._thinner = Thinner(self._interval_s)
         self._landed_looks = self._events_saved = 0
         log.info("flight begun", vehicle=self._vehicle_name, flight_id=self.flight_id)
@@ -125,20 +155,20 @@ class FlightRecorder:
         self._events_saved = len(track.events)
         await self._store.add_events(self.flight_id, [flight_event(event) for event in events])
 
-    async def end(self, client: VehicleClient | None, state: FlightState) -> None:
+    async def end(self, state: FlightState) -> None:
         """Close the flight, if there is one."""
         async with self._turn:
-            await self._end(client, state)
+            await self._end(state)
 
-    async def _end(self, client: VehicleClient | None, state: FlightState) -> None:
+    async def _end(self, state: FlightState) -> None:
         if self.flight_id is None:
+            self._stop_listening()
             return
         await self._save()
-        if client is not None and self._recorder is not None:
-            client.stop_recording(self._recorder)
+        self._stop_listening()
         await self._store.end(self.flight_id, state)
         log.info("flight ended", vehicle=self._vehicle_name, flight_id=self.flight_id, state=state)
-        self.flight_id = self._recorder = self._plan = None
+        self.flight_id = None
 
 
 def flight_event(event: SensorEvent) -> FlightEvent:

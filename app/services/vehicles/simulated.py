@@ -128,7 +128,7 @@ class SimulatorProcess:
     @classmethod
     async def start(cls, aircraft: SimulatedAircraft, port: int) -> SimulatorProcess:
         """Start an aircraft that talks to a loopback port."""
-        arguments = ["--url", f"udpout:127.0.0.1:{port}", *aircraft.arguments]
+        arguments = ["--url", f"tcp:127.0.0.1:{port}", *aircraft.arguments]
         if aircraft.home is not None:
             arguments += ["--home=" + ",".join(repr(value) for value in aircraft.home)]
         process = await asyncio.create_subprocess_exec(

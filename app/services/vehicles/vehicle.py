@@ -19,6 +19,7 @@ from app.services.vehicles.forwarding import changes_mission, tell_order
 from app.services.vehicles.recorder import FlightRecorder, HeldPlan
 from app.services.vehicles.recordings import Recordings
 from app.services.vehicles.simulated import SimulatedAircraft
+from app.services.vehicles.times import DEFAULT_TIMES, LinkTimes
 from app.services.vehicles.uploads import UploadReport, read_back
 from mavlink import errors as mavlink_errors
 from mavlink.client import VehicleClient
@@ -34,14 +35,6 @@ from mavlink.telemetry import VehicleState
 
 log = structlog.get_logger(__name__)
 
-#: Listeners get a new state no more often than this.
-TELEMETRY_S = 0.2
-#: How often flights are looked at.
-LOOK_S = 0.5
-#: The same for recordings, which may run fast.
-REPLAY_LOOK_S = 0.05
-#: How long after a link has failed it is opened anew, again and again.
-REOPEN_S = 2.0
 #: An upload's unknown outcome is read back so often each time the vehicle comes back.
 RESOLVE_TRIES = 3
 
@@ -56,7 +49,7 @@ class Vehicle:
     record
         What it is called and where it is; with ``held`` the plan it held before the service was restarted.
     publish
-        Called when its state has changed, no more often than ``TELEMETRY_S``.
+        Called when its state has changed, no more often than ``times.telemetry_s``.
     resolved
         Called when an upload whose outcome was unknown has been resolved by reading back.
     still_holds
@@ -77,6 +70,7 @@ class Vehicle:
         still_holds: Callable[[Vehicle, HeldMission], Awaitable[bool | None]],
         identified: Callable[[Vehicle], Awaitable[None]],
         recordings: Recordings | None = None,
+        times: LinkTimes = DEFAULT_TIMES,
     ) -> None:
         self.id = record.id
         self.name = record.name
@@ -99,6 +93,8 @@ class Vehicle:
         self._forward = record.forward
         self._recordings = None if self.replay else recordings
         self._writer: TlogWriter | None = None
+        self._times = times
+        self._look_now = asyncio.Event()
         self._recorder = FlightRecorder(flights, record.id, record.name, track_interval_s)
         # A simulated aircraft is a new one, and holds nothing.
         self._believed = None if self.simulated is not None else record.held
@@ -190,12 +186,14 @@ class Vehicle:
                     log.warning("link not open", vehicle=self.name, url=self.url, reason=str(error))
                 self.link_failure = str(error)
                 self._publish(self)
-                await asyncio.sleep(REOPEN_S)
+                await asyncio.sleep(self._times.reopen_s)
         self.link_failure = None
         self._publish(self)
 
     async def _connect(self, home: Home | None, timeout_s: float) -> Connection:
-        connection = await connect(self.url, home, timeout_s, self._tap, self.forwards, self.system_id)
+        connection = await connect(
+            self.url, home, timeout_s, self._tap, self.forwards, self.system_id, self._times
+        )
         if self._is_itself:
             self.system_id = connection.client.state.system_id or self.system_id
         return connection
@@ -268,7 +266,7 @@ class Vehicle:
 
     async def begin_anew(self) -> None:
         """Another aircraft is in its place: what was known of this one is not that one's."""
-        await self._recorder.end(self.client, "interrupted")
+        await self._recorder.end("interrupted")
         self.holds_unknown()
         self.sent = self.upload = None
 
@@ -306,7 +304,7 @@ class Vehicle:
 
     async def _drop(self) -> None:
         connection, self._connection = self._connection, None
-        await self._recorder.end(connection.client if connection else None, "interrupted")
+        await self._recorder.end("interrupted")
         if connection is not None:
             await connection.close()
 
@@ -370,8 +368,8 @@ class Vehicle:
             log.warning("link lost", vehicle=self.name, url=self.url)
             self.link_failure = client.failure
             await self._drop()
-            await asyncio.sleep(REOPEN_S)
-            await self._reopen(None, REOPEN_S)
+            await asyncio.sleep(self._times.reopen_s)
+            await self._reopen(None, self._times.reopen_s)
 
     async def _follow(self, client: VehicleClient) -> None:
         tries = RESOLVE_TRIES
@@ -393,7 +391,7 @@ class Vehicle:
                 elif self._believed is not None:
                     tries -= 1
                     await self._confirm(self._believed, last=tries <= 0)
-                await asyncio.sleep(TELEMETRY_S)
+                await asyncio.sleep(self._times.telemetry_s)
 
     async def _confirm(self, held: HeldMission, *, last: bool) -> None:
         """Read back whether it holds what it held before; a vehicle that does not answer is not believed."""
@@ -420,6 +418,8 @@ class Vehicle:
         except (mavlink_errors.BusyError, mavlink_errors.NotConnectedError) as error:
             log.warning("output of the payload not known", vehicle=self.name, reason=str(error))
         self.held = HeldPlan(held.plan_id, held.plan_vehicle, held.payload, output)
+        # It may fly at once: what shows its payload must be listened to by then.
+        self._look_now.set()
 
     async def _resolve(self, client: VehicleClient) -> None:
         """Read back what an upload left whose outcome is unknown."""
@@ -441,4 +441,7 @@ class Vehicle:
             except Exception as error:
                 # A track with a gap is better than none.
                 log.error("track not recorded", vehicle=self.name, exc_info=error)
-            await asyncio.sleep(REPLAY_LOOK_S if self.replay else LOOK_S)
+            with contextlib.suppress(TimeoutError):
+                async with asyncio.timeout(self._times.replay_look_s if self.replay else self._times.look_s):
+                    await self._look_now.wait()
+            self._look_now.clear()

@@ -105,6 +105,50 @@ async def test_a_flight_is_from_the_take_off_to_the_landing(
     ]
 
 
+async def test_a_flight_looked_at_late_has_its_beginning(
+    recorder: FlightRecorder, store: FlightStore
+) -> None:
+    """All since the last look on the ground is kept, and no more, with the switch thrown meanwhile."""
+    client = Client()
+    for second in range(3):
+        client.hear(second)
+        await recorder.look(client, PLAN)
+    client.told = FLIGHT
+    client.recorders[0].take(received("RELAY_STATUS", time_boot_ms=2500, on=0, present=0xFF), FLIGHT)
+    for second in range(3, 6):
+        client.hear(second)
+    await recorder.look(client, PLAN)
+    flight_id = recorder.flight_id
+    assert flight_id is not None
+    client.hear(6)
+    await recorder.end("ended")
+    assert client.recorders == []
+    assert [sample.time_s for sample in await store.track(flight_id)] == [3.0, 4.0, 5.0, 6.0]
+    assert [(event.kind, event.time_s) for event in await store.events(flight_id)] == [
+        ("off", 2.5),
+        ("on", 3.0),
+    ]
+
+
+async def test_nothing_is_missed_between_two_plans_in_flight(slow: SlowStore) -> None:
+    """What comes while the first flight is being stored belongs to the second."""
+    recorder, client = FlightRecorder(slow, "vehicle", "uav", 0.0), Client()
+    client.told = FLIGHT
+    await recorder.look(client, PLAN)
+    first = recorder.flight_id
+    client.hear(1)
+    slow.wait_s = 0.1
+    looking = asyncio.create_task(recorder.look(client, HeldPlan("plan-2", "uav-1")))
+    await asyncio.sleep(0)
+    client.hear(2)
+    await looking
+    second = recorder.flight_id
+    assert first is not None
+    assert second not in (None, first)
+    await recorder.end("ended")
+    assert [sample.time_s for sample in await slow.track(str(second))] == [2.0]
+
+
 async def test_a_bounce_is_no_landing(recorder: FlightRecorder) -> None:
     """On the ground for a moment only, then in the air again: one flight. On the ground for long: its end."""
     client = Client()
@@ -153,7 +197,7 @@ async def test_another_plan_in_flight_is_another_flight(recorder: FlightRecorder
     assert second is not None
     assert second != first
     client.hear(2)
-    await recorder.end(client, "ended")
+    await recorder.end("ended")
     assert [sample.time_s for sample in await store.track(first)] == [1.0]
     assert [sample.time_s for sample in await store.track(second)] == [2.0]
     assert (await store.get(second)).plan_id == "plan-2"
@@ -226,7 +270,7 @@ async def test_a_link_lost_while_the_track_is_saved_loses_none_of_it(slow: SlowS
     looking = asyncio.create_task(recorder.look(client, PLAN))
     await asyncio.sleep(0)
     client.hear(1)
-    await asyncio.gather(looking, recorder.end(client, "interrupted"))
+    await asyncio.gather(looking, recorder.end("interrupted"))
     assert [sample.time_s for sample in await slow.track(flight_id)] == [0.0, 1.0]
     assert [event.kind for event in await slow.events(flight_id)] == ["off", "on"]
     assert (await slow.get(flight_id)).state == "interrupted"
@@ -239,7 +283,7 @@ async def test_a_flight_that_begins_as_its_link_is_lost_is_closed(slow: SlowStor
     looking = asyncio.create_task(recorder.look(client, PLAN))
     await asyncio.sleep(0)
     client.ended = "reset by peer"
-    await asyncio.gather(looking, recorder.end(client, "interrupted"))
+    await asyncio.gather(looking, recorder.end("interrupted"))
     assert (recorder.flight_id, client.recorders) == (None, [])
     await recorder.look(client, PLAN)
     assert recorder.flight_id is None

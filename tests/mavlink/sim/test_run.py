@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import signal
 import sys
 from collections.abc import Callable
@@ -12,7 +13,8 @@ import pytest
 
 from mavlink.codec import Codec
 from mavlink.items import Command, MissionItem
-from mavlink.link import Link, memory_pair, open_link
+from mavlink.link import Link, MemoryLink, memory_pair, open_link
+from mavlink.links.memory import NO_FAULTS
 from mavlink.messages import Message
 from mavlink.sim.modes import Flavour
 from mavlink.sim.run import main, parser, serve, serve_link, settings_of
@@ -66,6 +68,35 @@ class Ground:
         await self.until(lambda m: m.name == "STATUSTEXT" and "Landed" in m.text("text"))
         reached = [m.integer("seq") for m in self.heard if m.name == "MISSION_ITEM_REACHED"]
         assert reached == list(range(1, len(mission)))
+
+
+class Pipe(MemoryLink):
+    """A link that says what has not gone out yet."""
+
+    waiting_bytes = 0
+
+
+async def test_time_stands_still_while_the_link_is_behind() -> None:
+    """An aircraft faster than its listener waits for it, and loses no time of its own by that."""
+    ours, theirs = MemoryLink("ground", NO_FAULTS, 0), Pipe("air", NO_FAULTS, 1)
+    ours.join(theirs)
+    theirs.join(ours)
+    ground = Ground(ours)
+    server = asyncio.create_task(serve_link(theirs, SimSettings(home=HOME)))
+    await ground.until(lambda m: m.name == "GLOBAL_POSITION_INT")
+    theirs.waiting_bytes = 1
+    with contextlib.suppress(TimeoutError):
+        async with asyncio.timeout(0.1):
+            await ours.receive()  # what was sent before
+    with pytest.raises(TimeoutError):
+        async with asyncio.timeout(0.6):
+            await ours.receive()
+    theirs.waiting_bytes = 0
+    await ground.until(lambda m: m.name == "GLOBAL_POSITION_INT")
+    server.cancel()
+    await asyncio.gather(server, return_exceptions=True)
+    stamps = [m.integer("time_boot_ms") for m in ground.heard if m.name == "GLOBAL_POSITION_INT"]
+    assert stamps[-1] - stamps[0] < 550
 
 
 async def test_a_mission_is_flown_over_a_link_and_the_server_stops() -> None:
