@@ -2,7 +2,8 @@
 
 In flight order: the home row (ArduPilot), the take-off, a circle up to the plan's altitude (fixed wing), the
 speed, then the path: waypoints at the ends of its straights, points on its arcs, and exactly both ends of
-each collect, the sensor switched right behind them; last the return or the landing.
+each collect, the sensor switched right behind them; last the return or the landing. A gimbal is pointed
+before the path, anew right behind a collect whose next one looks elsewhere, and rests before the landing.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from mavlink.encoding.ends import beginning, ending
 from mavlink.encoding.fence import fence_items
 from mavlink.encoding.manoeuvres import MARGIN_M
 from mavlink.encoding.options import EncodeError, EncodeOptions, Finish
+from mavlink.encoding.pointing import Pointings, pointings_of
 from mavlink.encoding.stops import Stop, stops_along
 from mavlink.encoding.task import Task, task_of
 from mavlink.items import Command, Frame, MissionItem, MissionResult, MissionType
@@ -69,6 +71,7 @@ def encode(
     task = task_of(plan, vehicle, autopilot, options)
     payload, payload_notes = _payload(task)
     on, off = _switches(task, payload)
+    pointing = pointings_of(task)
     unlisted = sorted({item.command for item in (on, off) if not task.dialect.knows(item.command)})
     payload_notes += tuple(f"it is not known whether {task.dialect.name} takes command {n}" for n in unlisted)
     first, last = beginning(task), ending(task)
@@ -81,18 +84,26 @@ def encode(
         partial(_may_overshoot, task) if task.turns_early_m > 0.0 else None,
     )
     home = [home_item(plan.home, options.home_altitude_m)] if task.dialect.home_row else []
-    flight = _flight(task, (stop for stop in stops if stop.along_m > first.skipped_m), on, off)
+    flight = _flight(task, (stop for stop in stops if stop.along_m > first.skipped_m), on, off, pointing)
     fence, fence_notes = fence_items(plan, (task.path,))
     chord_note = f"arcs are waypoints with a chord error of at most {options.chord_error_m:g} m"
     return Mission(
-        mission=numbered([*home, *first.items, *flight, *last.items]),
+        mission=numbered([*home, *first.items, *flight, *pointing.rest, *last.items]),
         fence=fence,
         rally=_rally(task),
         autopilot=task.dialect.autopilot,
         vehicle=task.vehicle.name,
         vehicle_type=task.vehicle.type,
         home=plan.home,
-        notes=(chord_note, *payload_notes, *_pass_by_notes(task), *first.notes, *last.notes, *fence_notes),
+        notes=(
+            chord_note,
+            *payload_notes,
+            *pointing.notes,
+            *_pass_by_notes(task),
+            *first.notes,
+            *last.notes,
+            *fence_notes,
+        ),
         home_altitude_m=options.home_altitude_m,
         speed_m_s=task.vehicle.airspeed_m_s,
     )
@@ -129,10 +140,12 @@ def _switches(task: Task, payload: Payload) -> tuple[MissionItem, MissionItem]:
     return switches
 
 
-def _flight(task: Task, stops: Iterable[Stop], on: MissionItem, off: MissionItem) -> list[MissionItem]:
+def _flight(
+    task: Task, stops: Iterable[Stop], on: MissionItem, off: MissionItem, pointing: Pointings
+) -> list[MissionItem]:
     """Waypoints along the path, the sensor switched right behind those where a collect starts or ends."""
-    items: list[MissionItem] = []
-    collecting = 0
+    items: list[MissionItem] = [*pointing.before(0)]
+    collecting = begun = pointed = 0
     for stop in stops:
         parameters = (0.0, _acceptance_m(task, stop), 0.0, task.any_yaw)
         items.append(placed(Command.NAV_WAYPOINT, stop.place, stop.altitude_m, task.frame, parameters))
@@ -140,6 +153,12 @@ def _flight(task: Task, stops: Iterable[Stop], on: MissionItem, off: MissionItem
         # Where collects overlap the sensor stays on until the last has ended.
         if stop.off and (collecting == 0 or stop.on):
             items.append(off)
+        begun += stop.on
+        # As early as the last collect lets it; at the latest where the next one begins.
+        next_up = begun if collecting == 0 else begun - 1
+        while pointed < next_up:
+            pointed += 1
+            items += pointing.before(pointed)
         if stop.on and (before == 0 or stop.off):
             items.append(on)
     return items

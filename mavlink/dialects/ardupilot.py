@@ -135,6 +135,7 @@ _REFUSED = frozenset(
         Command.SET_CAMERA_MODE,
         Command.DO_SET_CAM_TRIGG_INTERVAL,
         Command.DO_TRIGGER_CONTROL,
+        Command.DO_GIMBAL_MANAGER_CONFIGURE,
     }
 )
 

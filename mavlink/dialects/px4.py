@@ -80,6 +80,7 @@ _PLACELESS = frozenset(
         Command.DO_SET_ROI_NONE,
         Command.DO_MOUNT_CONTROL,
         Command.DO_GIMBAL_MANAGER_PITCHYAW,
+        Command.DO_GIMBAL_MANAGER_CONFIGURE,
     }
 )
 #: Drew UNSUPPORTED in every frame.

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
+from mavlink.encoding.gimbal import Gimbal
 from mavlink.payload import Payload, RelayPayload
 
 Finish = Literal["auto", "rtl", "land", "loiter"]
@@ -47,6 +48,8 @@ class EncodeOptions:
         Height of home above sea level, where known.
     rally_at_home
         Whether home becomes a rally point too.
+    gimbal
+        What points the sensor at every collect; None where it is bolted on.
     """
 
     chord_error_m: float = 2.0
@@ -61,6 +64,7 @@ class EncodeOptions:
     off_delay_m: float | None = None
     home_altitude_m: float = 0.0
     rally_at_home: bool = False
+    gimbal: Gimbal | None = None
 
     def __post_init__(self) -> None:
         positive = {

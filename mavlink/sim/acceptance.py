@@ -16,7 +16,7 @@ from mavlink.sim.modes import Flavour
 
 DO_SET_ACTUATOR = 187
 _VTOL_TAKEOFF, _VTOL_LAND = 84, 85
-_DO_MOUNT_CONTROL, _GIMBAL_PITCHYAW = 205, 1000
+_DO_MOUNT_CONTROL, _GIMBAL_PITCHYAW, _GIMBAL_CONFIGURE = 205, 1000, 1001
 _ROI_LOCATION, _ROI_NONE, _ROI = 195, 197, 201
 
 #: Commands with a place in x, y, z.
@@ -92,6 +92,7 @@ _PX4_UNPLACED = frozenset(
         _ROI_NONE,
         _DO_MOUNT_CONTROL,
         _GIMBAL_PITCHYAW,
+        _GIMBAL_CONFIGURE,
     }
 )
 
