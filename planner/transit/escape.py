@@ -67,12 +67,10 @@ def shorten_crossings(
     way_out, rest, origin = _leave(path, start, goal, held, zones, radius_m, solve)
 
     def solve_back(a: Anchor, b: Anchor, kept: KeepOut) -> Path | None:
-        found = solve(_turned(b), _turned(a), kept)
+        found = solve(turned(b), turned(a), kept)
         return None if found is None else found.reverse()
 
-    way_in, back, _ = _leave(
-        rest.reverse(), _turned(goal), _turned(origin), held, zones, radius_m, solve_back
-    )
+    way_in, back, _ = _leave(rest.reverse(), turned(goal), turned(origin), held, zones, radius_m, solve_back)
     pieces = [piece for piece in (way_out, back.reverse(), way_in and way_in.reverse()) if piece is not None]
     return join(*pieces)
 
@@ -119,13 +117,13 @@ def _around(
         if not (_holds(disc, start) and _holds(disc, goal)):
             continue
         outs = _exits(disc, start, goal, held, zones, radius_m)[:PAIRS]
-        ins = _exits(disc, _turned(goal), start, held, zones, radius_m)[:PAIRS]
+        ins = _exits(disc, turned(goal), start, held, zones, radius_m)[:PAIRS]
         for (_, out, place), (_, back, other) in itertools.product(outs, ins):
             ends_cost = _cost(out, held) + _cost(back, held)
             if ends_cost + math.dist(place.position, other.position) >= best_cost:
                 continue
             kept = tuple(d for d in held if not _holds(d, place) and not _holds(d, other))
-            between = solve(place, _turned(other), replace(zones, discs=zones.discs + kept))
+            between = solve(place, turned(other), replace(zones, discs=zones.discs + kept))
             if between is None:
                 continue
             cost = ends_cost + _cost(between, held)
@@ -167,5 +165,6 @@ def _holds(disc: Disc, end: Anchor) -> bool:
     return math.hypot(end.east_m - disc.east_m, end.north_m - disc.north_m) < disc.radius_m - 0.5 * TOUCH_M
 
 
-def _turned(end: Anchor) -> Anchor:
+def turned(end: Anchor) -> Anchor:
+    """The same place, flown through the other way."""
     return end if end.angle_rad is None else replace(end, angle_rad=end.angle_rad + math.pi)

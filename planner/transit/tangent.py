@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,9 +26,15 @@ from planner.environment.zones import AREA, TOUCH_M, Conflict, Disc, KeepOut
 from planner.errors import InfeasibleError
 from planner.progress import Stop, never, raise_if
 from planner.route import Anchor, Pose
-from planner.transit.escape import Solve, shorten_crossings
+from planner.transit.escape import Solve, shorten_crossings, turned
 from planner.transit.tangent_kernels import search, turn_between
 from planner.transit.wheels import End, between, end_of, obstacles_of
+
+#: Searches kept: the same few zones are minded whatever becomes of the others.
+KEPT_SEARCHES = 2048
+
+#: A search that has followed so many circles from the start goes on from the goal instead.
+FORWARD_WHEELS = 32
 
 Array = NDArray[np.float64]
 
@@ -123,6 +130,7 @@ def _solve(start: Anchor, goal: Anchor, zones: KeepOut, radius_m: float, stop: S
     return min(found, key=lambda path: path.length_m, default=None)
 
 
+@lru_cache(maxsize=KEPT_SEARCHES)
 def _search(start: Anchor, goal: Anchor, zones: KeepOut, radius_m: float, most_m: float) -> Path | None:
     """The shortest line over the circles of these zones; None where none is shorter than ``most_m``."""
     obstacles = obstacles_of(zones, radius_m)
@@ -134,17 +142,17 @@ def _search(start: Anchor, goal: Anchor, zones: KeepOut, radius_m: float, most_m
         between(last.turns, both_ways, radius_m),
     ]
     wheels = np.concatenate([first.wheels, last.wheels, both_ways, *middles])
-    length_m, visits = search(
-        wheels,
-        _entry_rows(first, 0),
-        _entry_rows(last, len(first.wheels)),
-        np.array([*goal.position, math.nan if goal.angle_rad is None else goal.angle_rad]),
-        radius_m,
-        obstacles.discs,
-        obstacles.edges,
-        most_m,
-    )
-    if not math.isfinite(length_m):
+    begins, ends = _entry_rows(first, 0), _entry_rows(last, len(first.wheels))
+    zone_rows = obstacles.discs, obstacles.edges
+    length_m, visits = search(wheels, begins, ends, _row(goal), radius_m, *zone_rows, most_m, FORWARD_WHEELS)
+    if math.isnan(length_m):
+        # Backwards it shows sooner where the goal cannot be reached: few wheels lead out of its place then.
+        length_m, visits = search(
+            wheels * [1.0, 1.0, -1.0], _turned_rows(ends), _turned_rows(begins), _row(turned(start)),
+            radius_m, *zone_rows, most_m, len(wheels),
+        )  # fmt: skip
+        visits = _flown_back(visits)
+    if len(visits) == 0:
         return None
     lead_in, lead_out = first.entries[int(visits[0, 0])][2], last.entries[int(visits[0, 1])][2]
     return join(
@@ -164,6 +172,24 @@ def _entry_rows(end: End, first_wheel: int) -> Array:
         (wheel + first_wheel, angle, lead.length_m if lead else 0.0) for wheel, angle, lead in end.entries
     ]
     return np.array(rows, dtype=np.float64)
+
+
+def _row(end: Anchor) -> Array:
+    """Place and direction, NaN where that is free."""
+    return np.array([*end.position, math.nan if end.angle_rad is None else end.angle_rad])
+
+
+def _turned_rows(entries: Array) -> Array:
+    """Entries passed the other way."""
+    return np.asarray(entries + np.array([0.0, math.pi, 0.0]))
+
+
+def _flown_back(visits: Array) -> Array:
+    """What ``search`` found backwards, as if found forwards."""
+    if len(visits) == 0:
+        return visits
+    way = visits[:0:-1, [0, 2, 1]] - np.array([0.0, math.pi, math.pi])
+    return np.concatenate([visits[:1, [1, 0, 2]], way])
 
 
 def _path(wheels: Array, visits: Array, start: Anchor, goal: Anchor) -> Path:

@@ -214,6 +214,7 @@ def search(
     discs: Array,
     edges: Array,
     most_m: float,
+    most_wheels: int,
 ) -> tuple[float, Array]:
     """Shortest way from one of ``starts`` over tangents and arcs to one of ``goals`` (A*).
 
@@ -236,12 +237,15 @@ def search(
         Shape (K, 3), (E, 4): what the way may not enter or cross.
     most_m
         Ways of this length and more are not wanted; inf for any.
+    most_wheels
+        Given up once so many wheels were followed.
 
     Returns
     -------
     length_m, visits
         ``visits``, shape (1 + V, 3): a row of the indices of the start and the goal taken, then in flight
-        order wheel, arriving and leaving direction. Empty where there is no way.
+        order wheel, arriving and leaving direction. Empty where there is no way, and with a length of NaN
+        where the search was given up.
     """
     count = wheels.shape[0]
     # A row for each wheel followed so far: the tangents out of it, and the best way to the end of each.
@@ -319,6 +323,8 @@ def search(
                         keys, items = _longer(keys), _longer_indices(items)
                     size = push(keys, items, size, length, -1 - k)
         if row_of[j] < 0:
+            if rows == most_wheels:
+                return np.nan, np.empty((0, 3))
             if rows == phis.shape[0]:
                 phis, lengths, to_go = _more(phis, 0.0), _more(lengths, 0.0), _more(to_go, 0.0)
                 best, parent = _more(best, 0.0), _more(parent, 0.0)
@@ -340,6 +346,8 @@ def search(
             turn = turn_between(wheel[2], arriving, phi)
             length = flown_m + radius * turn + p
             if turn > free or length >= best[row, k] or length >= least_m:
+                continue
+            if _passed_before(wheels[k, 2], newest[k], phi, length, passed, older):
                 continue
             if to_go[row, k] < 0.0:
                 at_e = wheels[k, 0] + wheels[k, 2] * math.sin(phi)

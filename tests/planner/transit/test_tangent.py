@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 import random
+from unittest import mock
 
 import numpy as np
 import pytest
@@ -19,6 +20,7 @@ from planner.dubins.words import candidates_between, shortest_between
 from planner.environment.zones import Disc, KeepOut, PolygonZone
 from planner.errors import CancelledError, InfeasibleError
 from planner.route import Anchor
+from planner.transit import tangent
 from planner.transit.tangent import connect
 
 RADIUS_M = 100.0
@@ -349,3 +351,21 @@ def test_narrow_neck_of_the_area_is_closed() -> None:
     with pytest.raises(InfeasibleError) as caught:
         connect(Anchor(-500.0, 0.0), Anchor(500.0, 0.0), KeepOut(area=area), RADIUS_M)
     assert caught.value.constraint == "area"
+
+
+@settings(deadline=None, max_examples=40)
+@given(anchors, anchors, circles, boxes)
+def test_searched_backwards_it_is_as_short(
+    start: Anchor, goal: Anchor, discs: tuple[Disc, ...], polygons: tuple[PolygonZone, ...]
+) -> None:
+    """A search given up at once and made from the goal finds a line of the same length, or none either."""
+    zones = KeepOut(discs, polygons)
+    found: list[Path | None] = []
+    for most in (10_000, 0):
+        with mock.patch.object(tangent, "FORWARD_WHEELS", most):
+            found.append(tangent._search.__wrapped__(start, goal, zones, RADIUS_M, math.inf))
+    forwards, backwards = found
+    assert (forwards is None) == (backwards is None)
+    if forwards is not None and backwards is not None:
+        assert backwards.length_m == pytest.approx(forwards.length_m, abs=1e-5)
+        assert_connects(backwards, start, goal)

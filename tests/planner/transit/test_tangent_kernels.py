@@ -115,11 +115,11 @@ def test_search_is_the_best_sequence(seed: int) -> None:
         discs - np.array([0.0, 0.0, 1e-3]),
         ring_edges(wall),
     )
-    length_m, visits = search(*arguments, math.inf)
-    below = search(*arguments, length_m)
+    length_m, visits = search(*arguments, math.inf, len(arguments[0]))
+    below = search(*arguments, length_m, len(arguments[0]))
     assert math.isinf(below[0])
     assert len(below[1]) == 0
-    assert search(*arguments, 1.001 * length_m)[0] == length_m
+    assert search(*arguments, 1.001 * length_m, len(arguments[0]))[0] == length_m
     # The plain twin visits at most two circles between the ends.
     assert length_m <= expected_m + 1e-6
     if len(visits) <= 5:
@@ -165,6 +165,7 @@ def test_no_way_is_infinite() -> None:
         np.empty((0, 3)),
         ring_edges(box(900, -100, 1100, 100)),
         math.inf,
+        2,
     )
     assert math.isinf(length_m)
     assert visits.shape == (0, 3)
