@@ -27,8 +27,7 @@ __all__ = [
 #: Rules by autopilot and type of vehicle.
 RULES: Final[dict[tuple[Autopilot, VehicleType], tuple[Rule, ...]]] = {
     ("ardupilot", "fixed_wing"): ardupilot.PLANE,
-    # A quadplane is judged as the fixed wing it is between the regions.
-    ("ardupilot", "vtol"): ardupilot.PLANE,
+    ("ardupilot", "vtol"): ardupilot.VTOL,
     ("ardupilot", "multirotor"): ardupilot.COPTER,
     ("px4", "fixed_wing"): px4.FIXED_WING,
     ("px4", "vtol"): px4.VTOL,

@@ -8,7 +8,7 @@ from typing import Final
 
 from mavlink.items import Command
 from mavlink.payload import RelayPayload, ServoPayload
-from mavlink.rules.base import Needs, ParameterFinding, Rule, Values, any_of, camera, check
+from mavlink.rules.base import Needs, ParameterFinding, Rule, Values, any_of, camera, check, lands
 from mavlink.rules.flight import bank, corners, l1_period, loiter, speed
 
 
@@ -91,6 +91,9 @@ def _own_fence(name: str, kind: int, reach_m: Callable[[Needs], float], words: s
     return Rule(lambda needs: (name, "FENCE_TYPE", "FENCE_ENABLE"), judge)
 
 
+#: The approach is 1.5 times as long as it takes to stop at 2 m/s²; 0.75 of that distance are wanted.
+_LEAST_BRAKING_M_S2: Final = 0.75 * 2.0 / 1.5
+
 _FENCE: Final = (
     _own_fence("FENCE_ALT_MAX", _HEIGHT_FENCE, lambda needs: needs.highest_m, "above home"),
     _own_fence("FENCE_RADIUS", _HOME_FENCE, lambda needs: needs.farthest_m, "from home"),
@@ -129,5 +132,23 @@ PLANE: Final[tuple[Rule, ...]] = (
     _AUTOLAND,
     *_FENCE,
     *_PAYLOAD,
+)
+VTOL: Final[tuple[Rule, ...]] = (
+    *PLANE,
+    check(
+        "Q_ENABLE",
+        lambda value, needs: value > 0,
+        lambda needs: "it has no rotors to take off with: what hovers in the mission is not flown",
+        lambda needs: 1.0,
+        "error",
+    ),
+    check(
+        "Q_TRANS_DECEL",
+        lambda value, needs: value >= _LEAST_BRAKING_M_S2,
+        lambda needs: "the approach is under 0.75 of its stopping distance, and the vehicle refuses to arm",
+        lambda needs: 2.0,
+        "error",
+        lands,
+    ),
 )
 COPTER: Final[tuple[Rule, ...]] = (*_FENCE, *_PAYLOAD)

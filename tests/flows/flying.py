@@ -35,7 +35,7 @@ log = logging.getLogger(__name__)
 EXAMPLES = Path(__file__).parents[2] / "examples"
 CASES = (1, 2, 3, 4)
 #: Without a new item of the mission for this long, in real time, the flight is given up.
-STALLED_S = 60.0
+STALLED_S = 180.0
 #: A vehicle breaks off a transfer after some seconds without an item: in its time, which runs fast here.
 UPLOADS = 3
 #: The wind of the flights in wind: m/s, and where it comes from.

@@ -14,6 +14,8 @@ import pytest
 
 from mavlink.encode import EncodeOptions, encode
 from mavlink.items import Command
+from mavlink.parameter_rules import judge_parameters, names_to_read, needs_of
+from mavlink.payload import RelayPayload
 from mavlink.track import TrackPoint
 from planner.frames import LocalFrame
 from planner.geojson import read_scenario
@@ -49,6 +51,12 @@ async def test_a_vtol_hovers_up_sees_its_regions_and_hovers_down(tmp_path: Path)
     mission = encode(plan, options=EncodeOptions(finish="land"))
     async with aeroplane(tmp_path, plan.home, SPEEDUP, model="quadplane") as client:
         await client.wait_for(lambda state: state.type == "vtol", 10.0)
+        needs = needs_of(plan, mission, RelayPayload(), 150.0)
+        names = names_to_read("ardupilot", "vtol", needs)
+        values = {name: read.value for name, read in (await client.read_parameters(names)).items()}
+        assert {"Q_ENABLE", "Q_TRANS_DECEL"} <= values.keys()
+        findings = judge_parameters("ardupilot", "vtol", needs, values)
+        assert [finding for finding in findings if finding.severity == "error"] == []
         await store(client, mission)
         flight = await fly(client)
 

@@ -181,6 +181,18 @@ def test_px4s_vtols_are_judged_by_their_transitions(name: str, value: float, sev
     assert judge_parameters("px4", "vtol", needs, good | {name: finding.advised}) == ()
 
 
+@pytest.mark.parametrize(("name", "value"), [("Q_ENABLE", 0.0), ("Q_TRANS_DECEL", 0.9)])
+def test_quadplanes_are_judged_as_planes_that_hover(name: str, value: float) -> None:
+    """With rotors in use, and braking hard enough for ArduPlane to arm with the approach there is."""
+    needs = replace(PLANE, commands=frozenset({84, 16, 85}))
+    good = GOOD["ardupilot"] | {"Q_ENABLE": 1.0, "Q_TRANS_DECEL": 2.0}
+    assert judge_parameters("ardupilot", "vtol", needs, good) == ()
+    (finding,) = judge_parameters("ardupilot", "vtol", needs, good | {name: value})
+    assert (finding.name, finding.severity) == (name, "error")
+    assert finding.advised is not None
+    assert judge_parameters("ardupilot", "vtol", needs, good | {name: finding.advised}) == ()
+
+
 @pytest.mark.parametrize(
     ("required", "commands", "flies"),
     [
