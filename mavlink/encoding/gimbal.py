@@ -212,6 +212,15 @@ def neutral_item(gimbal: Gimbal, autopilot: Autopilot) -> MissionItem:
     return _manager_item(gimbal, 0.0, 0.0, Flags.NEUTRAL, autopilot)
 
 
+def protocol_of(item: MissionItem) -> Protocol | None:
+    """How an item points a gimbal at a pass; None where it does not, or brings it to rest."""
+    if item.command == Command.DO_GIMBAL_MANAGER_PITCHYAW:
+        return None if item.x & (Flags.NEUTRAL | Flags.RETRACT) else "manager"
+    if item.command == Command.DO_MOUNT_CONTROL:
+        return "mount" if item.z == _TARGETING else None
+    return None
+
+
 def _manager_item(
     gimbal: Gimbal, pitch_deg: float, yaw_deg: float, flags: Flags, autopilot: Autopilot
 ) -> MissionItem:

@@ -10,6 +10,7 @@ from mavlink.items import Command
 from mavlink.payload import RelayPayload, ServoPayload
 from mavlink.rules.base import Needs, ParameterFinding, Rule, Values, any_of, camera, check, lands
 from mavlink.rules.flight import bank, corners, l1_period, loiter, speed
+from mavlink.rules.gimbal import ARDUPILOT as GIMBAL
 
 
 def _relay_names(needs: Needs) -> tuple[str, ...]:
@@ -132,6 +133,7 @@ PLANE: Final[tuple[Rule, ...]] = (
     _AUTOLAND,
     *_FENCE,
     *_PAYLOAD,
+    *GIMBAL,
 )
 VTOL: Final[tuple[Rule, ...]] = (
     *PLANE,
@@ -151,4 +153,4 @@ VTOL: Final[tuple[Rule, ...]] = (
         lands,
     ),
 )
-COPTER: Final[tuple[Rule, ...]] = (*_FENCE, *_PAYLOAD)
+COPTER: Final[tuple[Rule, ...]] = (*_FENCE, *_PAYLOAD, *GIMBAL)

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Final, Literal
 
+from mavlink.encoding.gimbal import Protocol, protocol_of
 from mavlink.geometry import distance_m
 from mavlink.items import Command, Frame
 from mavlink.mission import Mission
@@ -36,6 +37,7 @@ _ABOVE_SEA: Final = frozenset({Frame.GLOBAL, Frame.GLOBAL_INT})
 OTHER_NAMES: Final[dict[str, tuple[str, float]]] = {
     "ROLL_LIMIT_DEG": ("LIM_ROLL_CD", 100.0),  # ArduPlane before 4.5
     "AIRSPEED_CRUISE": ("TRIM_ARSPD_CM", 100.0),
+    "MNT1_TYPE": ("MNT_TYPE", 1.0),  # ArduPilot before 4.3
 }
 
 
@@ -67,6 +69,25 @@ class ParameterFinding:
 
 
 @dataclass(frozen=True, slots=True)
+class GimbalNeeds:
+    """Where a mission points its gimbal.
+
+    Parameters
+    ----------
+    pitch_deg
+        Up from the horizon; the same at every pass.
+    yaws_deg
+        To the right from the nose, one for each side looked to; in wind a yaw held abeam of the course is
+        off these by the crab.
+    """
+
+    protocol: Protocol
+    device: int
+    pitch_deg: float
+    yaws_deg: tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class Needs:
     """What a mission needs of its vehicle.
 
@@ -80,6 +101,8 @@ class Needs:
         Of the mission's items.
     highest_m, farthest_m
         Of the mission's places, above home and from it; 0 where it has none.
+    gimbal
+        None where the sensor is bolted on.
     """
 
     airspeed_m_s: float
@@ -90,6 +113,7 @@ class Needs:
     fence: bool
     highest_m: float = 0.0
     farthest_m: float = 0.0
+    gimbal: GimbalNeeds | None = None
 
 
 def needs_of(plan: Plan, mission: Mission, payload: Payload, settle_m: float | None = None) -> Needs:
@@ -107,7 +131,21 @@ def needs_of(plan: Plan, mission: Mission, payload: Payload, settle_m: float | N
         bool(mission.fence),
         highest_m,
         farthest_m,
+        _gimbal(plan, mission),
     )
+
+
+def _gimbal(plan: Plan, mission: Mission) -> GimbalNeeds | None:
+    """What a mission's items ask of the gimbal; the yaws by the sides the passes look to."""
+    for item in mission.mission:
+        protocol = protocol_of(item)
+        if protocol is None:
+            continue
+        looks = {collect.look for collect in plan.collects_of(mission.vehicle)}
+        yaws_deg = tuple(90.0 if look == "right" else -90.0 for look in sorted(looks))
+        device = round(item.z) if protocol == "manager" else 0
+        return GimbalNeeds(protocol, device, item.param1, yaws_deg if item.param1 > -90.0 else (0.0,))
+    return None
 
 
 def _reach(mission: Mission) -> tuple[float, float]:

@@ -10,6 +10,7 @@ from mavlink.outputs import px4_outputs
 from mavlink.payload import ActuatorPayload, CameraPayload
 from mavlink.rules.base import Needs, ParameterFinding, Rule, Values, check, lands
 from mavlink.rules.flight import SWITCH_DISTANCE, bank, corners, loiter, speed
+from mavlink.rules.gimbal import PX4 as GIMBAL
 
 _APPROACH_SLOPE_DEG: Final = 4.0
 _APPROACH_M: Final = 40.0
@@ -79,6 +80,7 @@ _COMMON: Final = (
         lambda needs: 2.0,
         applies=lands,
     ),
+    *GIMBAL,
 )
 
 
