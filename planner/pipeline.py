@@ -17,12 +17,11 @@ from planner.plan import Plan
 from planner.progress import Progress, Stop, never, raise_if, silent
 from planner.publish import Leg, assemble, uncovered, whole_path
 from planner.route import Anchor, CollectPass, Route
-from planner.routing.bounds import lower_bound_m
+from planner.routing.bound_ways import plan_bound_m
 from planner.routing.greedy import greedy
 from planner.routing.hidden import hidden_findings
 from planner.routing.joint import joint_route
 from planner.routing.legs import TRANSIT_MARGIN_M as TRANSIT_MARGIN_M
-from planner.routing.visible import sides_of
 from planner.scenario import Method, Scenario
 from planner.transit import ssas_connector
 from planner.transit.refine import Risk, connect_by_cost
@@ -34,6 +33,9 @@ Clock = Callable[[], float]
 
 #: The search for better routes ends after this part of the scenario's time budget.
 ROUTING_SHARE = 0.6
+
+#: What the rules of findings about regions left out begin with.
+NOT_SEEN = "not-seen-"
 
 #: What ``auto`` stands for.
 AUTO = {
@@ -108,7 +110,8 @@ def make_plan(
             warnings=tuple(str(f) for f in (*scenario.warnings, *dropped)) + notes,
         )
     with watch.stage("bound"):
-        bound_m = _bound_m(scenario, aircraft, sides, path.length_m, stop)
+        left_out = {name for f in dropped if f.rule.startswith(NOT_SEEN) for name in f.feature.split("+")}
+        bound_m = plan_bound_m(scenario, aircraft, sides, path.length_m, left_out, stop)
     progress("check", 0.95)
     with watch.stage("check"):
         verdict = judge(scenario, draft)
@@ -121,7 +124,7 @@ def make_plan(
             coverage=verdict.coverage,
             planning_time_s=dict(watch.seconds),
             lower_bound_m=bound_m,
-            gap=None if bound_m is None else 1.0 - bound_m / path.length_m,
+            gap=1.0 - bound_m / path.length_m,
         ),
         violations=verdict.violations,
         uncovered=uncovered(scenario, verdict.unseen, reasons),
@@ -149,24 +152,6 @@ def _budget(clock: Clock | None, budget_s: float | None) -> Stop:
     return lambda: clock() > end_s
 
 
-def _bound_m(
-    scenario: Scenario,
-    aircraft: Aircraft,
-    sides: tuple[tuple[Side, ...], ...] | None,
-    length_m: float,
-    stop: Stop,
-) -> float | None:
-    """What no plan is shorter than."""
-    if sides is None:
-        # The paper's choices are among its own neighbourhoods.
-        by_paper = replace(scenario, method=replace(scenario.method, coverage="li2018"))
-        try:
-            sides = sides_of(by_paper, aircraft)
-        except InfeasibleError:
-            return None
-    return lower_bound_m(scenario, aircraft, sides, length_m, stop=stop) if sides else None
-
-
 def _route(
     scenario: Scenario,
     aircraft: Aircraft,
@@ -181,11 +166,12 @@ def _route(
         chosen = greedy(scenario, progress, stop, threat_aware=aware, aircraft=aircraft)
         return chosen.route, tuple(_dropped(error) for error in chosen.dropped), None
     joint = joint_route(scenario, aircraft, progress, stop, enough)
-    return joint.route, joint.dropped, joint.sides
+    # The bound is over all methods, not over the paper's coverage alone.
+    return joint.route, joint.dropped, joint.sides if methods["coverage"] == "sweeps" else None
 
 
 def _dropped(error: InfeasibleError) -> Finding:
-    rule = f"not-seen-{error.constraint}"
+    rule = f"{NOT_SEEN}{error.constraint}"
     return Finding(error.feature, rule, error.message, error.relaxation, "warning")
 
 

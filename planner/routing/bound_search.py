@@ -39,6 +39,8 @@ WIDE = 16.0
 WORK_EACH, WORK_PAIR, WORK_SET = 10, 1.0 / 10.0, 1.0 / 200.0
 #: Problems to begin with.
 MOST_FIRST = 64
+#: The search ends so close below a tour of the relaxed problem.
+CLOSE = 0.01
 #: Of the open cells, the part split at a time, and at least how many.
 SPLIT, LEAST_SPLIT = 0.6, 8
 
@@ -73,7 +75,10 @@ class _Problem:
 
 @dataclass(frozen=True, slots=True)
 class _Solved:
-    """The cells of a problem, all nodes' one after the other, the least tours through them, and the work."""
+    """The cells of a problem, all nodes' one after the other, the least tours through them, and the work.
+
+    ``flown_m`` is the length of about the tour that bounds the problem, through the middles of its cells.
+    """
 
     boxes: Floats
     cells: Floats
@@ -82,6 +87,7 @@ class _Solved:
     offsets: Ints
     open_pairs: Flags
     work: int
+    flown_m: float
 
 
 def exact_bound_m(
@@ -109,7 +115,7 @@ def exact_bound_m(
     for target_m in targets_m:
         found_m, spent = _prove(nodes, start, end, radius_m, target_m, effort, stop)
         best_m = max(best_m, found_m)
-        # The next takes several times as much.
+        # The next takes several times as much, or there is hardly more to prove.
         if found_m < target_m or spent > effort // 8:
             break
         effort -= spent
@@ -136,6 +142,7 @@ def _prove(
         if solved is None:
             continue
         spent += solved.work
+        target_m = min(target_m, (1.0 - CLOSE) * solved.flown_m)
         bound_m = max(bound_m, float(solved.known_m.min()))
         if bound_m >= target_m:
             continue
@@ -204,7 +211,47 @@ def _solve(
         offsets,
         tours.short_pairs(ahead, behind, between, offsets, target_m),
         evaluated + _least_work(problem),
+        _flown_m(nodes, boxes, offsets, _chain(int(np.argmin(through)), prior, after), start, end, radius_m),
     )
+
+
+def _chain(cell: int, prior: Ints, after: Ints) -> list[int]:
+    """The cells of the least tour through one, in order."""
+    chain = [cell]
+    while prior[chain[0]] >= 0 and len(chain) <= len(prior):
+        chain.insert(0, int(prior[chain[0]]))
+    while after[chain[-1]] >= 0 and len(chain) <= len(prior):
+        chain.append(int(after[chain[-1]]))
+    return chain
+
+
+def _flown_m(
+    nodes: list[Node],
+    boxes: Floats,
+    offsets: Ints,
+    chain: list[int],
+    start: Floats,
+    end: Floats,
+    radius_m: float,
+) -> float:
+    """Length of a tour through the middle passes of cells; inf where it is none."""
+    of_node = [int(np.searchsorted(offsets, cell, side="right")) - 1 for cell in chain]
+    if sorted(of_node) != list(range(len(nodes))):
+        return math.inf
+    passes = []
+    for cell, k in zip(chain, of_node, strict=True):
+        middle = boxes[cell] * np.array([1.0, 1.0, 0.0, 1.0, 0.0])
+        node = nodes[k]
+        found = cells_of.cell(node.ring, node.hull, node.families[int(middle[0])], middle)
+        # Of passes that are to be parallel the middles rarely are.
+        if found[cells_of.HOLDS] == 0.0 or node.strip:
+            return math.inf
+        passes.append(found)
+    none, gains = np.zeros(2), np.empty(4)
+    total_m = lines.from_terminal(start, passes[0], cells_of.ENTRY, none, radius_m, gains[:2])
+    for one, other in itertools.pairwise(passes):
+        total_m += lines.between(one, other, none, none, radius_m, gains)
+    return float(total_m + lines.from_terminal(end, passes[-1], cells_of.EXIT, none, radius_m, gains[:2]))
 
 
 def _least_work(problem: _Problem) -> int:

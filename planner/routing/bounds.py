@@ -52,6 +52,7 @@ def lower_bound_m(
     sides: Sequence[Sequence[Side]],
     known_m: float,
     effort: int | None = None,
+    part: float = 1.0,
     stop: Stop = never,
 ) -> float:
     """No plan that sees these regions is shorter than this.
@@ -64,6 +65,8 @@ def lower_bound_m(
         Length of a plan: the bound is never above it, and says most just below it.
     effort
         Lines between cells to evaluate, about two million a second.
+    part
+        Of the effort where it is not given.
     """
     by_strips = [nodes(each, aircraft.settle_m, index, MOST_STRIPS) for index, each in enumerate(sides)]
     passes = [node for of_region in by_strips for node in of_region]
@@ -76,9 +79,10 @@ def lower_bound_m(
             return min(best_m, known_m)
     if len(passes) <= EXACT_UP_TO and best_m < known_m * (1.0 - GAPS[0]):
         targets_m = tuple(known_m * (1.0 - gap) for gap in GAPS)
-        work = effort or next(most for up_to, most in EFFORT_EXACT.items() if len(passes) <= up_to)
+        most = next(most for up_to, most in EFFORT_EXACT.items() if len(passes) <= up_to)
+        work = effort or int(part * most)
         best_m = max(best_m, exact_bound_m(passes, *ends, radius_m, targets_m, work, stop))
     if len(passes) > 1 and best_m < known_m * (1.0 - POOR_GAP):
-        work = effort or EFFORT_TREES * len(passes)
+        work = effort or int(part * EFFORT_TREES * len(passes))
         best_m = max(best_m, trees_bound_m(passes, *ends, radius_m, known_m, work, stop))
     return min(best_m, known_m)
