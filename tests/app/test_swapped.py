@@ -28,7 +28,7 @@ VEHICLES = "/api/v1/vehicles"
 @pytest.fixture(autouse=True)
 def _soon_lost(monkeypatch: pytest.MonkeyPatch) -> None:
     """A silent vehicle is given up sooner, so that the tests are short; heartbeats come every second."""
-    monkeypatch.setattr(connection, "VehicleClient", partial(VehicleClient, lost_after_s=1.5))
+    monkeypatch.setattr(connection, "VehicleClient", partial(VehicleClient, lost_after_s=2.5))
 
 
 @asynccontextmanager
