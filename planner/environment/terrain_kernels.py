@@ -43,3 +43,29 @@ def grounds_at(heights_m: Array, west_m: float, south_m: float, step_m: float, p
     for k in range(len(places_m)):
         found[k] = ground_at(heights_m, west_m, south_m, step_m, places_m[k, 0], places_m[k, 1])
     return found
+
+
+@njit(cache=True)
+def heights_between(
+    heights_m: Array, west_m: float, south_m: float, step_m: float, box: Array
+) -> tuple[float, float]:
+    """Lowest and highest of the posts round a box (west, south, east, north): no ground in it is beyond.
+
+    inf and -inf where the grid knows none.
+    """
+    rows, columns = heights_m.shape
+    lowest_m, highest_m = math.inf, -math.inf
+    if not (box[0] <= box[2] and box[1] <= box[3]):
+        return lowest_m, highest_m
+    first_row = max(0, math.floor((box[1] - south_m) / step_m) - 1)
+    last_row = min(rows, math.ceil((box[3] - south_m) / step_m) + 2)
+    first = max(0, math.floor((box[0] - west_m) / step_m) - 1)
+    last = min(columns, math.ceil((box[2] - west_m) / step_m) + 2)
+    for i in range(first_row, last_row):
+        for j in range(first, last):
+            # Comparisons with NaN are false: posts without height do not count.
+            if heights_m[i, j] < lowest_m:
+                lowest_m = heights_m[i, j]
+            if heights_m[i, j] > highest_m:
+                highest_m = heights_m[i, j]
+    return lowest_m, highest_m

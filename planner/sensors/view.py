@@ -21,7 +21,7 @@ from shapely.geometry.base import BaseGeometry
 
 from planner.environment.terrain import Ground
 from planner.scenario import Scenario
-from planner.sensors import sar_modes, strip, view_kernels
+from planner.sensors import sar_modes, strip, view_kernels, visibility_kernels
 from planner.sensors.sar import Look, SarSensor
 
 Floats = NDArray[np.float64]
@@ -200,7 +200,7 @@ def shadow_cost(
         strip.edge_tan(sensor, edge_rad, yaw_rad)
         for edge_rad in (sensor.whole().steepest_rad, sensor.whole().flattest_rad)
     )
-    hidden = view_kernels.line_visibility(
+    hidden = visibility_kernels.line_visibility(
         ground.heights_m,
         ground.west_m,
         ground.south_m,
