@@ -2,16 +2,25 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
+import numpy as np
+
+from planner.coverage.classify import angles_around, hull_points, spans_at
 from planner.coverage.neighbourhood import can_be_seen
+from planner.coverage.sweeps import MOST_LANES
 from planner.environment.terrain import Terrains
 from planner.errors import Finding, InfeasibleError, ScenarioError
 from planner.geojson import read_scenario
 from planner.routing.visible import sides_of
 from planner.scenario import Scenario
+from planner.sensors.strip import swaths_m
 from planner.sensors.view import sensing
 from planner.vehicle.wind import in_wind
+
+#: From so many passes on planning takes tens of seconds, then minutes.
+MANY_PASSES = 120
 
 
 def findings(document: Any, terrains: Terrains | None = None) -> tuple[Finding, ...]:
@@ -23,11 +32,11 @@ def findings(document: Any, terrains: Terrains | None = None) -> tuple[Finding, 
         scenario = read_scenario(document, terrains)
     except ScenarioError as error:
         return error.findings
-    return scenario.warnings + unseeable(scenario)
+    return scenario.warnings + unseeable(scenario) + laborious(scenario)
 
 
 def read_valid(document: Any, terrains: Terrains | None = None) -> Scenario:
-    """Read a scenario and refuse it when a required region cannot be seen.
+    """Read a scenario and refuse it when a required region cannot be seen, or takes too many passes.
 
     Raises
     ------
@@ -35,7 +44,7 @@ def read_valid(document: Any, terrains: Terrains | None = None) -> Scenario:
         With every finding.
     """
     scenario = read_scenario(document, terrains)
-    found = unseeable(scenario)
+    found = unseeable(scenario) + laborious(scenario)
     if any(finding.severity == "error" for finding in found):
         raise ScenarioError(scenario.warnings + found)
     return scenario
@@ -63,6 +72,32 @@ def unseeable(scenario: Scenario) -> tuple[Finding, ...]:
         except InfeasibleError as error:
             found.append(_finding(error, True))
     return tuple(found)
+
+
+def laborious(scenario: Scenario) -> tuple[Finding, ...]:
+    """What takes more passes than can be planned, or than are planned soon; most often a slip of height."""
+    found, passes, narrowest_m = [], 0, math.inf
+    for region in scenario.regions:
+        try:
+            sensor, height_m = sensing(scenario, scenario.sensor_for(region), region.area)
+        except InfeasibleError:
+            continue
+        angles_rad = angles_around(math.radians(10.0))
+        swath_m = swaths_m(sensor, height_m, angles_rad)
+        lanes = spans_at(hull_points(region.area), angles_rad).across_m / np.maximum(swath_m, 1e-9)
+        fewest = math.ceil(float(lanes.min()))
+        passes += fewest * region.revisits
+        narrowest_m = min(narrowest_m, float(swath_m.max()))
+        if fewest > MOST_LANES:
+            said = f"{height_m:g} m up a pass sees {float(swath_m.max()):.3g} m of ground: {fewest} passes"
+            found.append(Finding(region.name, "too-many-passes", said, _HIGHER, "error"))
+    if passes > MANY_PASSES and not found:
+        said = f"takes at least {passes} passes, the narrowest {narrowest_m:.3g} m wide: planning takes long"
+        found.append(Finding("scenario", "many-passes", said, _HIGHER, "warning"))
+    return tuple(found)
+
+
+_HIGHER = "Fly higher (altitude_m), widen the beam, or cut the regions"
 
 
 def _finding(error: InfeasibleError, required: bool) -> Finding:

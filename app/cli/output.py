@@ -106,7 +106,8 @@ def read_document(source: str) -> dict[str, Any]:
     try:
         return read_object(read_bytes(source))
     except RefusedError as error:
-        raise CommandError(str(error), Exit.BAD_INPUT, error.findings) from error
+        name = "standard input" if source == "-" else source
+        raise CommandError(f"{name} is not understood", Exit.BAD_INPUT, error.findings) from error
 
 
 def fail(error: CommandError, as_json: bool) -> NoReturn:
@@ -117,7 +118,11 @@ def fail(error: CommandError, as_json: bool) -> NoReturn:
         body = {"error": str(error), "errors": [finding_json(f) for f in error.findings], **error.more}
         say(json.dumps(body, ensure_ascii=False, default=str))
     else:
-        say(f"error: {error}")
-        for finding in error.findings:
-            say(f"  {finding}")
+        # A message that is its only finding's is said once, with rule and fix.
+        if len(error.findings) == 1 and error.findings[0].message == str(error):
+            say(f"error: {error.findings[0]}")
+        else:
+            say(f"error: {error}")
+            for finding in error.findings:
+                say(f"  {finding}")
     raise SystemExit(int(error.code))

@@ -28,6 +28,9 @@ ScenarioFile = Annotated[
     str, typer.Argument(help="Scenario GeoJSON; - is standard input.", metavar="SCENARIO")
 ]
 
+#: Of more violations than these the number is told.
+VIOLATIONS_SHOWN = 20
+
 
 class Narrator:
     """Tells progress on standard error: a line that renews itself on a terminal, else a line a stage."""
@@ -99,12 +102,15 @@ def make(
     from planner import errors
     from planner.geojson import write_plan
     from planner.pipeline import make_plan
-    from planner.validate import read_valid
+    from planner.validate import laborious, read_valid
 
     narrator = Narrator()
     try:
+        scenario = read_valid(document, None if terrain is None else {terrain.name: terrain})
+        for warning in scenario.warnings + laborious(scenario):
+            say(f"warning: {warning}")
         plan = make_plan(
-            read_valid(document, None if terrain is None else {terrain.name: terrain}),
+            scenario,
             progress=narrator,
             stop=Deadline(time_limit_s),
             clock=time.perf_counter,
@@ -137,8 +143,13 @@ def tell_plan(document: dict[str, Any]) -> None:
             f"no plan is shorter than {metrics['lower_bound_m'] / 1000:.2f} km: "
             f"this one is at most {metrics['gap']:.1%} from the best"
         )
-    for violation in document["violations"]:
+    violations = document["violations"]
+    for violation in violations[:VIOLATIONS_SHOWN]:
         say(f"violation: {violation.get('feature', '')}: {violation.get('message', violation)}")
+    if len(violations) > VIOLATIONS_SHOWN:
+        say(f"violation: and {len(violations) - VIOLATIONS_SHOWN} more, in the plan")
+    if any(violation.get("hard") for violation in violations):
+        say("it breaks hard constraints: uploads refuse it unless they override, saying why")
 
 
 def plan(

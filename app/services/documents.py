@@ -37,6 +37,24 @@ def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     return found
 
 
+def _no_json(text: str, error: json.JSONDecodeError) -> tuple[str, str]:
+    """What a text is that is no JSON, and the way out."""
+    if not text.strip():
+        return "the document is empty", "send a GeoJSON FeatureCollection"
+    if text.lstrip().startswith("<"):
+        return (
+            "the document is no JSON but looks like XML, as KML and GPX are",
+            "turn it into regions first: swathplan import, or POST /api/v1/scenarios/import",
+        )
+    if text.startswith("QGC WPL"):
+        return "the document is a waypoint file, not JSON", "plan from a scenario; convert reads missions"
+    place = f"line {error.lineno}, column {error.colno}"
+    return (
+        f"the document is no JSON: {error.msg} at {place}",
+        f"mend it near {place}; one JSON object is meant",
+    )
+
+
 def read_json(body: bytes | str) -> Any:
     """Parse JSON strictly.
 
@@ -51,13 +69,10 @@ def read_json(body: bytes | str) -> Any:
         if "\\ud" in text.lower():
             json.dumps(document, ensure_ascii=False).encode()
     except (UnicodeDecodeError, UnicodeEncodeError) as error:
-        _refuse("json-encoding", f"the document is no UTF-8 text: {error.reason}", "send UTF-8")
+        fix = "send UTF-8 text; KMZ, shapefiles and rasters go in by import, not as a scenario"
+        _refuse("json-encoding", f"the document is no UTF-8 text: {error.reason}", fix)
     except json.JSONDecodeError as error:
-        _refuse(
-            "json-syntax",
-            f"the document is no JSON: {error.msg} at line {error.lineno}, column {error.colno}",
-            "send one JSON object",
-        )
+        _refuse("json-syntax", *_no_json(text, error))
     except RecursionError:
         _refuse("json-depth", "the document is nested too deeply", f"nest at most {MAX_DEPTH} levels")
     except ValueError:

@@ -224,11 +224,26 @@ def _azimuth_beamwidth_rad(fields: Fields) -> float | None:
     return None
 
 
+_WRITTEN = {
+    "wind": '{"speed_m_s": 8, "from_deg": 270}',
+    "objective": '{"missile": 2000}',
+    "method": '{"routing": "auto"}',
+}
+
+
+def _object(name: str, raw: Any, findings: Findings) -> dict[str, Any]:
+    """A member that has to be an object; another value is found, never ignored."""
+    if isinstance(raw, dict):
+        return raw
+    findings.error("scenario", "bad-value", f"{name} is not an object", f"Write {name}: {_WRITTEN[name]}.")
+    return {}
+
+
 def read_wind(raw: Any, findings: Findings) -> Wind:
     """Member ``wind``."""
     if raw is None:
         return Wind()
-    fields = Fields("wind", raw if isinstance(raw, dict) else {}, findings)
+    fields = Fields("wind", _object("wind", raw, findings), findings)
     speed_m_s = fields.number("speed_m_s", minimum=0.0, maximum=100.0) or 0.0
     from_deg = fields.number(
         "from_deg", 0.0 if not speed_m_s else fields.raw("from_deg"), minimum=0.0, maximum=360.0
@@ -241,7 +256,7 @@ def read_objective(raw: Any, findings: Findings) -> Objective:
     """Member ``objective``."""
     if raw is None:
         return Objective()
-    fields = Fields("objective", raw if isinstance(raw, dict) else {}, findings)
+    fields = Fields("objective", _object("objective", raw, findings), findings)
     defaults = Objective()
     weights = {
         name: fields.number(name, getattr(defaults, name), minimum=0.0)
@@ -255,7 +270,7 @@ def read_method(raw: Any, findings: Findings) -> Method:
     """Member ``method``."""
     if raw is None:
         return Method()
-    fields = Fields("method", raw if isinstance(raw, dict) else {}, findings)
+    fields = Fields("method", _object("method", raw, findings), findings)
     chosen = {stage: fields.choice(stage, names, "auto") or "auto" for stage, names in METHODS.items()}
     fields.refuse_unknown()
     return Method(**chosen)

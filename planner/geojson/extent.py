@@ -53,7 +53,15 @@ def frame_of(raw_features: list[Any], findings: Findings) -> LocalFrame | None:
     ]
     boxes = [_Box.of(name, places) for name, places in by_feature if places]
     if not boxes:
-        findings.error("scenario", "no-positions", "has no valid position", "Add features with geometry.")
+        if any(True for feature in raw_features for _ in _places(feature, exchanged=True)):
+            findings.error(
+                "scenario",
+                "axes-swapped",
+                "has no valid position, and valid ones with the axes exchanged",
+                "This looks like latitude, longitude order: write [longitude, latitude].",
+            )
+        else:
+            findings.error("scenario", "no-positions", "has no valid position", "Add features with geometry.")
         return None
     whole = _Box.of("scenario", [corner for box in boxes for corner in (box.low, box.high)])
     middle = (round(whole.middle[0], 6), round(whole.middle[1], 6))
@@ -63,16 +71,14 @@ def frame_of(raw_features: list[Any], findings: Findings) -> LocalFrame | None:
     return LocalFrame(*middle)
 
 
-def _places(feature: Any) -> Iterator[LonLat]:
-    """Those positions of a feature that are places on Earth."""
+def _places(feature: Any, exchanged: bool = False) -> Iterator[LonLat]:
+    """Those positions of a feature that are places on Earth, as they stand or with the axes exchanged."""
     for value in positions_of(feature.get("geometry") if isinstance(feature, dict) else None):
-        if (
-            len(value) >= 2
-            and all(is_finite(v) for v in value[:2])
-            and abs(value[0]) <= 180.0
-            and abs(value[1]) <= 90.0
-        ):
-            yield (float(value[0]), float(value[1]))
+        if len(value) < 2 or not all(is_finite(v) for v in value[:2]):
+            continue
+        lon, lat = value[1::-1] if exchanged else value[:2]
+        if abs(lon) <= 180.0 and abs(lat) <= 90.0:
+            yield (float(lon), float(lat))
 
 
 def _blame(whole: _Box, boxes: list[_Box], findings: Findings) -> None:

@@ -177,6 +177,81 @@ def test_bad_usage_and_input_exit_2(swathplan: Command, arguments: tuple[str, ..
     assert "Traceback" not in ended.err
 
 
+def without_regions() -> str:
+    """The example without its regions."""
+    return json.dumps(
+        EXAMPLE | {"features": [f for f in EXAMPLE["features"] if f["properties"]["role"] != "roi"]}
+    )
+
+
+def exchanged() -> str:
+    """The example, west of 90° W, with latitude first."""
+
+    def turned(value: Any) -> Any:
+        if isinstance(value[0], list):
+            return [turned(item) for item in value]
+        return [value[1], value[0]]
+
+    features = [
+        feature
+        | {"geometry": feature["geometry"] | {"coordinates": turned(feature["geometry"]["coordinates"])}}
+        for feature in EXAMPLE["features"]
+    ]
+    return json.dumps(EXAMPLE | {"features": features})
+
+
+@pytest.mark.parametrize(
+    ("arguments", "stdin", "code", "words"),
+    [
+        (("validate", "-"), '{"type": }', 2, ("standard input", "line 1, column 10", "json-syntax", "mend")),
+        (("validate", "-"), "<kml/>", 2, ("looks like XML", "json-syntax", "swathplan import")),
+        (("validate", "-"), "", 2, ("is empty", "json-syntax", "FeatureCollection")),
+        (("validate", "-"), without_regions(), 2, ("scenario", "no-region", "Add a feature of role roi")),
+        (("validate", "-"), exchanged(), 2, ("scenario", "axes-swapped", "write [longitude, latitude]")),
+        (
+            ("validate", "-"),
+            json.dumps(EXAMPLE | {"altitude_m": 0.01}),
+            2,
+            ("too-many-passes", "0.01 m up", "Fly higher"),
+        ),
+        (("validate", "-"), json.dumps(EXAMPLE | {"altitude_m": 4}), 0, ("many-passes", "Fly higher")),
+        (
+            ("plan", "-", "--method", "routing=magic"),
+            json.dumps(EXAMPLE),
+            2,
+            ("method", "unknown-value", "Use one of: auto, joint"),
+        ),
+        (
+            ("plan", "-"),
+            json.dumps(EXAMPLE | {"method": "magic"}),
+            2,
+            ("method", "bad-value", "Write method"),
+        ),
+        (
+            ("download", "--from", "http://127.0.0.1:8000"),
+            "",
+            2,
+            ("not the service's", "link-address", "udpin:"),
+        ),
+        (("download", "--from", "tcp:127.0.0.1:1"), "", 1, ("tcp:127.0.0.1:1", "start the simulator")),
+        (
+            ("download", "--from", "udpin:127.0.0.1:0", "--timeout-s", "0.1"),
+            "",
+            1,
+            ("no autopilot was heard on udpin:127.0.0.1:0", "does it send to this port"),
+        ),
+    ],
+)
+def test_likely_mistakes_are_told_with_thing_rule_and_fix(
+    swathplan: Command, arguments: tuple[str, ...], stdin: str, code: int, words: tuple[str, ...]
+) -> None:
+    """Each names what is wrong, by which rule, and what to do."""
+    ended = swathplan(*arguments, stdin=stdin)
+    assert ended.code == code
+    for word in words:
+        assert word in ended.out + ended.err
+
+
 def test_upload_names_what_is_wrong_with_the_address(swathplan: Command, plan_file: Path) -> None:
     """A good plan and an address that no try will open: 2, and the reason."""
     ended = swathplan("upload", str(plan_file), "--to", "udpin:127.0.0.1:99999")

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from urllib.parse import urlencode
 
 from app.services.errors import LinkError, RefusedError
+from app.services.vehicles import hints
 from app.services.vehicles.simulated import SimulatedAircraft, SimulatorProcess, parse_simulated
 from app.services.vehicles.times import DEFAULT_TIMES, LinkTimes
 from mavlink import errors as mavlink_errors
@@ -70,6 +71,8 @@ def simulated_of(url: str) -> SimulatedAircraft | None:
         return parse_simulated(url)
     if form not in _FORMS:
         message = f"{url[:80]} is no link address"
+        if form in ("http", "https"):
+            message += ": a vehicle's is meant, not the service's"
         raise RefusedError(message, (Finding("url", "link-address", message, f"write {FORMS} or sim:"),))
     return None
 
@@ -129,7 +132,7 @@ async def connect(
     except mavlink_errors.AddressError as error:
         raise _refused(error, f"write {FORMS} or sim:") from error
     except mavlink_errors.LinkError as error:
-        raise LinkError(str(error)) from error
+        raise LinkError(f"{error}{hints.shut(url)}") from error
     client = VehicleClient(
         link,
         tap=tap,
@@ -186,7 +189,7 @@ async def connected(url: str, home: Home | None, timeout_s: float) -> AsyncItera
     connection = await connect(url, home, timeout_s)
     try:
         if not connection.client.state.connected:
-            raise LinkError(f"no autopilot was heard on {url} within {timeout_s:g} s")
+            raise LinkError(f"no autopilot was heard on {url} within {timeout_s:g} s{hints.silent(url)}")
         yield connection.client
     finally:
         await connection.close()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from typing import Any, Final, Literal
 
 from app.services.errors import RefusedError, UnsafeError
 from app.services.missions import PARTS, PartName, mission_findings
@@ -26,6 +26,10 @@ from planner.plan import Plan
 
 OutcomeName = Literal["accepted", "different", "refused", "unknown", "not_attempted"]
 STATUSES: tuple[OutcomeName, ...] = ("accepted", "not_attempted", "different", "refused", "unknown")
+
+
+#: What to do about a plan that breaks a hard constraint.
+_AGAIN: Final = "change the scenario so that the constraint holds and plan again, or override"
 
 
 @dataclass(slots=True)
@@ -85,6 +89,7 @@ class UploadReport:
     parts: dict[PartName, PartResult] = field(default_factory=dict)
     preflight: Preflight | None = None
     payload: str | None = None
+    gimbal: str | None = None
 
     @property
     def outcome(self) -> OutcomeName:
@@ -163,7 +168,7 @@ def judge_upload(
     if errors:
         raise RefusedError(f"the autopilot would not hold this mission: {errors[0].message}", errors)
     dangers = [
-        Finding(violation.feature, violation.constraint, violation.message, "plan again, or override")
+        Finding(violation.feature, violation.constraint, violation.message, _AGAIN)
         for violation in plan.hard_violations
     ]
     if "mission" in parts and state.type not in ("other", mission.vehicle_type):
@@ -174,7 +179,8 @@ def judge_upload(
         dangers.append(Finding("vehicle", "vehicle-flying", message, "wait until it has landed, or override"))
     if dangers and override is None:
         raise UnsafeError(
-            f"not uploaded: {dangers[0].message}; state an override with its reason to upload all the same",
+            f"not uploaded: {dangers[0].message}; to upload all the same, override it and say why "
+            "(--override REASON; over HTTP override and reason)",
             tuple(dangers),
         )
     return found + tuple(dangers)

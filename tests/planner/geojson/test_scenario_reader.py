@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from collections.abc import Callable
 from typing import Any
 
@@ -381,3 +382,33 @@ def test_no_finding_is_said_twice() -> None:
     for document, _, _ in BAD.values():
         said = [(f.feature, f.rule, f.message) for f in findings(document)]
         assert len(said) == len(set(said)), said
+
+
+def test_axes_exchanged_everywhere_are_said_so() -> None:
+    """Without one valid position nothing can be placed; the cause is told where exchanging would mend it."""
+    document = at(-117.7, 33.5)
+    for each in document["features"]:
+        text = json.dumps(each["geometry"]["coordinates"])
+        pairs = re.sub(r"\[([-0-9.e]+), ([-0-9.e]+)\]", r"[\2, \1]", text)
+        each["geometry"]["coordinates"] = json.loads(pairs)
+    assert [(f.feature, f.rule) for f in findings(document)] == [("scenario", "axes-swapped")]
+    for each in document["features"]:
+        each["geometry"]["coordinates"] = [500.0, 500.0]
+    assert [(f.feature, f.rule) for f in findings(document)] == [("scenario", "no-positions")]
+
+
+@pytest.mark.parametrize("name", ["method", "wind", "objective"])
+@pytest.mark.parametrize("value", ["auto", 8, [1], True])
+def test_members_that_are_no_objects_are_refused(name: str, value: object) -> None:
+    """What is meant by them is unknown, and without them another plan would be made than was asked for."""
+    found = [f for f in findings(small(**{name: value})) if f.severity == "error"]
+    assert "bad-value" in [f.rule for f in found]
+    assert f"{name} is not an object" in found[0].message
+
+
+def test_passes_without_number_are_a_slip_of_height() -> None:
+    """Too low, a pass sees a few metres: told with their number; refused where no plan could hold them."""
+    assert findings(small()) == ()
+    (warned,) = findings(small(altitude_m=2.0))
+    assert (warned.rule, warned.severity) == ("many-passes", "warning")
+    assert {f.rule for f in findings(small(altitude_m=0.001))} == {"too-many-passes"}
