@@ -23,7 +23,9 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 #: Where strips that change with the heading are sampled.
-HEADINGS_RAD = np.arange(1440) * (2.0 * math.pi / 1440)
+HEADINGS_RAD = np.arange(720) * (2.0 * math.pi / 720)
+#: Regions as wide as more strips than this count by one place alone, of about this size.
+MOST_COUNTED, PLACE_M = 40, 0.01
 #: A pair of strips has no least width that asks for it.
 ANY_WIDTH = 1e6
 
@@ -93,21 +95,26 @@ class Node:
 def nodes(sides: Sequence[Side], settle_m: float, region_index: int, most: int = 8) -> list[Node]:
     """The passes one region, part of one or visit to one asks for; of many strips no more than ``most``."""
     region, sensor, height_m = sides[0].region, sides[0].sensor, sides[0].height_m
-    ring = _ring(region.area)
-    middle = 0.5 * (ring.min(axis=0) + ring.max(axis=0))
-    ring = ring - middle
-    around = _ring(shapely.convex_hull(shapely.Polygon(ring)))
     strip = strip_on(sensor, height_m, HEADINGS_RAD if sensor.crabs else 0.0, "right")
+    ring, middle, around = _rings(region.area)
     extras = sorted({side.extra for side in sides if isinstance(side, Sweep)})
     fewest = max(math.ceil((_narrowest_m(around) - ROUNDING_M) / float(strip.swath_m.max())), 1)
-    widest = math.ceil(2.0 * float(np.hypot(*around.T).max()) / float(strip.swath_m.min()))
+    widest_m, swath_m = 2.0 * float(np.hypot(*around.T).max()), float(strip.swath_m.min())
+    one_place = widest_m > MOST_COUNTED * swath_m
+    if one_place:
+        # However many strips there are, some pass sees it.
+        place = region.area.representative_point().buffer(PLACE_M, quad_segs=1)
+        ring, middle, around = _rings(place)
+        extras = []
+    widest = 1 if one_place else math.ceil(widest_m / swath_m)
     # Kind, how many strips, how many of them beyond the fewest, which one, group.
     kinds: list[tuple[float, int, float, int, int]] = []
     strips = [fewest + extra for extra in extras]
-    if any(isinstance(side, Neighbourhood) and side.turns == 0 for side in sides) or 1 in strips:
+    turns = {side.turns for side in sides if isinstance(side, Neighbourhood)}
+    if one_place or 0 in turns or 1 in strips:
         kinds.append((kernels.WHOLE, 1, ANY_WIDTH, 0, 0))
         strips.append(1)
-    if any(isinstance(side, Neighbourhood) and side.turns > 0 for side in sides):
+    if 1 in turns and not one_place:
         kinds.append((kernels.LONG, 2, ANY_WIDTH, 0, 1))
         strips.append(2)
     for extra in extras:
@@ -178,6 +185,13 @@ def divided(box: Floats, cell: Floats, slopes: Floats) -> tuple[Floats, Floats]:
     widths = box[[2, 4]]
     smaller = np.divide(parts[:, [2, 4]], widths, out=np.zeros((len(parts), 2)), where=widths > 0.0)
     return parts, slopes * smaller
+
+
+def _rings(area: BaseGeometry) -> tuple[Floats, Floats, Floats]:
+    """The outer ring of a polygon about its middle, that middle, and its convex hull's ring."""
+    ring = _ring(area)
+    middle = 0.5 * (ring.min(axis=0) + ring.max(axis=0))
+    return ring - middle, middle, _ring(shapely.convex_hull(shapely.Polygon(ring - middle)))
 
 
 def _ring(area: BaseGeometry) -> Floats:

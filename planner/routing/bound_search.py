@@ -112,6 +112,11 @@ def exact_bound_m(
         Lines between cells to evaluate, or as much work.
     """
     best_m = 0.0
+    for node in nodes:
+        cells = cells_of.cells(node.ring, node.hull, node.families, node.boxes(HEADINGS_BEYOND))
+        if not (cells[:, cells_of.HOLDS] > 0.0).any():
+            # Nothing is known of how it is seen.
+            return best_m
     for target_m in targets_m:
         found_m, spent = _prove(nodes, start, end, radius_m, target_m, effort, stop)
         best_m = max(best_m, found_m)

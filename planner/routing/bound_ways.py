@@ -19,6 +19,7 @@ from planner.coverage.segments import Neighbourhood
 from planner.coverage.sweeps import Side
 from planner.errors import InfeasibleError
 from planner.progress import Stop, never
+from planner.routing.bound_nodes import PLACE_M
 from planner.routing.bounds import GAPS, lower_bound_m
 from planner.routing.targets import targets
 from planner.routing.visible import sides_of, surroundings
@@ -29,8 +30,8 @@ from planner.vehicle.aircraft import Aircraft
 
 #: Regions taken in several ways that are told apart.
 MOST_APART = 3
-#: Half the width of what stands for a place, and how far a division may reach beyond a region.
-PLACE_M, BEYOND_M = 0.01, 0.01
+#: How far a division may reach beyond a region.
+BEYOND_M = 0.01
 
 Sides = tuple[Side, ...]
 
