@@ -137,6 +137,26 @@ def test_a_pass_beside_the_path_is_found() -> None:
     assert "collect-straight" in constraints(scenario, broken)
 
 
+def test_arcs_are_longer_than_their_chords() -> None:
+    """After many turns a collect begins metres sooner on the line than arcs tell: sound; far off is not."""
+    scenario, plan = planned(1)
+
+    def moved(along_m: float) -> Plan:
+        later = [c for c in plan.collects if c.start_m > 5000.0]
+        assert later
+        return replace(
+            plan,
+            collects=tuple(
+                replace(c, start_m=c.start_m + along_m, end_m=c.end_m + along_m) if c in later else c
+                for c in plan.collects
+            ),
+        )
+
+    assert "collect-straight" not in constraints(scenario, moved(4.0))
+    for far_m in (100.0, 1e6):
+        assert "collect-straight" in constraints(scenario, moved(far_m))
+
+
 def test_limits_of_the_aircraft_are_judged() -> None:
     """Range, flight time and energy that do not suffice are each a violation."""
     scenario, plan = planned(1)
