@@ -69,6 +69,12 @@ class VehicleIn(Strict):
     )
 
 
+GIMBAL_IS = (
+    "What points the sensor to the side of each pass, tilt in degrees from straight down: manager:tilt=45, "
+    "manager:tilt=45,yaw=course,device=1, mount:tilt=45; none, or null, where it is bolted on."
+)
+
+
 class MissionIn(Strict):
     """What to upload."""
 
@@ -80,6 +86,7 @@ class MissionIn(Strict):
     payload: str | None = Field(
         default=None, max_length=200, description="How the sensor is switched, e.g. relay:0."
     )
+    gimbal: str | None = Field(default=None, max_length=200, description=GIMBAL_IS)
     override: bool = Field(
         default=False, description="Upload although a hard constraint is broken; needs a reason."
     )
@@ -161,6 +168,7 @@ class PreflightIn(Strict):
     payload: str | None = Field(
         default=None, max_length=200, description="How the sensor is switched, e.g. relay:0."
     )
+    gimbal: str | None = Field(default=None, max_length=200, description=GIMBAL_IS)
 
 
 class ParameterOut(BaseModel):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Coroutine
+from dataclasses import replace
 from enum import StrEnum
 from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
@@ -20,6 +21,12 @@ VehicleName = Annotated[str | None, typer.Option(help="Vehicle of the plan; its 
 Payload = Annotated[
     str | None,
     typer.Option(help="How the sensor is switched: relay:0, servo:9:1900:1100, camera:distance=25 …"),
+]
+Gimbal = Annotated[
+    str | None,
+    typer.Option(
+        help="What points the sensor, degrees from straight down: manager:tilt=45, mount:tilt=45 …"
+    ),
 ]
 Timeout = Annotated[float, typer.Option(min=0.1, help="How long to wait for the vehicle's heartbeat.")]
 Url = Annotated[
@@ -96,6 +103,7 @@ def export(
         AutopilotChoice | None, typer.Option(help="Encode for this autopilot instead of the plan's.")
     ] = None,
     payload: Payload = None,
+    gimbal: Gimbal = None,
     as_json: Json = False,
 ) -> None:
     """Write a plan's mission for other programs.
@@ -105,7 +113,7 @@ def export(
     from app.services.missions import MissionChoice, mission_bytes
 
     document = read_plan_file(plan)
-    choice = MissionChoice(vehicle, autopilot.value if autopilot else None, payload)
+    choice = MissionChoice(vehicle, autopilot.value if autopilot else None, payload, gimbal)
 
     async def write() -> bytes:
         return mission_bytes(document, choice, form.value)
@@ -128,6 +136,7 @@ def upload(
     ] = None,
     vehicle: VehicleName = None,
     payload: Payload = None,
+    gimbal: Gimbal = None,
     timeout_s: Timeout = 10.0,
     as_json: Json = False,
 ) -> None:
@@ -139,7 +148,7 @@ def upload(
 
     document = read_plan_file(plan)
     names = list(dict.fromkeys(choice.value for choice in part or [PartChoice.MISSION]))
-    choice = MissionChoice(vehicle, None, payload)
+    choice = MissionChoice(vehicle, None, payload, gimbal)
     report = run_async(_upload(document, to, names, choice, override, timeout_s))
     if as_json:
         emit_json(report)
@@ -162,14 +171,14 @@ def upload(
 async def _upload(
     plan: Plan, url: str, parts: list[Any], choice: MissionChoice, override: str | None, timeout_s: float
 ) -> dict[str, Any]:
-    from app.services.missions import MissionChoice, encode_plan
+    from app.services.missions import encode_plan
     from app.services.vehicles.connection import connected
     from app.services.vehicles.uploads import judge_upload, new_report, report_json, send_parts
 
     async with connected(url, (plan.home[1], plan.home[0], 0.0), timeout_s) as client:
         autopilot = client.state.autopilot
         if autopilot != "generic":
-            choice = MissionChoice(choice.vehicle, autopilot, choice.payload)
+            choice = replace(choice, autopilot=autopilot)
         mission = encode_plan(plan, choice)
         findings = judge_upload(plan, mission, parts, client.state, override)
         for finding in findings:

@@ -55,6 +55,14 @@ PayloadQuery = Annotated[
         max_length=200,
     ),
 ]
+GimbalQuery = Annotated[
+    str | None,
+    Query(
+        description="What points the sensor to the side of each pass, tilt in degrees from straight down: "
+        "manager:tilt=45, manager:tilt=45,yaw=course,device=1, mount:tilt=45; none where it is bolted on.",
+        max_length=200,
+    ),
+]
 
 
 def _mission_route(form: str, name: str, media_type: str, summary: str, kind: str = "string") -> None:
@@ -71,10 +79,11 @@ def _mission_route(form: str, name: str, media_type: str, summary: str, kind: st
         vehicle: VehicleQuery = None,
         autopilot: AutopilotQuery = None,
         payload: PayloadQuery = None,
+        gimbal: GimbalQuery = None,
     ) -> Response:
         """The mission of one vehicle, as a file to save."""
         text = await planning.plan_text(plan_id)
-        choice = MissionChoice(vehicle, autopilot, payload)
+        choice = MissionChoice(vehicle, autopilot, payload, gimbal)
         body = await asyncio.to_thread(lambda: mission_bytes(plan_of(text), choice, form))
         return Response(
             body,

@@ -131,7 +131,7 @@ async def upload(
     `accepted`, `refused`, or `unknown` when it vanished meanwhile; `held` and `differences` tell what it
     holds.
     """
-    choice = MissionChoice(body.vehicle, None, body.payload)
+    choice = MissionChoice(body.vehicle, None, body.payload, body.gimbal)
     report = await transfers.upload(
         fleet.get(vehicle_id), body.plan_id, body.parts, choice, body.reason if body.override else None
     )
@@ -169,7 +169,7 @@ async def preflight(vehicle_id: str, body: PreflightIn, fleet: FleetDep, checks:
 
     The vehicle is read, never changed. It is `ready` when no check has failed.
     """
-    choice = MissionChoice(body.vehicle, None, body.payload)
+    choice = MissionChoice(body.vehicle, None, body.payload, body.gimbal)
     return PreflightOut.of(await checks.preflight(fleet.get(vehicle_id), body.plan_id, choice))
 
 
@@ -181,9 +181,10 @@ async def parameters(
     name: Annotated[list[str] | None, Query(max_length=200, description="Repeat for several.")] = None,
     plan_id: Annotated[str | None, Query(max_length=36, description="Read and judge what it needs.")] = None,
     payload: Annotated[str | None, Query(max_length=200)] = None,
+    gimbal: Annotated[str | None, Query(max_length=200)] = None,
 ) -> ParametersOut:
     """Parameters by name; with `plan_id` also those the plan needs, with findings. None is ever changed."""
-    choice = MissionChoice(None, None, payload)
+    choice = MissionChoice(None, None, payload, gimbal)
     report = await checks.parameters(fleet.get(vehicle_id), name or [], plan_id, choice)
     return ParametersOut.of(vehicle_id, report)
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Literal
 
 from app.services.documents import read_object
 from app.services.errors import NotFoundError, RefusedError
 from mavlink.encode import EncodeError, EncodeOptions, encode
+from mavlink.encoding.gimbal import GimbalError, parse_gimbal
 from mavlink.items import MissionType
 from mavlink.mission import Mission
 from mavlink.payload import PayloadError, parse_payload
@@ -40,11 +41,14 @@ class MissionChoice:
         None for the one the plan names.
     payload
         How the sensor is switched, e.g. ``relay:0``; None for the autopilot's default.
+    gimbal
+        What points the sensor, e.g. ``manager:tilt=45``; None, or ``none``, where it is bolted on.
     """
 
     vehicle: str | None = None
     autopilot: AutopilotName | None = None
     payload: str | None = None
+    gimbal: str | None = None
 
 
 def encode_plan(plan: Plan, choice: MissionChoice) -> Mission:
@@ -55,21 +59,22 @@ def encode_plan(plan: Plan, choice: MissionChoice) -> Mission:
     NotFoundError
         The plan knows no vehicle of that name.
     RefusedError
-        The payload, or the plan for that autopilot, cannot be encoded.
+        The payload, the gimbal, or the plan for that autopilot, cannot be encoded.
     """
     vehicle = _vehicle_of(plan, choice.vehicle)
     try:
-        options = (
-            EncodeOptions()
-            if choice.payload is None
-            else EncodeOptions(payload=parse_payload(choice.payload))
-        )
+        options = EncodeOptions(gimbal=None if choice.gimbal is None else parse_gimbal(choice.gimbal))
+        if choice.payload is not None:
+            options = replace(options, payload=parse_payload(choice.payload))
         return encode(plan, vehicle=vehicle, autopilot=choice.autopilot, options=options)
     except PayloadError as error:
         fix = "write e.g. relay:0, servo:9:1900:1100, aux:1, camera:distance=25 or image:interval=2"
         raise RefusedError(str(error), (Finding("payload", "payload", str(error), fix),)) from error
+    except GimbalError as error:
+        fix = "write e.g. manager:tilt=45, manager:tilt=45,yaw=course, mount:tilt=45 or none"
+        raise RefusedError(str(error), (Finding("gimbal", "gimbal", str(error), fix),)) from error
     except EncodeError as error:
-        fix = "plan for another autopilot or payload"
+        fix = "plan for another autopilot, payload or gimbal"
         raise RefusedError(str(error), (Finding("plan", "cannot-be-encoded", str(error), fix),)) from error
 
 

@@ -102,6 +102,7 @@ class HeldMission:
     plan_id: str
     plan_vehicle: str
     payload: str | None
+    gimbal: str | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -212,6 +212,12 @@ def neutral_item(gimbal: Gimbal, autopilot: Autopilot) -> MissionItem:
     return _manager_item(gimbal, 0.0, 0.0, Flags.NEUTRAL, autopilot)
 
 
+def hold_of(item: MissionItem) -> Hold:
+    """What an item that points a gimbal at a pass holds its yaw by."""
+    managed = item.command == Command.DO_GIMBAL_MANAGER_PITCHYAW
+    return "course" if managed and item.x & Flags.YAW_LOCK else "vehicle"
+
+
 def protocol_of(item: MissionItem) -> Protocol | None:
     """How an item points a gimbal at a pass; None where it does not, or brings it to rest."""
     if item.command == Command.DO_GIMBAL_MANAGER_PITCHYAW:

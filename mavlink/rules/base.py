@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Final, Literal
 
-from mavlink.encoding.gimbal import Protocol, protocol_of
+from mavlink.encoding.gimbal import Hold, Protocol, hold_of, protocol_of
 from mavlink.geometry import distance_m
 from mavlink.items import Command, Frame
 from mavlink.mission import Mission
@@ -82,6 +82,7 @@ class GimbalNeeds:
     """
 
     protocol: Protocol
+    hold: Hold
     device: int
     pitch_deg: float
     yaws_deg: tuple[float, ...]
@@ -144,7 +145,9 @@ def _gimbal(plan: Plan, mission: Mission) -> GimbalNeeds | None:
         looks = {collect.look for collect in plan.collects_of(mission.vehicle)}
         yaws_deg = tuple(90.0 if look == "right" else -90.0 for look in sorted(looks))
         device = round(item.z) if protocol == "manager" else 0
-        return GimbalNeeds(protocol, device, item.param1, yaws_deg if item.param1 > -90.0 else (0.0,))
+        if item.param1 == -90.0:
+            yaws_deg = (0.0,)
+        return GimbalNeeds(protocol, hold_of(item), device, item.param1, yaws_deg)
     return None
 
 

@@ -70,6 +70,12 @@ def _ardupilot(settings: SimSettings) -> dict[str, float]:
             "FENCE_RADIUS": 300.0,
             "FENCE_ACTION": 1.0,
             "CAM1_TYPE": 1.0,
+            # A servo gimbal that reaches all round and straight down.
+            "MNT1_TYPE": 1.0,
+            "MNT1_PITCH_MIN": -90.0,
+            "MNT1_PITCH_MAX": 20.0,
+            "MNT1_YAW_MIN": -180.0,
+            "MNT1_YAW_MAX": 180.0,
         }
         | {f"RELAY{number}_FUNCTION": 1.0 for number in range(1, 7)}
         | {f"SERVO{n}_FUNCTION": 10.0 if n == 9 else 0.0 for n in range(1, 17)}
@@ -109,6 +115,10 @@ def _px4(settings: SimSettings) -> dict[str, float]:
             "RTL_RETURN_ALT": settings.rtl_altitude_m,
             "GF_ACTION": 3.0,
             "TRIG_MODE": 4.0,
+            "MNT_MODE_IN": 4.0,
+            "MNT_MODE_OUT": 2.0,
+            "MNT_RANGE_PITCH": 180.0,
+            "MNT_RANGE_YAW": 360.0,
             "COM_DISARM_PRFLT": 10.0,
             "COM_DISARM_LAND": 2.0,
             "PWM_MAIN_REV": 0.0,

@@ -76,6 +76,7 @@ class VehicleRow(Base):
     held_plan_id: Mapped[str | None] = mapped_column(String(36))
     held_plan_vehicle: Mapped[str | None] = mapped_column(String(200))
     held_payload: Mapped[str | None] = mapped_column(String(200))
+    held_gimbal: Mapped[str | None] = mapped_column(String(200))
     last_plan_id: Mapped[str | None] = mapped_column(String(36))
     last_list_id: Mapped[int | None] = mapped_column(Integer)
     forward: Mapped[list[dict[str, Any]] | None] = mapped_column(JSON)

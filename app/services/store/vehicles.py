@@ -15,7 +15,7 @@ from mavlink.forward.address import ForwardAddress
 def _record(row: VehicleRow) -> VehicleRecord:
     held = None
     if row.held_plan_id is not None and row.held_plan_vehicle is not None:
-        held = HeldMission(row.held_plan_id, row.held_plan_vehicle, row.held_payload)
+        held = HeldMission(row.held_plan_id, row.held_plan_vehicle, row.held_payload, row.held_gimbal)
     sent = None if row.last_plan_id is None else SentMission(row.last_plan_id, row.last_list_id)
     forward = tuple(ForwardAddress(entry["url"], entry["write"]) for entry in row.forward or ())
     return VehicleRecord(row.id, row.name, row.url, row.created_at, held, sent, forward, row.system_id or 0)
@@ -56,6 +56,7 @@ class VehicleStore:
             "held_plan_id": held.plan_id if held else None,
             "held_plan_vehicle": held.plan_vehicle if held else None,
             "held_payload": held.payload if held else None,
+            "held_gimbal": held.gimbal if held else None,
         }
         async with self._database.session() as session:
             await session.execute(update(VehicleRow).where(VehicleRow.id == vehicle_id).values(**values))

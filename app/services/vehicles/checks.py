@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import json
 from collections.abc import Sequence
+from dataclasses import replace
 
 from app.services.missions import MissionChoice, encode_plan, plan_of
 from app.services.planning import PlanningService
@@ -60,13 +61,13 @@ class Checks:
 
 
 def _as_sent(vehicle: Vehicle, plan_id: str, mission: Mission, choice: MissionChoice) -> bool:
-    """Whether a mission asked about is the one last sent, payload and all."""
+    """Whether a mission asked about is the one last sent, payload, gimbal and all."""
     sent = vehicle.upload
     return (
         sent is not None
         and vehicle.sent is not None
         and vehicle.sent.plan_id == sent.plan_id == plan_id
-        and (sent.plan_vehicle, sent.payload) == (mission.vehicle, choice.payload)
+        and (sent.plan_vehicle, sent.payload, sent.gimbal) == (mission.vehicle, choice.payload, choice.gimbal)
         and "mission" in sent.parts
     )
 
@@ -76,4 +77,4 @@ def for_vehicle(vehicle: Vehicle, choice: MissionChoice) -> MissionChoice:
     autopilot = vehicle.state.autopilot
     if choice.autopilot is not None or autopilot == "generic":
         return choice
-    return MissionChoice(choice.vehicle, autopilot, choice.payload)
+    return replace(choice, autopilot=autopilot)

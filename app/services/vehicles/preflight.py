@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from app.services.missions import PARTS, PartName, mission_findings
+from app.services.vehicles.pointing import pointing_findings
 from mavlink.geometry import distance_m
 from mavlink.mission import Mission
 from mavlink.parameter_rules import Needs, ParameterFinding, judge_parameters
@@ -110,6 +111,7 @@ def preflight(
         _held("mission", mission, observed),
         _fence(mission, observed),
         _parameters(found, observed),
+        *_gimbal(plan, scenario, mission, needs),
         _battery(plan, scenario, mission, state),
         _place(plan, state),
         _gps(state),
@@ -178,6 +180,18 @@ def _parameters(found: Sequence[ParameterFinding], observed: Observed) -> Check:
     if observed.unread:
         return Check("parameters", "warning", f"no answer about {', '.join(observed.unread)}")
     return Check("parameters", "ok", f"{len(observed.values)} read, all as the mission needs them")
+
+
+def _gimbal(plan: Plan, scenario: Mapping[str, Any], mission: Mission, needs: Needs) -> Iterator[Check]:
+    if needs.gimbal is None:
+        return
+    found = pointing_findings(plan, scenario, mission, needs)
+    if not found:
+        tilt_deg = 90.0 + needs.gimbal.pitch_deg
+        yield Check("gimbal", "ok", f"it holds the sensor {tilt_deg:g}° from straight down, as planned")
+        return
+    failed = any(finding.severity == "error" for finding in found)
+    yield Check("gimbal", "failed" if failed else "warning", "; ".join(f.message for f in found))
 
 
 def _battery(plan: Plan, scenario: Mapping[str, Any], mission: Mission, state: VehicleState) -> Check:

@@ -41,12 +41,15 @@ class HeldPlan:
         How the sensor is switched, as the upload said it; None for the default.
     output
         Where the vehicle shows that; None where it shows it nowhere.
+    gimbal
+        What points the sensor, as the upload said it.
     """
 
     plan_id: str
     plan_vehicle: str
     payload: str | None = None
     output: SensorOutput | None = None
+    gimbal: str | None = None
 
 
 class FlightRecorder:

@@ -10,7 +10,7 @@ from typing import Any
 
 import structlog
 
-from app.services.errors import ConflictError, LinkError, NotFoundError
+from app.services.errors import ConflictError, LinkError, NotFoundError, RefusedError
 from app.services.metrics import UPLOADS
 from app.services.missions import PARTS, MissionChoice, PartName, encode_plan, plan_of
 from app.services.planning import PlanningService
@@ -19,8 +19,9 @@ from app.services.store.uploads import UploadStore
 from app.services.store.vehicles import VehicleStore
 from app.services.vehicles.checks import for_vehicle
 from app.services.vehicles.connection import CONNECT_S
-from app.services.vehicles.inspection import inspect
+from app.services.vehicles.inspection import inspect, mission_needs
 from app.services.vehicles.items import item_json
+from app.services.vehicles.pointing import pointing_findings
 from app.services.vehicles.preflight import Preflight
 from app.services.vehicles.recorder import is_flying
 from app.services.vehicles.uploads import (
@@ -82,10 +83,11 @@ class Transfers:
             if not vehicle.state.connected:
                 raise LinkError(f"{vehicle.name}: {vehicle.client.absence}")
             mission = await asyncio.to_thread(encode_plan, plan, for_vehicle(vehicle, choice))
-            findings = judge_upload(plan, mission, parts, vehicle.state, override)
+            findings = _pointed(plan, scenario, mission, choice) if "mission" in parts else ()
+            findings += judge_upload(plan, mission, parts, vehicle.state, override)
             await _bring_home(vehicle, plan)
             report = await self._begin(vehicle, plan_id, mission, parts, override, findings)
-            report.payload = choice.payload
+            report.payload, report.gimbal = choice.payload, choice.gimbal
 
             def tell(part: PartName, made: Progress) -> None:
                 vehicle.progress = {"part": part, "done": made.done, "total": made.total}
@@ -132,7 +134,7 @@ class Transfers:
         assert report is not None
         mission = report.parts.get("mission")
         if mission is not None:
-            held = HeldMission(report.plan_id, report.plan_vehicle, report.payload)
+            held = HeldMission(report.plan_id, report.plan_vehicle, report.payload, report.gimbal)
             if mission.verified:
                 await vehicle.hold(held)
             vehicle.found(None if mission.differences is None else not mission.differences)
@@ -151,7 +153,7 @@ class Transfers:
             plan = plan_of(await self._planning.plan_text(held.plan_id))
         except (NotFoundError, ConflictError):
             return None
-        choice = for_vehicle(vehicle, MissionChoice(held.plan_vehicle, None, held.payload))
+        choice = for_vehicle(vehicle, MissionChoice(held.plan_vehicle, None, held.payload, held.gimbal))
         mission = await asyncio.to_thread(encode_plan, plan, choice)
         meant = mission.items_of(PARTS["mission"])
         found = await vehicle.client.download(PARTS["mission"])
@@ -210,6 +212,17 @@ class Transfers:
         report = new_report(number, plan_id, mission, parts, override, findings)
         vehicle.upload = report
         return report
+
+
+def _pointed(
+    plan: Plan, scenario: dict[str, Any], mission: Mission, choice: MissionChoice
+) -> tuple[Finding, ...]:
+    """What is worth knowing of the gimbal; RefusedError where the sensor would look elsewhere."""
+    found = pointing_findings(plan, scenario, mission, mission_needs(plan, scenario, mission, choice))
+    errors = tuple(finding for finding in found if finding.severity == "error")
+    if errors:
+        raise RefusedError(f"the gimbal would point elsewhere: {errors[0].message}", errors)
+    return found
 
 
 async def _bring_home(vehicle: Vehicle, plan: Plan) -> None:

@@ -252,7 +252,7 @@ class Vehicle:
         if changes_mission(message):
             held = self.held
             if held is not None:
-                self._believed = HeldMission(held.plan_id, held.plan_vehicle, held.payload)
+                self._believed = HeldMission(held.plan_id, held.plan_vehicle, held.payload, held.gimbal)
             believed = self._believed
             self.holds_unknown()
             # Read back once the station is done.
@@ -417,7 +417,7 @@ class Vehicle:
             output = await self.client.sensor_output(payload)
         except (mavlink_errors.BusyError, mavlink_errors.NotConnectedError) as error:
             log.warning("output of the payload not known", vehicle=self.name, reason=str(error))
-        self.held = HeldPlan(held.plan_id, held.plan_vehicle, held.payload, output)
+        self.held = HeldPlan(held.plan_id, held.plan_vehicle, held.payload, output, held.gimbal)
         # It may fly at once: what shows its payload must be listened to by then.
         self._look_now.set()
 
