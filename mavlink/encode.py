@@ -1,9 +1,10 @@
 """Plan to mission, fence and rally points, in the dialect of an autopilot.
 
 In flight order: the home row (ArduPilot), the take-off, a circle up to the plan's altitude (fixed wing), the
-speed, then the path: waypoints at the ends of its straights, points on its arcs, and exactly both ends of
-each collect, the sensor switched right behind them; last the return or the landing. A gimbal is pointed
-before the path, anew right behind a collect whose next one looks elsewhere, and rests before the landing.
+speed, then the path: waypoints at the ends of its straights, points on its arcs or turns round their centres,
+and exactly both ends of each collect, the sensor switched right behind them; last the return or the landing.
+A gimbal is pointed before the path, anew right behind a collect whose next one looks elsewhere, and rests
+before the landing.
 """
 
 from __future__ import annotations
@@ -14,12 +15,13 @@ from dataclasses import replace
 from functools import partial
 
 from mavlink.dialects import Autopilot
+from mavlink.encoding.arcs import flown_round, turn_item
 from mavlink.encoding.ends import beginning, ending
 from mavlink.encoding.fence import fence_items
 from mavlink.encoding.manoeuvres import MARGIN_M
 from mavlink.encoding.options import EncodeError, EncodeOptions, Finish
 from mavlink.encoding.pointing import Pointings, pointings_of
-from mavlink.encoding.stops import Stop, stops_along
+from mavlink.encoding.stops import Stop, altitudes_along, stops_along
 from mavlink.encoding.task import Task, task_of
 from mavlink.items import Command, Frame, MissionItem, MissionResult, MissionType
 from mavlink.mission import Mission, home_item, numbered, placed
@@ -75,6 +77,7 @@ def encode(
     unlisted = sorted({item.command for item in (on, off) if not task.dialect.knows(item.command)})
     payload_notes += tuple(f"it is not known whether {task.dialect.name} takes command {n}" for n in unlisted)
     first, last = beginning(task), ending(task)
+    as_turn = flown_round(task, altitudes_along(task.path))
     stops = stops_along(
         task.path,
         task.collects,
@@ -82,11 +85,11 @@ def encode(
         options.chord_error_m,
         task.off_delay_m,
         partial(_may_overshoot, task) if task.turns_early_m > 0.0 else None,
+        as_turn,
     )
     home = [home_item(plan.home, options.home_altitude_m)] if task.dialect.home_row else []
     flight = _flight(task, (stop for stop in stops if stop.along_m > first.skipped_m), on, off, pointing)
     fence, fence_notes = fence_items(plan, (task.path,))
-    chord_note = f"arcs are waypoints with a chord error of at most {options.chord_error_m:g} m"
     return Mission(
         mission=numbered([*home, *first.items, *flight, *pointing.rest, *last.items]),
         fence=fence,
@@ -96,7 +99,7 @@ def encode(
         vehicle_type=task.vehicle.type,
         home=plan.home,
         notes=(
-            chord_note,
+            *_arc_notes(task, sum(as_turn(segment) for segment in task.path.segments)),
             *payload_notes,
             *pointing.notes,
             *_pass_by_notes(task),
@@ -147,6 +150,8 @@ def _flight(
     items: list[MissionItem] = [*pointing.before(0)]
     collecting = begun = pointed = 0
     for stop in stops:
+        if stop.arc is not None:
+            items.append(turn_item(task, stop.arc, stop.altitude_m))
         parameters = (0.0, _acceptance_m(task, stop), 0.0, task.any_yaw)
         items.append(placed(Command.NAV_WAYPOINT, stop.place, stop.altitude_m, task.frame, parameters))
         before, collecting = collecting, collecting + stop.on - stop.off
@@ -176,6 +181,18 @@ def _may_overshoot(task: Task, place: LonLat) -> bool:
     """Whether a waypoint that is turned before may lie there: PX4 wants every waypoint inside its fence."""
     here = task.local.xy(place)
     return task.room.line_outside_m2([here, (here[0] + 1.0, here[1])], MARGIN_M) <= 0.0
+
+
+def _arc_notes(task: Task, turns: int) -> tuple[str, ...]:
+    others = "the other arcs" if turns else "arcs"
+    points = f"{others} are waypoints with a chord error of at most {task.options.chord_error_m:g} m"
+    if not turns:
+        return (points,)
+    return (
+        f"{turns} {'arc is a turn' if turns == 1 else 'arcs are turns'} round the centre (LOITER_TURNS), the"
+        " radius given for sea level, as ArduPlane widens it with height while NAVL1_LIM_BANK is 0",
+        points,
+    )
 
 
 def _pass_by_notes(task: Task) -> tuple[str, ...]:

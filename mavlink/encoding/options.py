@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, get_args
 
 from mavlink.encoding.gimbal import Gimbal
 from mavlink.payload import Payload, RelayPayload
 
 Finish = Literal["auto", "rtl", "land", "loiter"]
+Arcs = Literal["auto", "points", "loiter"]
 
 DEFAULT_PAYLOAD: Payload = RelayPayload(relay=0)
 
@@ -26,6 +27,9 @@ class EncodeOptions:
     ----------
     chord_error_m
         Largest distance between an arc of the path and the lines between its waypoints.
+    arcs
+        How arcs are said: ``points`` along them, or ``loiter`` turns round their centres, on ArduPlane alone
+        and where the item can hold them. ``auto`` takes turns where they were measured to be flown better.
     payload
         How the sensor is switched. PX4 has no relays: there a relay becomes the actuator of the same place.
     finish
@@ -53,6 +57,7 @@ class EncodeOptions:
     """
 
     chord_error_m: float = 2.0
+    arcs: Arcs = "auto"
     payload: Payload = DEFAULT_PAYLOAD
     finish: Finish = "auto"
     acceptance_radius_m: float | None = None
@@ -74,6 +79,8 @@ class EncodeOptions:
             "approach_altitude_m": self.approach_altitude_m,
             "approach_slope_deg": self.approach_slope_deg,
         }
+        if self.arcs not in get_args(Arcs):
+            raise EncodeError(f"arcs is {self.arcs!r}: auto, points or loiter is meant")
         for name, value in positive.items():
             if not (math.isfinite(value) and value > 0.0):
                 raise EncodeError(f"{name} is {value}: a positive number is meant")

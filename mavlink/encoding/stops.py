@@ -27,6 +27,8 @@ class Stop:
         Distance along the path.
     off, on
         How many collects end and begin here.
+    arc
+        The arc that is flown to here round its centre, without waypoints of its own.
     """
 
     along_m: float
@@ -34,6 +36,7 @@ class Stop:
     altitude_m: float
     off: int = 0
     on: int = 0
+    arc: PathSegment | None = None
 
 
 def stops_along(
@@ -43,6 +46,7 @@ def stops_along(
     chord_error_m: float,
     off_delay_m: float = 0.0,
     may_overshoot: Callable[[LonLat], bool] | None = None,
+    flown_round: Callable[[PathSegment], bool] = lambda _: False,
 ) -> tuple[Stop, ...]:
     """Ends of the straights, points on the arcs, and exactly both ends of each collect, in flight order.
 
@@ -56,8 +60,10 @@ def stops_along(
         For aircraft that turn this far before a waypoint: whether one may lie at a place off the path. Then a
         collect whose straight ends too early has its last waypoint beyond, in the line's direction: the
         aircraft begins its turn where the path does, and the sensor stays on until there.
+    flown_round
+        Which arcs are flown round their centres.
     """
-    altitude = _Altitudes(path)
+    altitude = altitudes_along(path)
     stops: list[Stop] = []
     skipped: list[tuple[float, float]] = []
     for collect in collects:
@@ -77,6 +83,11 @@ def stops_along(
         else:
             stops += [end, replace(late, altitude_m=altitude(late.along_m), off=1)]
     for segment in path.segments:
+        if flown_round(segment):
+            end_m = segment.start_m + segment.length_m
+            stops.append(Stop(segment.start_m, segment.start, altitude(segment.start_m)))
+            stops.append(Stop(end_m, segment.end, altitude(end_m), arc=segment))
+            continue
         places = _segment_places(segment, local, chord_error_m)
         for number, place in enumerate(places):
             along_m = segment.start_m + segment.length_m * number / (len(places) - 1)
@@ -147,8 +158,14 @@ def _merged(stops: list[Stop], exact: set[LonLat]) -> tuple[Stop, ...]:
             merged.append(stop)
         else:
             kept = stop if stop.place in exact else last
-            merged[-1] = replace(kept, off=last.off + stop.off, on=last.on + stop.on)
+            arc = last.arc or stop.arc
+            merged[-1] = replace(kept, off=last.off + stop.off, on=last.on + stop.on, arc=arc)
     return tuple(merged)
+
+
+def altitudes_along(path: FlownPath) -> Callable[[float], float]:
+    """Altitude by distance along a path, linear between the vertices of its line."""
+    return _Altitudes(path)
 
 
 class _Altitudes:

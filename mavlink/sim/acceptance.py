@@ -201,7 +201,8 @@ def _ardupilot_stored(item: MissionItem, home: Place) -> MissionItem:
         case Command.NAV_TAKEOFF:
             p1, p4 = float(math.trunc(p1)), 0.0
         case Command.NAV_LOITER_TURNS:
-            p1 = p1 if p1 == 0.5 else _byte(p1)
+            # A part of a turn is kept in 1/256.
+            p1 = math.floor(256.0 * p1) / 256.0 if 0.0 < p1 < 1.0 else _byte(p1)
             p3 = _loiter_radius(p3)
         case Command.NAV_LOITER_TIME:
             p1, p3 = float(math.trunc(p1)), -1.0 if p3 < 0.0 else 1.0

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import pytest
 from hypothesis import given, settings
@@ -157,6 +158,7 @@ def test_vehicles_are_told_apart() -> None:
 @pytest.mark.parametrize(
     "change",
     [
+        {"arcs": "circles"},
         {"chord_error_m": 0.0},
         {"chord_error_m": math.nan},
         {"acceptance_radius_m": 300.0},
@@ -164,7 +166,7 @@ def test_vehicles_are_told_apart() -> None:
         {"off_delay_m": math.inf},
     ],
 )
-def test_senseless_options_are_refused(change: dict[str, float]) -> None:
+def test_senseless_options_are_refused(change: dict[str, Any]) -> None:
     """Options that no mission can be made from name themselves."""
     with pytest.raises(EncodeError, match=next(iter(change))):
         EncodeOptions(**change)

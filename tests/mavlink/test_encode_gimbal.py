@@ -55,8 +55,8 @@ def fields(item: MissionItem) -> str:
 
 
 def switched(mission: Mission) -> list[int]:
-    """Commands in order, waypoints left out."""
-    return [command for command in commands(mission) if command != W]
+    """Commands in order, without those that fly along the path."""
+    return [command for command in commands(mission) if command not in (W, Command.NAV_LOITER_TURNS)]
 
 
 def test_the_gimbal_points_before_the_first_pass_anew_for_the_other_side_and_rests_at_the_end() -> None:

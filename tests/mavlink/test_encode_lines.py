@@ -53,8 +53,8 @@ def test_arcs_have_a_waypoint_every_45_degrees(leg: Leg) -> None:
 
 def test_a_larger_chord_error_needs_fewer_waypoints() -> None:
     """Half a metre takes more items than five metres."""
-    fine = encode(make_plan(), options=EncodeOptions(chord_error_m=0.5))
-    coarse = encode(make_plan(), options=EncodeOptions(chord_error_m=5.0))
+    fine = encode(make_plan(), options=EncodeOptions(chord_error_m=0.5, arcs="points"))
+    coarse = encode(make_plan(), options=EncodeOptions(chord_error_m=5.0, arcs="points"))
     assert len(fine.mission) > len(coarse.mission)
 
 

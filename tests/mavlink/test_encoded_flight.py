@@ -11,7 +11,7 @@ from shapely.geometry import LineString, Point, Polygon
 from mavlink.compare import differences
 from mavlink.dialects import Autopilot
 from mavlink.encode import EncodeOptions, encode
-from mavlink.items import MissionType
+from mavlink.items import Command, MissionType
 from mavlink.payload import CommandPayload, Payload
 from mavlink.sim.autopilot import SimulatedAircraft
 from mavlink.sim.dynamics import AircraftState
@@ -129,3 +129,22 @@ def test_the_turns_are_flown_near_their_arcs() -> None:
     flown = LineString(track[first:last])
     assert flown.length > 0.7 * plan.paths[0].length_m
     assert max(planned.distance(Point(point)) for point in flown.coords) <= 10.0
+
+
+def test_turns_round_their_centres_are_flown_once() -> None:
+    """Three wide arcs as LOITER_TURNS: each left where it ends, on to the next pass, with no circle more."""
+    turns = (200.0, -330.0, 90.0)
+    legs = [Leg(length_m=1200.0, collect_m=(700.0, 1100.0))]
+    for turn_deg in turns:
+        legs += [Leg(turn_deg=turn_deg, radius_m=120.0), Leg(length_m=900.0, collect_m=(200.0, 800.0))]
+    plan = make_plan(tuple(legs))
+    commands = [item.command for item in encode(plan, autopilot="ardupilot").mission]
+    assert commands.count(Command.NAV_LOITER_TURNS) == len(turns)
+    track, *seen = fly(plan, "ardupilot")
+    assert len(seen) == len(plan.collects)
+    first, last = track.index(seen[0][0]), track.index(seen[-1][-1])
+    planned = LineString(FRAME.to_local([point[:2] for point in plan.paths[0].line]))
+    flown = LineString(track[first : last + 1])
+    assert max(planned.distance(Point(point)) for point in flown.coords) <= 10.0
+    planned_m = plan.collects[-1].end_m - plan.collects[0].start_m
+    assert flown.length == pytest.approx(planned_m, rel=0.02)

@@ -1,0 +1,85 @@
+"""Arcs of the path that the autopilot flies better round their centre than along points.
+
+ArduPlane alone: PX4 refuses NAV_LOITER_TURNS, and ArduCopter holds lines to within a metre. What was measured
+stands in docs/ardupilot.md. Source: MAV_CMD_NAV_LOITER_TURNS of common.xml; ``verify_loiter_turns`` and
+``ModeLoiter::isHeadingLinedUp`` of ArduPlane, ``loiter_radius`` of its AP_L1_Control.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+from mavlink.encoding.options import EncodeError
+from mavlink.encoding.task import Task
+from mavlink.items import Command, Frame, MissionItem
+from mavlink.mission import placed
+from planner.plan import PathSegment
+
+#: A turn is left as soon as the course is within 10° of the bearing of the next waypoint. That is the arc's
+#: end, seen along a chord: 20° before it. A shorter arc would be left where it begins.
+_LEFT_BEFORE_DEG = 20.0
+#: From here on the line behind is met sooner than behind points, with room to spare for being left too late:
+#: that would be another whole circle.
+_WORTH_IT_DEG = 60.0
+#: Stored in whole metres; larger ones in tens, and a large circle widens by more metres with height.
+_LARGEST_M = 255.0
+#: An item has one height.
+_LEVEL_M = 1.0
+#: How much of an arc must be flown before it may be left: without any, a nearly full circle would be left at
+#: once. Not much, for what is flown before the circle is met does not count, and an arc whose end is passed
+#: before enough was counted is flown for another whole circle.
+_COUNTED_PART = 0.25
+#: Turns below one are stored in such parts.
+_TURN_STEPS = 256.0
+
+
+def flown_round(task: Task, altitude_m: Callable[[float], float]) -> Callable[[PathSegment], bool]:
+    """Whether an arc becomes a turn round its centre.
+
+    Parameters
+    ----------
+    altitude_m
+        Of the path, by distance along it.
+    """
+    arcs = task.options.arcs
+    if arcs == "loiter" and not task.is_plane:
+        raise EncodeError(
+            f"arcs are to be loiter turns, which {task.dialect.name} does not fly in missions: ask for points"
+        )
+    if arcs == "points" or not task.is_plane:
+        return lambda _: False
+    least_deg = _WORTH_IT_DEG if arcs == "auto" else _LEFT_BEFORE_DEG
+
+    def suits(segment: PathSegment) -> bool:
+        if segment.turn_deg is None or segment.radius_m is None or segment.centre is None:
+            return False
+        places_m = (segment.start_m + part * segment.length_m for part in (0.0, 0.25, 0.5, 0.75, 1.0))
+        heights_m = [altitude_m(along_m) for along_m in places_m]
+        return (
+            least_deg < segment.turn_deg < 360.0
+            and segment.radius_m <= _LARGEST_M
+            and max(heights_m) - min(heights_m) <= _LEVEL_M
+        )
+
+    return suits
+
+
+def turn_item(task: Task, arc: PathSegment, altitude_m: float) -> MissionItem:
+    """An arc as NAV_LOITER_TURNS, left towards the waypoint behind it; ``altitude_m`` in the path's frame."""
+    if arc.centre is None or arc.turn_deg is None:
+        raise ValueError(f"the segment at {arc.start_m:g} m is no arc")
+    above_sea_m = altitude_m + (0.0 if task.frame == Frame.GLOBAL else task.options.home_altitude_m)
+    radius_m = float(round(arc.length_m / math.radians(arc.turn_deg) / widened(above_sea_m)))
+    turns = math.floor(_COUNTED_PART * arc.turn_deg / 360.0 * _TURN_STEPS) / _TURN_STEPS
+    # Param 4: the line that follows counts from where the circle is left, not from its centre.
+    parameters = (turns, 0.0, radius_m if arc.kind == "right" else -radius_m, 1.0)
+    return placed(Command.NAV_LOITER_TURNS, arc.centre, altitude_m, task.frame, parameters)
+
+
+def widened(above_sea_m: float) -> float:
+    """How much wider than asked ArduPlane circles: the square of true over equivalent airspeed.
+
+    That is the inverse of the air's density over that at sea level, in the standard atmosphere below 11 km.
+    """
+    return float((1.0 - 2.25577e-5 * min(max(above_sea_m, 0.0), 11_000.0)) ** -4.25588)
