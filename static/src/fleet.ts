@@ -70,14 +70,20 @@ export async function letGo(id: string): Promise<void> {
   await refreshVehicles();
 }
 
-export function upload(id: string, planId: string, parts: Part[], payload: string | null, override: Override | null): Promise<Upload> {
+/** What the plan leaves open: how the sensor is switched, and what points it; null for the default. */
+export interface Encoding {
+  payload: string | null;
+  gimbal: string | null;
+}
+
+export function upload(id: string, planId: string, parts: Part[], how: Encoding, override: Override | null): Promise<Upload> {
   const excuse = override ? { override: true, reason: override.reason } : {};
-  return post<Upload>(path(id, "/mission"), { plan_id: planId, parts, payload, ...excuse });
+  return post<Upload>(path(id, "/mission"), { plan_id: planId, parts, ...how, ...excuse });
 }
 
 /** Ask the vehicle whether it is ready to fly a plan; nothing in it is changed. */
-export function preflight(id: string, planId: string, payload: string | null): Promise<Preflight> {
-  return post<Preflight>(path(id, "/preflight"), { plan_id: planId, payload });
+export function preflight(id: string, planId: string, how: Encoding): Promise<Preflight> {
+  return post<Preflight>(path(id, "/preflight"), { plan_id: planId, ...how });
 }
 
 /** Take the aircraft that answers in the vehicle's place for the vehicle. */

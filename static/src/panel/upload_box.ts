@@ -2,7 +2,7 @@
 import { ApiError } from "../api";
 import { ask } from "../dialog";
 import { button, fill, h, section } from "../dom";
-import { preflight, upload, watched, type Override } from "../fleet";
+import { preflight, upload, watched, type Encoding, type Override } from "../fleet";
 import { attempt, findingText, report } from "../notices";
 import { open } from "../plans";
 import type { Part, Preflight, Upload, Vehicle } from "../types";
@@ -76,6 +76,10 @@ function answer(result: Upload, plan: string | undefined): HTMLElement {
 const SWITCHES = ["relay:0", "servo:9:1900:1100", "camera:distance=25", "image:interval=2", "actuator:1", "aux:1"];
 const SWITCHED = "What the autopilot switches at both ends of every pass. relay:number · servo:output:on:off in µs · camera:distance=metres between photos · image:interval=seconds · PX4: actuator:number, aux:output or main:output · command:number:parameters";
 
+/** Gimbals, to be filled in; an empty field means none. */
+const GIMBALS = ["none", "manager:tilt=45", "manager:tilt=45,yaw=course", "mount:tilt=45"];
+const POINTED = "A gimbal that points the sensor to the side each pass looks to. tilt=degrees from straight down · yaw=vehicle turns with the nose, yaw=course is held abeam · device=number · mount for older firmware";
+
 /** The controls, and what is answered to them: apart, as long answers must not move controls. */
 export function uploadBox(): { controls: HTMLElement; answers: HTMLElement } {
   const part = (name: Part, title: string, checked = true): HTMLInputElement => h("input", { type: "checkbox", id: `part-${name}`, checked, title, onchange: () => update() });
@@ -85,14 +89,18 @@ export function uploadBox(): { controls: HTMLElement; answers: HTMLElement } {
     rally: part("rally", "Plans have none: this clears the vehicle's rally points, so that a return leads home", false),
   };
   const payload = h("input", { id: "payload", type: "text", list: "payloads", placeholder: SWITCHES[0], maxlength: 200, autocomplete: "off", spellcheck: "false", "aria-describedby": "payload-hint" });
+  const gimbal = h("input", { id: "gimbal", type: "text", list: "gimbals", placeholder: GIMBALS[0], maxlength: 200, autocomplete: "off", spellcheck: "false", "aria-describedby": "gimbal-hint" });
   const switching = section(
-    "Payload: how it is switched",
+    "Payload: how it is switched and pointed",
     false,
     h("div", { class: "field" }, h("label", { for: "payload" }, `Output or command (${SWITCHES[0]} when empty)`), payload),
     h("datalist", { id: "payloads" }, ...SWITCHES.map((value) => h("option", { value }))),
     h("p", { class: "quiet", id: "payload-hint" }, SWITCHED),
+    h("div", { class: "field" }, h("label", { for: "gimbal" }, "Gimbal (bolted on when empty)"), gimbal),
+    h("datalist", { id: "gimbals" }, ...GIMBALS.map((value) => h("option", { value }))),
+    h("p", { class: "quiet", id: "gimbal-hint" }, POINTED),
   );
-  const asked = (): string | null => payload.value.trim() || null;
+  const asked = (): Encoding => ({ payload: payload.value.trim() || null, gimbal: gimbal.value.trim() || null });
   const result = h("div", { id: "upload-result", "aria-live": "polite" });
   const moving = h("div", {});
   const go = button("Upload the plan", () => void send(null), { class: "primary", id: "upload" });

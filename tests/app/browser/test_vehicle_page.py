@@ -193,6 +193,10 @@ def test_a_payload_that_cannot_be_is_refused_by_name(flying: Page, planned: str)
     flying.click("#upload")
     expect(flying.locator("#notices .error").last).to_contain_text("laser:1")
     flying.fill("#payload", "")
+    flying.fill("#gimbal", "crane:tilt=45")
+    flying.click("#upload")
+    expect(flying.locator("#notices .error").last).to_contain_text("crane:tilt=45")
+    flying.fill("#gimbal", "")
 
 
 def test_a_plan_is_deleted(flying: Page, planned: str, service: Service) -> None:
