@@ -15,6 +15,8 @@ paths among regions), dynamic programming over subsets of regions and last cells
 
 from __future__ import annotations
 
+import heapq
+import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -31,9 +33,11 @@ Ints = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
 #: Headings looked at one by one, parts of the offsets; up to how many regions how many headings are a cell.
-HEADINGS, ETAS, PER_CELL = 90, 3, {5: 3, 7: 6, 9: 18}
+HEADINGS, ETAS, PER_CELL = 90, 3, {5: 3, 7: 6, 9: 15, 12: 30}
 #: Allowed headings are known to this, and taken for each other's opposites within this.
 ROUNDING_RAD, SAME_RAD = 1e-8, 2e-4
+#: Ways between ends of stays to look at.
+EFFORT = 60_000_000
 #: Regions up to which the order is searched.
 MOST_ORDERED = 12
 
@@ -71,13 +75,14 @@ class _Stays:
         least_m = whole_m.min(axis=(1, 2)).reshape(self.cells, -1, 4, 4).min(axis=1)
         return np.asarray(least_m, dtype=np.float64)
 
-    def saved_m(self, cap_m: float) -> float:
-        """What leaving the region once more may save at most, of all that ``costs_m`` counts."""
+    def saved_m(self, cap_m: float) -> Floats:
+        """What leaving the region once more may save at most, of all that ``costs_m`` counts, (C,)."""
         turns_m = self._capped_m(cap_m)
-        saved_m = turns_m - (self._fewer(cap_m))[..., None, None]
-        return float(
-            saved_m.max(where=np.isfinite(turns_m) & (self.turns > 0.0)[:, None, None, None], initial=0.0)
-        )
+        saved_m = turns_m - self._fewer(cap_m)[..., None, None]
+        counts = np.isfinite(turns_m) & np.isfinite(self.passes_m)[..., None, None]
+        counts &= (self.turns > 0.0)[:, None, None, None]
+        most_m = np.where(counts, saved_m, 0.0).max(axis=(1, 2, 3, 4))
+        return np.asarray(most_m.reshape(self.cells, -1).max(axis=1), dtype=np.float64)
 
     def _capped_m(self, cap_m: float) -> Floats:
         """All turns of a stay, but no more than without one of them, and ``cap_m`` for leaving once more."""
@@ -90,8 +95,60 @@ class _Stays:
         return np.asarray(np.maximum(self.turns - 1.0, 0.0)[:, None] * turn_m, dtype=np.float64)
 
 
-def sweeps_bound_m(nodes: Sequence[Node], start: Floats, end: Floats, radius_m: float, stop: Stop) -> float:
+@dataclass(frozen=True, slots=True)
+class _Ways:
+    """All stays, and the ways from the start, between them and to the end.
+
+    Parameters
+    ----------
+    found
+        Of each region.
+    first_m, between_m, last_m
+        To where stays begin, from where they end: four ends to a cell, all regions' one after the other.
+    """
+
+    found: tuple[_Stays, ...]
+    first_m: Floats
+    between_m: Floats
+    last_m: Floats
+
+    def least_m(self, cells: tuple[Ints, ...]) -> float:
+        """No tour with stays of these cells of each region alone is shorter."""
+        counts = [len(own) for own in cells]
+        before = np.cumsum([0, *(stays.cells for stays in self.found)])
+        chosen = np.concatenate([own + begin for own, begin in zip(cells, before, strict=False)])
+        ends = (4 * chosen[:, None] + np.arange(4)).ravel()
+        offsets = np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
+        regions = 4 * offsets[:-1]
+        first_m, between_m, last_m = self.first_m[ends], self.between_m[np.ix_(ends, ends)], self.last_m[ends]
+        # Of each end to each region, of each region to each beginning, of region to region.
+        into_m = np.minimum.reduceat(between_m, regions, axis=1)
+        out_m = np.minimum.reduceat(between_m, regions, axis=0)
+        apart_m = np.minimum.reduceat(into_m, regions, axis=0)
+        caps = list(zip(self.found, cells, apart_m.min(axis=1).tolist(), strict=True))
+        saved_m = np.array([stays.saved_m(cap)[own].max() for stays, own, cap in caps])
+        costs_m = np.concatenate([stays.costs_m(cap)[own] for stays, own, cap in caps])
+        ways_m = _shortest(apart_m - saved_m[:, None])
+        onward_m = (ways_m[:, :, None] + (out_m - saved_m[:, None])[None, :, :]).min(axis=1)
+        to_end_m = (ways_m + (np.minimum.reduceat(last_m, regions) - saved_m)[None, :]).min(axis=1)
+        first_by_m = np.minimum.reduceat(first_m, regions)
+        first_m = np.minimum(first_m, _through(first_by_m[None, :], onward_m)[0])
+        last_m = np.minimum(last_m, _through(into_m, to_end_m[:, None])[:, 0])
+        between_m = np.minimum(between_m, _through(into_m, onward_m))
+        if len(counts) <= MOST_ORDERED:
+            return float(kernels.least_tour(first_m, between_m, last_m, costs_m, offsets))
+        least_m = np.minimum.reduceat(np.minimum.reduceat(between_m, regions, axis=0), regions, axis=1)
+        total_m = np.minimum.reduceat(costs_m.min(axis=(1, 2)), offsets[:-1]).sum()
+        return float(total_m + first_m.min() + last_m.min() + _least_tree_m(np.minimum(least_m, least_m.T)))
+
+
+def sweeps_bound_m(
+    nodes: Sequence[Node], start: Floats, end: Floats, radius_m: float, target_m: float, stop: Stop
+) -> float:
     """No tour that stays at each region at least once, and flies all its strips, is shorter.
+
+    The ranges of the regions' headings are halved, the widest first, where the bound is least: passes of a
+    region that are parted have one heading all the same, and other regions lie farther from them.
 
     Parameters
     ----------
@@ -99,6 +156,8 @@ def sweeps_bound_m(nodes: Sequence[Node], start: Floats, end: Floats, radius_m: 
         One of each region.
     start, end
         See ``bound_nodes.terminal``.
+    target_m
+        Nothing better is looked for.
     """
     per_cell = next((headings for most, headings in PER_CELL.items() if len(nodes) <= most), HEADINGS)
     found = []
@@ -106,35 +165,36 @@ def sweeps_bound_m(nodes: Sequence[Node], start: Floats, end: Floats, radius_m: 
         raise_if(stop)
         found.append(_stays(node, radius_m, per_cell))
     sets, thetas = (np.concatenate([getattr(s, name) for s in found]) for name in ("sets", "thetas"))
-    region = np.repeat(np.arange(len(found)), [s.cells for s in found])
-    offsets = np.concatenate([[0], np.cumsum([s.cells for s in found])]).astype(np.int64)
-    between_m = kernels.distances(sets, thetas, region)
-    first_m = kernels.from_place(start[:2], sets, thetas, 0)
-    last_m = kernels.from_place(end[:2], sets, thetas, 1)
-    # Of each end to each region, of each region to each beginning, of region to region.
-    into_m = np.minimum.reduceat(between_m, 4 * offsets[:-1], axis=1)
-    out_m = np.minimum.reduceat(between_m, 4 * offsets[:-1], axis=0)
-    apart_m = np.minimum.reduceat(into_m, 4 * offsets[:-1], axis=0)
-    away_m = apart_m.min(axis=1)
-    saved_m = np.array([s.saved_m(cap) for s, cap in zip(found, away_m, strict=True)])
-    costs_m = np.concatenate([s.costs_m(cap) for s, cap in zip(found, away_m, strict=True)])
-    ways_m = _shortest(apart_m - saved_m[:, None])
-    onward_m = (ways_m[:, :, None] + (out_m - saved_m[:, None])[None, :, :]).min(axis=1)
-    to_end_m = (ways_m + (np.minimum.reduceat(last_m, 4 * offsets[:-1]) - saved_m)[None, :]).min(axis=1)
-    first_by_m = np.minimum.reduceat(first_m, 4 * offsets[:-1])
-    first_m = np.minimum(first_m, _through(first_by_m[None, :], onward_m)[0])
-    last_m = np.minimum(last_m, _through(into_m, to_end_m[:, None])[:, 0])
-    between_m = np.minimum(between_m, _through(into_m, onward_m))
-    if len(found) <= MOST_ORDERED:
-        return float(kernels.least_tour(first_m, between_m, last_m, costs_m, offsets))
-    least_m = np.minimum.reduceat(between_m, 4 * offsets[:-1], axis=0)
-    least_m = np.minimum.reduceat(least_m, 4 * offsets[:-1], axis=1)
-    return float(
-        first_m.min()
-        + last_m.min()
-        + np.minimum.reduceat(costs_m.min(axis=(1, 2)), offsets[:-1]).sum()
-        + _least_tree_m(np.minimum(least_m, least_m.T))
+    ways = _Ways(
+        tuple(found),
+        kernels.from_place(start[:2], sets, thetas, 0),
+        kernels.distances(sets, thetas, np.repeat(np.arange(len(found)), [s.cells for s in found])),
+        kernels.from_place(end[:2], sets, thetas, 1),
     )
+    every = tuple(np.arange(stays.cells) for stays in found)
+    count = itertools.count()
+    heap = [(ways.least_m(every), next(count), every)]
+    spent = _work(every)
+    while heap and heap[0][0] < target_m and spent < EFFORT:
+        raise_if(stop)
+        bound_m, _, cells = heap[0]
+        # Of a region seen in one pass nothing is parted.
+        widest = max(range(len(cells)), key=lambda k: len(cells[k]) * bool(found[k].turns.max() > 0.0))
+        if len(cells[widest]) < 2 or found[widest].turns.max() == 0.0:
+            break
+        heapq.heappop(heap)
+        for half in np.array_split(cells[widest], 2):
+            part = (*cells[:widest], half, *cells[widest + 1 :])
+            spent += _work(part)
+            heapq.heappush(heap, (max(bound_m, ways.least_m(part)), next(count), part))
+    least_m = heap[0][0]
+    return least_m if math.isfinite(least_m) else 0.0
+
+
+def _work(cells: tuple[Ints, ...]) -> int:
+    """What it takes to find the least tour over these cells, about, in ways looked at."""
+    ends = 4 * sum(len(own) for own in cells)
+    return ends * ends * (2 + (1 << min(len(cells), MOST_ORDERED)) // 4) + 20_000
 
 
 def _least_tree_m(apart_m: Floats) -> float:

@@ -42,6 +42,8 @@ MOST_STRIPS = 8
 GAPS = (0.049, 0.02)
 #: Lines between cells to evaluate: exactly over the order up to so many passes; over trees, for each pass.
 EFFORT_EXACT, EFFORT_TREES = {9: 2_500_000, EXACT_UP_TO: 8_000_000}, 120_000
+#: Of regions of more strips than this the whole stays say more, as a rule: of their passes no more effort.
+FEW_STRIPS, EFFORT_BESIDES = 2, 800_000
 #: Where the exact search comes out further below than this, trees may do better.
 POOR_GAP = 0.15
 
@@ -72,17 +74,17 @@ def lower_bound_m(
     passes = [node for of_region in by_strips for node in of_region]
     ends = (terminal(scenario.start), terminal(scenario.end))
     radius_m = aircraft.planned_turn_radius_m
-    best_m = 0.0
-    if len(passes) > len(by_strips):
-        best_m = sweeps_bound_m([of_region[0] for of_region in by_strips], *ends, radius_m, stop)
-        if len(passes) > EXACT_UP_TO and len(by_strips) <= MOST_ORDERED:
-            return min(best_m, known_m)
+    best_m, most_strips = 0.0, max(len(of_region) for of_region in by_strips)
+    by_sweeps = most_strips > FEW_STRIPS and len(by_strips) <= MOST_ORDERED
+    if most_strips > FEW_STRIPS or (most_strips > 1 and len(passes) > EXACT_UP_TO):
+        whole = [of_region[0] for of_region in by_strips]
+        best_m = sweeps_bound_m(whole, *ends, radius_m, known_m * (1.0 - GAPS[0]), stop)
     if len(passes) <= EXACT_UP_TO and best_m < known_m * (1.0 - GAPS[0]):
         targets_m = tuple(known_m * (1.0 - gap) for gap in GAPS)
         most = next(most for up_to, most in EFFORT_EXACT.items() if len(passes) <= up_to)
-        work = effort or int(part * most)
+        work = effort or int(part * (most if most_strips <= FEW_STRIPS else EFFORT_BESIDES))
         best_m = max(best_m, exact_bound_m(passes, *ends, radius_m, targets_m, work, stop))
-    if len(passes) > 1 and best_m < known_m * (1.0 - POOR_GAP):
+    if len(passes) > 1 and best_m < known_m * (1.0 - POOR_GAP) and not by_sweeps:
         work = effort or int(part * EFFORT_TREES * len(passes))
         best_m = max(best_m, trees_bound_m(passes, *ends, radius_m, known_m, work, stop))
     return min(best_m, known_m)

@@ -91,7 +91,7 @@ def bound_m(families: Sequence[Sequence[Sweep]], begin: Floats, end: Floats) -> 
     """The bound for regions by their sweeps, from place to place."""
     passes = [nodes(family, 0.0, k)[0] for k, family in enumerate(families)]
     places = [np.array([*place, 0.0, 0.0]) for place in (begin, end)]
-    return sweeps_bound_m(passes, places[0], places[1], RADIUS_M, never)
+    return sweeps_bound_m(passes, places[0], places[1], RADIUS_M, math.inf, never)
 
 
 @given(
