@@ -5,12 +5,18 @@ far as the region surely reaches in it, and after each but the last of a stay co
 (``bound_sweeps_kernels.stays``). Stays are held in cells of headings; from one to the next it is no shorter
 than from where some pass of the one may end to where some pass of the other may begin.
 
-Passes of a region may be parted: a tour may stay at it several times. Every time but the first saves one turn
-t of the region's and costs a way in and a way out. Where t is taken no longer than any way out of the region,
-coming back is never a gain, and the shortest tour with stays of any number is one with each region once, the
-ways between lengthened or, through other regions, shortened: a way that stops at r on the way is
-d(X, r) + d(r, Y) − t_r, and moves within r at no cost. With ways shortened so (all of them, by the shortest
-paths among regions), dynamic programming over subsets of regions and last cells gives the bound.
+Passes of a region may be parted: a tour may stay at it several times, m times with n passes, and then has
+n − m of its turns, each t or longer. So a tour is no shorter than one with a single stay at each region, the
+ways between possibly stopping at others, where a stop at r between X and Y is counted as
+d(X, r) + d(r, Y) − s, moves within r as nothing, if
+
+- a single stay that begins and ends where the first of several does is counted no higher than all passes,
+  n − 2 turns and s, and n − 2 turns with s are no less than n − 1 turns (t ≤ s);
+- s is no more than any way out of r, so that stops never gain by themselves.
+
+Where ways out are shorter than turns, turns are counted no longer than these. With ways so shortened (all of
+them, by the shortest paths among regions) dynamic programming over subsets of regions and last cells gives
+the bound.
 """
 
 from __future__ import annotations

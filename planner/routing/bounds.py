@@ -6,19 +6,19 @@ tighter than the aircraft can. Here
 - there are no threats, no zones, no operating area: lines and passes may be anywhere;
 - a region that one pass sees whole asks for one of those passes: any heading, any offset, both continuous;
 - a region that takes several passes, one after the other or with other regions between, asks for as many as
-  it takes at least: of the parallel strips of one swath that hold it, the outermost and those next to the
-  first, all flown along the same direction, one way or the other, as far as the region surely reaches in
-  each; other passes are dropped;
+  it takes at least: of the parallel strips of one swath that hold it each is flown, all along the same
+  direction, one way or the other, as far as the region surely reaches in it;
 - where one pass may see the region whole and several may too, one of either is kept.
 
 Dropping a part of a line between two poses cannot make the shortest line through the rest longer, so every
 plan over these regions is a tour of the relaxed problem, and no shorter than its best. Regions divided into
-parts count as divided, and only as many strips as the planner itself considers.
+parts count as divided; ``bound_ways`` looks at the ways a region may be taken.
 
 How the relaxed one is bounded. Passes are held in cells, boxes of headings and offsets, and lines between
 cells bounded by the mean value theorem (``bound_lines_kernels``): what is given away goes with the square of
 a cell's size. Up to ``EXACT_UP_TO`` passes the bound is exact over the order (``bound_search``), beyond that
-over trees (``bound_trees``).
+over trees (``bound_trees``). Regions of many strips are bounded as a whole (``bound_sweeps``): of these all
+strips count, and the best bound of these is taken.
 """
 
 from __future__ import annotations
