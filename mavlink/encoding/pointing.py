@@ -104,6 +104,10 @@ def _notes(gimbal: Gimbal, dialect: Dialect) -> tuple[str, ...]:
             f"ArduPilot keeps whole degrees of the gimbal's pitch: {round(pitch_deg)}° is sent for"
             f" {pitch_deg:g}°; mount keeps fractions"
         )
+    if gimbal.protocol == "mount" and dialect.name == "ArduCopter":
+        notes.append(
+            "ArduCopter turns its nose by DO_MOUNT_CONTROL where the gimbal has no yaw: manager leaves it"
+        )
     if gimbal.device and dialect.autopilot == "px4":
         notes.append(
             f"PX4 turns the one gimbal it knows, whichever device is named ({gimbal.device} is here)"

@@ -163,6 +163,17 @@ def test_angles_an_autopilot_rounds_are_said(autopilot: Autopilot, protocol: Pro
     assert any("-45° is sent for -45.4°" in note for note in notes) == noted
 
 
+def test_copters_that_turn_their_nose_for_a_mount_are_told_of() -> None:
+    """ArduCopter alone does, and by the older command alone."""
+    for autopilot, kind in KINDS:
+        for protocol in ("manager", "mount"):
+            plan = make_plan(LEGS, vehicle_type=kind, autopilot=autopilot)
+            gimbal = Gimbal("mount" if protocol == "mount" else "manager", 45.0)
+            notes = encode(plan, options=EncodeOptions(gimbal=gimbal)).notes
+            turns = (autopilot, kind, protocol) == ("ardupilot", "multirotor", "mount")
+            assert any("turns its nose" in note for note in notes) == turns
+
+
 def test_gimbals_an_autopilot_has_not_are_refused() -> None:
     """ArduPilot has two; PX4 turns its one whatever is named, which is said."""
     options = EncodeOptions(gimbal=Gimbal("manager", 45.0, device=3))
