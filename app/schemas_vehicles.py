@@ -57,7 +57,8 @@ class VehicleIn(Strict):
         max_length=300,
         description="udpin:host:port, udpout:host:port, tcp:host:port, serial:device:baud, or sim: for a "
         "simulated aircraft, e.g. sim:?speedup=20&home=33.48,-117.75&autopilot=px4&airspeed=20"
-        "&turn_radius=100&wind=8,270. Without a home it stands where the plan it gets begins. A recording "
+        "&turn_radius=100&wind=8,270. sim: alone is a fixed wing, type=multirotor the other kind. Without a "
+        "home it stands where the plan it gets begins. A recording "
         "(.tlog) is watched with replay:path?speedup=10&plan=<id of the plan flown>&payload=<as uploaded>.",
         examples=["sim:", "udpin:127.0.0.1:14550"],
     )

@@ -5,9 +5,10 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import math
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Callable, Coroutine
 from contextlib import asynccontextmanager
 from dataclasses import dataclass
+from typing import Any
 from urllib.parse import urlencode
 
 from app.services.errors import LinkError, RefusedError
@@ -86,9 +87,11 @@ class Connection:
 
     async def close(self) -> None:
         """Close the link and end the simulator."""
-        await self.client.close()
-        if self.simulator is not None:
-            await self.simulator.stop()
+        try:
+            await self.client.close()
+        finally:
+            if self.simulator is not None:
+                await self.simulator.stop()
 
 
 async def connect(
@@ -148,9 +151,7 @@ async def connect(
             simulator = await SimulatorProcess.start(standing, int(link.url.rpartition(":")[2]))
         await _first_heartbeat(client, simulator, timeout_s)
     except BaseException:
-        await client.close()
-        if simulator is not None:
-            await simulator.stop()
+        await _to_the_end(Connection(client, simulator).close())
         raise
     return Connection(client, simulator)
 
@@ -177,10 +178,23 @@ async def _first_heartbeat(
     except mavlink_errors.NotConnectedError as error:
         raise LinkError(str(error)) from error
     finally:
-        for task in (hearing, other, ending):
-            if task is not None:
-                task.cancel()
-                await asyncio.gather(task, return_exceptions=True)
+        tasks = [task for task in (hearing, other, ending) if task is not None]
+        # All of them before any is waited for: that may be cancelled too.
+        for task in tasks:
+            task.cancel()
+        await asyncio.gather(*tasks, return_exceptions=True)
+
+
+#: Closings that go on although whoever waited for them was cancelled; tasks nobody holds may be collected.
+_closing: set[asyncio.Task[None]] = set()
+
+
+async def _to_the_end(closing: Coroutine[Any, Any, None]) -> None:
+    """Wait for a closing, which a second cancellation does not cut short: a simulator would outlive it."""
+    task = asyncio.create_task(closing)
+    _closing.add(task)
+    task.add_done_callback(_closing.discard)
+    await asyncio.shield(task)
 
 
 @asynccontextmanager

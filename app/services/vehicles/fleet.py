@@ -85,7 +85,7 @@ class Fleet:
         """Let every vehicle go, and give up those still being opened; once is enough, again is harmless."""
         self._ended = True
         for opening in tuple(self._opening.values()):
-            opening.cancel()
+            _give_up(opening)
         await asyncio.gather(*(vehicle.close() for vehicle in self._vehicles.values()))
         self._vehicles.clear()
 
@@ -151,8 +151,11 @@ class Fleet:
             opening.result()
         except BaseException:
             self._vehicles.pop(vehicle.id, None)
-            opening.cancel()
-            await asyncio.gather(opening, return_exceptions=True)
+            # Waited for, not gathered: whoever is cancelled once more leaves it to close its link.
+            _give_up(opening)
+            await asyncio.wait((opening,))
+            if not opening.cancelled():
+                opening.exception()
             await vehicle.close()
             raise
         finally:
@@ -195,7 +198,7 @@ class Fleet:
         vehicle = self.get(vehicle_id)
         del self._vehicles[vehicle_id]
         if vehicle_id in self._opening:
-            self._opening[vehicle_id].cancel()
+            _give_up(self._opening[vehicle_id])
         await self._kept.forget(vehicle_id)
         await vehicle.close()
         self._hub.publish(vehicle_id, vehicle)
@@ -275,3 +278,9 @@ class Fleet:
         VEHICLES.labels(state="connected").set(connected)
         VEHICLES.labels(state="silent").set(len(self._vehicles) - connected)
         self._hub.publish(vehicle.id, vehicle)
+
+
+def _give_up(opening: asyncio.Task[None]) -> None:
+    """Cancel it once: cancelled again, it would leave what it is just closing."""
+    if not opening.cancelling():
+        opening.cancel()
