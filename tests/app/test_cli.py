@@ -17,6 +17,7 @@ import pytest
 
 from app.cli.root import run
 from app.routers.bodies import EXAMPLE
+from mavlink import items
 from mavlink.formats import qgc_plan, waypoints
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -292,6 +293,9 @@ def test_export_writes_what_readers_read(swathplan: Command, plan_file: Path) ->
     assert [item.command for item in plan.mission] == [item.command for item in rows.mission]
     assert "<kml" in swathplan("export", str(plan_file), "--format", "kml").out
     assert swathplan("export", str(plan_file), "--payload", "laser").code == 2
+    assert swathplan("export", str(plan_file), "--gimbal", "crane").code == 2
+    pointed = qgc_plan.read_plan(swathplan("export", str(plan_file), "--gimbal", "manager:tilt=45").out)
+    assert items.Command.DO_GIMBAL_MANAGER_PITCHYAW in {item.command for item in pointed.mission}
     assert swathplan("export", str(plan_file), "--vehicle", "nobody").code == 2
 
 
