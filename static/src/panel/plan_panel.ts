@@ -24,6 +24,7 @@ const FILES = [
   ["mission.kml", "KML"],
 ] as const;
 const MOVING = new Set(["queued", "running"]);
+const START = "Plan this scenario";
 const SECOND_MS = 1000;
 const COVERED = 0.9999;
 
@@ -167,9 +168,19 @@ function earlier(): HTMLElement {
 }
 
 export function planPanel(view: PlanView): HTMLElement {
-  const go = button("Plan this scenario", () => void attempt("Planning was not started", startPlan), { class: "primary", id: "plan-start" });
+  // From the click to the service's answer, which judges the scenario first: a second click would plan twice.
+  let asking = false;
+  const start = async (): Promise<void> => {
+    asking = true;
+    update();
+    await attempt("Planning was not started", startPlan);
+    asking = false;
+    update();
+  };
+  const go = button(START, () => void start(), { class: "primary", id: "plan-start" });
   const update = (): void => {
-    const busy = running.value !== null && MOVING.has(running.value.state);
+    fill(go, asking ? "Asking the service …" : START);
+    const busy = asking || running.value !== null && MOVING.has(running.value.state);
     go.disabled = busy || judgement.value.state === "empty" || judgement.value.state === "refused";
     go.title = judgement.value.state === "refused" ? "The scenario is refused; see the findings under Scenario" : "";
   };
