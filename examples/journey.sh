@@ -15,6 +15,11 @@ changes=${4:-}
 folder=${JOURNEY_FOLDER:-${TMPDIR:-/tmp}}
 field() { python3 -c 'import json, sys; print(json.load(sys.stdin)'"$1"')'; }
 post() { curl -sS --fail-with-body "$1" -H 'Content-Type: application/json' -d "$2"; }
+# A refusal is a problem document that names feature, rule and fix: shown before the end.
+stop() { echo "$1"; exit 1; }
+
+curl -fsS "${api%/api/v1}/health/live" >/dev/null ||
+    stop "no service answers at ${api%/api/v1}: start it with make run, or name its address"
 
 document=$(python3 - "$scenario" $changes <<'PYTHON'
 import json, sys
@@ -32,14 +37,18 @@ for change in changes:
 print(json.dumps(scenario))
 PYTHON
 )
-echo "validate: $(echo "$document" | curl -fsS "$api/scenarios/validate" --data-binary @-)"
+verdict=$(echo "$document" | curl -sS --fail-with-body "$api/scenarios/validate" --data-binary @-) ||
+    stop "validate: $verdict"
+echo "validate: $verdict"
 
-plan=$(echo "$document" | curl -fsS "$api/plans?wait=60" --data-binary @-)
+plan=$(echo "$document" | curl -sS --fail-with-body "$api/plans?wait=300" --data-binary @-) || stop "plan: $plan"
 plan_id=$(echo "$plan" | field '["id"]')
+[ "$(echo "$plan" | field '["state"]')" = done ] || stop "plan: $plan"
 echo "plan $plan_id: $(echo "$plan" | field '["metrics"]["length_m"]') m"
 curl -fsS "$api/plans/$plan_id/mission.plan" -o "$folder/swathplan-mission.plan"
 
-vehicle=$(post "$api/vehicles" "{\"name\": \"journey\", \"url\": \"$url\", \"timeout_s\": 60}")
+vehicle=$(post "$api/vehicles" "{\"name\": \"journey\", \"url\": \"$url\", \"timeout_s\": 60}") ||
+    stop "vehicle: $vehicle"
 vehicle_id=$(echo "$vehicle" | field '["id"]')
 trap 'curl -fsS -X DELETE "$api/vehicles/$vehicle_id" >/dev/null || true' EXIT
 [ "$(echo "$vehicle" | field '["connected"]')" = True ] || { echo "vehicle: nobody is heard at $url"; exit 1; }
