@@ -196,12 +196,15 @@ def best_sweeps(
     """
     counts = sweep.lanes(angles_rad)
     found: list[Swept] = []
-    if len(counts) == 0:
+    # Where a crab leaves no swath, no number of lanes sees the region.
+    across_m = spans_at(hull_points(sweep.region.area), angles_rad).across_m
+    holds = counts * swaths_m(sweep.sensor, sweep.height_m, angles_rad) >= across_m - ROUNDING_M
+    if not holds.any():
         return _empty()
-    most = max(kernels.EXACT_UP_TO, math.ceil(MOST_LANES_FACTOR * int(counts.min())))
-    kept = np.unique(counts[counts <= most])
+    most = max(kernels.EXACT_UP_TO, math.ceil(MOST_LANES_FACTOR * int(counts[holds].min())))
+    kept = np.unique(counts[holds & (counts <= most)])
     for count in kept:
-        rows = np.flatnonzero(counts == count)
+        rows = np.flatnonzero(holds & (counts == count))
         lanes, orders, costs, poses = _solve(
             sweep, angles_rad[rows], etas, int(count), judge, radius_m, discs
         )

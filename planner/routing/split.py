@@ -7,8 +7,9 @@ whether it does.
 
 from __future__ import annotations
 
-import itertools
-import math
+from collections import Counter
+
+import numpy as np
 
 from planner.progress import Stop, raise_if
 from planner.route import CollectPass
@@ -40,7 +41,9 @@ def split_passes(cost_m: float, passes: Passes, legs: Legs, stop: Stop) -> tuple
         raise_if(stop)
         trials = sorted(_moves(passes), key=lambda move: move[0])[:TRIED]
         best = (cost_m - LEAST_GAIN_M, passes)
-        for _, trial in trials:
+        for _, first, last, at in trials:
+            run, rest = passes[first:last], passes[:first] + passes[last:]
+            trial = rest[:at] + run + rest[at:]
             best = min(best, (legs.tour_m(trial), trial), key=lambda found: found[0])
         if best[1] is passes:
             break
@@ -48,25 +51,31 @@ def split_passes(cost_m: float, passes: Passes, legs: Legs, stop: Stop) -> tuple
     return cost_m, passes
 
 
-def _moves(passes: Passes) -> list[tuple[float, Passes]]:
-    """Orders one move away, with what they save along straight lines (less than nothing is a gain)."""
-    moves = []
-    several = [any(other is not one and other.regions == one.regions for other in passes) for one in passes]
-    for first in range(len(passes)):
-        for last in range(first + 1, min(first + LONGEST, len(passes)) + 1):
-            run, rest = passes[first:last], passes[:first] + passes[last:]
+def _moves(passes: Passes) -> list[tuple[float, int, int, int]]:
+    """Orders one move away: what they save along straight lines (less than nothing is a gain), which run of
+    passes moves, and where among the others to.
+
+    Straight distances are those between passes; the ways from the start and to the end are left to the
+    judgement.
+    """
+    moves: list[tuple[float, int, int, int]] = []
+    count = len(passes)
+    shared = Counter(one.regions for one in passes)
+    several = [shared[one.regions] > 1 for one in passes]
+    ends = np.array([leaves(one).position for one in passes])
+    begins = np.array([one.start for one in passes])
+    # Before the first and after the last pass nothing is counted: a row and a column of zeros.
+    apart_m = np.zeros((count + 1, count + 1))
+    apart_m[:count, :count] = np.hypot(*(begins[None] - ends[:, None]).transpose(2, 0, 1))
+    for first in range(count):
+        for last in range(first + 1, min(first + LONGEST, count) + 1):
             if not any(several[first:last]):
                 continue
-            for at in range(len(rest) + 1):
-                if at == first:
-                    continue
-                trial = rest[:at] + run + rest[at:]
-                moves.append((_straight_m(trial) - _straight_m(passes), trial))
+            rest = [*range(first), *range(last, count)]
+            before, after = np.array([count, *rest]), np.array([*rest, count])
+            out_m = apart_m[first - 1, last] if first > 0 and last < count else 0.0
+            out_m -= apart_m[first - 1, first] if first > 0 else 0.0
+            out_m -= apart_m[last - 1, last] if last < count else 0.0
+            saved_m = out_m + apart_m[before, first] + apart_m[last - 1, after] - apart_m[before, after]
+            moves.extend((float(m), first, last, at) for at, m in enumerate(saved_m) if at != first)
     return moves
-
-
-def _straight_m(passes: Passes) -> float:
-    """Straight distances between passes; the ways from the start and to the end are left to the judgement."""
-    return math.fsum(
-        math.dist(leaves(one).position, other.start) for one, other in itertools.pairwise(passes)
-    )

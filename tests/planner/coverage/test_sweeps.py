@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -18,6 +19,7 @@ from planner.dubins.words import shortest
 from planner.route import CollectPass, Pose
 from planner.routing.options import Surroundings, collect_passes, make_options
 from planner.sensors.sar import Look
+from planner.sensors.strip import swaths_m
 from tests.planner.coverage.shapes import HEIGHT_M, as_merged, box, paper_sensor, unseen_m2
 
 SWATH_M = paper_sensor().swath_m(HEIGHT_M)
@@ -244,6 +246,28 @@ def test_twenty_lanes_are_planned_with_patterns() -> None:
     passes = best(area, ("right",), 200.0)
     assert len(passes) >= 20
     assert unseen_m2(area, [p.footprint.buffer(1e-6) for p in passes]) < 1e-2
+
+
+def test_headings_at_which_the_crab_leaves_no_swath_are_left_out() -> None:
+    """Squinted against the crab and with margins, some headings see nothing: no lanes there, and no fault."""
+    sensor = replace(
+        paper_sensor("right"),
+        incidence_rad=math.radians(53.0),
+        elevation_beamwidth_rad=math.radians(17.0),
+        squint_rad=math.radians(-22.9),
+        pointing_margin_rad=math.radians(3.0),
+        position_margin_m=2.0,
+    ).in_wind(0.5188, -0.733)
+    family = sweeps(as_merged(box(120.0, 115.0)), sensor, 150.0)
+    angles_rad = np.arange(-math.pi, math.pi, math.radians(5.0))
+    widths_m = swaths_m(sensor, 150.0, angles_rad)
+    assert widths_m.min() < 0.0 < widths_m.max()
+    etas = np.array([0.0, 1.0])
+    assert make_options(family, angles_rad[widths_m <= 0.0], etas, open_ground()) is None
+    options = make_options(family, angles_rad, etas, open_ground())
+    assert options is not None
+    passes = collect_passes(family, options, int(np.argmin(options.inner_m)))
+    assert float(swaths_m(sensor, 150.0, [passes[0].angle_rad])[0]) > 0.0
 
 
 def test_strip_extents_agree_with_shapely() -> None:
