@@ -173,6 +173,7 @@ export interface HeldItem {
   seq: number;
   command: number;
   command_name: string | null;
+  params?: (number | null)[];
   lat_deg?: number;
   lon_deg?: number;
   altitude_m: number | null;
