@@ -211,11 +211,12 @@ def check_sensor(region: Region, sensor: SarSensor, height_m: float) -> None:
             "fly higher, or divide the region by height",
         )
     across_m = 2.0 * float(shapely.minimum_bounding_radius(region.area))
-    if across_m > sensor.spot_m(height_m):
+    spot_m = max(sensor.spot_m(height_m), 0.0)
+    if across_m > spot_m:
         raise InfeasibleError(
             "spotlight",
             region.name,
-            f"it is {across_m:.0f} m across, the spot of {sensor.name} {sensor.spot_m(height_m):.0f} m",
+            f"it is {across_m:.0f} m across, the spot of {sensor.name}, margins left out, {spot_m:.0f} m",
             "use stripmap, fly higher, or make the region smaller",
         )
     if region.min_resolution_m is None:
