@@ -24,9 +24,7 @@ Payload = Annotated[
 ]
 Gimbal = Annotated[
     str | None,
-    typer.Option(
-        help="What points the sensor, degrees from straight down: manager:tilt=45, mount:tilt=45 …"
-    ),
+    typer.Option(help="What points the sensor, degrees from straight down: manager:tilt=45, mount:tilt=45 …"),
 ]
 Timeout = Annotated[float, typer.Option(min=0.1, help="How long to wait for the vehicle's heartbeat.")]
 Url = Annotated[

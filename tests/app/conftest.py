@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -16,14 +17,28 @@ from app.logging import configure
 from app.main import create_app
 from app.routers.bodies import EXAMPLE
 from app.services.house import House, Limits
+from app.services.vehicles.times import LinkTimes
 from app.services.work import plan_scenario
 from app.settings import Settings
+from mavlink.transfer.machine import TransferSettings
 from tests.app import fakes
 
+#: Vehicles are looked at often, and links that failed opened anew at once.
+QUICK = LinkTimes(telemetry_s=0.05, look_s=0.1, reopen_s=0.2)
+#: The same for tests whose aircraft fall silent; fit for aircraft simulated in the test's own process alone.
+IMPATIENT = replace(
+    QUICK, lost_after_s=2.5, transfers=TransferSettings(timeout_s=0.5, silence_s=3.0, acknowledgement_s=0.5)
+)
 
-def fake_house(limits: Limits) -> House:
+
+def fake_house(limits: Limits, times: LinkTimes = QUICK) -> House:
     """Services whose planner is a stand-in, and plans in the process of the test."""
-    return House(limits, task=fakes.task, judge_scenario=fakes.judge, pool=fakes.ThreadPool())
+    return House(limits, task=fakes.task, judge_scenario=fakes.judge, pool=fakes.ThreadPool(), times=times)
+
+
+def impatient_house(limits: Limits) -> House:
+    """The same, with little patience for silent vehicles."""
+    return fake_house(limits, IMPATIENT)
 
 
 def pooled_house(limits: Limits) -> House:
@@ -57,6 +72,13 @@ def settings(tmp_path: Path) -> Settings:
 async def client(settings: Settings) -> AsyncIterator[httpx.AsyncClient]:
     """A client of a service with a stand-in for the planner."""
     async with serving(create_app(settings, fake_house)) as client:
+        yield client
+
+
+@pytest.fixture
+async def impatient(settings: Settings) -> AsyncIterator[httpx.AsyncClient]:
+    """A client of the same service, with little patience for silent vehicles."""
+    async with serving(create_app(settings, impatient_house)) as client:
         yield client
 
 

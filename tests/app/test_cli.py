@@ -347,7 +347,7 @@ def test_download_from_an_empty_vehicle(swathplan: Command) -> None:
 
 def test_demo_flies_what_it_planned(swathplan: Command, scenario_file: Path) -> None:
     """The whole journey, told as JSON: planned, uploaded, read back, flown, seen."""
-    ended = swathplan("demo", str(scenario_file), "--speedup", "200", "--json")
+    ended = swathplan("demo", str(scenario_file), "--speedup", "500", "--json")
     told = json.loads(ended.out)
     assert ended.code == 0, ended.err
     assert told["read_back_equal"]
@@ -363,7 +363,7 @@ def test_demo_flies_a_multirotor_where_the_plan_has_one(
     scenario = json.loads(scenario_file.read_text())
     scenario["vehicles"][0] |= {"type": "multirotor", "autopilot": autopilot, "min_turn_radius_m": 60}
     scenario_file.write_text(json.dumps(scenario))
-    ended = swathplan("demo", str(scenario_file), "--speedup", "300", "--json")
+    ended = swathplan("demo", str(scenario_file), "--speedup", "500", "--json")
     assert ended.code == 0, ended.err
     told = json.loads(ended.out)
     assert told["violations"] == []

@@ -44,7 +44,7 @@ async def test_a_flight_is_recorded_and_flown_again_from_its_recording(
     log.f.close()
     assert len(reached) > 5
     (flown,) = (await client.get("/api/v1/flights")).json()["flights"]
-    body = {"name": "again", "url": f"replay:{path}?speedup=2&plan={plan_id}&payload=servo:9"}
+    body = {"name": "again", "url": f"replay:{path}?speedup=10&plan={plan_id}&payload=servo:9"}
     again = await client.post(VEHICLES, json=body)
     assert again.status_code == 201, again.text
     assert (again.json()["replay"], again.json()["simulated"]) == (True, False)

@@ -12,7 +12,7 @@ from shapely.geometry import shape
 from shapely.geometry.base import BaseGeometry
 
 from app.routers.bodies import EXAMPLE
-from app.services.as_flown import SLIVER_M
+from app.services.as_flown import TRIGGER_M
 from planner.geojson import read_scenario
 from tests.app.test_problems import check_problem
 from tests.app.test_vehicles import connected, until
@@ -59,6 +59,12 @@ async def test_what_a_flight_missed_is_flown_again_before_it_lands(
     flying = await until(client, vehicle, lambda body: (body["state"]["mission_current"] or 0) > last)
     await order(client, vehicle, "pause")
     flight = f"/api/v1/flights/{flying['flight_id']}"
+    # The track is stored now and then: wait for the last pass to be in it.
+    await until(
+        client,
+        flight + "/track.geojson",
+        lambda body: body["features"][0]["properties"]["times_s"][-1] >= flying["state"]["time_s"],
+    )
 
     coverage = (await client.get(flight + "/coverage.geojson")).json()
     states = {trigger["seq"]: trigger["state"] for trigger in coverage["triggers"]}
@@ -86,6 +92,6 @@ async def test_what_a_flight_missed_is_flown_again_before_it_lands(
     ground = union_all([seen_in(coverage), seen_in(after)])
     for region in SCENARIO.regions:
         missing = region.area.difference(ground)
-        # A track of a few places a second, or photos some metres apart, tell the ends of passes no better.
-        assert missing.buffer(-SLIVER_M).is_empty
+        # How the pass lies depends on where the aircraft was, and its ends on how late a trigger in order is.
+        assert missing.buffer(-TRIGGER_M / 2).is_empty
         assert missing.area < 0.03 * region.area.area

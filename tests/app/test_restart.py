@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
+import itertools
+import os
 import socket
 import sqlite3
 from collections.abc import AsyncIterator, Callable
@@ -15,20 +18,35 @@ import pytest
 from pymavlink.dialects.v20 import ardupilotmega
 
 from app.main import create_app
+from app.services.house import House, Limits
 from app.settings import Settings
+from mavlink.link import Link
+from mavlink.links.tcp import open_tcp_server
 from mavlink.sim.modes import Flavour
-from mavlink.sim.run import serve
+from mavlink.sim.run import serve, serve_link
 from mavlink.sim.settings import SimSettings
-from tests.app.conftest import fake_house, serving, stored
+from tests.app.conftest import fake_house, impatient_house, serving, stored
 
 VEHICLES = "/api/v1/vehicles"
 
 
+_LEAST_PORT, _PORTS = 16_000, 16_000
+_tries = itertools.count(os.getpid() * 61)
+
+
 def free_port() -> int:
-    """A UDP port nobody listens on."""
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-        probe.bind(("127.0.0.1", 0))
-        return int(probe.getsockname()[1])
+    """A port nobody listens on, below those the system hands out: nobody gets it while nobody listens."""
+    for number in _tries:
+        port = _LEAST_PORT + number % _PORTS
+        with (
+            contextlib.suppress(OSError),
+            socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as udp,
+            socket.socket(socket.AF_INET, socket.SOCK_STREAM) as tcp,
+        ):
+            for probe in (udp, tcp):
+                probe.bind(("127.0.0.1", port))
+            return port
+    raise AssertionError("unreachable")
 
 
 def held_plan(settings: Settings) -> str | None:
@@ -39,9 +57,11 @@ def held_plan(settings: Settings) -> str | None:
 
 
 @asynccontextmanager
-async def service(settings: Settings) -> AsyncIterator[httpx.AsyncClient]:
+async def service(
+    settings: Settings, house: Callable[[Limits], House] = fake_house
+) -> AsyncIterator[httpx.AsyncClient]:
     """One life of the service."""
-    async with serving(create_app(settings, fake_house)) as client:
+    async with serving(create_app(settings, house)) as client:
         yield client
 
 
@@ -49,6 +69,17 @@ async def service(settings: Settings) -> AsyncIterator[httpx.AsyncClient]:
 async def autopilot(url: str) -> AsyncIterator[None]:
     """A simulated aircraft that does not belong to the service."""
     simulator = asyncio.create_task(serve(url, SimSettings()))
+    try:
+        yield
+    finally:
+        simulator.cancel()
+        await asyncio.gather(simulator, return_exceptions=True)
+
+
+@asynccontextmanager
+async def flying(link: Link, settings: SimSettings) -> AsyncIterator[None]:
+    """A simulated aircraft on a link, until it vanishes."""
+    simulator = asyncio.create_task(serve_link(link, settings))
     try:
         yield
     finally:
@@ -123,7 +154,7 @@ async def test_reconnection_commands_nothing(settings: Settings) -> None:
         vehicle.bind(("127.0.0.1", 0))
         vehicle.setblocking(False)
         async with service(settings) as client:
-            for _ in range(30):
+            for _ in range(20):
                 vehicle.sendto(heartbeat, ("127.0.0.1", port))
                 await asyncio.sleep(0.1)
                 while True:
@@ -145,10 +176,10 @@ async def test_reconnection_commands_nothing(settings: Settings) -> None:
 async def test_link_that_cannot_be_opened_says_why_and_opens_later(settings: Settings) -> None:
     """A TCP vehicle that is not there at the start is listed with the reason, and connects when it comes."""
     port = free_port()
-    async with autopilot(f"tcpin:127.0.0.1:{port}"):
-        await asyncio.sleep(0.2)
-        async with service(settings) as client:
-            await add(client, "uav", f"tcp:127.0.0.1:{port}")
+    link = await open_tcp_server("127.0.0.1", port)
+    async with flying(link, SimSettings()), service(settings) as client:
+        await add(client, "uav", f"tcp:127.0.0.1:{port}")
+    await link.close()
     async with service(settings) as client:
         body = await until(client, lambda body: body["link_failure"])
         assert not body["connected"]
@@ -221,7 +252,7 @@ async def test_a_vehicle_that_fell_silent_is_not_taken_for_the_one_that_comes_ba
 ) -> None:
     """Held by read-back; then another aircraft answers at the same address: unknown, until it is read."""
     url = f"127.0.0.1:{free_port()}"
-    async with service(settings) as client:
+    async with service(settings, impatient_house) as client:
         async with holding(SimSettings(), f"udpout:{url}"):
             vehicle = await add(client, "uav", f"udpin:{url}")
             plan_id = await stored(client, plan_file)

@@ -5,30 +5,20 @@ from __future__ import annotations
 import asyncio
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
-from functools import partial
 from pathlib import Path
 from typing import Any
 
 import httpx
-import pytest
 
 from app.main import create_app
-from app.services.vehicles import connection
 from app.settings import Settings
-from mavlink.client import VehicleClient
 from mavlink.sim.run import serve
 from mavlink.sim.settings import SimSettings
-from tests.app.conftest import fake_house, serving, stored
+from tests.app.conftest import impatient_house, serving, stored
 from tests.app.test_problems import check_problem
 from tests.app.test_restart import free_port
 
 VEHICLES = "/api/v1/vehicles"
-
-
-@pytest.fixture(autouse=True)
-def _soon_lost(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A silent vehicle is given up sooner, so that the tests are short; heartbeats come every second."""
-    monkeypatch.setattr(connection, "VehicleClient", partial(VehicleClient, lost_after_s=2.5))
 
 
 @asynccontextmanager
@@ -55,7 +45,7 @@ async def test_a_swapped_aircraft_is_named_refused_and_acknowledged(
 ) -> None:
     """Its system is told, orders and uploads are refused, the plan is not its; then it is the vehicle."""
     port = free_port()
-    async with serving(create_app(settings, fake_house)) as client:
+    async with serving(create_app(settings, impatient_house)) as client:
         async with aircraft(f"udpout:127.0.0.1:{port}", 1):
             answer = await client.post(VEHICLES, json={"name": "uav", "url": f"udpin:127.0.0.1:{port}"})
             place = answer.headers["location"]
@@ -96,14 +86,14 @@ async def test_a_swap_while_the_service_was_down_is_noticed(settings: Settings) 
     port = free_port()
     async with (
         aircraft(f"udpout:127.0.0.1:{port}", 7),
-        serving(create_app(settings, fake_house)) as client,
+        serving(create_app(settings, impatient_house)) as client,
     ):
         answer = await client.post(VEHICLES, json={"name": "uav", "url": f"udpin:127.0.0.1:{port}"})
         place = answer.headers["location"]
         assert answer.json()["connected"]
     async with (
         aircraft(f"udpout:127.0.0.1:{port}", 8),
-        serving(create_app(settings, fake_house)) as client,
+        serving(create_app(settings, impatient_house)) as client,
     ):
         swapped = await until(client, place, lambda body: body["other_system"] == 8)
         assert (swapped["connected"], swapped["system_id"]) == (False, 7)
@@ -111,7 +101,7 @@ async def test_a_swap_while_the_service_was_down_is_noticed(settings: Settings) 
         await until(client, place, lambda body: body["connected"])
     async with (
         aircraft(f"udpout:127.0.0.1:{port}", 8),
-        serving(create_app(settings, fake_house)) as client,
+        serving(create_app(settings, impatient_house)) as client,
     ):
         same = await until(client, place, lambda body: body["connected"])
         assert (same["system_id"], same["other_system"]) == (8, None)

@@ -55,10 +55,12 @@ async def test_an_upload_waits_for_the_answer_to_an_order_to_fly(
     """While one operator's order is unanswered, the mission it is about is not exchanged by the other."""
     async with faulty_vehicle(client, SimSettings(faults=("no_command_ack",))) as vehicle:
         order = asyncio.create_task(client.post(vehicle + "/commands", json={"command": "arm"}, timeout=60))
-        await asyncio.sleep(0.2)
+        # Carried out, so it was given; the answer to it never comes.
+        await until(client, vehicle, lambda body: body["state"]["armed"])
         refused = await client.post(vehicle + "/mission", json={"plan_id": plan_id})
         check_problem(refused, 409)
         assert "the order arm is not answered yet" in refused.text
+        await client.delete(vehicle)
         await order
 
 
@@ -114,11 +116,12 @@ async def test_a_recording_takes_no_upload(settings: Settings, tmp_path: Path, p
 
     recorded = settings.model_copy(update={"log_dir": tmp_path / "logs"})
     async with service(recorded) as client:
-        vehicle = await connected(client, "sim:")
-        await asyncio.sleep(1.0)
-        await client.delete(vehicle)
+        async with faulty_vehicle(client, SimSettings()) as vehicle:
+            await until(client, vehicle, lambda body: (body["state"]["time_s"] or 0.0) > 0.5)
+            await client.delete(vehicle)
         (tlog,) = (tmp_path / "logs").rglob("*.tlog")
-        replay = await connected(client, f"replay:{tlog}?speedup=0.5")
+        # Slow: it is still playing when all is said.
+        replay = await connected(client, f"replay:{tlog}?speedup=0.05")
         answer = await client.post(replay + "/mission", json={"plan_id": await stored(client, plan_file)})
         check_problem(answer, 409)
         assert "recording" in answer.text

@@ -18,12 +18,14 @@ import pytest
 from app.main import create_app
 from app.routers.bodies import EXAMPLE
 from app.settings import Settings
-from mavlink.link import open_link
+from mavlink.links.tcp import open_tcp_server
+from mavlink.links.udp import UdpLink, open_udp
+from mavlink.sim import missions
 from mavlink.sim.modes import Flavour
-from mavlink.sim.run import serve, serve_link
 from mavlink.sim.settings import SimSettings
 from tests.app.conftest import fake_house, serving, stored
 from tests.app.test_problems import check_problem
+from tests.app.test_restart import flying
 
 VEHICLES = "/api/v1/vehicles"
 
@@ -32,7 +34,7 @@ async def until(client: httpx.AsyncClient, path: str, ready: Callable[[Any], boo
     """What stands at a path once it is ready."""
     async with asyncio.timeout(25):
         while not ready(body := (await client.get(path)).json()):
-            await asyncio.sleep(0.05)
+            await asyncio.sleep(0.02)
     return body
 
 
@@ -47,15 +49,23 @@ async def connected(client: httpx.AsyncClient, url: str = "sim:?speedup=100", na
 @asynccontextmanager
 async def faulty_vehicle(client: httpx.AsyncClient, settings: SimSettings) -> AsyncIterator[str]:
     """The place of a vehicle that misbehaves on request."""
-    probe = await open_link("udpin:127.0.0.1:0")
-    port = probe.url.rpartition(":")[2]
-    await probe.close()
-    simulator = asyncio.create_task(serve(f"udpout:127.0.0.1:{port}", settings))
+    async with listening() as (link, url):
+        connecting = asyncio.create_task(connected(client, url))
+        # It begins to speak when somebody listens, or the first heartbeat would be lost.
+        while not (link.peers or connecting.done()):
+            await asyncio.sleep(0.005)
+        async with flying(link, settings):
+            yield await connecting
+
+
+@asynccontextmanager
+async def listening() -> AsyncIterator[tuple[UdpLink, str]]:
+    """A vehicle's link, and the address by which it can be called."""
+    link = await open_udp("127.0.0.1", 0, listen=True)
     try:
-        yield await connected(client, f"udpin:127.0.0.1:{port}")
+        yield link, f"udpout:127.0.0.1:{link.local_port}"
     finally:
-        simulator.cancel()
-        await asyncio.gather(simulator, return_exceptions=True)
+        await link.close()
 
 
 @pytest.mark.parametrize(
@@ -71,7 +81,7 @@ async def test_whole_journey(client: httpx.AsyncClient, aircraft: str, payload: 
     record = (await client.post("/api/v1/plans", json=EXAMPLE, params={"wait": 60})).json()
     assert record["state"] == "done", record
     plan_id = record["id"]
-    vehicle = await connected(client, f"sim:?speedup=300&{aircraft}")
+    vehicle = await connected(client, f"sim:?speedup=500&{aircraft}")
     answer = await client.post(
         vehicle + "/mission",
         json={"plan_id": plan_id, "parts": ["mission", "fence", "rally"], "payload": payload},
@@ -155,10 +165,13 @@ async def test_second_upload_at_once_is_refused(client: httpx.AsyncClient, plan_
 
 
 async def test_vanished_vehicle_leaves_unknown_until_read_back(
-    client: httpx.AsyncClient, plan_id: str
+    impatient: httpx.AsyncClient, plan_file: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A vehicle that vanishes in mid-upload leaves the outcome unknown until it has been read back."""
-    settings = SimSettings(faults=("vanish_mid_upload",), vanish_for_s=6.0)
+    # Until it gives up the upload it lets nobody read.
+    monkeypatch.setitem(missions._GIVE_UP_S, Flavour.ARDUPILOT, 2.0)
+    client, plan_id = impatient, await stored(impatient, plan_file)
+    settings = SimSettings(faults=("vanish_mid_upload",), vanish_for_s=3.5)
     async with faulty_vehicle(client, settings) as vehicle:
         answer = await client.post(vehicle + "/mission", json={"plan_id": plan_id})
         assert (answer.status_code, answer.json()["outcome"]) == (202, "unknown")
@@ -179,9 +192,10 @@ async def test_vanished_vehicle_leaves_unknown_until_read_back(
     ],
 )
 async def test_outcomes_are_told_as_they_are(
-    client: httpx.AsyncClient, plan_id: str, fault: str, outcome: str, verified: bool
+    impatient: httpx.AsyncClient, plan_file: Path, fault: str, outcome: str, verified: bool
 ) -> None:
     """Refusals, silent alterations and lost acknowledgements are told apart by reading back."""
+    client, plan_id = impatient, await stored(impatient, plan_file)
     async with faulty_vehicle(client, SimSettings(faults=(fault,))) as vehicle:
         report = (await client.post(vehicle + "/mission", json={"plan_id": plan_id})).json()
         assert (report["outcome"], report["verified"]) == (outcome, verified)
@@ -263,22 +277,19 @@ async def test_simulated_aircraft_ends_with_the_service(settings: Settings) -> N
     assert simulator._process.returncode is not None
 
 
-async def test_failed_link_is_opened_anew(client: httpx.AsyncClient) -> None:
+async def test_failed_link_is_opened_anew(impatient: httpx.AsyncClient) -> None:
     """A vehicle whose TCP side goes away and comes back is connected again without anyone's help."""
-    probe = await open_link("udpin:127.0.0.1:0")
-    port = probe.url.rpartition(":")[2]
-    await probe.close()
-    url = f"tcpin:127.0.0.1:{port}"
-    simulator = asyncio.create_task(serve(url, SimSettings()))
-    await asyncio.sleep(0.2)
-    vehicle = await connected(client, f"tcp:127.0.0.1:{port}")
-    simulator.cancel()
-    await asyncio.gather(simulator, return_exceptions=True)
+    client = impatient
+    link = await open_tcp_server("127.0.0.1", 0)
+    port = link.local_port
+    async with flying(link, SimSettings()):
+        vehicle = await connected(client, f"tcp:127.0.0.1:{port}")
+    await link.close()
     await until(client, vehicle, lambda body: not body["connected"])
-    simulator = asyncio.create_task(serve(url, SimSettings()))
-    await until(client, vehicle, lambda body: body["connected"])
-    simulator.cancel()
-    await asyncio.gather(simulator, return_exceptions=True)
+    link = await open_tcp_server("127.0.0.1", port)
+    async with flying(link, SimSettings()):
+        await until(client, vehicle, lambda body: body["connected"])
+    await link.close()
 
 
 @pytest.mark.parametrize("autopilot", [Flavour.ARDUPILOT, Flavour.PX4])
@@ -286,16 +297,18 @@ async def test_a_vehicle_that_is_still_starting_is_not_uploaded_to(
     client: httpx.AsyncClient, plan_id: str, autopilot: Flavour
 ) -> None:
     """It would store nothing: refused with the reason, override or not, until it has started."""
-    settings = SimSettings(autopilot=autopilot, boot_s=3.0)
-    async with faulty_vehicle(client, settings) as vehicle:
-        body = {"plan_id": plan_id, "override": True, "reason": "in a hurry"}
-        refused = await client.post(vehicle + "/mission", json=body)
-        check_problem(refused, 409, "vehicle-booting")
-        assert "still starting" in refused.json()["detail"]
-        assert (await client.get(vehicle)).json()["upload"] is None
-        await until(client, vehicle, lambda body: not body["state"]["booting"])
-        report = (await client.post(vehicle + "/mission", json={"plan_id": plan_id})).json()
-        assert (report["outcome"], report["verified"]) == ("accepted", True)
+    async with listening() as (link, url):
+        async with flying(link, SimSettings(autopilot=autopilot, boot_s=3600.0)):
+            vehicle = await connected(client, url)
+            body = {"plan_id": plan_id, "override": True, "reason": "in a hurry"}
+            refused = await client.post(vehicle + "/mission", json=body)
+            check_problem(refused, 409, "vehicle-booting")
+            assert "still starting" in refused.json()["detail"]
+            assert (await client.get(vehicle)).json()["upload"] is None
+        async with flying(link, SimSettings(autopilot=autopilot)):
+            await until(client, vehicle, lambda body: not body["state"]["booting"])
+            report = (await client.post(vehicle + "/mission", json={"plan_id": plan_id})).json()
+            assert (report["outcome"], report["verified"]) == ("accepted", True)
 
 
 class Modem:
@@ -330,13 +343,9 @@ class Modem:
 @asynccontextmanager
 async def plugged(modem: Modem) -> AsyncIterator[None]:
     """A simulated aircraft at the other end of the cable, until it is pulled."""
-    flying = asyncio.create_task(serve_link(modem, SimSettings()))
-    try:
+    async with flying(modem, SimSettings()):
         yield
-    finally:
-        flying.cancel()
-        await asyncio.gather(flying, return_exceptions=True)
-        await modem.close()
+    await modem.close()
 
 
 async def test_a_serial_port_that_failed_is_opened_anew(
