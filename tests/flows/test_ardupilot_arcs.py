@@ -165,7 +165,7 @@ async def test_turns_are_flown_better_than_points(
 
 
 async def test_closer_points_do_not_hold_arcs_better(tmp_path: Path) -> None:
-    """It swings wide of any points. Coarse ones cut the arc, which makes up for some of that, not for the line."""
+    """It swings wide of any. Coarse ones cut the arc, which offsets some of that; the line is met later."""
     flights = {}
     for chord_error_m in (1.0, 2.0, 5.0, 10.0):
         folder = tmp_path / f"{chord_error_m:g}"
