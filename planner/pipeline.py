@@ -164,6 +164,9 @@ def _route(
     if methods["routing"] != "joint":
         aware = methods["routing"] == "li2018-threat-aware"
         chosen = greedy(scenario, progress, stop, threat_aware=aware, aircraft=aircraft)
+        if not chosen.route.passes:
+            why = "; ".join(error.message for error in chosen.dropped)
+            raise InfeasibleError("swath", "scenario", f"no region can be seen: {why}", "see the findings")
         return chosen.route, tuple(_dropped(error) for error in chosen.dropped), None
     joint = joint_route(scenario, aircraft, progress, stop, enough)
     # The bound is over all methods, not over the paper's coverage alone.

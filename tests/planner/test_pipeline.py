@@ -177,3 +177,12 @@ def test_seconds_come_from_the_callers_clock() -> None:
     ticks = iter(range(100))
     seconds = make_plan(read_scenario(small()), clock=lambda: float(next(ticks))).metrics.planning_time_s
     assert set(seconds) == {"routing", "transit", "publish", "bound", "check"}
+
+
+def test_a_plan_of_nothing_is_refused_by_the_paper_s_methods_too() -> None:
+    """Where no region is required and none can be seen, the plan is refused, not of no length."""
+    document = small(method={"coverage": "li2018"})
+    document["features"] = [f for f in document["features"] if f["id"] != "B"]
+    document["features"][0]["properties"] |= {"required": False, "min_resolution_m": 0.1}
+    with pytest.raises(InfeasibleError, match="no region can be seen"):
+        make_plan(read_scenario(document))
