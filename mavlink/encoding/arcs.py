@@ -16,20 +16,23 @@ from mavlink.items import Command, Frame, MissionItem
 from mavlink.mission import placed
 from planner.plan import PathSegment
 
-#: A turn is left as soon as the course is within 10° of the bearing of the next waypoint. That is the arc's
-#: end, seen along a chord: 20° before it. A shorter arc would be left where it begins.
+#: A turn is left as soon as the course is within 10° of the bearing of the next waypoint, the arc's end. On
+#: the circle that is seen along a chord: 20° before it. A shorter arc would be left where it begins.
 _LEFT_BEFORE_DEG = 20.0
 #: From here on the line behind is met sooner than behind points, with room to spare for being left too late:
 #: that would be another whole circle.
 _WORTH_IT_DEG = 60.0
 #: Stored in whole metres; larger ones in tens, and a large circle widens by more metres with height.
-_LARGEST_M = 255.0
+_LARGEST_M = 250.0
 #: An item has one height.
 _LEVEL_M = 1.0
 #: How much of an arc must be flown before it may be left: without any, a nearly full circle would be left at
 #: once. Not much, for what is flown before the circle is met does not count, and an arc whose end is passed
 #: before enough was counted is flown for another whole circle.
 _COUNTED_PART = 0.25
+#: Places inside a circle are left for within 10° of the course abeam of them, later than those on it: the line
+#: behind is met sooner. So circles are up to this much wider than their arcs, in whole metres.
+_WIDER_M = 2.0
 #: Turns below one are stored in such parts.
 _TURN_STEPS = 256.0
 
@@ -70,7 +73,7 @@ def turn_item(task: Task, arc: PathSegment, altitude_m: float) -> MissionItem:
     if arc.centre is None or arc.turn_deg is None:
         raise ValueError(f"the segment at {arc.start_m:g} m is no arc")
     above_sea_m = altitude_m + (0.0 if task.frame == Frame.GLOBAL else task.options.home_altitude_m)
-    radius_m = float(round(arc.length_m / math.radians(arc.turn_deg) / widened(above_sea_m)))
+    radius_m = math.floor(arc.length_m / math.radians(arc.turn_deg) / widened(above_sea_m)) + _WIDER_M
     turns = math.floor(_COUNTED_PART * arc.turn_deg / 360.0 * _TURN_STEPS) / _TURN_STEPS
     # Param 4: the line that follows counts from where the circle is left, not from its centre.
     parameters = (turns, 0.0, radius_m if arc.kind == "right" else -radius_m, 1.0)

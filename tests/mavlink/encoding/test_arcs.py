@@ -25,7 +25,7 @@ STRAIGHT = Leg(length_m=800.0)
 wide_arcs = st.builds(
     Leg,
     turn_deg=st.floats(61.0, 350.0).flatmap(lambda a: st.sampled_from([a, -a])),
-    radius_m=st.floats(60.0, 255.0),
+    radius_m=st.floats(60.0, 250.0),
 )
 
 
@@ -39,7 +39,7 @@ def turn_of(mission: Mission) -> tuple[MissionItem, MissionItem, MissionItem]:
 @given(wide_arcs)
 @settings(max_examples=40, deadline=None)
 def test_a_turn_stands_between_the_ends_of_its_arc(leg: Leg) -> None:
-    """Waypoints at both ends, the exact centre, the side, the radius to half a metre, read back as sent."""
+    """Waypoints at both ends, the exact centre, the side, the radius, read back as sent."""
     mission = encode(make_plan((STRAIGHT, leg, STRAIGHT)))
     before, turn, behind = turn_of(mission)
     _, arc, _ = flown((STRAIGHT, leg, STRAIGHT), START).segments
@@ -48,7 +48,8 @@ def test_a_turn_stands_between_the_ends_of_its_arc(leg: Leg) -> None:
     for item, place in ((before, arc.start.position), (turn, arc.centre), (behind, arc.end.position)):
         assert math.dist(local(item), place) < 0.05
     assert math.copysign(1.0, turn.param3) == (-1.0 if leg.turn_deg > 0.0 else 1.0)
-    assert abs(turn.param3) * widened(300.0) == pytest.approx(leg.radius_m, abs=0.52)
+    # Wider than the arc, whose end is left for later so, by one to two metres of the item.
+    assert 1.0 <= abs(turn.param3) * widened(300.0) - leg.radius_m <= 2.1
     assert turn.param4 == 1.0
     held = mission.dialect.expected_readback(mission.mission)
     assert differences(mission.mission, held, mission.dialect) == ()
@@ -109,7 +110,7 @@ def test_the_height_of_home_counts() -> None:
     """Over a home at 1500 m the item's radius is smaller: the air is thinner there."""
     low, high = (encode(make_plan(), options=EncodeOptions(home_altitude_m=h)) for h in (0.0, 1500.0))
     radii = [[abs(item.param3) for item in mission.mission if item.command == T] for mission in (low, high)]
-    assert radii == [[117.0, 146.0], [101.0, 126.0]]
+    assert radii == [[118.0, 147.0], [102.0, 127.0]]
 
 
 @pytest.mark.parametrize(("autopilot", "kind"), KINDS)
@@ -130,11 +131,11 @@ def test_only_plane_flies_turns(autopilot: Autopilot, kind: VehicleType) -> None
         (Leg(turn_deg=59.0), 0, 1),
         (Leg(turn_deg=-21.0), 0, 1),
         (Leg(turn_deg=-19.0), 0, 0),
-        (Leg(turn_deg=90.0, radius_m=256.0), 0, 0),
+        (Leg(turn_deg=90.0, radius_m=251.0), 0, 0),
     ],
 )
 def test_which_arcs_become_turns(leg: Leg, auto: int, loiter: int) -> None:
-    """From 60° on where nothing is said, from 20° on where turns are asked for; never wider than 255 m."""
+    """From 60° on where nothing is said, from 20° on where turns are asked for; never wider than 250 m."""
     plan = make_plan((STRAIGHT, leg, STRAIGHT))
     expected: dict[Arcs, int] = {"auto": auto, "loiter": loiter, "points": 0}
     for choice, turns in expected.items():
