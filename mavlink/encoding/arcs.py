@@ -30,8 +30,8 @@ _LEVEL_M = 1.0
 #: once. Not much, for what is flown before the circle is met does not count, and an arc whose end is passed
 #: before enough was counted is flown for another whole circle.
 _COUNTED_PART = 0.25
-#: Places inside a circle are left for within 10° of the course abeam of them, later than those on it: the line
-#: behind is met sooner. So circles are up to this much wider than their arcs, in whole metres.
+#: Places inside a circle are left for within 10° of the course abeam of them, later than those on it: the
+#: line behind is met sooner. So circles are up to this much wider than their arcs, in whole metres.
 _WIDER_M = 2.0
 #: Turns below one are stored in such parts.
 _TURN_STEPS = 256.0
