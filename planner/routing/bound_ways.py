@@ -21,6 +21,7 @@ from planner.errors import InfeasibleError
 from planner.progress import Stop, never
 from planner.routing.bound_nodes import PLACE_M
 from planner.routing.bounds import GAPS, lower_bound_m
+from planner.routing.options import Surroundings
 from planner.routing.targets import targets
 from planner.routing.visible import sides_of, surroundings
 from planner.scenario import Method, Scenario
@@ -111,8 +112,20 @@ def _ways_of(
             ]
         except InfeasibleError:
             continue
+        if pieces == (region,):
+            found = _with_sweeps(scenario, region, around, found)
         return [parts, found] if parts else [found]
     return [parts] if parts else []
+
+
+def _with_sweeps(
+    scenario: Scenario, region: MergedRegion, around: Surroundings, of_visits: list[Sides]
+) -> list[Sides]:
+    """What ``auto`` may fly over a region that it could have divided and left whole, beside the paper's."""
+    swept = targets(region, *_sensing(scenario, region), around, whole=True)
+    if len(swept) != len(of_visits):
+        return of_visits
+    return [(*sides, *target.sides) for sides, target in zip(of_visits, swept, strict=True)]
 
 
 def _with_one_pass(scenario: Scenario, region: MergedRegion, sides: Sides) -> Sides:

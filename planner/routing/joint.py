@@ -11,18 +11,22 @@ the tour takes one of each at the least whole length, exactly over the order for
    flown in earnest, their true costs fed back (``chain``), and the tours compared by true cost.
 4. Passes of one region are parted where others fit between (``split``), and passes added for ground that
    terrain hides from all of them (``hidden``).
+5. A coarse grid of many families may hide the better order, and regions are divided by an estimate that knows
+   nothing of the tour: tours with pairs of passes alone instead of sweeps, and with a divided region whole,
+   are found as well and kept where they cost less.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
+from planner.coverage.segments import Neighbourhood
 from planner.coverage.sweeps import Side
 from planner.errors import Finding, InfeasibleError
 from planner.progress import Progress, Stop, never, raise_if, silent
@@ -37,7 +41,7 @@ from planner.routing.options import Options, Surroundings, hidden_m
 from planner.routing.split import split_passes
 from planner.routing.targets import coarse_options
 from planner.routing.tours import Choice, Tours
-from planner.routing.visible import surroundings, visible
+from planner.routing.visible import Visible, surroundings, visible
 from planner.scenario import Scenario
 from planner.vehicle.aircraft import Aircraft
 from planner.vehicle.wind import still_air_costs
@@ -48,6 +52,8 @@ COARSE_ETAS = np.array([0.0, 0.5, 1.0])
 EXACT_ORDER_UP_TO = 9
 LARGE_STEP_RAD = math.radians(15.0)
 LARGE_ETAS = np.array([0.0, 1.0])
+#: Divided regions, from the first, for which the tour with the region whole is found too.
+MOST_WHOLE = 3
 #: Tours with their legs flown in earnest, those of them to which true costs are fed back, and how often.
 TRUE_TOURS = 4
 TRUE_SOLVES = 12
@@ -92,32 +98,70 @@ def joint_route(
         Once ``stop`` says so.
     """
     around = surroundings(scenario, aircraft)
-    regions, sides, dropped = visible(scenario, around)
-    if not regions:
+    legs = Legs(scenario, aircraft, stop)
+    seen = visible(scenario, around)
+    if not seen.regions:
         raise InfeasibleError("swath", "scenario", "no region can be seen", "see the findings", None)
     progress("routing", 0.0)
-    exact = len(regions) <= EXACT_ORDER_UP_TO
+    cost_m, passes = _route(seen, scenario, around, legs, progress, stop, enough)
+    fewer = _fewer(seen)
+    if fewer is not seen and not enough():
+        cost_m, passes = min(
+            (cost_m, passes),
+            _route(fewer, scenario, around, legs, silent, stop, enough),
+            key=lambda found: found[0],
+        )
+    whole: frozenset[int] = frozenset()
+    for index in seen.divided[:MOST_WHOLE]:
+        trial = visible(scenario, around, whole | {index})
+        if enough() or index in trial.divided:
+            continue
+        trial_m, trial_passes = _route(trial, scenario, around, legs, silent, stop, enough)
+        if trial_m < cost_m - 1e-6:
+            cost_m, passes, seen, whole = trial_m, trial_passes, trial, whole | {index}
+    return JointRoute(Route(passes), seen.dropped, cost_m, seen.sides)
+
+
+def _fewer(seen: Visible) -> Visible:
+    """The same with pairs of passes alone where there are sweeps too; ``seen`` where there are none."""
+    sides = tuple(
+        tuple(side for side in of_region if isinstance(side, Neighbourhood)) or of_region
+        for of_region in seen.sides
+    )
+    return seen if sides == seen.sides else replace(seen, sides=sides)
+
+
+def _route(
+    seen: Visible,
+    scenario: Scenario,
+    around: Surroundings,
+    legs: Legs,
+    progress: Progress,
+    stop: Stop,
+    enough: Stop,
+) -> tuple[float, tuple[CollectPass, ...]]:
+    """The passes of all regions, so divided, and what they cost in truth."""
+    exact = len(seen.regions) <= EXACT_ORDER_UP_TO
     step_rad, etas = (COARSE_STEP_RAD, COARSE_ETAS) if exact else (LARGE_STEP_RAD, LARGE_ETAS)
     angles_rad = np.arange(-math.pi, math.pi - 1e-9, step_rad, dtype=np.float64)
     coarse = []
-    for region, of_region in zip(regions, sides, strict=True):
+    for region, of_region in zip(seen.regions, seen.sides, strict=True):
         raise_if(stop)
         coarse.append(coarse_options(region, of_region, angles_rad, etas, around))
-    tours = Tours(scenario, around, regions, sides)
+    tours = Tours(scenario, around, seen.regions, seen.sides)
     candidates = _orders(tours, coarse, progress, stop, enough)
     refined = []
     for index, choice in enumerate(candidates):
         raise_if(stop)
         progress("routing", 0.4 + 0.3 * index / len(candidates))
         refined.append(tours.refined(choice))
-    legs = Legs(scenario, aircraft, stop)
     cost_m, passes = _truest(tours, refined, legs, progress, stop, enough)
     cost_m, passes = split_passes(cost_m, passes, legs, stop)
     if scenario.terrain is not None and scenario.method.coverage != "li2018":
         more = see_hidden(scenario, around, passes, legs, stop)
         if more is not passes:
             passes, cost_m = more, legs.tour_m(more)
-    return JointRoute(Route(passes), dropped, cost_m, tuple(sides))
+    return cost_m, passes
 
 
 def _truest(

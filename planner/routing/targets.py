@@ -27,13 +27,16 @@ EXACT_UP_TO = 4
 #: Headings tried where a coarse grid leaves no room for turns, and how many options with room are kept.
 FINE_STEP_RAD = math.radians(2.5)
 MOST_ROOMY = 100
-#: Headings tried where a coarse grid leaves no room for turns, and how many options with room are kept.
-FINE_STEP_RAD = math.radians(2.5)
-MOST_ROOMY = 100
 
 
 def targets(
-    region: MergedRegion, sensor: SarSensor, height_m: float, around: Surroundings, *, wide: bool = True
+    region: MergedRegion,
+    sensor: SarSensor,
+    height_m: float,
+    around: Surroundings,
+    *,
+    wide: bool = True,
+    whole: bool = False,
 ) -> tuple[Target, ...]:
     """The stops that see one region; several where it is divided or to be visited again.
 
@@ -41,6 +44,8 @@ def targets(
     ----------
     wide
         Whether more than two swaths, divisions and sweeps are allowed; without, the paper's neighbourhoods.
+    whole
+        Not to divide it, unless it cannot be seen otherwise.
 
     Raises
     ------
@@ -60,9 +65,11 @@ def targets(
         found = [_cheapest(o) for o in options if o is not None]
         return _tour_m(found, around) if len(found) == len(options) else math.inf
 
-    whole = options_of(region)
+    undivided = options_of(region)
     parts: tuple[MergedRegion, ...] = (region,)
-    if wide and (whole is None or bool((_passes(whole) > 1).all()) or region.axis is not None):
+    if wide and (
+        undivided is None or (not whole and (bool((_passes(undivided) > 1).all()) or region.axis is not None))
+    ):
         parts = parts_of(region, estimate)
     found = []
     for part in parts:

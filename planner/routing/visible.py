@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
+from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
@@ -59,30 +61,55 @@ def surroundings(scenario: Scenario, aircraft: Aircraft) -> Surroundings:
 
 def sides_of(scenario: Scenario, aircraft: Aircraft) -> tuple[tuple[Side, ...], ...]:
     """The ways to see each region, part of one or visit to one that is not left out."""
-    return tuple(visible(scenario, surroundings(scenario, aircraft))[1])
+    return visible(scenario, surroundings(scenario, aircraft)).sides
 
 
-def visible(
-    scenario: Scenario, around: Surroundings
-) -> tuple[list[MergedRegion], list[tuple[Side, ...]], tuple[Finding, ...]]:
+@dataclass(frozen=True, slots=True)
+class Visible:
+    """What can be seen, and how.
+
+    Parameters
+    ----------
+    regions, sides
+        Each region, part of one or visit to one with the families of passes that see it.
+    divided
+        Which of the merged regions are divided.
+    dropped
+        Those that cannot be seen and need not be.
+    """
+
+    regions: tuple[MergedRegion, ...]
+    sides: tuple[tuple[Side, ...], ...]
+    divided: tuple[int, ...]
+    dropped: tuple[Finding, ...]
+
+
+def visible(scenario: Scenario, around: Surroundings, whole: Collection[int] = ()) -> Visible:
     """Parts of regions with the families of passes that see them.
 
     Regions that are not required and not to be seen are named and left out. The paper's coverage, asked for
     by name, has two passes at most and divides nothing.
+
+    Parameters
+    ----------
+    whole
+        Merged regions not to divide.
     """
     regions: list[MergedRegion] = []
     sides: list[tuple[Side, ...]] = []
+    divided: list[int] = []
     dropped: list[Finding] = []
     wide = scenario.method.coverage != "li2018"
     by_name = {region.name: region for region in scenario.regions}
-    for region in merge_regions(scenario.regions, default_sensor=scenario.sensors[0].name):
+    merged = merge_regions(scenario.regions, default_sensor=scenario.sensors[0].name)
+    for index, region in enumerate(merged):
         first = by_name[region.names[0]]
         sensor = scenario.sensor_for(first)
         try:
             sensor, height_m = sensing(scenario, sensor, region.area)
             for name in region.names:
                 check_sensor(by_name[name], sensor, height_m)
-            found = targets(region, sensor, height_m, around, wide=wide)
+            found = targets(region, sensor, height_m, around, wide=wide, whole=index in whole)
         except InfeasibleError as refused:
             error = refused
             if error.constraint == "area":
@@ -97,7 +124,9 @@ def visible(
             continue
         regions.extend(target.region for target in found)
         sides.extend(target.sides for target in found)
-    return regions, sides, tuple(dropped)
+        if len(found) > region.revisits:
+            divided.append(index)
+    return Visible(tuple(regions), tuple(sides), tuple(divided), tuple(dropped))
 
 
 def _some_pass(scenario: Scenario, *, region: MergedRegion, wide: bool) -> bool:

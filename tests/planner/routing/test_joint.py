@@ -16,6 +16,7 @@ from planner.dubins.words import shortest, shortest_between
 from planner.errors import InfeasibleError
 from planner.geojson import read_scenario
 from planner.route import Anchor, Pose
+from planner.routing import joint
 from planner.routing import joint_kernels as kernels
 from planner.routing.greedy import greedy
 from planner.routing.joint import joint_route
@@ -187,3 +188,76 @@ def test_allowed_approach_headings_are_kept() -> None:
     route = joint_route(scenario, scenario.aircraft[0]).route
     chosen = next(p for p in route.passes if p.regions == ("A",))
     assert chosen.angle_rad == pytest.approx(0.0, abs=1e-4)
+
+
+def ring(*lon_lat: tuple[float, float]) -> list[list[list[float]]]:
+    return [[list(place) for place in (*lon_lat, lon_lat[0])]]
+
+
+def test_more_families_do_not_hide_the_shorter_tour() -> None:
+    """Pairs of passes and sweeps together are never longer than pairs alone; here they would be by 3 %."""
+    one = ring(
+        (0.00246, 0.00839),
+        (0.00066, 0.00894),
+        (0.00305, 0.01322),
+        (0.00634, 0.01435),
+        (0.00753, 0.0101),
+        (0.00461, 0.00848),
+    )
+    two = ring(
+        (0.00805, 0.00911),
+        (0.00625, 0.00966),
+        (0.00864, 0.01393),
+        (0.01193, 0.01507),
+        (0.01312, 0.01082),
+        (0.0102, 0.0092),
+    )
+    near = ring(
+        (0.01108, 0.00013), (0.01007, 0.00135), (0.01047, 0.00229), (0.01104, 0.00198), (0.01195, 0.00088)
+    )
+    far = ring(
+        (0.01362, 0.00084), (0.01261, 0.00206), (0.01302, 0.00301), (0.01358, 0.0027), (0.01449, 0.0016)
+    )
+    headings = {"approach_deg": [90.32293, 270.32293]}
+    document = small()
+    document["features"] = [
+        feature("A", "roi", "Polygon", one),
+        feature("B", "roi", "Polygon", two),
+        feature("C", "roi", "Polygon", near, **headings),
+        feature("D", "roi", "Polygon", far, **headings),
+        feature("start", "start", "Point", [-0.04023, 0.01449], heading_deg=256.96461),
+    ]
+    document["vehicles"][0] |= {"min_turn_radius_m": 250.0, "settle_m": 100.0}
+    document["sensors"][0] |= {"incidence_deg": 50.0, "elevation_beamwidth_deg": 15.0, "look": "both"}
+    document["sensors"][0]["squint_deg"] = 14.90537
+    costs = []
+    for method in ({}, {"coverage": "li2018", "routing": "joint"}):
+        scenario = read_scenario(document | {"method": method})
+        costs.append(joint_route(scenario, scenario.aircraft[0]).cost_m)
+    assert costs[0] <= costs[1] + 1e-6
+
+
+def test_a_divided_region_is_flown_whole_where_the_tour_is_shorter(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Dividing this L seems cheaper by itself; with the way to and from it, it is not."""
+    corner = ring(
+        (-0.0308, -0.0326),
+        (-0.0182, -0.0326),
+        (-0.0182, -0.0275),
+        (-0.0258, -0.0275),
+        (-0.0258, -0.02),
+        (-0.0308, -0.02),
+    )
+    document = small(wind={"speed_m_s": 9.9, "from_deg": 346.0})
+    document["features"] = [
+        feature("point", "roi", "Point", [0.0326, -0.0014]),
+        feature("small", "roi", "Polygon", ring((0.0258, -0.0322), (0.0249, -0.031), (0.0274, -0.0322))),
+        feature("L", "roi", "Polygon", corner),
+        feature("start", "start", "Point", [0.037, 0.0108]),
+    ]
+    document["sensors"][0] |= {"incidence_deg": 50.0, "elevation_beamwidth_deg": 30.0, "look": "both"}
+    scenario = read_scenario(document)
+    tried = joint_route(scenario, scenario.aircraft[0])
+    monkeypatch.setattr(joint, "MOST_WHOLE", 0)
+    divided = joint_route(scenario, scenario.aircraft[0])
+    assert tried.cost_m < 0.99 * divided.cost_m
+    assert len(tried.sides) == len(divided.sides) - 1

@@ -208,14 +208,13 @@ def test_terrain_and_wind_together() -> None:
 
 
 def test_stabilised_and_spotlight_antennas_do_not_crab() -> None:
-    """They are steered: in the wind the strip is that of still air, and a plan keeps its bound."""
+    """They are steered: in the wind the strip is that of still air; plans have a bound either way."""
     for still in (replace(PLAIN, stabilised=True), replace(PLAIN, mode="spotlight", turned_rad=0.2)):
         sensor = still.in_wind(0.5, 1.0)
         assert not sensor.crabs
         assert float(strip_on(sensor, HEIGHT_M, 0.3, "right").near_m[0]) == still.near_m(HEIGHT_M)
     plans: list[Plan] = [make_plan(in_crosswind(20.0, stabilised=steered)) for steered in (True, False)]
-    assert plans[0].metrics.gap is not None
-    assert plans[1].metrics.gap is None
+    assert all(plan.metrics.gap is not None for plan in plans)
     assert plans[0].metrics.duration_s < plans[1].metrics.duration_s
 
 
