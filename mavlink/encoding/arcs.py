@@ -13,7 +13,7 @@ from collections.abc import Callable
 from mavlink.encoding.options import EncodeError
 from mavlink.encoding.task import Task
 from mavlink.items import Command, Frame, MissionItem
-from mavlink.mission import placed
+from mavlink.mission import Mission, placed
 from planner.plan import PathSegment
 
 #: A turn is left as soon as the course is within 10° of the bearing of the next waypoint, the arc's end. On
@@ -78,6 +78,18 @@ def turn_item(task: Task, arc: PathSegment, altitude_m: float) -> MissionItem:
     # Param 4: the line that follows counts from where the circle is left, not from its centre.
     parameters = (turns, 0.0, radius_m if arc.kind == "right" else -radius_m, 1.0)
     return placed(Command.NAV_LOITER_TURNS, arc.centre, altitude_m, task.frame, parameters)
+
+
+def circles_widen_m(mission: Mission, home_altitude_m: float) -> float:
+    """By how much, at most, ArduPlane circles wider from a home at this height than was encoded for."""
+    return max(
+        (
+            abs(item.param3) * (widened(home_altitude_m + item.z) - widened(mission.home_altitude_m + item.z))
+            for item in mission.mission
+            if item.command == Command.NAV_LOITER_TURNS and item.frame == Frame.GLOBAL_RELATIVE_ALT
+        ),
+        default=0.0,
+    )
 
 
 def widened(above_sea_m: float) -> float:

@@ -8,6 +8,7 @@ from typing import Any, Literal
 
 from app.services.missions import PARTS, PartName, mission_findings
 from app.services.vehicles.pointing import pointing_findings
+from mavlink.encoding.arcs import circles_widen_m
 from mavlink.geometry import distance_m
 from mavlink.mission import Mission
 from mavlink.parameter_rules import Needs, ParameterFinding, judge_parameters
@@ -28,6 +29,8 @@ FEW_SATELLITES = 6
 GOOD_FIXES = frozenset({"3d", "dgps", "rtk_float", "rtk_fixed"})
 #: A home whose height differs more from the scenario's stands elsewhere, or one datum is wrong.
 HEIGHT_M = 10.0
+#: Circles wider by this leave little of the margin that transits keep from zones.
+WIDER_M = 5.0
 #: Wind above this part of the airspeed leaves too little for turns.
 WIND_PART = 0.5
 
@@ -116,6 +119,7 @@ def preflight(
         _place(plan, state),
         _gps(state),
         _datum(plan, scenario, state),
+        *_circles(mission, state),
         *_wind(plan, scenario, mission),
     )
     differences = observed.held.get("mission")
@@ -288,6 +292,19 @@ def _home_altitude_m(scenario: Mapping[str, Any]) -> float | None:
             place = feature["geometry"]["coordinates"]
             return float(place[2]) if len(place) > 2 else None
     return None
+
+
+def _circles(mission: Mission, state: VehicleState) -> Iterator[Check]:
+    home_m = state.home_altitude_amsl_m
+    if mission.autopilot != "ardupilot" or home_m is None:
+        return
+    wider_m = circles_widen_m(mission, home_m)
+    if wider_m > WIDER_M:
+        message = (
+            f"its home is {home_m:.0f} m above the sea, where ArduPlane circles up to {wider_m:.0f} m wider"
+            " than planned: plan with as much more clearance, or on terrain, where heights count from the sea"
+        )
+        yield Check("turns", "warning", message)
 
 
 def _wind(plan: Plan, scenario: Mapping[str, Any], mission: Mission) -> Iterator[Check]:

@@ -60,6 +60,7 @@ def test_all_well_is_ready() -> None:
     found = checks()
     assert {check.status for name, check in found.items() if name != "dialect"} == {"ok"}
     assert found["dialect"].status != "failed"
+    assert "turns" not in found
     assert {"plan", "vehicle", "mission", "fence", "parameters", "battery", "place", "gps"} <= set(found)
 
 
@@ -81,6 +82,7 @@ def test_all_well_is_ready() -> None:
         ({"gps_fix": None}, "gps", "warning", "fix"),
         ({"satellites": 4}, "gps", "warning", "4 satellites"),
         ({"home_altitude_amsl_m": None}, "altitude", "warning", "has not said"),
+        ({"home_altitude_amsl_m": 1500.0}, "turns", "warning", "24 m wider"),
     ],
 )
 def test_the_vehicles_state(changes: dict[str, Any], name: str, status: str, words: str) -> None:
