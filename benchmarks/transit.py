@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from planner.environment.zones import Disc, KeepOut
 from planner.errors import InfeasibleError
 from planner.route import Anchor
-from planner.transit.tangent import connect
+from planner.transit.tangent import connect, forget_searches
 
 HALF_MAP_M = 5_000.0
 DISCS = 30
@@ -128,6 +128,7 @@ def _ours(given: Problem, repeats: int) -> tuple[float, float]:
     length_m, times_s = math.nan, []
     for _ in range(repeats):
         zones = keep_out_of(given)
+        forget_searches()
         began = time.perf_counter()
         try:
             length_m = connect(given.start, given.goal, zones, RADIUS_M).length_m

@@ -162,6 +162,11 @@ def _search(start: Anchor, goal: Anchor, zones: KeepOut, radius_m: float, most_m
     )
 
 
+def forget_searches() -> None:
+    """Search anew from here on; for those who measure how long a search takes."""
+    _search.cache_clear()
+
+
 def _named(zones: KeepOut) -> list[tuple[str, bool]]:
     """Names of the zones, and whether they are hard."""
     return [*((d.name, d.hard) for d in zones.discs), *((z.name, z.hard) for z in zones.polygons)]
