@@ -158,7 +158,7 @@ async def test_a_watcher_cannot_command_until_it_may() -> None:
         assert outlet.figures.passed == 1
 
 
-async def test_our_upload_is_not_disturbed_by_a_station() -> None:
+async def test_our_upload_is_not_disturbed_by_a_station(monkeypatch: pytest.MonkeyPatch) -> None:
     """What a station sends of the mission protocol in mid-upload is held back, and afterwards passes."""
     items = waypoints(30)
     async with (
@@ -177,7 +177,7 @@ async def test_our_upload_is_not_disturbed_by_a_station() -> None:
                 await until(lambda: outlet.figures.held_back == 4)
             await answer(message)
 
-        aircraft._answer = disturbed  # type: ignore[method-assign]
+        monkeypatch.setattr(aircraft, "_answer", disturbed)
         assert await client.upload(items, MissionType.MISSION) == Accepted()
         assert aircraft.vehicle.held[0] == items
         assert ARM not in [number for number, _ in aircraft.commands]
