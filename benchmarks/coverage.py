@@ -10,9 +10,9 @@ from shapely.geometry import LineString, Polygon, box
 
 from planner.coverage.merge import split_region
 from planner.coverage.sweeps import Side, sweeps
-from planner.routing import joint_kernels
-from planner.routing.options import Surroundings, make_options
-from planner.routing.targets import targets
+from planner.routing.joint import kernels as joint_kernels
+from planner.routing.joint.options import Surroundings, make_options
+from planner.routing.joint.targets import targets
 from planner.scenario import Region
 from planner.sensors.sar import SarSensor
 

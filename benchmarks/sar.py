@@ -16,14 +16,14 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
+from planner.airspace.zones import keep_out
 from planner.check import judge
 from planner.coverage.zigzag import zigzag
-from planner.environment.zones import keep_out
 from planner.geojson import read_scenario
 from planner.pipeline import TRANSIT_MARGIN_M, make_plan
 from planner.plan import Plan
 from planner.route import Anchor
-from planner.routing.greedy import greedy
+from planner.routing.greedy.route import greedy
 from planner.scenario import Scenario
 from planner.transit import ssas_connector
 from planner.transit.tangent import forget_searches

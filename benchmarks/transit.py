@@ -21,7 +21,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from planner.environment.zones import Disc, KeepOut
+from planner.airspace.zones import Disc, KeepOut
 from planner.errors import InfeasibleError
 from planner.route import Anchor
 from planner.transit.tangent import connect, forget_searches

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
+from planner.airspace.threats import curve_risk
 from planner.dubins.path import Path
-from planner.environment.threats import curve_risk
 from planner.plan import Metrics
 from planner.route import CollectPass
 from planner.scenario import Scenario

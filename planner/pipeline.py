@@ -7,20 +7,20 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 
+from planner.airspace.zones import KeepOut, keep_out
+from planner.bounds.ways import plan_bound_m
 from planner.check import judge
 from planner.coverage.sweeps import Side
 from planner.dubins.path import Path, Segment, join
-from planner.environment.zones import KeepOut, keep_out
 from planner.errors import Finding, InfeasibleError
 from planner.metrics import measure
 from planner.plan import Plan
 from planner.progress import Progress, Stop, never, raise_if, silent
 from planner.publish import Leg, assemble, uncovered, whole_path
 from planner.route import Anchor, CollectPass, Route
-from planner.routing.bound_ways import plan_bound_m
-from planner.routing.greedy import greedy
-from planner.routing.hidden import hidden_findings
-from planner.routing.joint import joint_route
+from planner.routing.greedy.route import greedy
+from planner.routing.joint.hidden import hidden_findings
+from planner.routing.joint.route import joint_route
 from planner.routing.legs import TRANSIT_MARGIN_M as TRANSIT_MARGIN_M
 from planner.scenario import Method, Scenario
 from planner.transit import ssas_connector

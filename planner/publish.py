@@ -10,10 +10,10 @@ import numpy as np
 import shapely
 from shapely.geometry import MultiPolygon, Polygon
 
+from planner.airspace.shapes import DiscShape, hard_shapes
+from planner.airspace.threats import curve_risk
+from planner.airspace.zones import keep_out
 from planner.dubins.path import Path, Segment, join
-from planner.environment.shapes import DiscShape, hard_shapes
-from planner.environment.threats import curve_risk
-from planner.environment.zones import keep_out
 from planner.metrics import DIVIDING_M, energy_wh
 from planner.plan import (
     Collect,

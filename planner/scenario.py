@@ -11,7 +11,7 @@ from typing import Literal
 
 from shapely.geometry import LineString, MultiPolygon, Polygon
 
-from planner.environment.terrain import Ground
+from planner.airspace.terrain import Ground
 from planner.errors import Finding
 from planner.frames import LocalFrame
 from planner.sensors.sar import SarSensor

@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy as np
 
+from planner.airspace.terrain import Terrains
 from planner.coverage.classify import angles_around, hull_points, spans_at
 from planner.coverage.neighbourhood import can_be_seen
 from planner.coverage.sweeps import MOST_LANES
-from planner.environment.terrain import Terrains
 from planner.errors import Finding, InfeasibleError, ScenarioError
 from planner.geojson import read_scenario
-from planner.routing.visible import sides_of
+from planner.routing.joint.visible import sides_of
 from planner.scenario import Scenario
 from planner.sensors.strip import swaths_m
 from planner.sensors.view import sensing

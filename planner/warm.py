@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numba.core.dispatcher import Dispatcher
 
-from planner.environment.terrain import Terrain
+from planner.airspace.terrain import Terrain
 from planner.geojson import read_scenario
 from planner.pipeline import make_plan
 

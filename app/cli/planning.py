@@ -22,7 +22,7 @@ from app.cli.output import (
 )
 
 if TYPE_CHECKING:
-    from planner.environment.terrain import Terrain
+    from planner.airspace.terrain import Terrain
 
 ScenarioFile = Annotated[
     str, typer.Argument(help="Scenario GeoJSON; - is standard input.", metavar="SCENARIO")

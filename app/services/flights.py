@@ -23,8 +23,8 @@ from app.services.records import FlightEvent, FlightRecord, TrackSample
 from app.services.refly import refly_scenario
 from app.services.report import write_flight_report
 from app.services.store.flights import FlightStore
+from planner.airspace.terrain import Terrains
 from planner.coverage import flown
-from planner.environment.terrain import Terrains
 from planner.frames import LocalFrame
 from planner.geojson import read_scenario
 from planner.plan import Plan

@@ -24,7 +24,7 @@ from app.services.rasters import stored_terrain
 from app.services.records import PlanRecord
 from app.services.store.plans import PlanStore
 from app.services.validation import Verdict, judge
-from planner.environment.terrain import Terrain
+from planner.airspace.terrain import Terrain
 
 log = structlog.get_logger(__name__)
 

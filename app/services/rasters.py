@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.services.errors import RefusedError
-from planner.environment.terrain import Terrain
+from planner.airspace.terrain import Terrain
 from planner.errors import Finding
 
 Affine = tuple[float, float, float, float, float, float]

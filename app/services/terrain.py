@@ -15,7 +15,7 @@ from app.services.rasters import VerticalDatum, known_fraction, pack, read_raste
 from app.services.records import TerrainRecord
 from app.services.store.plans import now
 from app.services.store.terrain import TerrainStore
-from planner.environment.terrain import Terrain
+from planner.airspace.terrain import Terrain
 from planner.errors import Finding
 
 

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 from shapely.geometry import LineString
 
+from planner.airspace.shapes import hard_shapes, soft_shapes
 from planner.check.places import PLACE_TOLERANCE_M, lonlat, middle
-from planner.environment.shapes import hard_shapes, soft_shapes
 from planner.plan import FlownPath, Plan, Violation
 from planner.scenario import Scenario
 

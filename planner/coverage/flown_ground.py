@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from shapely.geometry import MultiPoint, Polygon
 
-from planner.environment.terrain import Ground
+from planner.airspace.terrain import Ground
 from planner.sensors import sar_modes, strip
 from planner.sensors.sar import Look, SarSensor
 from planner.sensors.view import seen_beside

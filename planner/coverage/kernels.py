@@ -12,7 +12,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from planner.dubins.kernels import dubins_length
-from planner.routing.joint_kernels import best_orders, detour_m
+from planner.routing.joint.kernels import best_orders, detour_m
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]

@@ -19,7 +19,7 @@ from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
 from planner.coverage.merge import GRID_M
-from planner.routing.costs import Interval, collection_length_m, duty_cycle, operating_intervals
+from planner.routing.greedy.costs import Interval, collection_length_m, duty_cycle, operating_intervals
 from planner.scenario import Point, Scenario
 from planner.sensors.sar import SarSensor
 

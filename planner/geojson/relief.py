@@ -14,7 +14,7 @@ from dataclasses import replace
 import shapely
 from shapely.geometry.base import BaseGeometry
 
-from planner.environment.terrain import Ground, Terrain, local_ground
+from planner.airspace.terrain import Ground, Terrain, local_ground
 from planner.geojson.fields import Findings
 from planner.scenario import NoFlyZone, Obstacle, Scenario, Threat
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from shapely.geometry import Point
 
-from planner.environment.shapes import hard_shapes
+from planner.airspace.shapes import hard_shapes
 from planner.geojson.fields import Findings
 from planner.scenario import Scenario, Terminal
 

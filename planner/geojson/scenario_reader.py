@@ -10,7 +10,7 @@ from typing import Any
 
 from shapely.geometry import Polygon
 
-from planner.environment.terrain import Terrains, find_terrain
+from planner.airspace.terrain import Terrains, find_terrain
 from planner.errors import ScenarioError
 from planner.geojson import equipment, features
 from planner.geojson.extent import frame_of

@@ -9,11 +9,11 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from planner.environment.zones import keep_out
+from planner.airspace.zones import keep_out
 from planner.errors import InfeasibleError
 from planner.progress import Stop
 from planner.route import Anchor, CollectPass
-from planner.routing.prices import risk_m, soft_prices, turns_m
+from planner.routing.joint.prices import risk_m, soft_prices, turns_m
 from planner.scenario import Scenario, Terminal
 from planner.transit import tangent
 from planner.transit.refine import Risk, connect_by_cost

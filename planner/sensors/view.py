@@ -19,7 +19,7 @@ from shapely.affinity import affine_transform
 from shapely.geometry import MultiPolygon, Polygon
 from shapely.geometry.base import BaseGeometry
 
-from planner.environment.terrain import Ground
+from planner.airspace.terrain import Ground
 from planner.scenario import Scenario
 from planner.sensors import sar_modes, strip, view_kernels, visibility_kernels
 from planner.sensors.sar import Look, SarSensor

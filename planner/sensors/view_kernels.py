@@ -8,7 +8,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from planner.environment.terrain_kernels import ground_at
+from planner.airspace.terrain_kernels import ground_at
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.uint8]

@@ -13,7 +13,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from planner.environment.terrain_kernels import ground_at, heights_between
+from planner.airspace.terrain_kernels import ground_at, heights_between
 from planner.sensors.view_kernels import lead_m
 
 Array = NDArray[np.float64]

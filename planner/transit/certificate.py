@@ -14,8 +14,8 @@ import shapely
 from numpy.typing import NDArray
 from shapely.geometry.base import BaseGeometry
 
+from planner.airspace.zones import KeepOut
 from planner.dubins.path import Path
-from planner.environment.zones import KeepOut
 
 Array = NDArray[np.float64]
 

@@ -13,10 +13,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from planner.airspace.kernels import length_in_discs
+from planner.airspace.zones import TOUCH_M, Disc, KeepOut
 from planner.dubins.path import Path, join
 from planner.dubins.words import candidates_between
-from planner.environment.kernels import length_in_discs
-from planner.environment.zones import TOUCH_M, Disc, KeepOut
 from planner.route import Anchor
 
 #: A metre inside a soft disc that holds an end weighs as much as this many metres of detour.

@@ -23,11 +23,11 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from planner.airspace import kernels
+from planner.airspace.threats import threat_arrays
+from planner.airspace.zone_kernels import distances_from
+from planner.airspace.zones import TOUCH_M, KeepOut, pieces_of
 from planner.dubins.path import Path
-from planner.environment import kernels
-from planner.environment.threats import threat_arrays
-from planner.environment.zone_kernels import distances_from
-from planner.environment.zones import TOUCH_M, KeepOut, pieces_of
 from planner.errors import InfeasibleError
 from planner.progress import Stop, never, raise_if
 from planner.route import Anchor

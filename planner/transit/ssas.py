@@ -13,8 +13,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from planner.environment.kernels import point_risk
-from planner.environment.threats import DIVIDING_M
+from planner.airspace.kernels import point_risk
+from planner.airspace.threats import DIVIDING_M
 from planner.errors import InfeasibleError, OutOfBudgetError
 from planner.progress import Stop, never, raise_if
 from planner.route import Anchor

@@ -14,11 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 from shapely.geometry import MultiPoint
 
+from planner.airspace.threats import metres_inside, threat_arrays
+from planner.airspace.zones import MITRE_LIMIT, KeepOut
 from planner.dubins.path import Path
 from planner.dubins.smoothing import SmoothingMethod, smooth
 from planner.dubins.words import candidates
-from planner.environment.threats import metres_inside, threat_arrays
-from planner.environment.zones import MITRE_LIMIT, KeepOut
 from planner.errors import InfeasibleError, OutOfBudgetError
 from planner.progress import Stop, never, raise_if
 from planner.route import Anchor, Pose

@@ -13,7 +13,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from planner.environment.kernels import CLEAR, OUTSIDE, leg_risk, leg_verdict
+from planner.airspace.kernels import CLEAR, OUTSIDE, leg_risk, leg_verdict
 from planner.transit.kernels import BUCKETS, forget, nearest, pop, push, remember, wrap
 
 Array = NDArray[np.float64]
@@ -47,7 +47,7 @@ _COST_STEP = 1e-9
 class Space(NamedTuple):
     """What surrounds the search, as arrays.
 
-    ``missiles`` (K, 3) and ``radars`` (M, 4) as in ``planner.environment.threats.threat_arrays``; ``discs``
+    ``missiles`` (K, 3) and ``radars`` (M, 4) as in ``planner.airspace.threats.threat_arrays``; ``discs``
     (D, 3: east_m, north_m, radius_m) and polygons (``edges`` (E, 4: e0, n0, e1, n1) with int64 ``offsets``
     (P + 1)) are never entered; ``area`` (A, 4) holds the edges of what is never left, no rows for no limit.
     """

@@ -19,10 +19,10 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
+from planner.airspace.zone_kernels import edge_distance, inside
+from planner.airspace.zones import AREA, TOUCH_M, Conflict, Disc, KeepOut
 from planner.dubins.path import Path, Segment, SegmentKind, join
 from planner.dubins.words import candidates_between
-from planner.environment.zone_kernels import edge_distance, inside
-from planner.environment.zones import AREA, TOUCH_M, Conflict, Disc, KeepOut
 from planner.errors import InfeasibleError
 from planner.progress import Stop, never, raise_if
 from planner.route import Anchor, Pose

@@ -14,8 +14,8 @@ import shapely
 from numpy.typing import NDArray
 from shapely.geometry.polygon import orient
 
+from planner.airspace.zones import TOUCH_M, Ground, KeepOut, ring_edges
 from planner.dubins.path import Path, Segment
-from planner.environment.zones import TOUCH_M, Ground, KeepOut, ring_edges
 from planner.route import Anchor, Pose
 from planner.transit.wheels_kernels import touching
 

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from planner.environment.terrain import Ground, Terrain
+from planner.airspace.terrain import Ground, Terrain
 from planner.frames import LocalFrame
 
 Surface = Callable[[NDArray[np.float64], NDArray[np.float64]], NDArray[np.float64]]

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 import shapely
 
+from planner.airspace.terrain import Ground
 from planner.check import footprint, judge
-from planner.environment.terrain import Ground
 from planner.frames import LocalFrame
 from planner.geojson import read_plan, read_scenario, write_plan
 from planner.pipeline import make_plan

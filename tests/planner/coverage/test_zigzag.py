@@ -12,7 +12,7 @@ from shapely.geometry import LineString, Polygon
 from shapely.ops import substring
 
 from planner.coverage.zigzag import Direction, Zigzag, zigzag
-from planner.routing.costs import operating_function
+from planner.routing.greedy.costs import operating_function
 from planner.scenario import Region, Scenario, Terminal
 from planner.sensors.sar import Look
 from tests.planner.coverage.shapes import paper_sensor, polygons, sample, unseen_m2

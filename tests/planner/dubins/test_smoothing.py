@@ -12,11 +12,11 @@ from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import dijkstra
 from shapely.geometry import LineString, box
 
+from planner.airspace.zones import Disc, KeepOut, PolygonZone
 from planner.angles import wrap_pi
 from planner.dubins.kernels import cheapest_steps
 from planner.dubins.path import Path
 from planner.dubins.smoothing import SmoothingMethod, smooth
-from planner.environment.zones import Disc, KeepOut, PolygonZone
 from tests.planner.dubins.test_words import assert_flyable
 
 RADIUS_M = 100.0

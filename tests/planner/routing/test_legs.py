@@ -18,8 +18,8 @@ from planner.geojson import read_scenario
 from planner.progress import never
 from planner.route import Anchor, CollectPass
 from planner.routing import legs as module
+from planner.routing.joint.options import INSIDE_FACTOR
 from planner.routing.legs import TRANSIT_MARGIN_M, Legs, anchor, leaves
-from planner.routing.options import INSIDE_FACTOR
 from planner.scenario import Scenario
 from planner.transit.tangent import connect
 from tests.planner.scenarios import feature, small

@@ -9,7 +9,7 @@ import pytest
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter
 
-from planner.environment.terrain_kernels import ground_at, heights_between
+from planner.airspace.terrain_kernels import ground_at, heights_between
 from planner.sensors.view_kernels import SEEN, lead_m, profile_flags
 from planner.sensors.visibility_kernels import line_visibility
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from shapely.geometry import LineString, Point, Polygon
 
-from planner.environment.threats import risk_of_detection
+from planner.airspace.threats import risk_of_detection
 
 
 @dataclass

@@ -9,9 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely.geometry import LineString, Point, box
 
+from planner.airspace.zones import Disc, KeepOut, PolygonZone
 from planner.dubins.path import Path, Segment
 from planner.dubins.words import shortest
-from planner.environment.zones import Disc, KeepOut, PolygonZone
 from planner.errors import InfeasibleError
 from planner.geojson import read_plan, read_scenario, write_plan
 from planner.pipeline import make_plan

@@ -13,9 +13,9 @@ from scipy.integrate import quad
 from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import dijkstra
 
+from planner.airspace.threats import risk_of_detection, risk_of_kill
+from planner.airspace.zones import Disc, KeepOut
 from planner.dubins.path import Path, Segment
-from planner.environment.threats import risk_of_detection, risk_of_kill
-from planner.environment.zones import Disc, KeepOut
 from planner.errors import CancelledError, InfeasibleError
 from planner.geojson import read_scenario
 from planner.pipeline import make_plan

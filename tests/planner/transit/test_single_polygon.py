@@ -9,8 +9,8 @@ import pytest
 import shapely
 from shapely.geometry import LineString, MultiPoint, Polygon
 
+from planner.airspace.zones import KeepOut, PolygonZone
 from planner.dubins.words import candidates
-from planner.environment.zones import KeepOut, PolygonZone
 from planner.route import Anchor, Pose
 from planner.transit.tangent import connect
 

@@ -7,9 +7,9 @@ import math
 import numpy as np
 import pytest
 
+from planner.airspace.zones import Disc, KeepOut
 from planner.dubins.path import Path
 from planner.dubins.words import candidates
-from planner.environment.zones import Disc, KeepOut
 from planner.route import Anchor, Pose
 from planner.transit.tangent import connect
 

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 from shapely.geometry import LineString, Point, Polygon
 
-from planner.environment.threats import line_risk, threat_arrays
-from planner.environment.zones import ring_edges
+from planner.airspace.threats import line_risk, threat_arrays
+from planner.airspace.zones import ring_edges
 from planner.errors import CancelledError, InfeasibleError, OutOfBudgetError
 from planner.route import Anchor
 from planner.scenario import Threat

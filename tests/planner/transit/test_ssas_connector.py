@@ -14,8 +14,8 @@ import pytest
 from shapely.geometry import LineString, Point, Polygon
 from shapely.ops import unary_union
 
-from planner.environment.threats import metres_inside
-from planner.environment.zones import Disc, KeepOut, PolygonZone, keep_out
+from planner.airspace.threats import metres_inside
+from planner.airspace.zones import Disc, KeepOut, PolygonZone, keep_out
 from planner.errors import CancelledError, InfeasibleError
 from planner.frames import LocalFrame
 from planner.geojson import read_scenario

@@ -14,10 +14,10 @@ from hypothesis import strategies as st
 from scipy.optimize import minimize_scalar
 from shapely.geometry import LineString, Point, Polygon, box
 
+from planner.airspace.zones import Disc, KeepOut, PolygonZone
 from planner.angles import wrap_pi
 from planner.dubins.path import Path
 from planner.dubins.words import candidates_between, shortest_between
-from planner.environment.zones import Disc, KeepOut, PolygonZone
 from planner.errors import CancelledError, InfeasibleError
 from planner.route import Anchor
 from planner.transit import tangent

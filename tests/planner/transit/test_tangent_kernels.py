@@ -11,9 +11,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely.geometry import LineString, Point, Polygon, box
 
+from planner.airspace.zones import ring_edges
 from planner.dubins.path import Path, Segment
 from planner.dubins.words import candidates_between
-from planner.environment.zones import ring_edges
 from planner.route import Anchor, Pose
 from planner.transit.tangent_kernels import RADIUS_SLACK, least_to_go, search, tangent, turn_between
 

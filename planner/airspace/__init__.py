@@ -1,0 +1,1 @@
+"""Where one may fly: area, zones, obstacles, threats and their risk, terrain, wind."""

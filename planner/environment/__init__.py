@@ -1,1 +1,0 @@
-"""Threats, zones and the risk along a line."""

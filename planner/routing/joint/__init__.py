@@ -1,0 +1,1 @@
+"""Order, heading, offset and side chosen together: ``auto``."""

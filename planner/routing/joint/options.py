@@ -1,0 +1,369 @@
+"""The ways to see one region, as arrays: what the joint choice chooses among."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+from shapely.geometry import Polygon
+from shapely.geometry.base import BaseGeometry
+
+from planner.airspace.terrain import Ground
+from planner.coverage.alternatives import of_visit
+from planner.coverage.classify import fits, hull_points, spans_at
+from planner.coverage.merge import GRID_M
+from planner.coverage.neighbourhood import complementary, inside
+from planner.coverage.segments import Neighbourhood
+from planner.coverage.sweeps import VARIANTS, Judge, Side, Sweep, Swept, best_sweeps, sweep_passes
+from planner.dubins.kernels import dubins_lengths
+from planner.route import CollectPass
+from planner.routing.joint.barriers import COLUMNS, rows_of
+from planner.routing.joint.options_kernels import circles_fit, inside_m
+from planner.routing.joint.prices import INSIDE_FACTOR as INSIDE_FACTOR
+from planner.routing.joint.prices import risks_m
+from planner.scenario import Wind
+from planner.sensors.sar import Look
+from planner.sensors.strip import swaths_m
+from planner.sensors.view import shadow_cost
+from planner.vehicle.wind import STILL_AIR, still_air_factor
+
+Floats = NDArray[np.float64]
+
+#: An option without room for a full turn at one of its ends is taken only where all others are worse.
+NO_ROOM_M = 5_000.0
+#: Places of a region looked at for what terrain hides, in each strip and in all.
+PLACES, MOST_PLACES = 60, 400
+
+
+@dataclass(frozen=True, slots=True)
+class Surroundings:
+    """What the options of all regions have in common.
+
+    Parameters
+    ----------
+    area, room
+        The operating area, and where the centre of a full turn may be; None without an area.
+    hard, soft
+        Discs that may not, and should not, be entered, shape (K, 3).
+    prices, yields
+        Of the soft discs: what a metre inside costs besides, and whether they may be crossed to save way,
+        (K,); where not given all cost ``INSIDE_FACTOR`` and none is crossed where there is a way round.
+    barriers
+        The polygons as rows of ``barriers.polygon_rows``.
+    cramped
+        Where the centre of a full turn may not be for the polygons' sake; None without any.
+    hard_polygons
+        Polygons that may not be entered.
+    radius_m, settle_m
+        Turn radius, and straight flight before each collect.
+    airspeed_m_s, wind
+        In a wind, metres over the ground count as metres through the air: time by airspeed.
+    ground, level_m
+        Terrain, and the flight's level over its datum: ground that a pass leaves in shadow or layover costs.
+    """
+
+    area: Polygon | None
+    room: Polygon | None
+    hard: Floats
+    soft: Floats
+    hard_polygons: tuple[Polygon, ...]
+    radius_m: float
+    settle_m: float
+    airspeed_m_s: float = 1.0
+    wind: Wind = STILL_AIR
+    ground: Ground | None = None
+    level_m: float = 0.0
+    prices: Floats | None = None
+    yields: NDArray[np.bool_] | None = None
+    barriers: Floats = field(default_factory=lambda: np.empty((0, COLUMNS)))
+    cramped: BaseGeometry | None = None
+
+    @property
+    def discs(self) -> Floats:
+        """All zones between poses, for the kernels: see ``barriers``."""
+        if self.prices is None or self.yields is None:
+            return rows_of(self.hard, self.soft, np.full(len(self.soft), np.inf), self.barriers)
+        return rows_of(self.hard, self.soft, np.where(self.yields, self.prices, np.inf), self.barriers)
+
+    @property
+    def priced(self) -> Floats:
+        """Soft discs with what a metre inside costs besides, (K, 4)."""
+        prices = np.full(len(self.soft), INSIDE_FACTOR) if self.prices is None else self.prices
+        return np.column_stack([self.soft, prices])
+
+
+@dataclass(frozen=True, slots=True)
+class Options:
+    """Ways to see one region.
+
+    Parameters
+    ----------
+    side
+        Index into the region's sides, int64 (K,): neighbourhoods, one a look side, and sweeps, one a variant.
+    angles_rad, eta_first, eta_second
+        Of each option; η of the second pass is NaN where there is only one, and for sweeps, which share one
+        η among their lanes. Side, angle and these tell any two options of a region apart. float64 (K,).
+    entries, exits
+        Poses before the first (settling included) and after the last pass, (K, 3).
+    inner_m
+        Cost from entry to exit: passes, the turns between them, metres inside threats.
+    lanes
+        The order of a sweep's lanes (see ``Swept.order``), −1 for other options and after the last lane;
+        int64 (K, L).
+    """
+
+    side: NDArray[np.int64]
+    angles_rad: Floats
+    eta_first: Floats
+    eta_second: Floats
+    entries: Floats
+    exits: Floats
+    inner_m: Floats
+    lanes: NDArray[np.int64]
+
+
+def make_options(
+    sides: Sequence[Side], angles_rad: Floats, etas: Floats, around: Surroundings
+) -> Options | None:
+    """Options at the given angles and offsets that keep the hard constraints; None where there are none."""
+    found = []
+    angles_rad, etas = of_visit(sides[0].region, angles_rad, etas)
+    if len(angles_rad) == 0 or len(etas) == 0:
+        return None
+    for index, side in enumerate(sides):
+        if isinstance(side, Neighbourhood):
+            part = _of_side(index, side, angles_rad, etas, around)
+            if part is not None:
+                found.append(part)
+    found += _of_sweeps(sides, angles_rad, etas, around)
+    if not found:
+        return None
+    width = max(part.lanes.shape[1] for part in found)
+    found = [
+        replace(
+            part, lanes=np.pad(part.lanes, ((0, 0), (0, width - part.lanes.shape[1])), constant_values=-1)
+        )
+        for part in found
+    ]
+    return Options(*(np.concatenate([getattr(part, name) for part in found]) for name in Options.__slots__))
+
+
+def collect_passes(sides: Sequence[Side], options: Options, index: int) -> tuple[CollectPass, ...]:
+    """The passes of one option."""
+    chosen = sides[int(options.side[index])]
+    if isinstance(chosen, Sweep):
+        angle_rad, eta = float(options.angles_rad[index]), float(options.eta_first[index])
+        return sweep_passes(chosen, angle_rad, eta, options.lanes[index])
+    side = _at(chosen, options.angles_rad[index : index + 1])
+    first = side.collect(0, float(options.eta_first[index]))
+    if side.turns == 0:
+        return (first,)
+    return (first, side.collect(0, float(options.eta_second[index]), opposite=True))
+
+
+def _at(side: Neighbourhood, angles_rad: Floats) -> Neighbourhood:
+    """The same neighbourhood at other angles: those of them that see the region."""
+    spans = spans_at(hull_points(side.region.area), angles_rad)
+    good = fits(spans.across_m, swaths_m(side.sensor, side.height_m, angles_rad), side.turns)
+    kept = spans_at(hull_points(side.region.area), angles_rad[good])
+    return Neighbourhood(
+        side.region, side.sensor, side.height_m, side.look, side.turns, angles_rad[good], kept
+    )
+
+
+def _of_side(
+    index: int, side: Neighbourhood, angles_rad: Floats, etas: Floats, around: Surroundings
+) -> Options | None:
+    here = _at(side, angles_rad)
+    if len(here.angles_rad) == 0:
+        return None
+    first = here.lines(etas)
+    good_first, cost_first = _judge(first, around)
+    cost_first += _hidden_m(here, here.look, first, around)
+    if side.turns == 0:
+        rows = np.argwhere(good_first)
+        if len(rows) == 0:
+            return None
+        m, k = rows.T
+        line = first[m, k]
+        entries, exits = _poses(line, here.angles_rad[m], around.settle_m)
+        return _finish(
+            index, here, m, etas[k], np.full(len(m), np.nan), entries, exits, cost_first[m, k], around
+        )
+    second = here.lines(etas, opposite=True)
+    good_second, cost_second = _judge(second, around)
+    cost_second += _hidden_m(here, here.look, second, around)
+    both = good_first[:, :, None] & good_second[:, None, :] & complementary(etas)
+    rows = np.argwhere(both)
+    if len(rows) == 0:
+        return None
+    m, k, n = rows.T
+    entries, between0 = _poses(first[m, k], here.angles_rad[m], around.settle_m)
+    between1, exits = _poses(second[m, n], here.angles_rad[m] + math.pi, around.settle_m)
+    turn_m = dubins_lengths(between0, between1, around.radius_m)
+    inner_m = cost_first[m, k] + cost_second[m, n] + turn_m + _cramped_m(between0, between1, around)
+    return _finish(index, here, m, etas[k], etas[n], entries, exits, inner_m, around)
+
+
+def _finish(
+    index: int,
+    here: Neighbourhood,
+    m: NDArray[np.int64],
+    eta_first: Floats,
+    eta_second: Floats,
+    entries: Floats,
+    exits: Floats,
+    inner_m: Floats,
+    around: Surroundings,
+) -> Options:
+    side = np.full(len(m), index, dtype=np.int64)
+    cost_m = inner_m + _cramped_m(entries, exits, around)
+    none = np.empty((len(m), 0), dtype=np.int64)
+    return Options(side, here.angles_rad[m], eta_first, eta_second, entries, exits, cost_m, none)
+
+
+def _of_sweeps(
+    sides: Sequence[Side], angles_rad: Floats, etas: Floats, around: Surroundings
+) -> list[Options]:
+    """Options of all sweeps among the sides; those that differ in their variant alone are solved together."""
+    families: dict[int, list[tuple[int, Sweep]]] = {}
+    for index, side in enumerate(sides):
+        if isinstance(side, Sweep):
+            families.setdefault(side.extra, []).append((index, side))
+    found = []
+    for family in families.values():
+        judge = _lane_judge(family[0][1], around)
+        best = best_sweeps(family[0][1], angles_rad, etas, judge, around.radius_m, around.discs)
+        number = np.full(VARIANTS, -1, dtype=np.int64)
+        for index, side in family:
+            number[side.variant] = index
+        cost_m = best.inner_m + best.cramped_m.max(axis=1, initial=0.0)
+        kept = _worth(best, np.where(number[best.variant] >= 0, cost_m, np.inf), around.radius_m)
+        if not kept.any():
+            continue
+        found.append(
+            Options(
+                number[best.variant[kept]],
+                angles_rad[best.angle_index[kept]],
+                etas[best.eta_index[kept]],
+                np.full(int(kept.sum()), np.nan),
+                best.entries[kept],
+                best.exits[kept],
+                cost_m[kept],
+                best.order[kept],
+            )
+        )
+    return found
+
+
+def _worth(best: Swept, cost_m: Floats, radius_m: float) -> NDArray[np.bool_]:
+    """Which sweeps can be part of the best tour: flying to the cheapest one's ends instead is not shorter.
+
+    From one pose to another it is at most the distance and two full turns.
+    """
+    if len(cost_m) == 0:
+        return np.zeros(0, dtype=np.bool_)
+    least = int(np.argmin(cost_m))
+    away_m = sum(
+        np.hypot(*(poses[:, :2] - poses[least, :2]).T) + 4.0 * math.pi * radius_m
+        for poses in (best.entries, best.exits)
+    )
+    return np.asarray(np.isfinite(cost_m) & (cost_m <= cost_m[least] + away_m), dtype=np.bool_)
+
+
+def _lane_judge(sweep: Sweep, around: Surroundings) -> Judge:
+    """What lanes of a sweep cost among these surroundings."""
+
+    def judge(
+        lines: Floats, headings_rad: Floats, looks: tuple[Look, ...]
+    ) -> tuple[Floats, Floats, Floats, Floats]:
+        good, cost_m = _judge(lines[:, None], around)
+        cost_m = np.where(good, cost_m, np.inf)[:, 0]
+        for state, look in enumerate(looks):
+            rows = np.arange(state, len(lines), len(looks))
+            rows = rows[np.isfinite(cost_m[rows])]
+            cost_m[rows] += _hidden_m(sweep, look, lines[rows], around)
+        entries, exits = _poses(lines, headings_rad, around.settle_m)
+        cramped = ~np.stack([roomy(entries, around), roomy(exits, around)], axis=1)
+        return cost_m, entries, exits, NO_ROOM_M * cramped.astype(np.float64)
+
+    return judge
+
+
+def _hidden_m(side: Side, look: Look, lines: Floats, around: Surroundings) -> Floats | float:
+    """What the lines cost for ground of the region that terrain hides from them.
+
+    Each line answers for what lies in its own beam alone, so that lanes add up.
+    """
+    if around.ground is None or len(lines) == 0:
+        return 0.0
+    swath_m = side.sensor.swath_m(side.height_m)
+    # As many places to a strip as a region seen at once has.
+    strips = math.ceil(math.sqrt(side.region.area.area) / swath_m)
+    places = min(PLACES * max(strips, 1), MOST_PLACES)
+    wanted = shapely.union_all(side.region.originals, grid_size=GRID_M)
+    return shadow_cost(lines, look, side.sensor, around.level_m, wanted, around.ground, places)
+
+
+def hidden_m(side: Side, passes: Sequence[CollectPass], around: Surroundings) -> float:
+    """What passes of one option cost for ground of the region that terrain hides from them, as in options."""
+    if around.ground is None:
+        return 0.0
+    return math.fsum(
+        float(np.sum(_hidden_m(side, collect.look, np.array([[collect.start, collect.end]]), around)))
+        for collect in passes
+    )
+
+
+def _judge(lines: Floats, around: Surroundings) -> tuple[NDArray[np.bool_], Floats]:
+    """Which lines (M, K, 2, 2) keep the hard constraints, and what each costs."""
+    shape = lines.shape[:2]
+    good = inside(lines, around.area)
+    geometry = shapely.linestrings(lines)
+    for polygon in around.hard_polygons:
+        good &= ~shapely.intersects(polygon, geometry)
+    delta = lines[:, :, 1] - lines[:, :, 0]
+    cost_m = np.hypot(delta[..., 0], delta[..., 1]) + around.settle_m
+    if around.wind.speed_m_s > 0.0:
+        courses_rad = np.arctan2(delta[..., 1], delta[..., 0])
+        cost_m = cost_m * still_air_factor(courses_rad, around.airspeed_m_s, around.wind)
+    flat = np.ascontiguousarray(lines).reshape(-1, 2, 2)
+    if len(around.hard):
+        good &= (inside_m(flat, around.hard) == 0.0).reshape(shape)
+    if len(around.soft):
+        cost_m[good] += risks_m(flat[good.reshape(-1)], around.priced)
+    return good, cost_m
+
+
+def _poses(line: Floats, angles_rad: Floats, settle_m: float) -> tuple[Floats, Floats]:
+    """Entry and exit poses of lines (N, 2, 2) flown at angles (N,)."""
+    ahead = np.stack([np.cos(angles_rad), np.sin(angles_rad)], axis=1)
+    wrapped = np.mod(angles_rad + math.pi, 2.0 * math.pi) - math.pi
+    entry = np.column_stack([line[:, 0] - settle_m * ahead, wrapped])
+    return entry, np.column_stack([line[:, 1], wrapped])
+
+
+def _cramped_m(arriving: Floats, leaving: Floats, around: Surroundings) -> Floats:
+    """What two poses cost where a full turn fits at neither side of one of them."""
+    return NO_ROOM_M * (~(roomy(arriving, around) & roomy(leaving, around))).astype(np.float64)
+
+
+def roomy(poses: Floats, around: Surroundings) -> NDArray[np.bool_]:
+    """Whether a full turn to one side or the other fits: inside the area, outside every disc."""
+    roomy = np.zeros(len(poses), dtype=np.bool_)
+    discs = np.concatenate([around.hard, around.soft])
+    for side in (1.0, -1.0):
+        free = circles_fit(poses, side, around.radius_m, discs)
+        east_m = poses[:, 0] - side * around.radius_m * np.sin(poses[:, 2])
+        north_m = poses[:, 1] + side * around.radius_m * np.cos(poses[:, 2])
+        if around.room is not None:
+            free &= shapely.contains_xy(around.room, east_m, north_m)
+        if around.cramped is not None:
+            shapely.prepare(around.cramped)
+            free &= ~shapely.contains_xy(around.cramped, east_m, north_m)
+        roomy |= free
+    return roomy

@@ -1,0 +1,1 @@
+"""The order of many regions, by local search."""
