@@ -14,7 +14,10 @@ LonLatAlt = tuple[float, float, float]
 Ring = tuple[LonLat, ...]
 
 AltitudeReference = Literal["amsl", "home", "terrain"]
-SegmentKind = Literal["straight", "left", "right"]
+SegmentKind = Literal["straight", "left", "right", "vertical"]
+PhaseKind = Literal["take_off", "climb", "mission", "return", "landing"]
+#: How a flight ends: on the ground, circling over home until a pilot lands it, circling over its end.
+Finish = Literal["land", "return", "loiter"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,22 +30,26 @@ class PlanVehicle:
     airspeed_m_s: float
     min_turn_radius_m: float
     max_climb_deg: float = 8.0
+    finish: Finish = "land"
 
 
 @dataclass(frozen=True, slots=True)
 class PathSegment:
-    """A straight or a circular arc of a path.
+    """A straight, a circular arc or a climb on the spot: a piece of a path whose slope is even.
 
     Parameters
     ----------
     kind
-        ``left`` and ``right`` are arcs.
+        ``left`` and ``right`` are arcs; ``vertical`` is flown by what hovers.
     start, end
         Longitude, latitude in degrees.
     start_m, length_m
-        Along the path.
+        Along the path, in three dimensions.
     radius_m, centre, turn_deg
-        Of an arc: radius, centre, and degrees turned (> 0, may exceed 180); None for a straight.
+        Of an arc: radius, centre, and degrees turned (> 0; more than 360 where it climbs or descends in
+        circles); None for a straight.
+    start_altitude_m, end_altitude_m
+        Over the plan's ``altitude_reference``.
     """
 
     kind: SegmentKind
@@ -53,14 +60,28 @@ class PathSegment:
     radius_m: float | None = None
     centre: LonLat | None = None
     turn_deg: float | None = None
+    start_altitude_m: float = 0.0
+    end_altitude_m: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Phase:
+    """A part of a flight: where and when it begins and ends, counted along the path from lift-off."""
+
+    kind: PhaseKind
+    start_m: float
+    end_m: float
+    start_s: float
+    end_s: float
 
 
 @dataclass(frozen=True, slots=True)
 class FlownPath:
-    """The whole line one vehicle flies.
+    """The whole line one vehicle flies, from lift-off to landing or to the circle that its return ends in.
 
     ``line`` has vertices at most 10 m apart on arcs; straights need only their ends. Altitudes are over the
-    plan's ``altitude_reference``.
+    plan's ``altitude_reference``; distances along it are in three dimensions. ``phases`` follow each other
+    without gaps; ``take_off_heading_deg`` is where the aircraft must point at lift-off, None for what hovers.
     """
 
     vehicle: str
@@ -70,6 +91,13 @@ class FlownPath:
     duration_s: float
     energy_wh: float | None
     min_turn_radius_m: float | None
+    phases: tuple[Phase, ...] = ()
+    take_off_heading_deg: float | None = None
+    sortie: int = 1
+
+    def phase(self, kind: PhaseKind) -> Phase | None:
+        """The phase of a kind; None where the flight has none."""
+        return next((phase for phase in self.phases if phase.kind == kind), None)
 
 
 @dataclass(frozen=True, slots=True)
@@ -171,8 +199,10 @@ class Violation:
 class Metrics:
     """What the plan costs and gives.
 
-    ``lower_bound_m`` is what no plan over these regions is shorter than, threats left out, and ``gap`` how
-    much of ``length_m`` is above it; None where there is no bound.
+    ``length_m`` and ``duration_s`` are those of the mission phase, from where take-off and climbing turns end
+    to where descending turns or the landing begin; ``flight_length_m``, ``flight_duration_s`` and
+    ``energy_wh`` of all phases. ``lower_bound_m`` is what no mission over these regions is shorter than,
+    threats left out, and ``gap`` how much of ``length_m`` is above it; None where there is no bound.
     """
 
     length_m: float
@@ -189,6 +219,8 @@ class Metrics:
     planning_time_s: dict[str, float] = field(default_factory=dict)
     lower_bound_m: float | None = None
     gap: float | None = None
+    flight_length_m: float | None = None
+    flight_duration_s: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -220,6 +220,8 @@ def _segments(scenario: Scenario, path: Path) -> tuple[PathSegment, ...]:
                 None if centre is None else segment.radius_m,
                 None if centre is None else _lonlats(scenario, [centre])[0],
                 None if centre is None else abs(math.degrees(segment.turn_rad)),
+                scenario.altitude_m,
+                scenario.altitude_m,
             )
         )
         along_m += segment.length_m

@@ -13,6 +13,7 @@ from planner.plan import (
     Footprint,
     Metrics,
     PathSegment,
+    Phase,
     Plan,
     PlanVehicle,
     Transit,
@@ -122,6 +123,8 @@ def _path(p: Mapping[str, Any], line: Any) -> FlownPath:
             s.get("radius_m"),
             _place(s["centre"]) if s.get("centre") is not None else None,
             s.get("turn_deg"),
+            float(s["start_altitude_m"]),
+            float(s["end_altitude_m"]),
         )
         for s in p["segments"]
     )
@@ -133,6 +136,9 @@ def _path(p: Mapping[str, Any], line: Any) -> FlownPath:
         p["duration_s"],
         p["energy_wh"],
         p["min_turn_radius_m"],
+        tuple(Phase(**phase) for phase in p["phases"]),
+        p["take_off_heading_deg"],
+        p["sortie"],
     )
 
 

@@ -12,6 +12,7 @@ from planner.plan import (
     Footprint,
     LonLat,
     PathSegment,
+    Phase,
     Plan,
     Ring,
     ZoneCircle,
@@ -135,8 +136,21 @@ def _path(p: FlownPath) -> dict[str, Any]:
         duration_s=round(p.duration_s, 3),
         energy_wh=p.energy_wh,
         min_turn_radius_m=p.min_turn_radius_m,
+        sortie=p.sortie,
+        take_off_heading_deg=None if p.take_off_heading_deg is None else round(p.take_off_heading_deg, 6),
+        phases=[_phase(phase) for phase in p.phases],
         segments=[_segment(s) for s in p.segments],
     )
+
+
+def _phase(phase: Phase) -> dict[str, Any]:
+    return {
+        "kind": phase.kind,
+        "start_m": _m(phase.start_m),
+        "end_m": _m(phase.end_m),
+        "start_s": round(phase.start_s, 3),
+        "end_s": round(phase.end_s, 3),
+    }
 
 
 def _segment(s: PathSegment) -> dict[str, Any]:
@@ -146,6 +160,8 @@ def _segment(s: PathSegment) -> dict[str, Any]:
         "end": list(_lonlat(s.end)),
         "start_m": _m(s.start_m),
         "length_m": _m(s.length_m),
+        "start_altitude_m": _m(s.start_altitude_m),
+        "end_altitude_m": _m(s.end_altitude_m),
     }
     if s.centre is not None:
         out |= {"radius_m": s.radius_m, "centre": list(_lonlat(s.centre)), "turn_deg": s.turn_deg}
