@@ -13,8 +13,8 @@ from planner.coverage.sweeps import Side, sweeps
 from planner.routing.joint import kernels as joint_kernels
 from planner.routing.joint.options import Surroundings, make_options
 from planner.routing.joint.targets import targets
-from planner.scenario import Region
 from planner.sensors.sar import SarSensor
+from planner.wishes import Region
 
 HEIGHT_M = 500.0
 HEADINGS_RAD = np.radians(np.arange(0.0, 360.0, 5.0))

@@ -149,7 +149,7 @@ def _subroutes(repeats: int) -> Iterator[dict[str, Any]]:
     starts = [Anchor(*scenario.start.position), *(Anchor(*p.end, p.angle_rad) for p in passes)]
     goals = [*(Anchor(*p.start, p.angle_rad) for p in passes), Anchor(*scenario.end.position)]
     radius_m = scenario.aircraft[0].planned_turn_radius_m
-    zones = keep_out(scenario, TRANSIT_MARGIN_M)
+    zones = keep_out(scenario.airspace, scenario.level, TRANSIT_MARGIN_M)
     for number, (start, goal) in enumerate(zip(starts, goals, strict=True), start=1):
         seconds = []
         for _ in range(repeats):

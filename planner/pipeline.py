@@ -22,12 +22,13 @@ from planner.routing.greedy.route import greedy
 from planner.routing.joint.hidden import hidden_findings
 from planner.routing.joint.route import joint_route
 from planner.routing.legs import TRANSIT_MARGIN_M as TRANSIT_MARGIN_M
-from planner.scenario import Method, Scenario
+from planner.scenario import Scenario
+from planner.tasks.wind import in_wind
 from planner.transit import ssas_connector
 from planner.transit.refine import Risk, connect_by_cost
 from planner.vehicle.aircraft import Aircraft
-from planner.vehicle.wind import in_wind
 from planner.version import __version__
+from planner.wishes import Method
 
 Clock = Callable[[], float]
 
@@ -187,7 +188,7 @@ def _connect(
     stop: Stop,
 ) -> tuple[tuple[Leg, ...], tuple[str, ...]]:
     """A flyable leg from the start through all collects to the end."""
-    zones = keep_out(scenario, TRANSIT_MARGIN_M)
+    zones = keep_out(scenario.airspace, scenario.level, TRANSIT_MARGIN_M)
     risk = Risk.of(scenario.threats, scenario.objective, scenario.height_m)
     starts = [Anchor(*scenario.start.position, scenario.start.angle_rad)] + [
         Anchor(*p.end, p.angle_rad) for p in route.passes

@@ -109,7 +109,7 @@ class Collect:
     roi: str
     regions: tuple[str, ...]
     sensor: str
-    look: Literal["left", "right"]
+    look: Literal["left", "right", "down"]
     line: tuple[LonLatAlt, LonLatAlt]
     heading_deg: float
     start_m: float

@@ -97,7 +97,7 @@ def collects_and_transits(
     """The features along the line, numbered from 1 in flight order."""
     collects, transits = [], []
     footprints: list[Footprint] = []
-    zones = replace(keep_out(scenario, soft=False), area=None)
+    zones = replace(keep_out(scenario.airspace, scenario.level, soft=False), area=None)
     along_m = along_s = 0.0
     for seq, leg in enumerate(legs, start=1):
         missile, radar = curve_risk(
@@ -189,7 +189,7 @@ def fence(scenario: Scenario) -> Fence:
     """The operating area and everything hard."""
     inclusion = () if scenario.area is None else (_zone(scenario, "area", scenario.area),)
     polygons, circles = [], []
-    for shape in hard_shapes(scenario):
+    for shape in hard_shapes(scenario.airspace, scenario.level):
         if isinstance(shape, DiscShape):
             circles.append(ZoneCircle(shape.name, _lonlats(scenario, [shape.centre])[0], shape.radius_m))
         else:

@@ -1,15 +1,18 @@
-"""What the stages hand on: a pose, a pass that sees a region, the passes in order."""
+"""What the stages hand on: places and directions, passes that see a region, their order, lines flown."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Literal, Protocol
 
 from shapely.geometry import Polygon
 
-from planner.sensors.sar import Look
-
 Point = tuple[float, float]
+
+#: The side of the line that a sensor looks to, or straight down.
+Look = Literal["left", "right", "down"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,3 +95,48 @@ class Anchor:
     def position(self) -> Point:
         """East and north in metres."""
         return (self.east_m, self.north_m)
+
+
+@dataclass(frozen=True, slots=True)
+class Terminal:
+    """Where the flight starts or ends; any direction where ``angle_rad`` is None."""
+
+    name: str
+    position: Point
+    angle_rad: float | None = None
+
+
+class LinePiece(Protocol):
+    """A straight or an arc; ``planner.dubins.path.Segment`` is one."""
+
+    @property
+    def kind(self) -> str:
+        """``straight``, ``left`` or ``right``."""
+
+    @property
+    def start(self) -> Pose:
+        """Pose at its beginning."""
+
+    @property
+    def length_m(self) -> float:
+        """Along the line."""
+
+    @property
+    def radius_m(self) -> float:
+        """Of the arc; inf for a straight."""
+
+    @property
+    def turn_rad(self) -> float:
+        """Change of direction, to the left positive."""
+
+
+class Line(Protocol):
+    """Pieces end to end; ``planner.dubins.path.Path`` is one."""
+
+    @property
+    def segments(self) -> Sequence[LinePiece]:
+        """In flight order."""
+
+    @property
+    def length_m(self) -> float:
+        """Along the line."""

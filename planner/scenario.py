@@ -6,116 +6,19 @@ east; altitudes are metres over the datum named by ``altitude_reference``.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Literal
+from dataclasses import dataclass, field
 
-from shapely.geometry import LineString, MultiPolygon, Polygon
+from shapely.geometry import Polygon
 
+from planner.airspace.airspace import Airspace, Level
 from planner.airspace.terrain import Ground
+from planner.airspace.values import STILL_AIR, AltitudeReference, NoFlyZone, Obstacle, Threat, Wind
 from planner.errors import Finding
 from planner.frames import LocalFrame
+from planner.route import Terminal
 from planner.sensors.sar import SarSensor
 from planner.vehicle.aircraft import Aircraft
-
-Point = tuple[float, float]
-AltitudeReference = Literal["amsl", "home", "terrain"]
-
-
-@dataclass(frozen=True, slots=True)
-class Region:
-    """A region of interest, as an area on the ground.
-
-    A corridor (LineString with width) and a target (Point with radius) arrive here as the area they mean.
-    ``approach_rad`` holds the allowed flight directions, None for any; ``revisits`` how often it is to be
-    seen, on separate occasions; ``axis`` the line a corridor follows.
-    """
-
-    name: str
-    area: Polygon | MultiPolygon
-    priority: float = 1.0
-    required: bool = True
-    sensor: str | None = None
-    min_resolution_m: float | None = None
-    approach_rad: tuple[float, ...] | None = None
-    revisits: int = 1
-    axis: LineString | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class Threat:
-    """A missile site or a radar: soft unless ``hard``.
-
-    ``intensity_m`` is δ of eq 13 (Li et al. 2018), for radars.
-    """
-
-    name: str
-    model: Literal["missile", "radar"]
-    centre: Point
-    radius_m: float
-    intensity_m: float = 0.0
-    height_m: float = float("inf")
-    hard: bool = False
-
-
-@dataclass(frozen=True, slots=True)
-class NoFlyZone:
-    """Never entered between ``floor_m`` and ``ceiling_m`` amsl. A disc where ``radius_m`` is set."""
-
-    name: str
-    area: Polygon | None
-    centre: Point | None = None
-    radius_m: float | None = None
-    floor_m: float = float("-inf")
-    ceiling_m: float = float("inf")
-
-
-@dataclass(frozen=True, slots=True)
-class Obstacle:
-    """Something standing on the ground; kept clear by the scenario's ``clearance_m``."""
-
-    name: str
-    area: Polygon
-    height_m: float
-    base_m: float = 0.0
-
-
-@dataclass(frozen=True, slots=True)
-class Terminal:
-    """Where the flight starts or ends; any direction where ``angle_rad`` is None."""
-
-    name: str
-    position: Point
-    angle_rad: float | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class Wind:
-    """Steady wind: speed, and the direction the air moves to."""
-
-    speed_m_s: float = 0.0
-    toward_rad: float = 0.0
-
-
-@dataclass(frozen=True, slots=True)
-class Objective:
-    """Weights of the cost terms: w1, w2, w3 of eq 25 (Li et al. 2018) and two more."""
-
-    length: float = 1.0
-    missile: float = 1.0
-    radar: float = 1.0
-    energy: float = 0.0
-    turns: float = 0.0
-
-
-@dataclass(frozen=True, slots=True)
-class Method:
-    """The algorithm of each stage, by name."""
-
-    coverage: str = "auto"
-    routing: str = "auto"
-    transit: str = "auto"
-    smoothing: str = "auto"
-    search: str = "auto"
+from planner.wishes import Method, Objective, Region
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,10 +42,10 @@ class Scenario:
     threats: tuple[Threat, ...] = ()
     no_fly: tuple[NoFlyZone, ...] = ()
     obstacles: tuple[Obstacle, ...] = ()
-    wind: Wind = Wind()
+    wind: Wind = STILL_AIR
     clearance_m: float = 0.0
-    objective: Objective = Objective()
-    method: Method = Method()
+    objective: Objective = field(default_factory=Objective)
+    method: Method = field(default_factory=Method)
     seed: int = 0
     time_budget_s: float | None = None
     scenario_hash: str = ""
@@ -151,18 +54,27 @@ class Scenario:
     terrain: Ground | None = None
 
     @property
+    def airspace(self) -> Airspace:
+        """Where one may fly."""
+        return Airspace(
+            self.area, self.threats, self.no_fly, self.obstacles, self.clearance_m, self.terrain, self.wind,
+            self.home_amsl_m,
+        )  # fmt: skip
+
+    @property
+    def level(self) -> Level:
+        """The level of ``altitude_m``."""
+        return self.airspace.level(self.altitude_m, self.altitude_reference)
+
+    @property
     def height_m(self) -> float:
         """Flight height over the ground, which is flat at the height of home."""
-        if self.altitude_reference == "amsl":
-            return self.altitude_m - (self.home_amsl_m or 0.0)
-        return self.altitude_m
+        return self.level.height_m
 
     @property
     def altitude_amsl_m(self) -> float:
         """Flight altitude over mean sea level; home counts as sea level where its height is unknown."""
-        if self.altitude_reference == "amsl":
-            return self.altitude_m
-        return self.altitude_m + (self.home_amsl_m or 0.0)
+        return self.level.amsl_m
 
     def sensor_for(self, region: Region) -> SarSensor:
         """The sensor asked for by a region, else the first."""

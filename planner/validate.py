@@ -17,7 +17,7 @@ from planner.routing.joint.visible import sides_of
 from planner.scenario import Scenario
 from planner.sensors.strip import swaths_m
 from planner.sensors.view import sensing
-from planner.vehicle.wind import in_wind
+from planner.tasks.wind import in_wind
 
 #: From so many passes on planning takes tens of seconds, then minutes.
 MANY_PASSES = 120

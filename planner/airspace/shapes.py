@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from shapely.geometry import LineString, Point, Polygon
 from shapely.geometry.base import BaseGeometry
 
-from planner.scenario import Scenario, Threat
+from planner.airspace.airspace import Airspace, Level
+from planner.airspace.values import Threat
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,26 +60,26 @@ def _depth(inside: BaseGeometry, area: Polygon) -> float:
     return depth_m
 
 
-def hard_shapes(scenario: Scenario) -> Iterator[DiscShape | PolygonShape]:
-    """Hard threats, no-fly zones and obstacles that reach the flight altitude, clearance included."""
-    for threat in scenario.threats:
-        if threat.hard and acts(threat, scenario.height_m):
+def hard_shapes(airspace: Airspace, level: Level) -> Iterator[DiscShape | PolygonShape]:
+    """Hard threats, no-fly zones and obstacles that reach a level, clearance included."""
+    for threat in airspace.threats:
+        if threat.hard and acts(threat, level.height_m):
             yield DiscShape(threat.name, threat.centre, threat.radius_m)
-    for zone in scenario.no_fly:
-        if zone.floor_m <= scenario.altitude_amsl_m <= zone.ceiling_m:
+    for zone in airspace.no_fly:
+        if zone.floor_m <= level.amsl_m <= zone.ceiling_m:
             if zone.area is not None:
                 yield PolygonShape(zone.name, zone.area)
             elif zone.centre is not None and zone.radius_m is not None:
                 yield DiscShape(zone.name, zone.centre, zone.radius_m)
-    for obstacle in scenario.obstacles:
-        if obstacle.base_m + obstacle.height_m + scenario.clearance_m >= scenario.height_m:
-            yield PolygonShape(obstacle.name, obstacle.area.buffer(scenario.clearance_m))
+    for obstacle in airspace.obstacles:
+        if obstacle.base_m + obstacle.height_m + airspace.clearance_m >= level.height_m:
+            yield PolygonShape(obstacle.name, obstacle.area.buffer(airspace.clearance_m))
 
 
-def soft_shapes(scenario: Scenario) -> Iterator[DiscShape]:
-    """Threats that cost and do not forbid."""
-    for threat in scenario.threats:
-        if not threat.hard and acts(threat, scenario.height_m):
+def soft_shapes(airspace: Airspace, level: Level) -> Iterator[DiscShape]:
+    """Threats that cost and do not forbid, at a level."""
+    for threat in airspace.threats:
+        if not threat.hard and acts(threat, level.height_m):
             yield DiscShape(threat.name, threat.centre, threat.radius_m)
 
 

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from planner.airspace import kernels
 from planner.airspace.kernels import MIN_RADAR_RANGE_M as MIN_RADAR_RANGE_M
-from planner.scenario import Threat
+from planner.airspace.values import Threat
 
 Array = NDArray[np.float64]
 

@@ -7,10 +7,9 @@ planner's own curves.
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Sequence
+from collections.abc import Collection
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
-from typing import Protocol
 
 import numpy as np
 import shapely
@@ -18,9 +17,9 @@ from numpy.typing import NDArray
 from shapely.geometry import MultiPolygon, Polygon
 from shapely.geometry.base import BaseGeometry
 
+from planner.airspace.airspace import Airspace, Level
 from planner.airspace.zone_kernels import depths, is_clear
-from planner.route import Pose
-from planner.scenario import Point, Scenario
+from planner.route import Line, Point
 
 #: A line no deeper than this in a zone touches it and is clear.
 TOUCH_M = 1e-3
@@ -35,34 +34,6 @@ SEAM_M = TOUCH_M
 MITRE_LIMIT = 2.0
 
 Array = NDArray[np.float64]
-
-
-class LinePiece(Protocol):
-    """A straight or an arc; ``planner.dubins.path.Segment`` is one."""
-
-    @property
-    def kind(self) -> str:
-        """``straight``, ``left`` or ``right``."""
-
-    @property
-    def start(self) -> Pose:
-        """Pose at its beginning."""
-
-    @property
-    def length_m(self) -> float:
-        """Along the line."""
-
-    @property
-    def radius_m(self) -> float:
-        """Of the arc; inf for a straight."""
-
-
-class Line(Protocol):
-    """Pieces end to end; ``planner.dubins.path.Path`` is one."""
-
-    @property
-    def segments(self) -> Sequence[LinePiece]:
-        """In flight order."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -244,36 +215,36 @@ def pieces_of(path: Line) -> Array:
     return rows
 
 
-def keep_out(scenario: Scenario, margin_m: float = 0.0, soft: bool = True) -> KeepOut:
-    """What a scenario forbids at its flight altitude.
+def keep_out(airspace: Airspace, level: Level, margin_m: float = 0.0, soft: bool = True) -> KeepOut:
+    """What is forbidden at a level.
 
     Parameters
     ----------
-    scenario
-        Its altitude decides which zones count: threats up to their ``height_m`` (a cylinder), obstacles whose
-        top with clearance reaches the flight, no-fly zones whose band holds it.
+    level
+        Decides which zones count: threats up to their ``height_m`` (a cylinder), obstacles whose top with
+        clearance reaches it, no-fly zones whose band holds it.
     margin_m
         Every zone grows and the area shrinks by this much, besides the clearance of obstacles.
     soft
         Whether soft threats are among the zones, with ``hard=False``.
     """
-    clearance_m = scenario.clearance_m
+    clearance_m = airspace.clearance_m
     discs: list[Disc] = []
     polygons: list[PolygonZone] = []
-    for threat in scenario.threats:
-        if (threat.hard or soft) and scenario.height_m <= threat.height_m:
+    for threat in airspace.threats:
+        if (threat.hard or soft) and level.height_m <= threat.height_m:
             discs.append(Disc(threat.name, *threat.centre, threat.radius_m + margin_m, threat.hard))
-    for zone in scenario.no_fly:
-        if not zone.floor_m <= scenario.altitude_amsl_m <= zone.ceiling_m:
+    for zone in airspace.no_fly:
+        if not zone.floor_m <= level.amsl_m <= zone.ceiling_m:
             continue
         if zone.centre is not None and zone.radius_m is not None:
             discs.append(Disc(zone.name, *zone.centre, zone.radius_m + margin_m, True))
         if zone.area is not None:
             polygons.extend(_inflated(zone.name, zone.area, margin_m))
-    for obstacle in scenario.obstacles:
-        if scenario.height_m <= obstacle.base_m + obstacle.height_m + clearance_m:
+    for obstacle in airspace.obstacles:
+        if level.height_m <= obstacle.base_m + obstacle.height_m + clearance_m:
             polygons.extend(_inflated(obstacle.name, obstacle.area, margin_m + clearance_m))
-    area = scenario.area
+    area = airspace.area
     if area is not None and margin_m > 0.0:
         area = area.buffer(-margin_m, join_style="mitre", mitre_limit=MITRE_LIMIT)
     return KeepOut(tuple(discs), tuple(polygons), area)

@@ -15,8 +15,8 @@ from planner.bounds import cells_kernels as kernels
 from planner.coverage.classify import ROUNDING_M, spans_at
 from planner.coverage.segments import Neighbourhood
 from planner.coverage.sweeps import Side, Sweep
-from planner.scenario import Terminal
-from planner.sensors.sar import Look, SarSensor
+from planner.route import Look, Terminal
+from planner.sensors.sar import SarSensor
 from planner.sensors.strip import Strip, strip_on
 
 Floats = NDArray[np.float64]

@@ -24,10 +24,11 @@ from planner.progress import Stop, never
 from planner.routing.joint.options import Surroundings
 from planner.routing.joint.targets import targets
 from planner.routing.joint.visible import sides_of, surroundings
-from planner.scenario import Method, Scenario
+from planner.scenario import Scenario
 from planner.sensors.sar import SarSensor
 from planner.sensors.view import sensing
 from planner.vehicle.aircraft import Aircraft
+from planner.wishes import Method
 
 #: Regions taken in several ways that are told apart.
 MOST_APART = 3

@@ -28,7 +28,8 @@ def place_violations(scenario: Scenario, path: FlownPath, line: LineString) -> I
                 "m",
                 middle(scenario, outside),
             )
-    for hard, shapes in ((True, hard_shapes(scenario)), (False, soft_shapes(scenario))):
+    where = (scenario.airspace, scenario.level)
+    for hard, shapes in ((True, hard_shapes(*where)), (False, soft_shapes(*where))):
         for shape in shapes:
             depth_m = shape.depth_m(line)
             if depth_m <= 0.0:

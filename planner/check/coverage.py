@@ -12,7 +12,8 @@ from shapely.geometry.base import BaseGeometry
 from planner.check.footprints import footprint
 from planner.check.places import middle
 from planner.plan import Collect, Plan, Violation
-from planner.scenario import Region, Scenario
+from planner.scenario import Scenario
+from planner.wishes import Region
 
 #: Overlays are done on a grid: without one, outlines equal but for rounding can be taken for disjoint.
 GRID_M = 1e-6

@@ -8,9 +8,10 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from planner.airspace.values import Wind
 from planner.check.places import lonlat
 from planner.plan import FlownPath, Violation
-from planner.scenario import Scenario, Wind
+from planner.scenario import Scenario
 from planner.vehicle.aircraft import Aircraft
 
 #: Arcs have vertices at most this far apart, so a longer edge is straight.

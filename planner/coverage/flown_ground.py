@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 from shapely.geometry import MultiPoint, Polygon
 
 from planner.airspace.terrain import Ground
+from planner.route import Look
 from planner.sensors import sar_modes, strip
-from planner.sensors.sar import Look, SarSensor
+from planner.sensors.sar import SarSensor
 from planner.sensors.view import seen_beside
 
 Floats = NDArray[np.float64]

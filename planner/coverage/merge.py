@@ -15,7 +15,7 @@ import shapely
 from shapely.geometry import LineString, MultiPolygon, Polygon
 from shapely.geometry.base import BaseGeometry
 
-from planner.scenario import Region
+from planner.wishes import Region
 
 #: 15 pixels of 5.4 m, section 5.1.
 PAPER_RADIUS_M = 81.0

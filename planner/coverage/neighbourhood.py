@@ -19,9 +19,9 @@ from planner.coverage.segments import Floats, Neighbourhood, too_wide
 from planner.coverage.sweeps import Sweep, flyable_headings
 from planner.errors import InfeasibleError
 from planner.route import CollectPass
-from planner.scenario import Region
 from planner.sensors.sar import SarSensor
 from planner.sensors.strip import swaths_m
+from planner.wishes import Region
 
 #: η of the options when nobody asks for others: innermost, middle, outermost.
 ETAS = (0.0, 0.5, 1.0)

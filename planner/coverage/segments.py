@@ -28,8 +28,8 @@ from shapely.geometry import Polygon
 from planner.coverage.classify import Spans, fits, hull_points, spans_at
 from planner.coverage.merge import MergedRegion
 from planner.errors import InfeasibleError
-from planner.route import CollectPass
-from planner.sensors.sar import Look, SarSensor
+from planner.route import CollectPass, Look
+from planner.sensors.sar import SarSensor
 from planner.sensors.strip import strip_on, swaths_m
 from planner.sensors.view import seen_on_flat
 

@@ -25,8 +25,8 @@ from planner.coverage import kernels
 from planner.coverage.classify import ROUNDING_M, angles_around, hull_points, spans_at
 from planner.coverage.merge import MergedRegion
 from planner.coverage.segments import Neighbourhood, collect_along
-from planner.route import CollectPass
-from planner.sensors.sar import Look, SarSensor
+from planner.route import CollectPass, Look
+from planner.sensors.sar import SarSensor
 from planner.sensors.strip import strip_on, swaths_m
 
 Floats = NDArray[np.float64]

@@ -19,8 +19,9 @@ from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
 from planner.coverage.merge import GRID_M
+from planner.route import Point
 from planner.routing.greedy.costs import Interval, collection_length_m, duty_cycle, operating_intervals
-from planner.scenario import Point, Scenario
+from planner.scenario import Scenario
 from planner.sensors.sar import SarSensor
 
 Direction = Literal["vertical", "horizontal"]

@@ -6,12 +6,14 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
+from planner.airspace.values import Wind
 from planner.angles import angle_from_heading
 from planner.geojson.fields import Fields, Findings
-from planner.scenario import Method, Objective, Wind
-from planner.sensors.sar import Look, SarSensor
+from planner.route import Look
+from planner.sensors.sar import SarSensor
 from planner.sensors.sar_modes import scansar_resolution_m, turned_for_rad
 from planner.vehicle.aircraft import Aircraft, turn_radius_from_bank_m, turn_radius_from_load_factor_m
+from planner.wishes import Method, Objective
 
 SPEED_OF_LIGHT_M_S = 299_792_458.0
 

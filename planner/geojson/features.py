@@ -9,10 +9,12 @@ from typing import Any
 
 from shapely.geometry import LineString, MultiPolygon, Point, Polygon
 
+from planner.airspace.values import NoFlyZone, Obstacle, Threat
 from planner.frames import LocalFrame
 from planner.geojson import geometry as shapes
 from planner.geojson.fields import Fields, Findings, is_finite
-from planner.scenario import NoFlyZone, Obstacle, Region, Terminal, Threat
+from planner.route import Terminal
+from planner.wishes import Region
 
 #: A point target without a radius still has to be inside a footprint, as a disc this large.
 POINT_TARGET_RADIUS_M = 1.0

@@ -15,8 +15,9 @@ import shapely
 from shapely.geometry.base import BaseGeometry
 
 from planner.airspace.terrain import Ground, Terrain, local_ground
+from planner.airspace.values import NoFlyZone, Obstacle, Threat
 from planner.geojson.fields import Findings
-from planner.scenario import NoFlyZone, Obstacle, Scenario, Threat
+from planner.scenario import Scenario
 
 #: Kept over the ground where the scenario names no ``clearance_m``.
 DEFAULT_CLEARANCE_M = 30.0

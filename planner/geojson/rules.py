@@ -6,7 +6,8 @@ from shapely.geometry import Point
 
 from planner.airspace.shapes import hard_shapes
 from planner.geojson.fields import Findings
-from planner.scenario import Scenario, Terminal
+from planner.route import Terminal
+from planner.scenario import Scenario
 
 #: A region may stick out of the area by this much: the rounding of coordinates, not a wish.
 AREA_TOLERANCE_M = 0.05
@@ -109,7 +110,7 @@ def _area(scenario: Scenario, findings: Findings) -> None:
 
 
 def _terminals(scenario: Scenario, findings: Findings) -> None:
-    for shape in hard_shapes(scenario):
+    for shape in hard_shapes(scenario.airspace, scenario.level):
         for terminal in _ends(scenario):
             if shape.depth_m(Point(terminal.position)) > 0.0:
                 findings.error(

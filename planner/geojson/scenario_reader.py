@@ -17,7 +17,8 @@ from planner.geojson.extent import frame_of
 from planner.geojson.fields import Fields, Findings, is_finite
 from planner.geojson.relief import set_on_terrain
 from planner.geojson.rules import check_together
-from planner.scenario import Scenario, Terminal
+from planner.route import Terminal
+from planner.scenario import Scenario
 
 MEMBERS = (
     "type", "features", "name", "description", "bbox", "crs", "vehicles", "sensors", "altitude_m",

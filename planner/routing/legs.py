@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 from planner.airspace.zones import keep_out
 from planner.errors import InfeasibleError
 from planner.progress import Stop
-from planner.route import Anchor, CollectPass
+from planner.route import Anchor, CollectPass, Terminal
 from planner.routing.joint.prices import risk_m, soft_prices, turns_m
-from planner.scenario import Scenario, Terminal
+from planner.scenario import Scenario
 from planner.transit import tangent
 from planner.transit.refine import Risk, connect_by_cost
 from planner.vehicle.aircraft import Aircraft
@@ -34,7 +34,7 @@ class Legs:
     """
 
     def __init__(self, scenario: Scenario, aircraft: Aircraft, stop: Stop) -> None:
-        self._zones = keep_out(scenario, TRANSIT_MARGIN_M)
+        self._zones = keep_out(scenario.airspace, scenario.level, TRANSIT_MARGIN_M)
         self._radius_m = aircraft.planned_turn_radius_m
         self._settle_m = aircraft.settle_m
         self._start, self._end = anchor(scenario.start), anchor(scenario.end)

@@ -11,15 +11,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Literal, Self
+from typing import Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from planner.route import Look
 from planner.sensors import sar_modes
 from planner.sensors.sar_modes import Mode
 
-Look = Literal["left", "right"]
 Floats = NDArray[np.float64]
 
 

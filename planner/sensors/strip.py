@@ -18,8 +18,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from planner.route import Look
 from planner.sensors import sar_modes
-from planner.sensors.sar import Look, SarSensor
+from planner.sensors.sar import SarSensor
 
 Floats = NDArray[np.float64]
 

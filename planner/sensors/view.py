@@ -20,9 +20,10 @@ from shapely.geometry import MultiPolygon, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from planner.airspace.terrain import Ground
+from planner.route import Look
 from planner.scenario import Scenario
 from planner.sensors import sar_modes, strip, view_kernels, visibility_kernels
-from planner.sensors.sar import Look, SarSensor
+from planner.sensors.sar import SarSensor
 
 Floats = NDArray[np.float64]
 

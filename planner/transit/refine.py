@@ -25,14 +25,15 @@ from numpy.typing import NDArray
 
 from planner.airspace import kernels
 from planner.airspace.threats import threat_arrays
+from planner.airspace.values import Threat
 from planner.airspace.zone_kernels import distances_from
 from planner.airspace.zones import TOUCH_M, KeepOut, pieces_of
 from planner.dubins.path import Path
 from planner.errors import InfeasibleError
 from planner.progress import Stop, never, raise_if
 from planner.route import Anchor
-from planner.scenario import Objective, Threat
 from planner.transit.tangent import connect
+from planner.wishes import Objective
 
 #: A metre at risk 1 costs as much as this many metres of way, where the weights are equal.
 RISK_M = 20.0

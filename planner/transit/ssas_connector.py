@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from shapely.geometry import MultiPoint
 
 from planner.airspace.threats import metres_inside, threat_arrays
+from planner.airspace.values import Threat
 from planner.airspace.zones import MITRE_LIMIT, KeepOut
 from planner.dubins.path import Path
 from planner.dubins.smoothing import SmoothingMethod, smooth
@@ -22,7 +23,7 @@ from planner.dubins.words import candidates
 from planner.errors import InfeasibleError, OutOfBudgetError
 from planner.progress import Stop, never, raise_if
 from planner.route import Anchor, Pose
-from planner.scenario import Scenario, Threat
+from planner.scenario import Scenario
 from planner.transit.ssas import MIN_CLOSING_PART, SsasParameters, SsasResult, search
 from planner.transit.ssas_kernels import Space
 

@@ -13,14 +13,12 @@ where its radius is at least ((V + W) / V)² times the tightest turn in still ai
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from planner.dubins.path import Path, Segment
-from planner.errors import InfeasibleError
-from planner.scenario import Scenario, Wind
+from planner.airspace.values import Wind
+from planner.route import Line, LinePiece
 
 Array = NDArray[np.float64]
 
@@ -28,39 +26,8 @@ Array = NDArray[np.float64]
 PIECE_RAD = math.radians(30.0)
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(8)
 
-STILL_AIR = Wind()
-
 #: Directions over which the slowness of a full turn is averaged.
 CIRCLE_RAD = np.linspace(0.0, 2.0 * math.pi, 360, endpoint=False)
-
-
-def in_wind(scenario: Scenario) -> Scenario:
-    """The scenario with aircraft that plan their turns for its wind, and sensors that look where they crab.
-
-    Raises
-    ------
-    InfeasibleError
-        ``"wind"``: an aircraft is not faster than the wind, so some courses cannot be flown.
-    """
-    speed_m_s = scenario.wind.speed_m_s
-    if speed_m_s == 0.0:
-        return scenario
-    for aircraft in scenario.aircraft:
-        if speed_m_s >= aircraft.airspeed_m_s:
-            raise InfeasibleError(
-                "wind",
-                aircraft.name,
-                f"the wind of {speed_m_s:g} m/s is not slower than its airspeed of "
-                f"{aircraft.airspeed_m_s:g} m/s: against it no ground is gained",
-                f"Wait for a wind under {aircraft.airspeed_m_s:g} m/s or fly faster.",
-            )
-    # One aircraft flies all passes.
-    drift = speed_m_s / scenario.aircraft[0].airspeed_m_s
-    return replace(
-        scenario,
-        aircraft=tuple(a.in_wind(speed_m_s) for a in scenario.aircraft),
-        sensors=tuple(sensor.in_wind(drift, scenario.wind.toward_rad) for sensor in scenario.sensors),
-    )
 
 
 def crab_rad(course_rad: ArrayLike, airspeed_m_s: float, wind: Wind) -> Array:
@@ -78,14 +45,14 @@ def ground_speed_m_s(course_rad: ArrayLike, airspeed_m_s: float, wind: Wind) -> 
     )
 
 
-def duration_s(path: Path, airspeed_m_s: float, wind: Wind) -> float:
+def duration_s(path: Line, airspeed_m_s: float, wind: Wind) -> float:
     """Time to fly a line."""
     if wind.speed_m_s == 0.0:
         return path.length_m / airspeed_m_s
     return math.fsum(_segment_s(segment, airspeed_m_s, wind) for segment in path.segments)
 
 
-def _segment_s(segment: Segment, airspeed_m_s: float, wind: Wind) -> float:
+def _segment_s(segment: LinePiece, airspeed_m_s: float, wind: Wind) -> float:
     course_rad, turn_rad = segment.start.angle_rad, segment.turn_rad
     pieces = max(1, math.ceil(abs(turn_rad) / PIECE_RAD))
     if turn_rad == 0.0:

@@ -11,11 +11,12 @@ import pytest
 from pyproj import Geod
 from shapely.geometry import Point, Polygon
 
+from planner.airspace.values import NoFlyZone, Threat
 from planner.check import footprint, judge, turn_radius_m
 from planner.geojson import read_scenario
 from planner.pipeline import make_plan
 from planner.plan import Plan
-from planner.scenario import NoFlyZone, Scenario, Threat
+from planner.scenario import Scenario
 from tests.planner.scenarios import case, small
 
 GEOD = Geod(ellps="WGS84")

@@ -8,7 +8,8 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from planner.scenario import Objective, Point
+from planner.route import Point
+from planner.wishes import Objective
 
 Interval = tuple[float, float]
 

@@ -7,10 +7,11 @@ import math
 import numpy as np
 
 from planner.airspace.threats import line_risk
+from planner.airspace.values import Threat
 from planner.route import Anchor, CollectPass
 from planner.routing.greedy.choices import Choices, Side
 from planner.routing.greedy.costs import weighted_cost
-from planner.scenario import Objective, Threat
+from planner.wishes import Objective
 
 
 def best_passes(

@@ -55,13 +55,13 @@ class Room:
     @classmethod
     def of(cls, scenario: Scenario, aircraft: Aircraft, *, threat_aware: bool) -> Room:
         """The room of a scenario; soft threats count where ``threat_aware``."""
-        hard = [shape.polygon().buffer(MARGIN_M) for shape in hard_shapes(scenario)]
+        hard = [shape.polygon().buffer(MARGIN_M) for shape in hard_shapes(scenario.airspace, scenario.level)]
         # Threats whose risk has no weight are none.
         minded = {"missile": scenario.objective.missile > 0.0, "radar": scenario.objective.radar > 0.0}
         models = {threat.name: threat.model for threat in scenario.threats}
         soft = [
             shape.polygon().buffer(MARGIN_M)
-            for shape in soft_shapes(scenario)
+            for shape in soft_shapes(scenario.airspace, scenario.level)
             if threat_aware and minded[models[shape.name]]
         ]
         return cls(

@@ -15,10 +15,11 @@ from planner.routing.greedy.choices import Choices, choices
 from planner.routing.greedy.offsets import best_passes
 from planner.routing.greedy.room import Room
 from planner.routing.tour import TourMethod, order
-from planner.scenario import Region, Scenario
+from planner.scenario import Scenario
 from planner.sensors.sar import SarSensor
 from planner.sensors.view import sensing
 from planner.vehicle.aircraft import Aircraft
+from planner.wishes import Region
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,12 +17,12 @@ from numpy.typing import NDArray
 
 from planner.coverage.sweeps import Side
 from planner.progress import Stop, raise_if
-from planner.route import CollectPass
+from planner.route import CollectPass, Terminal
 from planner.routing.joint import kernels
 from planner.routing.joint.options import NO_ROOM_M, Options, Surroundings, collect_passes
 from planner.routing.large.kernels import discs_between
 from planner.routing.legs import Legs
-from planner.scenario import Scenario, Terminal
+from planner.scenario import Scenario
 from planner.vehicle.wind import still_air_costs
 
 Floats = NDArray[np.float64]

@@ -26,9 +26,10 @@ from planner.route import CollectPass
 from planner.routing.joint import kernels
 from planner.routing.joint.options import Surroundings, collect_passes, make_options
 from planner.routing.legs import Legs
-from planner.scenario import Region, Scenario
+from planner.scenario import Scenario
 from planner.sensors.sar import SarSensor
 from planner.sensors.view import seen_on_terrain, sensing
+from planner.wishes import Region
 
 Floats = NDArray[np.float64]
 Passes = tuple[CollectPass, ...]

@@ -13,6 +13,7 @@ from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
 from planner.airspace.terrain import Ground
+from planner.airspace.values import STILL_AIR, Wind
 from planner.coverage.alternatives import of_visit
 from planner.coverage.classify import fits, hull_points, spans_at
 from planner.coverage.merge import GRID_M
@@ -20,16 +21,14 @@ from planner.coverage.neighbourhood import complementary, inside
 from planner.coverage.segments import Neighbourhood
 from planner.coverage.sweeps import VARIANTS, Judge, Side, Sweep, Swept, best_sweeps, sweep_passes
 from planner.dubins.kernels import dubins_lengths
-from planner.route import CollectPass
+from planner.route import CollectPass, Look
 from planner.routing.joint.barriers import COLUMNS, rows_of
 from planner.routing.joint.options_kernels import circles_fit, inside_m
 from planner.routing.joint.prices import INSIDE_FACTOR as INSIDE_FACTOR
 from planner.routing.joint.prices import risks_m
-from planner.scenario import Wind
-from planner.sensors.sar import Look
 from planner.sensors.strip import swaths_m
 from planner.sensors.view import shadow_cost
-from planner.vehicle.wind import STILL_AIR, still_air_factor
+from planner.vehicle.wind import still_air_factor
 
 Floats = NDArray[np.float64]
 

@@ -17,7 +17,8 @@ from planner.airspace.shapes import acts
 from planner.dubins.path import Path
 from planner.metrics import MIN_TURN_RAD
 from planner.routing.joint.options_kernels import inside_m
-from planner.scenario import Objective, Scenario
+from planner.scenario import Scenario
+from planner.wishes import Objective
 
 Floats = NDArray[np.float64]
 

@@ -32,7 +32,8 @@ def explained(
     scenario: Scenario, region: MergedRegion, refused: InfeasibleError, seen: Seen
 ) -> InfeasibleError:
     """The refusal of a region by the zones in the way; the same refusal where none is."""
-    shapes = sorted(hard_shapes(scenario), key=lambda shape: -shape.depth_m(region.area))
+    hard = hard_shapes(scenario.airspace, scenario.level)
+    shapes = sorted(hard, key=lambda shape: -shape.depth_m(region.area))
     names = list(dict.fromkeys(shape.name for shape in shapes))
     if not names or not seen(_without(scenario, names)):
         return refused
@@ -60,7 +61,7 @@ def explained(
 
 def _ways(scenario: Scenario, region: MergedRegion, name: str, seen: Seen) -> tuple[float, str]:
     """What to do about one zone: how far its edge must go at least, and all ways in words."""
-    shape = next(shape for shape in hard_shapes(scenario) if shape.name == name)
+    shape = next(shape for shape in hard_shapes(scenario.airspace, scenario.level) if shape.name == name)
     middle = shape.centre if isinstance(shape, DiscShape) else shape.area.centroid.coords[0]
     size_m = shape.radius_m if isinstance(shape, DiscShape) else math.sqrt(shape.area.area)
     shrunk_m = _least(size_m, lambda by_m: seen(shrunk(scenario, name, by_m)))

@@ -32,7 +32,7 @@ MARGIN_M = 10.0
 
 def surroundings(scenario: Scenario, aircraft: Aircraft) -> Surroundings:
     """Area, discs and polygons, with the margin transits keep."""
-    hard = list(hard_shapes(scenario))
+    hard = list(hard_shapes(scenario.airspace, scenario.level))
     radius_m = aircraft.planned_turn_radius_m
     area = scenario.area
     priced = soft_prices(scenario)

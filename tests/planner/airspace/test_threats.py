@@ -22,7 +22,7 @@ from planner.airspace.threats import (
     threat_arrays,
     threat_discs,
 )
-from planner.scenario import Threat
+from planner.airspace.values import Threat
 
 MISSILE = Threat("M", "missile", (0.0, 0.0), 800.0)
 RADAR = Threat("D", "radar", (500.0, 100.0), 600.0, intensity_m=600.0)

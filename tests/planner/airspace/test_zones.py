@@ -12,12 +12,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely.geometry import LineString, MultiPoint, MultiPolygon, Point, Polygon, box
 
+from planner.airspace.values import NoFlyZone, Obstacle, Threat
 from planner.airspace.zones import TOUCH_M, Disc, KeepOut, PolygonZone, keep_out
 from planner.dubins.path import Path, Segment
 from planner.dubins.words import shortest
 from planner.frames import LocalFrame
-from planner.route import Pose
-from planner.scenario import NoFlyZone, Obstacle, Scenario, Terminal, Threat
+from planner.route import Pose, Terminal
+from planner.scenario import Scenario
 from planner.sensors.sar import SarSensor
 from planner.vehicle.aircraft import Aircraft
 
@@ -162,23 +163,23 @@ def scenario() -> Scenario:
 def test_keep_out_takes_what_counts_at_the_flight_altitude() -> None:
     """Low threats, low obstacles and bands above or below the flight do not count, in either datum."""
     asked = scenario()
-    zones = keep_out(asked)
+    zones = keep_out(asked.airspace, asked.level)
     assert [disc.name for disc in zones.discs] == ["soft", "hard", "disc"]
     assert [disc.hard for disc in zones.discs] == [False, True, True]
     assert [zone.name for zone in zones.polygons] == ["mast"]
-    assert [disc.name for disc in keep_out(asked, soft=False).discs] == ["hard", "disc"]
+    assert [disc.name for disc in keep_out(asked.airspace, asked.level, soft=False).discs] == ["hard", "disc"]
     high = dataclasses.replace(asked, home_amsl_m=200.0)
-    assert [zone.name for zone in keep_out(high).polygons] == ["band", "mast"]
+    assert [zone.name for zone in keep_out(high.airspace, high.level).polygons] == ["band", "mast"]
     amsl = dataclasses.replace(asked, altitude_reference="amsl", home_amsl_m=460.0)
-    assert [zone.name for zone in keep_out(amsl).polygons] == ["mast", "shed"]
-    assert "low" in [disc.name for disc in keep_out(amsl).discs]
+    assert [zone.name for zone in keep_out(amsl.airspace, amsl.level).polygons] == ["mast", "shed"]
+    assert "low" in [disc.name for disc in keep_out(amsl.airspace, amsl.level).discs]
 
 
 def test_margins_hold_the_buffered_shapes() -> None:
     """With a margin discs grow, polygons hold shapely's round buffer, the area shrinks into its inverse."""
     asked = scenario()
     asked = dataclasses.replace(asked, home_amsl_m=200.0)
-    zones = keep_out(asked, margin_m=15.0)
+    zones = keep_out(asked.airspace, asked.level, margin_m=15.0)
     assert zones.discs[0].radius_m == 115.0
     band, mast = (zone.polygon for zone in zones.polygons)
     assert band.buffer(1e-9).covers(asked.no_fly[1].area.buffer(15.0))

@@ -19,7 +19,7 @@ from planner.bounds.nodes import nodes
 from planner.bounds.sweeps import MOST_ORDERED, sweeps_bound_m
 from planner.coverage.sweeps import Sweep, lanes_at, sweeps
 from planner.dubins.kernels import dubins_length
-from planner.sensors.sar import Look
+from planner.route import Look
 from tests.planner.coverage.shapes import HEIGHT_M, as_merged, box, paper_sensor
 from tests.planner.coverage.test_sweeps import stars
 

@@ -12,7 +12,7 @@ from planner.bounds.ways import plan_bound_m
 from planner.errors import InfeasibleError
 from planner.geojson import read_scenario
 from planner.pipeline import make_plan
-from planner.vehicle.wind import in_wind
+from planner.tasks.wind import in_wind
 from tests.planner.scenarios import feature, small, square
 
 METHODS: list[dict[str, str]] = [

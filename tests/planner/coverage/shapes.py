@@ -15,8 +15,9 @@ from shapely.geometry.base import BaseGeometry
 
 from planner.coverage.merge import MergedRegion
 from planner.geojson import read_scenario
+from planner.route import Look
 from planner.scenario import Scenario
-from planner.sensors.sar import Look, SarSensor
+from planner.sensors.sar import SarSensor
 
 HEIGHT_M = 500.0
 EXAMPLES = Path(__file__).parents[3] / "examples"

@@ -13,7 +13,7 @@ from skimage.measure import label
 from skimage.morphology import closing, disk
 
 from planner.coverage.merge import close_filter, merge_regions, polygons_of, split_region
-from planner.scenario import Region
+from planner.wishes import Region
 from tests.planner.coverage.shapes import box, polygons, sample, unseen_m2
 
 PIXEL_M = 5.4

@@ -10,8 +10,8 @@ from shapely.geometry import LineString, MultiPolygon, Polygon
 
 from planner.coverage.neighbourhood import can_be_seen, neighbourhoods, options
 from planner.errors import InfeasibleError
-from planner.scenario import Region
 from planner.sensors.sar import SarSensor
+from planner.wishes import Region
 from tests.planner.coverage.shapes import HEIGHT_M, as_merged, box, paper_sensor, polygons, sample, unseen_m2
 
 SENSOR = paper_sensor()

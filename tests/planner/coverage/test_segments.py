@@ -13,8 +13,7 @@ from planner.coverage.classify import classify
 from planner.coverage.neighbourhood import neighbourhoods
 from planner.coverage.segments import pair, segment
 from planner.errors import InfeasibleError
-from planner.route import CollectPass
-from planner.sensors.sar import Look
+from planner.route import CollectPass, Look
 from tests.planner.coverage.shapes import HEIGHT_M, as_merged, box, paper_sensor, polygons, unseen_m2
 
 SENSOR = paper_sensor("left", "right")

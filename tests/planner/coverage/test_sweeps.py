@@ -16,9 +16,8 @@ from shapely.geometry import LineString, Polygon
 from planner.coverage import kernels
 from planner.coverage.sweeps import Sweep, flyable_headings, lanes_at, sweeps
 from planner.dubins.words import shortest
-from planner.route import CollectPass, Pose
+from planner.route import CollectPass, Look, Pose
 from planner.routing.joint.options import Surroundings, collect_passes, make_options
-from planner.sensors.sar import Look
 from planner.sensors.strip import swaths_m
 from tests.planner.coverage.shapes import HEIGHT_M, as_merged, box, paper_sensor, unseen_m2
 

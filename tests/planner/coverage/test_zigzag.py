@@ -12,9 +12,10 @@ from shapely.geometry import LineString, Polygon
 from shapely.ops import substring
 
 from planner.coverage.zigzag import Direction, Zigzag, zigzag
+from planner.route import Look, Terminal
 from planner.routing.greedy.costs import operating_function
-from planner.scenario import Region, Scenario, Terminal
-from planner.sensors.sar import Look
+from planner.scenario import Scenario
+from planner.wishes import Region
 from tests.planner.coverage.shapes import paper_sensor, polygons, sample, unseen_m2
 
 #: Table 5, route lengths in metres.

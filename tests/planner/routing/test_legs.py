@@ -138,7 +138,13 @@ def test_no_line_costs_infinitely_much() -> None:
     assert legs.cost_m(away, inside) == math.inf
     assert legs.tour_m([flown(inside.position, 0.0, 100.0)]) == math.inf
     with pytest.raises(InfeasibleError, match="Z"):
-        connect(away, inside, module.keep_out(scenario, TRANSIT_MARGIN_M), radius_of(scenario), never)
+        connect(
+            away,
+            inside,
+            module.keep_out(scenario.airspace, scenario.level, TRANSIT_MARGIN_M),
+            radius_of(scenario),
+            never,
+        )
 
 
 def test_a_way_round_a_hard_zone_is_longer_than_straight_on() -> None:
@@ -184,7 +190,7 @@ def test_in_a_wind_time_counts(start: Anchor, goal: Anchor, from_deg: float) -> 
     scenario = open_ground(wind={"speed_m_s": 8.0, "from_deg": from_deg})
     aircraft = scenario.aircraft[0].in_wind(8.0)
     legs = Legs(scenario, aircraft, never)
-    zones = module.keep_out(scenario, TRANSIT_MARGIN_M)
+    zones = module.keep_out(scenario.airspace, scenario.level, TRANSIT_MARGIN_M)
     path = connect(start, goal, zones, aircraft.planned_turn_radius_m, never)
     seconds = flown_s(path.sample(0.5)[:, :2], aircraft.airspeed_m_s, scenario.wind)
     assert legs.cost_m(start, goal) == pytest.approx(aircraft.airspeed_m_s * seconds, rel=1e-4)

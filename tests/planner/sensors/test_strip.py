@@ -13,17 +13,20 @@ from hypothesis import strategies as st
 from scipy.optimize import brentq
 from shapely.geometry import Polygon
 
+from planner.airspace.values import Wind
 from planner.check import footprint, judge
 from planner.frames import LocalFrame
 from planner.geojson import read_scenario
 from planner.pipeline import make_plan
 from planner.plan import Plan
-from planner.scenario import Scenario, Wind
+from planner.route import Look
+from planner.scenario import Scenario
 from planner.sensors import view_kernels
-from planner.sensors.sar import Look, SarSensor
+from planner.sensors.sar import SarSensor
 from planner.sensors.strip import aperture_m, lead_m, strip_on
 from planner.sensors.view import seen_on_flat, seen_on_terrain
-from planner.vehicle.wind import crab_rad, in_wind
+from planner.tasks.wind import in_wind
+from planner.vehicle.wind import crab_rad
 from tests.planner.scenarios import case, feature, small, square
 from tests.planner.terrains import grid, raster
 

@@ -14,6 +14,7 @@ from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import dijkstra
 
 from planner.airspace.threats import risk_of_detection, risk_of_kill
+from planner.airspace.values import Threat
 from planner.airspace.zones import Disc, KeepOut
 from planner.dubins.path import Path, Segment
 from planner.errors import CancelledError, InfeasibleError
@@ -21,10 +22,10 @@ from planner.geojson import read_scenario
 from planner.pipeline import make_plan
 from planner.progress import Stop, never
 from planner.route import Anchor
-from planner.scenario import Objective, Threat
 from planner.transit import refine
 from planner.transit.refine import RISK_M, Risk, connect_by_cost
 from planner.transit.tangent import connect
+from planner.wishes import Objective
 from tests.planner.scenarios import feature, small
 
 Floats = NDArray[np.float64]

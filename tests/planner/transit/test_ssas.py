@@ -12,10 +12,10 @@ import pytest
 from shapely.geometry import LineString, Point, Polygon
 
 from planner.airspace.threats import line_risk, threat_arrays
+from planner.airspace.values import Threat
 from planner.airspace.zones import ring_edges
 from planner.errors import CancelledError, InfeasibleError, OutOfBudgetError
 from planner.route import Anchor
-from planner.scenario import Threat
 from planner.transit.ssas import SsasParameters, search
 from planner.transit.ssas_kernels import Space
 

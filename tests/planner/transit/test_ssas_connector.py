@@ -15,13 +15,15 @@ from shapely.geometry import LineString, Point, Polygon
 from shapely.ops import unary_union
 
 from planner.airspace.threats import metres_inside
+from planner.airspace.values import Threat
 from planner.airspace.zones import Disc, KeepOut, PolygonZone, keep_out
 from planner.errors import CancelledError, InfeasibleError
 from planner.frames import LocalFrame
 from planner.geojson import read_scenario
-from planner.route import Anchor
-from planner.scenario import Objective, Scenario, Terminal, Threat
+from planner.route import Anchor, Terminal
+from planner.scenario import Scenario
 from planner.transit.ssas_connector import connect
+from planner.wishes import Objective
 
 RADIUS_M = 100.1
 EXAMPLES = FilePath(__file__).parents[3] / "examples"
@@ -67,7 +69,7 @@ def assert_flyable(start, goal, path, radius_m=RADIUS_M):
 def test_random_poses_among_threats(case, near):
     """Any two poses with room to turn are joined: flyable, inside the area, no metre inside a threat."""
     rng = random.Random(3)
-    zones = keep_out(case)
+    zones = keep_out(case.airspace, case.level)
     for _ in range(100):
         start = random_pose(rng, case)
         goal = random_pose(rng, case, start.position if near else None)
@@ -83,7 +85,7 @@ def test_random_poses_among_threats(case, near):
 def test_ends_without_direction(case, free_end):
     """Where an end has no direction the search grows from the other; start and end stay what they are."""
     rng = random.Random(4)
-    zones = keep_out(case)
+    zones = keep_out(case.airspace, case.level)
     for _ in range(40):
         start, goal = random_pose(rng, case), random_pose(rng, case)
         start = Anchor(*start.position) if free_end != "goal" else start
@@ -150,12 +152,18 @@ def test_a_soft_threat_without_a_way_round_is_crossed():
     belt = tuple(Threat(f"M{n}", "missile", (2000.0, 500.0 * n), 600.0) for n in range(-3, 4))
     start, goal = Anchor(0.0, 0.0, 0.0), Anchor(4000.0, 0.0, 0.0)
     scenario = empty(area=area, threats=belt)
-    path, _ = connect(start, goal, scenario=scenario, keep_out=keep_out(scenario), radius_m=RADIUS_M)
+    path, _ = connect(
+        start,
+        goal,
+        scenario=scenario,
+        keep_out=keep_out(scenario.airspace, scenario.level),
+        radius_m=RADIUS_M,
+    )
     assert_flyable(start, goal, path)
     assert metres_inside(path.sample(5.0)[:, :2], belt) > 1000.0
     hard = empty(area=area, threats=tuple(replace(t, hard=True) for t in belt))
     with pytest.raises(InfeasibleError) as caught:
-        connect(start, goal, scenario=hard, keep_out=keep_out(hard), radius_m=RADIUS_M)
+        connect(start, goal, scenario=hard, keep_out=keep_out(hard.airspace, hard.level), radius_m=RADIUS_M)
     assert caught.value.constraint in ("hard-zone", "area")
 
 
@@ -164,7 +172,13 @@ def test_threats_of_no_weight_do_not_bend_the_line():
     threat = Threat("M", "missile", (2000.0, 0.0), 700.0)
     scenario = empty(threats=(threat,), objective=Objective(missile=0.0))
     start, goal = Anchor(0.0, 0.0, 0.0), Anchor(4000.0, 0.0, 0.0)
-    path, _ = connect(start, goal, scenario=scenario, keep_out=keep_out(scenario), radius_m=RADIUS_M)
+    path, _ = connect(
+        start,
+        goal,
+        scenario=scenario,
+        keep_out=keep_out(scenario.airspace, scenario.level),
+        radius_m=RADIUS_M,
+    )
     assert path.length_m == pytest.approx(4000.0, rel=0.01)
 
 
@@ -174,7 +188,13 @@ def test_a_collect_ending_inside_a_threat_leaves_it():
     other = Threat("B", "missile", (3000.0, 0.0), 800.0)
     scenario = empty(threats=(inside, other))
     start, goal = Anchor(0.0, 0.0, 0.0), Anchor(6000.0, 0.0, 0.0)
-    path, _ = connect(start, goal, scenario=scenario, keep_out=keep_out(scenario), radius_m=RADIUS_M)
+    path, _ = connect(
+        start,
+        goal,
+        scenario=scenario,
+        keep_out=keep_out(scenario.airspace, scenario.level),
+        radius_m=RADIUS_M,
+    )
     line = path.sample(5.0)[:, :2]
     assert metres_inside(line, (other,)) == 0.0
     assert 0.0 < metres_inside(line, (inside,)) < 1500.0
@@ -185,7 +205,9 @@ def test_the_same_request_gives_the_same_line(case):
     rng = random.Random(8)
     start, goal = random_pose(rng, case), random_pose(rng, case)
     lines = [
-        connect(start, goal, scenario=case, keep_out=keep_out(case), radius_m=RADIUS_M)[0].sample(5.0)
+        connect(start, goal, scenario=case, keep_out=keep_out(case.airspace, case.level), radius_m=RADIUS_M)[
+            0
+        ].sample(5.0)
         for _ in range(2)
     ]
     assert np.array_equal(lines[0], lines[1])
@@ -198,7 +220,7 @@ def test_stop_is_obeyed(case):
             Anchor(0.0, 0.0, 0.0),
             Anchor(900.0, 900.0, 1.0),
             scenario=case,
-            keep_out=keep_out(case),
+            keep_out=keep_out(case.airspace, case.level),
             radius_m=RADIUS_M,
             stop=lambda: True,
         )

@@ -14,6 +14,7 @@ from scipy.optimize import brentq
 from shapely.geometry import LineString
 from shapely.ops import substring
 
+from planner.airspace.values import Wind
 from planner.check import flown_s, judge
 from planner.dubins.words import shortest
 from planner.errors import InfeasibleError
@@ -21,9 +22,10 @@ from planner.geojson import read_scenario
 from planner.pipeline import make_plan
 from planner.plan import Plan
 from planner.route import Pose
-from planner.scenario import Scenario, Wind
+from planner.scenario import Scenario
+from planner.tasks.wind import in_wind
 from planner.vehicle.aircraft import Aircraft
-from planner.vehicle.wind import crab_rad, duration_s, ground_speed_m_s, in_wind, still_air_costs
+from planner.vehicle.wind import crab_rad, duration_s, ground_speed_m_s, still_air_costs
 from tests.planner.scenarios import case, small
 
 coordinates = st.floats(-2000.0, 2000.0)

@@ -15,7 +15,7 @@ from planner.routing.greedy.costs import (
     path_length_ratio,
     weighted_cost,
 )
-from planner.scenario import Objective
+from planner.wishes import Objective
 
 INTERVALS = st.lists(
     st.tuples(st.floats(0.0, 900.0), st.floats(1.0, 100.0)).map(lambda pair: (pair[0], pair[0] + pair[1])),

@@ -7,11 +7,12 @@ import pytest
 import shapely
 
 from planner.airspace.threats import line_risk
+from planner.airspace.values import Threat
 from planner.route import Anchor, CollectPass
 from planner.routing.greedy.choices import Choices, choices
 from planner.routing.greedy.offsets import best_passes
 from planner.routing.greedy.room import Room
-from planner.scenario import Objective, Threat
+from planner.wishes import Objective
 from tests.planner.coverage.shapes import HEIGHT_M, as_merged, box, paper_sensor, unseen_m2
 
 OPEN = Room(None, shapely.MultiPolygon(), shapely.MultiPolygon(), 100.0, 0.0)

@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely.geometry import LineString, Point
 
+from planner.airspace.values import NoFlyZone, Threat
 from planner.routing.greedy.room import (
     CROSSES_THREAT,
     FORBIDDEN,
@@ -18,7 +19,6 @@ from planner.routing.greedy.room import (
     TURNS_IN_THREAT,
     Room,
 )
-from planner.scenario import NoFlyZone, Threat
 from tests.planner.coverage.shapes import sample
 
 NOTHING = shapely.MultiPolygon()

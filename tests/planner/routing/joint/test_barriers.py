@@ -101,7 +101,7 @@ def test_the_order_knows_of_walls(monkeypatch: pytest.MonkeyPatch) -> None:
     blind = make_plan(scenario)
     assert knowing.hard_violations == ()
     assert knowing.metrics.length_m <= blind.metrics.length_m + 1.0
-    (wall,) = keep_out(scenario, 0.0).polygons
+    (wall,) = keep_out(scenario.airspace, scenario.level, 0.0).polygons
     axis = LineString([(wall.polygon.centroid.x, -1e5), (wall.polygon.centroid.x, 1e5)])
     line = LineString(scenario.frame.to_local([place[:2] for place in knowing.paths[0].line]))
     assert len(getattr(line.intersection(axis), "geoms", [0])) == 2

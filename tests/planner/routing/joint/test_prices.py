@@ -16,7 +16,8 @@ from planner.plan import Plan
 from planner.route import Pose
 from planner.routing.joint.prices import INSIDE_FACTOR, TURN_M, risk_m, soft_prices, turns_m
 from planner.routing.joint.visible import surroundings
-from planner.scenario import Objective, Scenario
+from planner.scenario import Scenario
+from planner.wishes import Objective
 from tests.planner.scenarios import feature, small
 
 #: Between start and the regions, so wide that going round costs some.

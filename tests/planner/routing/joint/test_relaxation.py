@@ -63,7 +63,7 @@ def test_the_zone_is_named_and_the_least_that_helps(kind: str) -> None:
     by_m = float(drawn[1])
     assert can_be_seen(shrunk(scenario, "Z", by_m))
     assert not can_be_seen(shrunk(scenario, "Z", by_m - 3.0))
-    (zone,) = hard_shapes(scenario)
+    (zone,) = hard_shapes(scenario.airspace, scenario.level)
     (region,) = (r for r in scenario.regions if r.name == "A")
     here, there = region.area.centroid, zone.polygon().centroid
     apart_m = here.distance(there)

@@ -26,7 +26,7 @@ from planner.routing.joint import kernels as joint_kernels
 from planner.routing.joint.options import collect_passes, make_options, roomy
 from planner.routing.joint.route import joint_route
 from planner.routing.joint.targets import MOST_ROOMY, coarse_options, targets
-from planner.scenario import Region
+from planner.wishes import Region
 from tests.planner.coverage.shapes import HEIGHT_M, paper_sensor, unseen_m2
 from tests.planner.coverage.test_decompose import L_SHAPE
 from tests.planner.coverage.test_sweeps import open_ground, stars

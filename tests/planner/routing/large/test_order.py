@@ -11,12 +11,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely.geometry import LineString, Point
 
+from planner.airspace.values import Wind
 from planner.progress import never, silent
 from planner.routing.joint import kernels as joint_kernels
 from planner.routing.joint.options import Options, Surroundings
 from planner.routing.large.order import kernels as large_kernels
 from planner.routing.large.order import large_order
-from planner.scenario import Wind
 from planner.vehicle.wind import CIRCLE_RAD, still_air_costs, still_air_factor
 
 RADIUS_M = 100.0

@@ -1,0 +1,62 @@
+"""Where one may fly: the area, what stands and threatens in it, the ground, the wind; and at which level."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from shapely.geometry import Polygon
+
+from planner.airspace.terrain import Ground
+from planner.airspace.values import STILL_AIR, AltitudeReference, NoFlyZone, Obstacle, Threat, Wind
+
+
+@dataclass(frozen=True, slots=True)
+class Level:
+    """A height flown level.
+
+    Parameters
+    ----------
+    height_m
+        Over the ground, which is flat at the height of home.
+    amsl_m
+        Over mean sea level.
+    """
+
+    height_m: float
+    amsl_m: float
+
+
+@dataclass(frozen=True, slots=True)
+class Airspace:
+    """Where one may fly.
+
+    What is hard or soft in it depends on the level flown: see ``shapes.hard_shapes``, ``shapes.soft_shapes``
+    and ``zones.keep_out``.
+
+    Parameters
+    ----------
+    area
+        Everything flown stays inside; None where not limited.
+    clearance_m
+        Kept over the ground, and from obstacles.
+    terrain
+        The ground's heights; flat at the height of home where None.
+    home_amsl_m
+        Height of home over mean sea level; None where unknown.
+    """
+
+    area: Polygon | None = None
+    threats: tuple[Threat, ...] = ()
+    no_fly: tuple[NoFlyZone, ...] = ()
+    obstacles: tuple[Obstacle, ...] = ()
+    clearance_m: float = 0.0
+    terrain: Ground | None = None
+    wind: Wind = STILL_AIR
+    home_amsl_m: float | None = None
+
+    def level(self, altitude_m: float, reference: AltitudeReference) -> Level:
+        """The level of an altitude; home counts as sea level where its height is unknown."""
+        home_m = self.home_amsl_m or 0.0
+        if reference == "amsl":
+            return Level(altitude_m - home_m, altitude_m)
+        return Level(altitude_m, altitude_m + home_m)

@@ -1,0 +1,1 @@
+"""The tasks a scenario may ask for: each the stages in turn, answering one question."""

@@ -1,0 +1,102 @@
+"""What one aircraft can do in this wind: how tight it turns, how long a line takes and what energy."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from planner.airspace.values import STILL_AIR, Wind
+from planner.errors import InfeasibleError
+from planner.route import Line
+from planner.vehicle.aircraft import Aircraft
+from planner.vehicle.wind import duration_s, ground_speed_m_s, still_air_costs, still_air_factor
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class FlightModel:
+    """One aircraft in a steady wind.
+
+    Parameters
+    ----------
+    aircraft
+        As it flies in this wind: see ``of``.
+    wind
+        Slower than its airspeed.
+    """
+
+    aircraft: Aircraft
+    wind: Wind = STILL_AIR
+
+    @classmethod
+    def of(cls, aircraft: Aircraft, wind: Wind) -> FlightModel:
+        """The model of an aircraft in a wind.
+
+        Raises
+        ------
+        InfeasibleError
+            ``"wind"``: it is not faster than the wind, so some courses cannot be flown.
+        """
+        if wind.speed_m_s > 0.0 and wind.speed_m_s >= aircraft.airspeed_m_s:
+            raise InfeasibleError(
+                "wind",
+                aircraft.name,
+                f"the wind of {wind.speed_m_s:g} m/s is not slower than its airspeed of "
+                f"{aircraft.airspeed_m_s:g} m/s: against it no ground is gained",
+                f"Wait for a wind under {aircraft.airspeed_m_s:g} m/s or fly faster.",
+            )
+        return cls(aircraft.in_wind(wind.speed_m_s), wind)
+
+    @property
+    def name(self) -> str:
+        """Of the aircraft."""
+        return self.aircraft.name
+
+    @property
+    def airspeed_m_s(self) -> float:
+        """Cruise airspeed."""
+        return self.aircraft.airspeed_m_s
+
+    @property
+    def turn_radius_m(self) -> float:
+        """Radius of planned arcs over the ground, whatever the direction."""
+        return self.aircraft.planned_turn_radius_m
+
+    @property
+    def settle_m(self) -> float:
+        """Straight flight wanted before each collect, over the ground."""
+        return self.aircraft.settle_m
+
+    @property
+    def max_climb_deg(self) -> float:
+        """Steepest climb or descent."""
+        return self.aircraft.max_climb_deg
+
+    @property
+    def drift(self) -> float:
+        """Speed of the wind by the airspeed."""
+        return self.wind.speed_m_s / self.aircraft.airspeed_m_s
+
+    def ground_speed_m_s(self, course_rad: ArrayLike) -> Array:
+        """Speed over the ground on the courses given."""
+        return ground_speed_m_s(course_rad, self.airspeed_m_s, self.wind)
+
+    def duration_s(self, line: Line) -> float:
+        """Time to fly a line."""
+        return duration_s(line, self.airspeed_m_s, self.wind)
+
+    def energy_wh(self, duration_s: float) -> float | None:
+        """Energy for a time in cruise; None without a power model."""
+        power_w = self.aircraft.cruise_power_w
+        return None if power_w is None else power_w * duration_s / 3600.0
+
+    def air_factor(self, course_rad: ArrayLike) -> Array:
+        """Metres through the air for one over the ground, on the courses given."""
+        return still_air_factor(course_rad, self.airspeed_m_s, self.wind)
+
+    def air_costs_m(self, lengths_m: Array, begins: Array, ends: Array) -> Array:
+        """Lengths of transits as metres through the air, about; see ``wind.still_air_costs``."""
+        return still_air_costs(lengths_m, begins, ends, self.airspeed_m_s, self.wind)

@@ -1,0 +1,49 @@
+"""What is wished: regions to be seen, weights of what a plan costs, the algorithm of each stage."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from shapely.geometry import LineString, MultiPolygon, Polygon
+
+
+@dataclass(frozen=True, slots=True)
+class Region:
+    """A region of interest, as an area on the ground.
+
+    A corridor (LineString with width) and a target (Point with radius) arrive here as the area they mean.
+    ``approach_rad`` holds the allowed flight directions, None for any; ``revisits`` how often it is to be
+    seen, on separate occasions; ``axis`` the line a corridor follows.
+    """
+
+    name: str
+    area: Polygon | MultiPolygon
+    priority: float = 1.0
+    required: bool = True
+    sensor: str | None = None
+    min_resolution_m: float | None = None
+    approach_rad: tuple[float, ...] | None = None
+    revisits: int = 1
+    axis: LineString | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Objective:
+    """Weights of the cost terms: w1, w2, w3 of eq 25 (Li et al. 2018) and two more."""
+
+    length: float = 1.0
+    missile: float = 1.0
+    radar: float = 1.0
+    energy: float = 0.0
+    turns: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Method:
+    """The algorithm of each stage, by name."""
+
+    coverage: str = "auto"
+    routing: str = "auto"
+    transit: str = "auto"
+    smoothing: str = "auto"
+    search: str = "auto"
