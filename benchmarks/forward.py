@@ -18,8 +18,8 @@ from benchmarks.link import fields, mission, vehicle
 from mavlink.client import VehicleClient
 from mavlink.forward.address import parse_forward
 from mavlink.forward.hub import Forwards
-from mavlink.items import MissionType
 from mavlink.links.udp import open_udp
+from mavlink.wire.items import MissionType
 
 ITEMS = 1000
 REPETITIONS = 5

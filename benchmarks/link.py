@@ -21,8 +21,8 @@ from mavsdk.asyncio.plugins.mission_raw import MissionRawAsync
 from mavsdk.asyncio.plugins.mission_raw_server import MissionRawServerAsync
 
 from mavlink.client import VehicleClient
-from mavlink.items import Command, Frame, MissionItem, MissionType
 from mavlink.links.udp import open_udp
+from mavlink.wire.items import Command, Frame, MissionItem, MissionType
 
 #: Items of a long mission, and of one longer than any autopilot holds.
 SIZES = (1000, 10_000)

@@ -9,12 +9,10 @@ from dataclasses import replace
 from types import TracebackType
 from typing import Final, Self
 
-from mavlink.codec import Codec
 from mavlink.driver import Driver
 from mavlink.errors import NotConnectedError, TransferFailedError, VehicleNotFoundError
 from mavlink.flight import FlightCommands
 from mavlink.forward.hub import Forwards
-from mavlink.items import Command
 from mavlink.link import Link
 from mavlink.outputs import (
     INTERVALS_HZ,
@@ -31,6 +29,8 @@ from mavlink.transfer.command import CommandMachine, CommandOutcome
 from mavlink.transfer.machine import DEFAULT_SETTINGS, Progress, TransferSettings
 from mavlink.transfer.parameters import Parameter, ParameterListMachine, ParametersMachine
 from mavlink.transfers import MissionTransfers
+from mavlink.wire.codec import Codec
+from mavlink.wire.items import Command
 
 # Messages asked for at connection, and how often a second.
 _INTERVALS_HZ: Final = {

@@ -18,7 +18,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from mavlink.dialects.base import Dialect, mission_type_of
-from mavlink.items import Frame, MissionItem, MissionType
+from mavlink.wire.items import Frame, MissionItem, MissionType
 
 ALTITUDE_TOLERANCE_M = 0.011
 PARAMETER_TOLERANCE = 1e-4

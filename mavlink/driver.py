@@ -13,7 +13,6 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import Any, Final
 
-from mavlink.codec import Codec
 from mavlink.errors import BusyError, CodecError, LinkError, NotConnectedError, ReadOnlyError
 from mavlink.events import EVENT_MESSAGES, EventOrder
 from mavlink.forward.hub import Forwards
@@ -21,7 +20,6 @@ from mavlink.identity import Identity
 from mavlink.jobs import Job
 from mavlink.link import DirectLink, Link, ReplayLink
 from mavlink.list_ids import ListIds
-from mavlink.messages import Message
 from mavlink.modes import GROUND_STATION_TYPE, NO_AUTOPILOT
 from mavlink.telemetry import VehicleState, updated
 from mavlink.track import CAMERA_MESSAGES, TrackRecorder
@@ -29,6 +27,8 @@ from mavlink.transfer.command import CommandMachine, CommandOutcome
 from mavlink.transfer.machine import Machine, Progress
 from mavlink.transfer.outcome import Outcome, Unknown
 from mavlink.transfer.upload import UploadMachine
+from mavlink.wire.codec import Codec
+from mavlink.wire.messages import Message
 
 _HEARTBEAT_EVERY_S: Final = 1.0
 _ACTIVE: Final = 4  # MAV_STATE_ACTIVE

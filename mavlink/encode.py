@@ -23,7 +23,6 @@ from mavlink.encoding.options import EncodeError, EncodeOptions, Finish
 from mavlink.encoding.pointing import Pointings, pointings_of
 from mavlink.encoding.stops import Stop, altitudes_along, stops_along
 from mavlink.encoding.task import Task, task_of
-from mavlink.items import Command, Frame, MissionItem, MissionResult, MissionType
 from mavlink.mission import Mission, home_item, numbered, placed
 from mavlink.payload import (
     ActuatorPayload,
@@ -33,6 +32,7 @@ from mavlink.payload import (
     ServoPayload,
     switch_items,
 )
+from mavlink.wire.items import Command, Frame, MissionItem, MissionResult, MissionType
 from planner.plan import LonLat, Plan
 
 __all__ = ["EncodeError", "EncodeOptions", "Finish", "Mission", "encode"]

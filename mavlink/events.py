@@ -13,7 +13,7 @@ import struct
 from dataclasses import dataclass
 from typing import Final
 
-from mavlink.messages import Message
+from mavlink.wire.messages import Message
 
 #: Of all events in flight, PX4's autopilot component.
 _AUTOPILOT: Final = 1 << 24

@@ -9,11 +9,11 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 
-from mavlink.items import Command
 from mavlink.modes import mode_parameters
 from mavlink.telemetry import VehicleState
 from mavlink.transfer.command import CommandOutcome
 from mavlink.transfer.outcome import Outcome
+from mavlink.wire.items import Command
 
 
 class FlightCommands(ABC):

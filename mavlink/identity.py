@@ -11,9 +11,9 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-from mavlink.messages import Message
 from mavlink.modes import GROUND_STATION_TYPE, NO_AUTOPILOT
 from mavlink.telemetry import VehicleState
+from mavlink.wire.messages import Message
 
 
 class Identity:

@@ -12,10 +12,10 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Final
 
-from mavlink.items import MissionType
-from mavlink.messages import Message
 from mavlink.telemetry import KEPT_TEXTS, StatusText, VehicleState
 from mavlink.transfer.outcome import Accepted, Outcome, Unknown
+from mavlink.wire.items import MissionType
+from mavlink.wire.messages import Message
 
 # A report sent before an upload was over may overtake its acknowledgement; a second one does not.
 _REPORTS: Final = 2

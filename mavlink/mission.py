@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from mavlink.dialects import Autopilot, Dialect, VehicleType, dialect_for
-from mavlink.items import Command, Frame, MissionItem, MissionType, degrees_e7
+from mavlink.wire.items import Command, Frame, MissionItem, MissionType, degrees_e7
 from planner.plan import LonLat
 
 

@@ -14,7 +14,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final
 
-from mavlink.messages import Message
 from mavlink.modes import Autopilot
 from mavlink.payload import (
     PX4_OUTPUTS,
@@ -26,6 +25,7 @@ from mavlink.payload import (
     RelayPayload,
     ServoPayload,
 )
+from mavlink.wire.messages import Message
 
 SERVO_OUTPUT_RAW: Final = 36
 CAMERA_CAPTURE_STATUS: Final = 262

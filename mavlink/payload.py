@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from mavlink.items import Command, Frame, MissionItem
+from mavlink.wire.items import Command, Frame, MissionItem
 
 Parameters = tuple[float, float, float, float, float, float, float]
 

@@ -16,7 +16,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import BinaryIO, Final
 
-from mavlink.codec import MAGIC, frame_end
+from mavlink.wire.codec import MAGIC, frame_end
 
 STAMP: Final = struct.Struct(">Q")
 SUFFIX: Final = ".tlog"

@@ -13,8 +13,8 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 from mavlink.events import read_event
-from mavlink.messages import Message
 from mavlink.modes import BOOT_MODE, Autopilot, VehicleType, autopilot_name, mode_name, vehicle_type_name
+from mavlink.wire.messages import Message
 
 _ARMED: Final = 0x80
 _BOOT: Final = 1  # MAV_STATE_BOOT

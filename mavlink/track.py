@@ -11,9 +11,9 @@ import math
 from dataclasses import dataclass
 from typing import Final, Literal
 
-from mavlink.messages import Message
 from mavlink.outputs import CameraOutput, RelayOutput, SensorOutput, ServoOutput
 from mavlink.telemetry import VehicleState, finite, is_sensor_switch
+from mavlink.wire.messages import Message
 
 # Older than this before the last point is a reboot, not a datagram that was overtaken.
 _REBOOT_S: Final = 5.0

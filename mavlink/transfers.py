@@ -12,7 +12,6 @@ from typing import Final
 
 from mavlink.driver import Driver
 from mavlink.errors import NotConnectedError, TransferFailedError, UnsupportedError
-from mavlink.items import MissionItem, MissionType
 from mavlink.telemetry import VehicleState
 from mavlink.transfer.clear import ClearMachine, SetCurrentMachine, flown_for
 from mavlink.transfer.download import DownloadMachine
@@ -28,6 +27,7 @@ from mavlink.verify import (
     update_and_verify,
     upload_and_verify,
 )
+from mavlink.wire.items import MissionItem, MissionType
 
 # PX4 judges a mission within moments of its acknowledgement, and gives its reasons one by one.
 _JUDGEMENT_S: Final = 1.0

@@ -13,9 +13,9 @@ from typing import Final, Literal, Protocol
 
 from mavlink.compare import Difference
 from mavlink.errors import BusyError, NotConnectedError, TransferFailedError
-from mavlink.items import Command, MissionItem, MissionResult, MissionType
 from mavlink.transfer.machine import Progress
 from mavlink.transfer.outcome import Accepted, Outcome, Refused, Unknown
+from mavlink.wire.items import Command, MissionItem, MissionResult, MissionType
 
 Compare = Callable[[tuple[MissionItem, ...], tuple[MissionItem, ...]], Sequence[Difference]]
 

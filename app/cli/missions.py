@@ -213,8 +213,8 @@ def download(
 
 async def _download(url: str, timeout_s: float) -> Any:
     from app.services.vehicles.connection import connected
-    from mavlink.items import MissionType
     from mavlink.mission import Mission
+    from mavlink.wire.items import MissionType
 
     async with connected(url, None, timeout_s) as client:
         items = await client.download(MissionType.MISSION)

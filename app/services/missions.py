@@ -11,9 +11,9 @@ from app.services.documents import read_object
 from app.services.errors import NotFoundError, RefusedError
 from mavlink.encode import EncodeError, EncodeOptions, encode
 from mavlink.encoding.gimbal import GimbalError, parse_gimbal
-from mavlink.items import MissionType
 from mavlink.mission import Mission
 from mavlink.payload import PayloadError, parse_payload
+from mavlink.wire.items import MissionType
 from planner.errors import Finding
 from planner.geojson import read_plan
 from planner.plan import Plan

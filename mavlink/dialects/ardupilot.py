@@ -23,7 +23,7 @@ from mavlink.dialects.base import (
     place_findings,
     unlisted_finding,
 )
-from mavlink.items import Command, Frame, MissionItem, MissionResult, MissionType
+from mavlink.wire.items import Command, Frame, MissionItem, MissionResult, MissionType
 
 Keep = Callable[[float], float]
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Literal, Protocol
 
-from mavlink.items import Command, Frame, MissionItem, MissionResult, MissionType
+from mavlink.wire.items import Command, Frame, MissionItem, MissionResult, MissionType
 
 Autopilot = Literal["ardupilot", "px4"]
 VehicleType = Literal["fixed_wing", "multirotor", "vtol"]

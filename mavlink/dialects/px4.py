@@ -19,7 +19,7 @@ from mavlink.dialects.base import (
     unlisted_finding,
 )
 from mavlink.dialects.px4_feasibility import feasibility_findings
-from mavlink.items import Command, Frame, MissionItem, MissionResult, MissionType
+from mavlink.wire.items import Command, Frame, MissionItem, MissionResult, MissionType
 
 #: Items of a mission on boards of unknown size; SITL holds 10000, v6x, v6c and Cube 1000.
 DEFAULT_MISSION_LIMIT = 500

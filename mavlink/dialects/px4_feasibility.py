@@ -10,8 +10,8 @@ from collections.abc import Iterator
 from itertools import pairwise
 
 from mavlink.dialects.base import GLOBAL_FRAMES, DialectFinding, VehicleType
-from mavlink.geometry import distance_m
-from mavlink.items import Command, Frame, MissionItem
+from mavlink.wire.geometry import distance_m
+from mavlink.wire.items import Command, Frame, MissionItem
 
 _TAKEOFFS = frozenset({Command.NAV_TAKEOFF, Command.NAV_VTOL_TAKEOFF})
 _LANDINGS = frozenset({Command.NAV_LAND, Command.NAV_VTOL_LAND})

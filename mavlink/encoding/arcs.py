@@ -12,8 +12,8 @@ from collections.abc import Callable
 
 from mavlink.encoding.options import EncodeError
 from mavlink.encoding.task import Task
-from mavlink.items import Command, Frame, MissionItem
 from mavlink.mission import Mission, placed
+from mavlink.wire.items import Command, Frame, MissionItem
 from planner.plan import PathSegment
 
 #: A turn is left as soon as the course is within 10° of the bearing of the next waypoint, the arc's end. On

@@ -9,9 +9,9 @@ from mavlink.encoding.manoeuvres import climb_orbit, landing, takeoff_place
 from mavlink.encoding.options import EncodeError
 from mavlink.encoding.stops import MERGE_M
 from mavlink.encoding.task import Task
-from mavlink.geometry import Xy, distance_m
-from mavlink.items import Command, Frame, MissionItem
 from mavlink.mission import placed, unplaced
+from mavlink.wire.geometry import Xy, distance_m
+from mavlink.wire.items import Command, Frame, MissionItem
 
 _HOME: Xy = (0.0, 0.0)
 _AIRSPEED = 0.0

@@ -10,9 +10,9 @@ from shapely.geometry.base import BaseGeometry
 from shapely.ops import unary_union
 
 from mavlink.encoding.options import EncodeError
-from mavlink.geometry import LocalMap, Xy
-from mavlink.items import Command, Frame, MissionItem, MissionType
 from mavlink.mission import numbered, placed
+from mavlink.wire.geometry import LocalMap, Xy
+from mavlink.wire.items import Command, Frame, MissionItem, MissionType
 from planner.plan import Fence, FlownPath, LonLat, Plan, ZoneCircle, ZonePolygon
 
 

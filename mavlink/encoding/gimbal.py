@@ -16,7 +16,7 @@ from itertools import pairwise
 from typing import Literal
 
 from mavlink.dialects import Autopilot
-from mavlink.items import Command, Frame, MissionItem
+from mavlink.wire.items import Command, Frame, MissionItem
 from planner.plan import Collect
 
 Protocol = Literal["manager", "mount"]

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from typing import TypeVar
 
 from mavlink.encoding.fence import Room
-from mavlink.geometry import Xy, offset
+from mavlink.wire.geometry import Xy, offset
 
 #: Kept free round every circle and line that is chosen here.
 MARGIN_M = 20.0

@@ -20,7 +20,7 @@ from mavlink.encoding.gimbal import (
 )
 from mavlink.encoding.options import EncodeError
 from mavlink.encoding.task import Task
-from mavlink.items import MissionItem, MissionResult
+from mavlink.wire.items import MissionItem, MissionResult
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
-from mavlink.geometry import LocalMap, arc_points, chord_step_rad, distance_m
+from mavlink.wire.geometry import LocalMap, arc_points, chord_step_rad, distance_m
 from planner.plan import Collect, FlownPath, LonLat, PathSegment
 
 #: Places nearer than this along the path are one; those of a collect win.

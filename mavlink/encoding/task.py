@@ -9,8 +9,8 @@ from mavlink.dialects import Autopilot, Dialect, dialect_for
 from mavlink.encoding.fence import Room, room_of
 from mavlink.encoding.manoeuvres import orbit_radius_m
 from mavlink.encoding.options import EncodeError, EncodeOptions
-from mavlink.geometry import LocalMap
-from mavlink.items import Frame
+from mavlink.wire.geometry import LocalMap
+from mavlink.wire.items import Frame
 from planner.plan import Collect, FlownPath, PathSegment, Plan, PlanVehicle
 
 #: NPFG_SW_DST_MLT · NPFG_PERIOD · NPFG_DAMPING, as PX4 has them by default.

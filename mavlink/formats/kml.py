@@ -7,7 +7,7 @@ import threading
 
 import simplekml
 
-from mavlink.geometry import LocalMap, offset
+from mavlink.wire.geometry import LocalMap, offset
 from planner.plan import Collect, FlownPath, Footprint, Plan, ZoneCircle, ZonePolygon
 
 _PATH = "ff00a5ff"

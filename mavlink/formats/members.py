@@ -7,7 +7,7 @@ from typing import Any
 
 from mavlink.formats.errors import FormatError
 from mavlink.formats.places import lat_lon_problem
-from mavlink.items import degrees_e7
+from mavlink.wire.items import degrees_e7
 
 
 def place_of(lat_deg: float, lon_deg: float, name: str) -> tuple[float, float]:

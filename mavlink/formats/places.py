@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from mavlink.dialects.base import GLOBAL_FRAMES
-from mavlink.items import Command
+from mavlink.wire.items import Command
 
 #: Commands up to this number fly somewhere (MAV_CMD_NAV_*).
 _LAST_NAV = 95

@@ -28,8 +28,8 @@ from mavlink.formats.members import (
     place_of,
 )
 from mavlink.formats.qgc_structure import structure_scan
-from mavlink.items import Command, Frame, MissionItem
 from mavlink.mission import placed, unplaced
+from mavlink.wire.items import Command, Frame, MissionItem
 from planner.plan import LonLat
 
 #: A part of a complex item: its name in the file, and a simple item still to be read or an item made anew.

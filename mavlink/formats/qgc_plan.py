@@ -13,8 +13,8 @@ from typing import Any
 from mavlink.dialects.base import CIRCLE_COMMANDS, GLOBAL_FRAMES, fence_shapes, is_polygon
 from mavlink.formats.errors import FormatError
 from mavlink.formats.qgc_plan_read import read_plan
-from mavlink.items import Command, Frame, MissionItem
 from mavlink.mission import Mission
+from mavlink.wire.items import Command, Frame, MissionItem
 
 __all__ = ["FormatError", "read_plan", "write_plan"]
 

@@ -22,8 +22,8 @@ from mavlink.formats.members import (
 )
 from mavlink.formats.places import check_place
 from mavlink.formats.qgc_complex import expand
-from mavlink.items import Command, Frame, MissionItem, MissionType
 from mavlink.mission import Mission, home_item, numbered, placed
+from mavlink.wire.items import Command, Frame, MissionItem, MissionType
 
 _AUTOPILOTS: dict[int, Autopilot] = {3: "ardupilot", 12: "px4"}
 _GENERIC = 0

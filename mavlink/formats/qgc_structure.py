@@ -19,10 +19,10 @@ from mavlink.formats.members import (
     object_of,
     place_of,
 )
-from mavlink.geometry import LocalMap
-from mavlink.geometry import distance_m as between_m
-from mavlink.items import Command, Frame, MissionItem
 from mavlink.mission import placed, unplaced
+from mavlink.wire.geometry import LocalMap
+from mavlink.wire.geometry import distance_m as between_m
+from mavlink.wire.items import Command, Frame, MissionItem
 from planner.plan import LonLat
 
 _VERSION = 3

@@ -17,10 +17,10 @@ from enum import StrEnum
 from typing import Final
 
 from mavlink.errors import BusyError
-from mavlink.items import Command
-from mavlink.messages import Message
 from mavlink.modes import mode_name
 from mavlink.telemetry import VehicleState
+from mavlink.wire.items import Command
+from mavlink.wire.messages import Message
 
 #: ArduPilot gives up a transfer after this much silence, PX4 after 5 s.
 EXCHANGE_OVER_S: Final = 8.0

@@ -12,8 +12,8 @@ from mavlink.errors import LinkError
 from mavlink.forward.address import ForwardAddress
 from mavlink.forward.guard import Guard, Verdict
 from mavlink.forward.outlet import Outlet
-from mavlink.messages import Message
 from mavlink.telemetry import VehicleState
+from mavlink.wire.messages import Message
 
 
 class Carrier(Protocol):

@@ -10,13 +10,13 @@ from contextvars import Context
 from dataclasses import dataclass, fields
 from typing import Final, Protocol
 
-from mavlink.codec import Codec
 from mavlink.errors import LinkError
 from mavlink.forward.address import ForwardAddress
 from mavlink.link import Link
 from mavlink.links.tcp import open_tcp_client, open_tcp_server
 from mavlink.links.udp import open_udp
-from mavlink.messages import Message
+from mavlink.wire.codec import Codec
+from mavlink.wire.messages import Message
 
 REOPEN_S: Final = 2.0
 #: What waits for a station that does not keep up; the oldest frames go first.

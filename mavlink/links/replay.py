@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import Final
 from urllib.parse import parse_qsl
 
-from mavlink.codec import Codec
 from mavlink.errors import AddressError, LinkError
 from mavlink.recording import read_tlog
+from mavlink.wire.codec import Codec
 
 #: Longer silences of a recording are cut short to this.
 _LONGEST_SILENCE_S: Final = 10.0

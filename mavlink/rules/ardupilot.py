@@ -6,11 +6,11 @@ import math
 from collections.abc import Callable
 from typing import Final
 
-from mavlink.items import Command
 from mavlink.payload import RelayPayload, ServoPayload
 from mavlink.rules.base import Needs, ParameterFinding, Rule, Values, any_of, camera, check, lands
 from mavlink.rules.flight import bank, corners, l1_period, loiter, speed
 from mavlink.rules.gimbal import ARDUPILOT as GIMBAL
+from mavlink.wire.items import Command
 
 
 def _relay_names(needs: Needs) -> tuple[str, ...]:

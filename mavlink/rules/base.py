@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from typing import Final, Literal
 
 from mavlink.encoding.gimbal import Hold, Protocol, hold_of, protocol_of
-from mavlink.geometry import distance_m
-from mavlink.items import Command, Frame
 from mavlink.mission import Mission
 from mavlink.payload import ActuatorPayload, CameraPayload, ImagePayload, Payload, RelayPayload
+from mavlink.wire.geometry import distance_m
+from mavlink.wire.items import Command, Frame
 from planner.plan import Plan
 
 Values = Mapping[str, float]

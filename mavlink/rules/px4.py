@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from typing import Final
 
-from mavlink.items import Command
 from mavlink.outputs import px4_outputs
 from mavlink.payload import ActuatorPayload, CameraPayload
 from mavlink.rules.base import Needs, ParameterFinding, Rule, Values, check, lands
 from mavlink.rules.flight import SWITCH_DISTANCE, bank, corners, loiter, speed
 from mavlink.rules.gimbal import PX4 as GIMBAL
+from mavlink.wire.items import Command
 
 _APPROACH_SLOPE_DEG: Final = 4.0
 _APPROACH_M: Final = 40.0

@@ -10,9 +10,9 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 
-from mavlink.items import Command, Frame, MissionItem, MissionResult, MissionType
 from mavlink.sim.geodesy import Place
 from mavlink.sim.modes import Flavour
+from mavlink.wire.items import Command, Frame, MissionItem, MissionResult, MissionType
 
 DO_SET_ACTUATOR = 187
 _VTOL_TAKEOFF, _VTOL_LAND = 84, 85

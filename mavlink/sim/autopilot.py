@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from mavlink.items import MissionItem, MissionResult, MissionType
-from mavlink.messages import Message
 from mavlink.sim.commands import CommandResult, carry_out, change_mode, order_of
 from mavlink.sim.dynamics import AircraftState
 from mavlink.sim.executor import Do, Landed, Reached, Said, place_of
@@ -18,6 +16,8 @@ from mavlink.sim.pilot import Pilot
 from mavlink.sim.replies import received_item, status_text
 from mavlink.sim.settings import SimSettings
 from mavlink.sim.telemetry import OF_THE_PAYLOAD, STREAMS, Snapshot, Streams, build
+from mavlink.wire.items import MissionItem, MissionResult, MissionType
+from mavlink.wire.messages import Message
 
 #: MISSION_ITEM with this in ``current`` is ArduPilot's "fly here now".
 _GUIDED_ITEM = 2

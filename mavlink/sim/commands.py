@@ -10,8 +10,6 @@ from dataclasses import dataclass, replace
 from enum import IntEnum
 from typing import Protocol
 
-from mavlink.items import Command, Frame, MissionItem
-from mavlink.messages import Message
 from mavlink.sim.dynamics import AircraftState
 from mavlink.sim.executor import place_of
 from mavlink.sim.geodesy import Place
@@ -21,6 +19,8 @@ from mavlink.sim.pilot import Pilot
 from mavlink.sim.replies import status_text
 from mavlink.sim.settings import SimSettings
 from mavlink.sim.telemetry import NAMES, Streams
+from mavlink.wire.items import Command, Frame, MissionItem
+from mavlink.wire.messages import Message
 
 _WARNING = 4
 

@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
-from mavlink.items import Command, MissionItem
 from mavlink.sim.dynamics import AircraftState, FlightCommand
 from mavlink.sim.geodesy import Place
 from mavlink.sim.manoeuvres import Manoeuvre
+from mavlink.wire.items import Command, MissionItem
 
 #: Navigation items of every kind of aircraft.
 NAVIGATION = frozenset(

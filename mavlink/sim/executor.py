@@ -7,13 +7,13 @@ from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from mavlink.items import Command, Frame, MissionItem
 from mavlink.sim.craft import Craft, Path, Vertex
 from mavlink.sim.dynamics import AircraftState, FlightCommand
 from mavlink.sim.geodesy import Place
 from mavlink.sim.manoeuvres import Manoeuvre
 from mavlink.sim.modes import Flavour
 from mavlink.sim.settings import SimSettings
+from mavlink.wire.items import Command, Frame, MissionItem
 
 _CONDITIONS = frozenset({Command.CONDITION_DELAY, Command.CONDITION_DISTANCE})
 _MOST_JUMPS_AT_ONCE = 100

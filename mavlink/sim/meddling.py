@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from mavlink.items import MissionResult
-from mavlink.messages import Message
 from mavlink.sim.faults import Fault
+from mavlink.wire.items import MissionResult
+from mavlink.wire.messages import Message
 
 _OPENING = frozenset({"MISSION_COUNT", "MISSION_WRITE_PARTIAL_LIST"})
 _ITEMS = frozenset({"MISSION_ITEM", "MISSION_ITEM_INT"})

@@ -11,8 +11,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
-from mavlink.items import MissionItem, MissionResult, MissionType
-from mavlink.messages import Message
 from mavlink.sim.acceptance import PLACED, as_stored, finished_list, home_item, refusal
 from mavlink.sim.faults import Fault
 from mavlink.sim.geodesy import Place
@@ -26,6 +24,8 @@ from mavlink.sim.replies import (
     sender,
     status_text,
 )
+from mavlink.wire.items import MissionItem, MissionResult, MissionType
+from mavlink.wire.messages import Message
 
 _ASK_AGAIN_S = {Flavour.ARDUPILOT: 1.0, Flavour.PX4: 0.25}
 _GIVE_UP_S = {Flavour.ARDUPILOT: 8.0, Flavour.PX4: 5.0}

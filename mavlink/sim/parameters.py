@@ -7,9 +7,9 @@ from __future__ import annotations
 
 import math
 
-from mavlink.messages import Message
 from mavlink.sim.modes import Flavour
 from mavlink.sim.settings import SimSettings
+from mavlink.wire.messages import Message
 
 _REAL32 = 9
 

@@ -9,13 +9,13 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from mavlink.items import Command
-from mavlink.messages import Message
 from mavlink.sim.dynamics import AircraftState
 from mavlink.sim.faults import Fault
 from mavlink.sim.geodesy import Place, distance_m
 from mavlink.sim.modes import Flavour
 from mavlink.sim.settings import SimSettings
+from mavlink.wire.items import Command
+from mavlink.wire.messages import Message
 
 _SERVO_ON_US = 1500.0
 _RELAYS = 16

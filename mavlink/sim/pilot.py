@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from mavlink.items import Command, MissionItem
 from mavlink.sim.acceptance import infeasible
 from mavlink.sim.dynamics import AircraftState, FlightCommand
 from mavlink.sim.executor import Do, Event, Landed, MissionRun, Said
@@ -14,6 +13,7 @@ from mavlink.sim.kinds import craft_of
 from mavlink.sim.manoeuvres import Manoeuvre
 from mavlink.sim.modes import Flavour, Mode
 from mavlink.sim.settings import SimSettings
+from mavlink.wire.items import Command, MissionItem
 
 #: MAV_SEVERITY_INFO
 _INFO = 6

@@ -5,8 +5,8 @@ from __future__ import annotations
 import struct
 import zlib
 
-from mavlink.items import MissionItem, MissionResult, MissionType
-from mavlink.messages import Message
+from mavlink.wire.items import MissionItem, MissionResult, MissionType
+from mavlink.wire.messages import Message
 
 _TEXT_BYTES = 50
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from mavlink.items import Command, MissionItem
 from mavlink.sim.craft import NAVIGATION, Path, Vertex
 from mavlink.sim.dynamics import AircraftState
 from mavlink.sim.geodesy import Place
@@ -14,6 +13,7 @@ from mavlink.sim.legs import Agility, LegFollower
 from mavlink.sim.manoeuvres import Manoeuvre
 from mavlink.sim.modes import Flavour
 from mavlink.sim.settings import SimSettings
+from mavlink.wire.items import Command, MissionItem
 
 #: WPNAV_ACCEL of ArduCopter, MPC_ACC_HOR of PX4.
 _ACCELERATION_M_S2 = {Flavour.ARDUPILOT: 2.5, Flavour.PX4: 3.0}

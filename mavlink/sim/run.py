@@ -8,15 +8,15 @@ import signal
 import sys
 from dataclasses import replace
 
-from mavlink.codec import Codec
 from mavlink.errors import CodecError, LinkError
 from mavlink.link import Link, PacedLink, open_link, parse_address
-from mavlink.messages import Message
 from mavlink.sim.autopilot import SimulatedAircraft
 from mavlink.sim.faults import Fault
 from mavlink.sim.geodesy import Place
 from mavlink.sim.modes import Flavour
 from mavlink.sim.settings import SimSettings
+from mavlink.wire.codec import Codec
+from mavlink.wire.messages import Message
 
 _TICK_S = 0.01
 # A slower machine flies slower instead of falling ever further behind.

@@ -9,12 +9,12 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from mavlink.messages import Message
 from mavlink.sim.dynamics import AircraftState
 from mavlink.sim.geodesy import Place
 from mavlink.sim.modes import Flavour, Mode, custom_mode
 from mavlink.sim.payload import quaternion
 from mavlink.sim.settings import SimSettings
+from mavlink.wire.messages import Message
 
 _CELLS = 6
 _FULL_CELL_V, _EMPTY_CELL_V = 4.2, 3.5

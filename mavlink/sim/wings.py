@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from mavlink.items import Command, MissionItem
 from mavlink.sim.craft import NAVIGATION, Path, Vertex
 from mavlink.sim.dynamics import AircraftState
 from mavlink.sim.geodesy import Place
@@ -13,6 +12,7 @@ from mavlink.sim.guidance import PolylineFollower
 from mavlink.sim.manoeuvres import GoTo, Landing, Loiter, Manoeuvre, Takeoff
 from mavlink.sim.modes import Flavour
 from mavlink.sim.settings import SimSettings
+from mavlink.wire.items import Command, MissionItem
 
 
 class FixedWing:

@@ -7,10 +7,10 @@ from abc import abstractmethod
 from collections.abc import Sequence
 from typing import Final
 
-from mavlink.items import Command, MissionItem, MissionResult, MissionType
-from mavlink.messages import Message
 from mavlink.transfer.machine import DEFAULT_SETTINGS, Machine, Progress, TransferSettings
 from mavlink.transfer.outcome import Accepted, Outcome, Refused, Unknown
+from mavlink.wire.items import Command, MissionItem, MissionResult, MissionType
+from mavlink.wire.messages import Message
 
 _NAV_LAST: Final = 95  # MAV_CMD_NAV_LAST
 

@@ -11,9 +11,9 @@ from dataclasses import dataclass
 from enum import IntEnum
 from typing import Final
 
-from mavlink.items import Command, MissionType
-from mavlink.messages import Message
 from mavlink.transfer.machine import DEFAULT_SETTINGS, Machine, Progress, TransferSettings
+from mavlink.wire.items import Command, MissionType
+from mavlink.wire.messages import Message
 
 
 class CommandResult(IntEnum):

@@ -9,11 +9,11 @@ from __future__ import annotations
 from enum import Enum, auto
 from typing import Final
 
-from mavlink.items import MissionItem, MissionResult, MissionType
-from mavlink.messages import Message
 from mavlink.transfer.items_wire import ITEM_NAMES, message_item, opaque_id_of
 from mavlink.transfer.machine import DEFAULT_SETTINGS, Machine, Progress, TransferSettings
 from mavlink.transfer.outcome import Accepted, Outcome, Refused, Unknown
+from mavlink.wire.items import MissionItem, MissionResult, MissionType
+from mavlink.wire.messages import Message
 
 
 class State(Enum):

@@ -8,8 +8,8 @@ from __future__ import annotations
 import math
 from typing import Final
 
-from mavlink.items import MissionItem, MissionType, degrees_e7
-from mavlink.messages import Message, Value
+from mavlink.wire.items import MissionItem, MissionType, degrees_e7
+from mavlink.wire.messages import Message, Value
 
 ITEM_NAMES: Final = frozenset({"MISSION_ITEM_INT", "MISSION_ITEM"})
 

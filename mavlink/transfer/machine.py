@@ -13,8 +13,8 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import Generic, TypeVar
 
-from mavlink.items import MissionType
-from mavlink.messages import Message, Value
+from mavlink.wire.items import MissionType
+from mavlink.wire.messages import Message, Value
 
 End = TypeVar("End")
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Final, Literal
 
-from mavlink.items import MissionResult
+from mavlink.wire.items import MissionResult
 
 MEANING: Final[dict[int, str]] = {
     MissionResult.ACCEPTED: "accepted",

@@ -12,10 +12,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from mavlink.items import MissionType
-from mavlink.messages import Message
 from mavlink.transfer.machine import DEFAULT_SETTINGS, Machine, Progress, TransferSettings
 from mavlink.transfer.outcome import Accepted, Outcome, Unknown
+from mavlink.wire.items import MissionType
+from mavlink.wire.messages import Message
 
 NAME_BYTES: Final = 16
 #: This many are asked for before an answer; more would fill a slow radio.

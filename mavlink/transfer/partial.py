@@ -13,10 +13,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import ClassVar
 
-from mavlink.items import MissionItem, MissionResult, MissionType
-from mavlink.messages import Message
 from mavlink.transfer.machine import DEFAULT_SETTINGS, TransferSettings
 from mavlink.transfer.upload import UploadMachine
+from mavlink.wire.items import MissionItem, MissionResult, MissionType
+from mavlink.wire.messages import Message
 
 
 class PartialUpdateMachine(UploadMachine):

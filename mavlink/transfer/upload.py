@@ -12,11 +12,11 @@ from collections.abc import Sequence
 from enum import Enum, auto
 from typing import ClassVar, Final
 
-from mavlink.items import MissionItem, MissionResult, MissionType
-from mavlink.messages import Message
 from mavlink.transfer.items_wire import item_message, opaque_id_of
 from mavlink.transfer.machine import DEFAULT_SETTINGS, Machine, Progress, TransferSettings
 from mavlink.transfer.outcome import Accepted, Outcome, Refused, Unknown, UnknownReason
+from mavlink.wire.items import MissionItem, MissionResult, MissionType
+from mavlink.wire.messages import Message
 
 
 class State(Enum):

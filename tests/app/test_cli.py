@@ -17,8 +17,8 @@ import pytest
 
 from app.cli.root import run
 from app.routers.bodies import EXAMPLE
-from mavlink import items
 from mavlink.formats import qgc_plan, waypoints
+from mavlink.wire import items
 
 ROOT = Path(__file__).resolve().parents[2]
 

@@ -15,11 +15,11 @@ import pytest
 from app.main import create_app
 from app.server import Welcome, _greet
 from app.settings import Settings
-from mavlink.codec import Codec
 from mavlink.links.udp import open_udp
-from mavlink.messages import Message
 from mavlink.recording import STAMP
 from mavlink.sim.settings import SimSettings
+from mavlink.wire.codec import Codec
+from mavlink.wire.messages import Message
 from tests.app.conftest import fake_house, serving
 from tests.app.test_problems import check_problem
 from tests.app.test_restart import autopilot, free_port, service

@@ -13,9 +13,9 @@ from app.services.vehicles.pointing import pointing_findings
 from app.settings import Settings
 from mavlink.encode import EncodeOptions, encode
 from mavlink.encoding.gimbal import parse_gimbal
-from mavlink.items import Command
 from mavlink.parameter_rules import needs_of
 from mavlink.payload import RelayPayload
+from mavlink.wire.items import Command
 from tests.app.conftest import stored
 from tests.app.test_problems import check_problem
 from tests.app.test_restart import VEHICLES, add, autopilot, free_port, held_plan, service, until

@@ -21,11 +21,11 @@ from app.services.records import TrackSample
 from app.services.vehicles.recorder import Thinner
 from mavlink.client import VehicleClient
 from mavlink.compare import differences
-from mavlink.items import MissionType
 from mavlink.mission import Mission
 from mavlink.telemetry import VehicleState
 from mavlink.track import Track
 from mavlink.verify import VerifiedUpload
+from mavlink.wire.items import MissionType
 from planner.coverage.flown import FlownCoverage
 from planner.plan import Plan
 from planner.scenario import Scenario

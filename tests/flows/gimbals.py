@@ -10,7 +10,7 @@ from itertools import pairwise
 from pymavlink.dialects.v20 import ardupilotmega
 from pymavlink.quaternion import Quaternion
 
-from mavlink.items import Command, MissionItem
+from mavlink.wire.items import Command, MissionItem
 from planner.plan import Plan
 from tests.mavlink.plans import Leg, make_plan
 

@@ -18,11 +18,11 @@ from contextlib import asynccontextmanager, contextmanager
 from pathlib import Path
 
 from mavlink.client import VehicleClient
-from mavlink.codec import Codec
 from mavlink.encoding.options import DEFAULT_PAYLOAD
 from mavlink.link import open_link
-from mavlink.messages import Message
 from mavlink.payload import Payload
+from mavlink.wire.codec import Codec
+from mavlink.wire.messages import Message
 from tests.flows.flying import Flight, until_disarmed
 
 BINARY = os.environ.get("SWATHPLAN_PX4", "")

@@ -23,11 +23,11 @@ from mavlink.compare import Difference, differences
 from mavlink.dialects import dialect_for
 from mavlink.dialects.ardupilot import ArduPilotDialect
 from mavlink.encode import EncodeOptions, encode
-from mavlink.items import Command, Frame, MissionItem, MissionResult, MissionType
 from mavlink.link import open_link
 from mavlink.mission import home_item, numbered, placed, unplaced
 from mavlink.transfer.outcome import Refused
 from mavlink.verify import VerifiedUpload
+from mavlink.wire.items import Command, Frame, MissionItem, MissionResult, MissionType
 from planner.geojson import read_scenario
 from planner.pipeline import make_plan
 from planner.plan import Plan

@@ -19,9 +19,9 @@ from numpy.typing import NDArray
 from mavlink.compare import differences
 from mavlink.encode import EncodeOptions, encode
 from mavlink.encoding.options import Arcs
-from mavlink.items import Command, MissionType
 from mavlink.mission import Mission
 from mavlink.telemetry import VehicleState
+from mavlink.wire.items import Command, MissionType
 from tests.flows.arduplane import BINARY, HOME_ALTITUDE_M, aeroplane, arm, in_wind
 from tests.flows.flying import STALLED_S, WIND
 from tests.mavlink.plans import FRAME, START, Leg, flown, make_plan

@@ -13,10 +13,10 @@ from pathlib import Path
 import pytest
 
 from mavlink.encode import EncodeOptions, encode
-from mavlink.items import Command
 from mavlink.parameter_rules import judge_parameters, names_to_read, needs_of
 from mavlink.payload import RelayPayload
 from mavlink.track import TrackPoint
+from mavlink.wire.items import Command
 from planner.frames import LocalFrame
 from planner.geojson import read_scenario
 from planner.pipeline import make_plan

@@ -19,10 +19,10 @@ from mavlink.compare import Difference, differences
 from mavlink.dialects import dialect_for
 from mavlink.encode import encode
 from mavlink.events import KNOWN_EVENTS, event_id
-from mavlink.items import Command, MissionItem, MissionType
 from mavlink.mission import numbered, unplaced
 from mavlink.parameter_rules import judge_parameters, names_to_read, needs_of
 from mavlink.payload import ActuatorPayload
+from mavlink.wire.items import Command, MissionItem, MissionType
 from planner.geojson import read_scenario
 from planner.pipeline import make_plan
 from planner.plan import Plan

@@ -9,12 +9,12 @@ from collections.abc import AsyncIterator, Callable
 from typing import Self
 
 from mavlink.client import VehicleClient
-from mavlink.codec import Codec
 from mavlink.errors import LinkError
 from mavlink.link import Link, LinkFaults, MemoryLink, memory_pair
 from mavlink.links.memory import NO_FAULTS
-from mavlink.messages import Message, Value
 from mavlink.transfer.machine import TransferSettings
+from mavlink.wire.codec import Codec
+from mavlink.wire.messages import Message, Value
 from tests.mavlink.transfer.vehicle import StubVehicle
 
 # A tenth of the protocol's patience, so that tests of time-outs are short.

@@ -7,7 +7,7 @@ from shapely.geometry import LineString, Polygon
 
 from mavlink.dialects import Autopilot, VehicleType
 from mavlink.encode import Mission
-from mavlink.items import Command, MissionItem
+from mavlink.wire.items import Command, MissionItem
 from planner.plan import Plan
 from planner.route import Pose
 from tests.mavlink.plans import FRAME, START, Leg, flown

@@ -8,8 +8,8 @@ from dataclasses import replace
 from hypothesis import strategies as st
 
 from mavlink.dialects import Autopilot
-from mavlink.items import Command, Frame, MissionItem, MissionType
 from mavlink.mission import Mission, home_item, numbered
+from mavlink.wire.items import Command, Frame, MissionItem, MissionType
 
 PLACED = (
     Command.NAV_WAYPOINT,

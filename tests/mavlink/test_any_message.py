@@ -10,15 +10,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from pymavlink.dialects.v20 import ardupilotmega as dialect
 
-from mavlink.codec import Codec
-from mavlink.items import MissionType
-from mavlink.messages import Message
 from mavlink.telemetry import VehicleState, updated
 from mavlink.track import TrackRecorder
 from mavlink.transfer.clear import ClearMachine, SetCurrentMachine
 from mavlink.transfer.command import CommandMachine
 from mavlink.transfer.download import DownloadMachine
 from mavlink.transfer.upload import UploadMachine
+from mavlink.wire.codec import Codec
+from mavlink.wire.items import MissionType
+from mavlink.wire.messages import Message
 from tests.mavlink.transfer.vehicle import waypoints
 
 # Those that anything here looks at come up more often than the rest.

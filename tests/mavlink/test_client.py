@@ -7,17 +7,17 @@ import asyncio
 import pytest
 
 from mavlink.client import VehicleClient
-from mavlink.codec import Codec
 from mavlink.errors import (
     NotConnectedError,
     VehicleNotFoundError,
 )
-from mavlink.items import Command, MissionType
 from mavlink.link import memory_pair
 from mavlink.links.udp import open_udp
-from mavlink.messages import Message
 from mavlink.telemetry import VehicleState
 from mavlink.transfer.outcome import Accepted, Unknown
+from mavlink.wire.codec import Codec
+from mavlink.wire.items import Command, MissionType
+from mavlink.wire.messages import Message
 from tests.mavlink.aircraft import HASTY, Aircraft, flying
 from tests.mavlink.transfer.vehicle import StubVehicle, waypoints
 

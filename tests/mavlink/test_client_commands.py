@@ -6,8 +6,8 @@ import asyncio
 
 import pytest
 
-from mavlink.items import Command
 from mavlink.transfer.outcome import Accepted
+from mavlink.wire.items import Command
 from tests.mavlink.aircraft import flying
 
 

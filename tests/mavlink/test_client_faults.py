@@ -11,7 +11,6 @@ from functools import partial
 from mavlink.client import VehicleClient
 from mavlink.compare import differences
 from mavlink.dialects import dialect_for
-from mavlink.items import Command, MissionItem, MissionType
 from mavlink.link import memory_pair
 from mavlink.sim.faults import Fault
 from mavlink.sim.modes import Flavour
@@ -20,6 +19,7 @@ from mavlink.sim.settings import SimSettings
 from mavlink.transfer.machine import TransferSettings
 from mavlink.transfer.outcome import Accepted, Refused, Unknown
 from mavlink.verify import Compare, VerifiedUpload
+from mavlink.wire.items import Command, MissionItem, MissionType
 
 # The count and questions are repeated early; the patience with a vehicle that asks again each second stays.
 QUICK = TransferSettings(timeout_s=0.2, retries=3, silence_s=2.5, acknowledgement_s=1.5)

@@ -9,11 +9,11 @@ from collections.abc import AsyncIterator
 import pytest
 
 from mavlink.client import VehicleClient
-from mavlink.codec import Codec
 from mavlink.errors import NotConnectedError
-from mavlink.items import Command, MissionType
 from mavlink.link import MemoryLink, memory_pair
-from mavlink.messages import Message
+from mavlink.wire.codec import Codec
+from mavlink.wire.items import Command, MissionType
+from mavlink.wire.messages import Message
 from tests.mavlink.aircraft import HASTY, LOST_AFTER_S, Aircraft
 from tests.mavlink.transfer.vehicle import StubVehicle, waypoints
 

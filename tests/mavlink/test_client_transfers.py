@@ -15,11 +15,11 @@ from mavlink.errors import (
     NotConnectedError,
     TransferFailedError,
 )
-from mavlink.items import Command, MissionItem, MissionResult, MissionType
 from mavlink.link import LinkFaults
-from mavlink.messages import Message
 from mavlink.transfer.machine import Progress
 from mavlink.transfer.outcome import Accepted, Refused, Unknown
+from mavlink.wire.items import Command, MissionItem, MissionResult, MissionType
+from mavlink.wire.messages import Message
 from tests.mavlink.aircraft import HASTY, LOST_AFTER_S, flying
 from tests.mavlink.transfer.vehicle import waypoints
 

@@ -13,10 +13,10 @@ from hypothesis import strategies as st
 from mavlink.compare import differences
 from mavlink.dialects import Autopilot, VehicleType, dialect_for
 from mavlink.encode import EncodeOptions, encode
-from mavlink.items import MissionItem
 from mavlink.sim.acceptance import as_stored, refusal
 from mavlink.sim.geodesy import Place
 from mavlink.sim.modes import Flavour
+from mavlink.wire.items import MissionItem
 from tests.mavlink.plans import make_plan
 
 KINDS: list[tuple[Autopilot, VehicleType]] = [

@@ -13,7 +13,7 @@ from shapely.geometry import Point
 
 from mavlink.dialects import Autopilot, VehicleType
 from mavlink.encode import EncodeError, EncodeOptions, encode
-from mavlink.items import Command, Frame, degrees_e7
+from mavlink.wire.items import Command, Frame, degrees_e7
 from planner.route import Pose
 from tests.mavlink.missions import (
     L,

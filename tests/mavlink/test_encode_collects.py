@@ -9,10 +9,10 @@ import pytest
 
 from mavlink.dialects import Autopilot, VehicleType
 from mavlink.encode import EncodeOptions, encode
-from mavlink.items import Command, degrees_e7
 from mavlink.payload import (
     CameraPayload,
 )
+from mavlink.wire.items import Command, degrees_e7
 from planner.plan import ZoneCircle
 from tests.mavlink.missions import (
     KINDS,

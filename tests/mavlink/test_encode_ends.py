@@ -10,7 +10,7 @@ from shapely.geometry import Point
 
 from mavlink.dialects import Autopilot, VehicleType
 from mavlink.encode import EncodeError, EncodeOptions, encode
-from mavlink.items import Command
+from mavlink.wire.items import Command
 from planner.route import Pose
 from tests.mavlink.missions import (
     L,

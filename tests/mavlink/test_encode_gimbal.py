@@ -14,11 +14,11 @@ from mavlink.encode import EncodeError, EncodeOptions, Mission, encode
 from mavlink.encoding.gimbal import Gimbal, Protocol
 from mavlink.formats.qgc_plan import read_plan, write_plan
 from mavlink.formats.waypoints import read_waypoints, write_waypoints
-from mavlink.items import Command, MissionItem, MissionType
 from mavlink.sim.autopilot import SimulatedAircraft
 from mavlink.sim.geodesy import Place
 from mavlink.sim.modes import Flavour
 from mavlink.sim.settings import SimSettings
+from mavlink.wire.items import Command, MissionItem, MissionType
 from planner.plan import Plan
 from tests.mavlink.missions import KINDS, A, L, R, W, commands
 from tests.mavlink.plans import Leg, make_plan

@@ -8,7 +8,6 @@ import pytest
 
 from mavlink.dialects import Autopilot
 from mavlink.encode import EncodeError, EncodeOptions, encode
-from mavlink.items import Command, Frame
 from mavlink.payload import (
     ActuatorPayload,
     CameraPayload,
@@ -17,6 +16,7 @@ from mavlink.payload import (
     RelayPayload,
     ServoPayload,
 )
+from mavlink.wire.items import Command, Frame
 from tests.mavlink.missions import (
     W,
     flight,

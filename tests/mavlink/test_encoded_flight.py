@@ -11,13 +11,13 @@ from shapely.geometry import LineString, Point, Polygon
 from mavlink.compare import differences
 from mavlink.dialects import Autopilot
 from mavlink.encode import EncodeOptions, encode
-from mavlink.items import Command, MissionType
 from mavlink.payload import CommandPayload, Payload
 from mavlink.sim.autopilot import SimulatedAircraft
 from mavlink.sim.dynamics import AircraftState
 from mavlink.sim.geodesy import Place
 from mavlink.sim.modes import Flavour
 from mavlink.sim.settings import SimSettings
+from mavlink.wire.items import Command, MissionType
 from planner.plan import Collect, Plan
 from planner.route import Pose
 from tests.mavlink.plans import FRAME, Leg, make_plan

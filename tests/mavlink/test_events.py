@@ -12,13 +12,13 @@ from hypothesis import strategies as st
 from pymavlink.dialects.v20 import ardupilotmega as dialect
 
 from mavlink.client import VehicleClient
-from mavlink.codec import Codec
 from mavlink.compare import Difference
 from mavlink.events import EventOrder, event_id, read_event
-from mavlink.items import MissionItem, MissionType
 from mavlink.link import memory_pair
-from mavlink.messages import Message
 from mavlink.telemetry import VehicleState, updated
+from mavlink.wire.codec import Codec
+from mavlink.wire.items import MissionItem, MissionType
+from mavlink.wire.messages import Message
 from tests.mavlink.aircraft import flying
 from tests.mavlink.transfer.vehicle import waypoints
 

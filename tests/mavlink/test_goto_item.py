@@ -10,13 +10,13 @@ from dataclasses import replace
 import pytest
 
 from mavlink.client import VehicleClient
-from mavlink.items import Command, Frame, MissionItem, MissionType
 from mavlink.link import memory_pair
 from mavlink.sim.modes import Flavour
 from mavlink.sim.run import serve_link
 from mavlink.sim.settings import SimSettings
 from mavlink.transfer.machine import DEFAULT_SETTINGS
 from mavlink.transfer.outcome import Accepted, Unknown
+from mavlink.wire.items import Command, Frame, MissionItem, MissionType
 
 HASTY = replace(DEFAULT_SETTINGS, timeout_s=0.2, retries=1)
 SPEED, WAYPOINT = 3, 4

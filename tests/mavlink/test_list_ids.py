@@ -9,12 +9,12 @@ import pytest
 from pymavlink.dialects.v20 import ardupilotmega as dialect
 
 from mavlink.client import VehicleClient
-from mavlink.codec import Codec
-from mavlink.items import MissionItem, MissionType
 from mavlink.list_ids import ListIds
-from mavlink.messages import Message
 from mavlink.telemetry import VehicleState
 from mavlink.transfer.outcome import Accepted, Unknown
+from mavlink.wire.codec import Codec
+from mavlink.wire.items import MissionItem, MissionType
+from mavlink.wire.messages import Message
 from tests.mavlink.aircraft import Aircraft, flying
 from tests.mavlink.test_client_transfers import compare
 from tests.mavlink.transfer.vehicle import waypoints

@@ -10,14 +10,14 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from pymavlink.dialects.v20 import ardupilotmega as dialect
 
-from mavlink.codec import Codec
 from mavlink.errors import TransferFailedError
-from mavlink.items import MissionType
-from mavlink.messages import Message
 from mavlink.sim.autopilot import SimulatedAircraft
 from mavlink.sim.modes import Flavour
 from mavlink.sim.settings import SimSettings
 from mavlink.transfer.outcome import Accepted
+from mavlink.wire.codec import Codec
+from mavlink.wire.items import MissionType
+from mavlink.wire.messages import Message
 from tests.mavlink.aircraft import flying
 from tests.mavlink.transfer.vehicle import waypoints
 

@@ -23,12 +23,12 @@ from mavlink.compare import differences
 from mavlink.dialects import dialect_for
 from mavlink.encode import EncodeOptions, encode
 from mavlink.formats import write_waypoints
-from mavlink.items import MissionItem, MissionType
 from mavlink.link import open_link
 from mavlink.links.udp import open_udp
 from mavlink.sim.geodesy import Place
 from mavlink.sim.run import serve_link
 from mavlink.sim.settings import SimSettings
+from mavlink.wire.items import MissionItem, MissionType
 from tests.mavlink.plans import make_plan
 
 pytestmark = pytest.mark.skipif(find_spec("MAVProxy") is None, reason="MAVProxy is not installed")

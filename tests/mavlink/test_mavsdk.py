@@ -8,9 +8,9 @@ import pytest
 
 from benchmarks.link import fields, mission, run, vehicle
 from mavlink.client import VehicleClient
-from mavlink.items import Command, MissionItem, MissionType
 from mavlink.links.udp import open_udp
 from mavlink.transfer.outcome import Accepted
+from mavlink.wire.items import Command, MissionItem, MissionType
 
 pytestmark = pytest.mark.mavsdk
 

@@ -12,9 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mavlink.client import VehicleClient
-from mavlink.codec import Codec
 from mavlink.link import memory_pair
-from mavlink.messages import Message
 from mavlink.outputs import (
     CameraOutput,
     RelayOutput,
@@ -31,6 +29,8 @@ from mavlink.sim.run import serve_link
 from mavlink.sim.settings import SimSettings
 from mavlink.telemetry import VehicleState, updated
 from mavlink.track import Track, TrackRecorder, unwrapped_s
+from mavlink.wire.codec import Codec
+from mavlink.wire.messages import Message
 from tests.mavlink.test_telemetry import at, received
 
 

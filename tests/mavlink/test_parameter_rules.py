@@ -10,7 +10,6 @@ from pyproj import Geod
 
 from mavlink.dialects import Autopilot
 from mavlink.encode import encode
-from mavlink.items import Command
 from mavlink.parameter_rules import (
     RULES,
     Needs,
@@ -27,6 +26,7 @@ from mavlink.payload import (
     ServoPayload,
     parse_payload,
 )
+from mavlink.wire.items import Command
 from tests.mavlink.plans import make_plan
 
 PLANE = Needs(22.4, 100.0, None, CameraPayload(25.0), frozenset({22, 16, 21, 189}), True, 500.0, 4000.0)

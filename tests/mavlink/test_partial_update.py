@@ -9,12 +9,12 @@ import pytest
 
 from mavlink.client import VehicleClient
 from mavlink.errors import NotConnectedError, UnsupportedError
-from mavlink.items import MissionItem, MissionResult, MissionType
 from mavlink.link import memory_pair
 from mavlink.sim.faults import Fault
 from mavlink.sim.modes import Flavour
 from mavlink.transfer.outcome import Accepted, Refused, Unknown
 from mavlink.verify import VerifiedUpload
+from mavlink.wire.items import MissionItem, MissionResult, MissionType
 from tests.mavlink.aircraft import flying
 from tests.mavlink.test_client_faults import comparison, mission, simulated
 from tests.mavlink.test_client_transfers import compare

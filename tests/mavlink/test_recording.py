@@ -9,9 +9,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pymavlink import mavutil
 
-from mavlink.codec import Codec
-from mavlink.messages import Message
 from mavlink.recording import STAMP, TlogLimits, TlogWriter, read_tlog
+from mavlink.wire.codec import Codec
+from mavlink.wire.messages import Message
 
 MOMENT_S = 1_790_000_000.0
 UNLIMITED = TlogLimits()

@@ -9,12 +9,12 @@ from pathlib import Path
 import pytest
 
 from mavlink.client import VehicleClient
-from mavlink.codec import Codec
 from mavlink.errors import LinkError, NotConnectedError, ReadOnlyError
-from mavlink.items import MissionType
 from mavlink.link import open_link
-from mavlink.messages import Message
 from mavlink.recording import TlogWriter, read_tlog
+from mavlink.wire.codec import Codec
+from mavlink.wire.items import MissionType
+from mavlink.wire.messages import Message
 from tests.mavlink.aircraft import flying
 from tests.mavlink.transfer.vehicle import waypoints
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from mavlink.compare import Difference, differences
 from mavlink.dialects import dialect_for
-from mavlink.items import Frame, MissionItem, MissionType
+from mavlink.wire.items import Frame, MissionItem, MissionType
 from tests.mavlink.aircraft import LOST_AFTER_S, flying
 from tests.mavlink.transfer.vehicle import StubVehicle, waypoints
 

@@ -7,11 +7,11 @@ from functools import partial
 
 import pytest
 
-from mavlink.codec import Codec
-from mavlink.messages import Message, Value
 from mavlink.modes import Autopilot, VehicleType, mode_name, mode_parameters
 from mavlink.telemetry import VehicleState, updated
 from mavlink.track import SensorEvent, TrackPoint, TrackRecorder
+from mavlink.wire.codec import Codec
+from mavlink.wire.messages import Message, Value
 
 
 def received(name: str, /, **fields: Value) -> Message:

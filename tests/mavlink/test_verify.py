@@ -8,11 +8,11 @@ from dataclasses import replace
 
 import pytest
 
-from mavlink.items import Command, Frame, MissionItem, MissionType
 from mavlink.mission import numbered, placed
 from mavlink.transfer.machine import Progress
 from mavlink.transfer.outcome import Accepted, Outcome
 from mavlink.verify import upload_and_verify
+from mavlink.wire.items import Command, Frame, MissionItem, MissionType
 
 HERE = (8.5, 47.4)
 CORNER = replace(placed(Command.NAV_FENCE_POLYGON_VERTEX_INCLUSION, HERE, 0.0, Frame.GLOBAL), param1=3.0)

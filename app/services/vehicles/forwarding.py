@@ -12,7 +12,7 @@ from mavlink.errors import AddressError
 from mavlink.forward.address import FORMS, ForwardAddress, looped, parse_forward
 from mavlink.forward.guard import CHANGES
 from mavlink.forward.outlet import Outlet
-from mavlink.messages import Message
+from mavlink.wire.messages import Message
 from planner.errors import Finding
 
 log = structlog.get_logger(__name__)

@@ -7,8 +7,8 @@ from dataclasses import asdict
 from typing import Any
 
 from mavlink.compare import Difference
-from mavlink.items import Command, Frame, MissionItem
 from mavlink.telemetry import VehicleState
+from mavlink.wire.items import Command, Frame, MissionItem
 
 _PLACELESS = frozenset({int(Frame.MISSION)})
 _NAMES = {int(command): command.name for command in Command}

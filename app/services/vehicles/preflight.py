@@ -9,10 +9,10 @@ from typing import Any, Literal
 from app.services.missions import PARTS, PartName, mission_findings
 from app.services.vehicles.pointing import pointing_findings
 from mavlink.encoding.arcs import circles_widen_m
-from mavlink.geometry import distance_m
 from mavlink.mission import Mission
 from mavlink.parameter_rules import Needs, ParameterFinding, judge_parameters
 from mavlink.telemetry import VehicleState
+from mavlink.wire.geometry import distance_m
 from planner.errors import Finding
 from planner.plan import Plan
 

@@ -34,10 +34,10 @@ from app.services.vehicles.uploads import (
 )
 from app.services.vehicles.vehicle import Vehicle
 from mavlink import errors as mavlink_errors
-from mavlink.geometry import distance_m
 from mavlink.mission import Mission
 from mavlink.transfer.machine import Progress
 from mavlink.transfer.outcome import Outcome
+from mavlink.wire.geometry import distance_m
 from planner.errors import Finding
 from planner.plan import Plan
 

@@ -15,12 +15,12 @@ from app.services.work import finding_json
 from mavlink.client import VehicleClient
 from mavlink.compare import Difference, differences
 from mavlink.dialects import Dialect
-from mavlink.items import MissionItem
 from mavlink.mission import Mission
 from mavlink.telemetry import VehicleState
 from mavlink.transfer.machine import Progress
 from mavlink.transfer.outcome import Unknown
 from mavlink.verify import Pending, VerifiedUpload, resolve
+from mavlink.wire.items import MissionItem
 from planner.errors import Finding
 from planner.plan import Plan
 

@@ -27,11 +27,11 @@ from mavlink.encoding.options import DEFAULT_PAYLOAD
 from mavlink.forward.address import ForwardAddress
 from mavlink.forward.hub import Forwards
 from mavlink.forward.outlet import Outlet
-from mavlink.items import MissionType
-from mavlink.messages import Message
 from mavlink.payload import parse_payload
 from mavlink.recording import TlogWriter
 from mavlink.telemetry import VehicleState
+from mavlink.wire.items import MissionType
+from mavlink.wire.messages import Message
 
 log = structlog.get_logger(__name__)
 

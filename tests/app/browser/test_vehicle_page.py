@@ -12,8 +12,8 @@ import httpx
 import pytest
 from playwright.sync_api import Page, expect
 
-from mavlink.codec import Codec
-from mavlink.messages import Message
+from mavlink.wire.codec import Codec
+from mavlink.wire.messages import Message
 from tests.app.browser.conftest import EXAMPLES, Service
 from tests.app.browser.helpers import await_hook, open_scenario
 

@@ -14,8 +14,8 @@ from mavlink.dialects import Autopilot, VehicleType
 from mavlink.encode import EncodeError, EncodeOptions, encode
 from mavlink.encoding.arcs import widened
 from mavlink.encoding.options import Arcs
-from mavlink.items import Command, MissionItem
 from mavlink.mission import Mission
+from mavlink.wire.items import Command, MissionItem
 from tests.mavlink.missions import KINDS, W, commands, local
 from tests.mavlink.plans import LEGS, START, Leg, flown, make_plan
 

@@ -10,7 +10,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pymavlink.dialects.v20 import common
 
-from mavlink.codec import Codec
 from mavlink.dialects import Autopilot, dialect_for
 from mavlink.encoding.gimbal import (
     Flags,
@@ -24,8 +23,9 @@ from mavlink.encoding.gimbal import (
     pointing_item,
     turning_notes,
 )
-from mavlink.items import Command, MissionItem, MissionResult
 from mavlink.transfer.items_wire import item_message
+from mavlink.wire.codec import Codec
+from mavlink.wire.items import Command, MissionItem, MissionResult
 from planner.plan import Collect
 from tests.mavlink.plans import make_plan
 

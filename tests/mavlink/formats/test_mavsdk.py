@@ -15,8 +15,8 @@ import pytest
 from mavlink.dialects import Autopilot
 from mavlink.encode import EncodeOptions, encode
 from mavlink.formats import read_plan, write_plan, write_waypoints
-from mavlink.items import MissionItem
 from mavlink.mission import Mission
+from mavlink.wire.items import MissionItem
 from tests.mavlink.formats.test_qgc_complex import CORRIDOR, SURVEY, TRANSECTS, plan_of, simple
 from tests.mavlink.plans import make_plan
 

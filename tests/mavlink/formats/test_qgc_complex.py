@@ -13,8 +13,8 @@ from pyproj import Geod
 from shapely.geometry import Polygon
 
 from mavlink.formats import FormatError, read_plan, write_plan
-from mavlink.items import Command, Frame, MissionItem
 from mavlink.mission import Mission
+from mavlink.wire.items import Command, Frame, MissionItem
 from tests.mavlink.strategies import same
 
 WGS84 = Geod(ellps="WGS84")

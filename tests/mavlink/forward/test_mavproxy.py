@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from mavlink.items import MissionType
 from mavlink.sim.modes import Flavour
+from mavlink.wire.items import MissionType
 from tests.mavlink.sim.helpers import landing_mission, numbered, waypoint
 from tests.mavlink.test_mavproxy import assert_same, mavproxy
 

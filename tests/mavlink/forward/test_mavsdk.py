@@ -12,12 +12,12 @@ from mavlink.client import VehicleClient
 from mavlink.forward.address import parse_forward
 from mavlink.forward.hub import Forwards
 from mavlink.forward.outlet import Outlet
-from mavlink.items import Command, MissionType
 from mavlink.link import memory_pair
 from mavlink.sim.acceptance import as_stored
 from mavlink.sim.modes import Flavour
 from mavlink.sim.run import serve_link
 from mavlink.sim.settings import SimSettings
+from mavlink.wire.items import Command, MissionType
 from tests.mavlink.sim.helpers import HOME, item, landing_mission, numbered, place_at, waypoint
 from tests.mavlink.sim.test_mavsdk import fields
 

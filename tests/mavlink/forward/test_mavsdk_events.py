@@ -16,7 +16,7 @@ from mavlink.events import event_id
 from mavlink.forward.address import parse_forward
 from mavlink.forward.hub import Forwards
 from mavlink.link import memory_pair
-from mavlink.messages import Message
+from mavlink.wire.messages import Message
 from tests.mavlink.aircraft import Aircraft
 from tests.mavlink.transfer.vehicle import StubVehicle
 

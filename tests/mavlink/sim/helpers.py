@@ -8,11 +8,11 @@ from dataclasses import dataclass, field, replace
 
 from pyproj import Geod
 
-from mavlink.items import Command, Frame, MissionItem, MissionType
-from mavlink.messages import Message
 from mavlink.sim.autopilot import SimulatedAircraft
 from mavlink.sim.dynamics import AircraftState
 from mavlink.sim.geodesy import Place
+from mavlink.wire.items import Command, Frame, MissionItem, MissionType
+from mavlink.wire.messages import Message
 
 GEOD = Geod(ellps="WGS84")
 HOME = Place(47.3977, 8.5456, 488.0)

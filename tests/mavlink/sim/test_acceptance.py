@@ -7,9 +7,9 @@ from dataclasses import replace
 
 import pytest
 
-from mavlink.items import Command, Frame, MissionItem, MissionResult, MissionType
 from mavlink.sim.acceptance import as_stored, infeasible, refusal
 from mavlink.sim.modes import Flavour
+from mavlink.wire.items import Command, Frame, MissionItem, MissionResult, MissionType
 from tests.mavlink.sim.helpers import HOME, item, landing_mission, numbered, waypoint
 
 NAN = math.nan

@@ -10,12 +10,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mavlink.items import Command, MissionItem
-from mavlink.messages import Message
 from mavlink.sim.autopilot import SimulatedAircraft
 from mavlink.sim.dynamics import AircraftState
 from mavlink.sim.modes import Flavour
 from mavlink.sim.settings import SimSettings
+from mavlink.wire.items import Command, MissionItem
+from mavlink.wire.messages import Message
 from tests.mavlink.sim.helpers import (
     HOME,
     Station,

@@ -7,10 +7,10 @@ from importlib.util import find_spec
 
 import pytest
 
-from mavlink.items import Command
 from mavlink.sim.autopilot import SimulatedAircraft
 from mavlink.sim.dynamics import GRAVITY_M_S2
 from mavlink.sim.settings import SimSettings
+from mavlink.wire.items import Command
 from tests.mavlink.sim.helpers import HOME, Station, arc_waypoints, east_north_m, item, place_at, waypoint
 
 pytestmark = pytest.mark.skipif(find_spec("jsbsim") is None, reason="jsbsim is not installed")

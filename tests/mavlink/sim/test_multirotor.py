@@ -6,7 +6,6 @@ import math
 
 import pytest
 
-from mavlink.items import Command, MissionItem
 from mavlink.modes import mode_name
 from mavlink.sim.autopilot import SimulatedAircraft
 from mavlink.sim.dynamics import GRAVITY_M_S2, AircraftState, FlightCommand, HoverCommand, Limits, Wind
@@ -14,6 +13,7 @@ from mavlink.sim.geodesy import Place
 from mavlink.sim.modes import Flavour
 from mavlink.sim.multirotor import MultirotorModel
 from mavlink.sim.settings import SimSettings
+from mavlink.wire.items import Command, MissionItem
 from tests.mavlink.sim.helpers import HOME, Station, arc_waypoints, east_north_m, item, place_at, waypoint
 
 FLAVOURS = list(Flavour)

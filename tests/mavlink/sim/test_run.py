@@ -11,14 +11,14 @@ from itertools import pairwise
 
 import pytest
 
-from mavlink.codec import Codec
-from mavlink.items import Command, MissionItem
 from mavlink.link import Link, MemoryLink, memory_pair, open_link
 from mavlink.links.memory import NO_FAULTS
-from mavlink.messages import Message
 from mavlink.sim.modes import Flavour
 from mavlink.sim.run import main, parser, serve, serve_link, settings_of
 from mavlink.sim.settings import SimSettings
+from mavlink.wire.codec import Codec
+from mavlink.wire.items import Command, MissionItem
+from mavlink.wire.messages import Message
 from tests.mavlink.sim.helpers import HOME, from_ground, item_message, landing_mission, numbered, waypoint
 
 PATIENCE_S = 30.0

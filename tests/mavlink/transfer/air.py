@@ -9,8 +9,8 @@ from dataclasses import dataclass, replace
 from random import Random
 from typing import Any
 
-from mavlink.messages import Message
 from mavlink.transfer.machine import Machine
+from mavlink.wire.messages import Message
 from tests.mavlink.transfer.vehicle import GROUND, StubVehicle
 
 _LONGEST_DETOUR_S = 0.4

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from mavlink.items import MissionResult, MissionType
-from mavlink.messages import Message
 from mavlink.transfer.clear import ClearMachine, SetCurrentMachine
 from mavlink.transfer.outcome import Accepted, Refused, Unknown
+from mavlink.wire.items import MissionResult, MissionType
+from mavlink.wire.messages import Message
 from tests.mavlink.transfer.vehicle import from_vehicle
 
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from mavlink.items import Command
-from mavlink.messages import Message
 from mavlink.transfer.command import CommandMachine, CommandOutcome, CommandResult
+from mavlink.wire.items import Command
+from mavlink.wire.messages import Message
 
 
 def answer(result: int, command: int = Command.COMPONENT_ARM_DISARM, progress: int = 0) -> Message:

@@ -6,11 +6,11 @@ import math
 
 import pytest
 
-from mavlink.items import MissionResult, MissionType
-from mavlink.messages import Message
 from mavlink.transfer.download import DownloadMachine
 from mavlink.transfer.machine import Progress
 from mavlink.transfer.outcome import Accepted, Refused, Unknown
+from mavlink.wire.items import MissionResult, MissionType
+from mavlink.wire.messages import Message
 from tests.mavlink.transfer.vehicle import StubVehicle, from_vehicle, waypoints
 
 

@@ -9,10 +9,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mavlink.codec import Codec
-from mavlink.items import MissionItem, MissionType
-from mavlink.messages import Message
 from mavlink.transfer.items_wire import item_message, message_item
+from mavlink.wire.codec import Codec
+from mavlink.wire.items import MissionItem, MissionType
+from mavlink.wire.messages import Message
 
 float32 = st.floats(width=32, allow_nan=False)
 int32 = st.integers(-(2**31), 2**31 - 1)

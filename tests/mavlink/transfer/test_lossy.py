@@ -6,10 +6,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mavlink.items import MissionResult, MissionType
 from mavlink.transfer.download import DownloadMachine
 from mavlink.transfer.outcome import Accepted, Refused, Unknown
 from mavlink.transfer.upload import UploadMachine
+from mavlink.wire.items import MissionResult, MissionType
 from tests.mavlink.transfer.air import Air, Weather
 from tests.mavlink.transfer.vehicle import StubVehicle, waypoints
 

@@ -6,11 +6,11 @@ from dataclasses import replace
 
 import pytest
 
-from mavlink.items import Command, MissionItem, MissionType
 from mavlink.transfer.clear import SetCurrentMachine, flown_for
 from mavlink.transfer.download import DownloadMachine
 from mavlink.transfer.outcome import Accepted, Unknown
 from mavlink.transfer.upload import UploadMachine
+from mavlink.wire.items import Command, MissionItem, MissionType
 from tests.mavlink.transfer.vehicle import from_vehicle, waypoints
 
 

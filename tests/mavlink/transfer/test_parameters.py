@@ -10,11 +10,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mavlink.codec import Codec
-from mavlink.messages import Message
 from mavlink.transfer.machine import TransferSettings
 from mavlink.transfer.outcome import Accepted, Unknown
 from mavlink.transfer.parameters import ParameterListMachine, ParametersMachine
+from mavlink.wire.codec import Codec
+from mavlink.wire.messages import Message
 
 HELD = {f"PARAM_{number:03d}": number / 4.0 for number in range(60)}
 

@@ -8,12 +8,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mavlink.items import MissionItem, MissionResult, MissionType
-from mavlink.messages import Message
 from mavlink.transfer.machine import Progress
 from mavlink.transfer.outcome import Accepted, Refused, Unknown
 from mavlink.transfer.partial import PartialUpdateMachine
 from mavlink.transfer.upload import State
+from mavlink.wire.items import MissionItem, MissionResult, MissionType
+from mavlink.wire.messages import Message
 from tests.mavlink.transfer.air import Air, Weather
 from tests.mavlink.transfer.test_lossy import weathers
 from tests.mavlink.transfer.vehicle import StubVehicle, from_vehicle, item_of, waypoints

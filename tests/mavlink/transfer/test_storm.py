@@ -9,10 +9,10 @@ from random import Random
 
 import pytest
 
-from mavlink.items import MissionResult, MissionType
 from mavlink.transfer.download import DownloadMachine
 from mavlink.transfer.outcome import Accepted, Outcome, Refused
 from mavlink.transfer.upload import UploadMachine
+from mavlink.wire.items import MissionResult, MissionType
 from tests.mavlink.transfer.air import Air, Weather
 from tests.mavlink.transfer.vehicle import StubVehicle, waypoints
 

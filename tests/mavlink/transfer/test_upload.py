@@ -6,11 +6,11 @@ import math
 
 import pytest
 
-from mavlink.items import MissionItem, MissionResult, MissionType
-from mavlink.messages import Message
 from mavlink.transfer.machine import Progress, TransferSettings
 from mavlink.transfer.outcome import MEANING, Accepted, Refused, Unknown
 from mavlink.transfer.upload import TRANSITIONS, State, UploadMachine
+from mavlink.wire.items import MissionItem, MissionResult, MissionType
+from mavlink.wire.messages import Message
 from tests.mavlink.transfer.vehicle import from_vehicle, item_of, waypoints
 
 

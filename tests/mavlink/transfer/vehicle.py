@@ -13,8 +13,8 @@ import zlib
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from mavlink.items import MissionItem, MissionResult, MissionType
-from mavlink.messages import Message, Value
+from mavlink.wire.items import MissionItem, MissionResult, MissionType
+from mavlink.wire.messages import Message, Value
 
 GROUND = (255, 190)
 VEHICLE = (1, 1)

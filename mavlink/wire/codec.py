@@ -17,8 +17,8 @@ from typing import Any, Final
 from pymavlink.dialects.v20 import ardupilotmega as dialect
 
 from mavlink.errors import CodecError
-from mavlink.extra_messages import EXTRA_FIELDS, EXTRA_MESSAGES, Definition
-from mavlink.messages import Message, Value
+from mavlink.wire.extra_messages import EXTRA_FIELDS, EXTRA_MESSAGES, Definition
+from mavlink.wire.messages import Message, Value
 
 _MAGIC_V1: Final = 0xFE
 _MAGIC_V2: Final = 0xFD

@@ -9,11 +9,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from pymavlink.dialects.v20 import ardupilotmega as dialect
 
-from mavlink.codec import Codec
 from mavlink.errors import CodecError
-from mavlink.items import MissionItem
-from mavlink.messages import Message
 from mavlink.transfer.items_wire import item_message
+from mavlink.wire.codec import Codec
+from mavlink.wire.items import MissionItem
+from mavlink.wire.messages import Message
 
 
 def reference() -> dialect.MAVLink:

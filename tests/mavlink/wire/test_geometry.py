@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pyproj import Geod
 
-from mavlink.geometry import LocalMap, arc_points, chord_step_rad, distance_m, offset
+from mavlink.wire.geometry import LocalMap, arc_points, chord_step_rad, distance_m, offset
 from planner.frames import LocalFrame
 
 places = st.tuples(st.floats(-179.0, 179.0), st.floats(-75.0, 75.0))
