@@ -15,6 +15,7 @@ from dataclasses import replace
 from functools import partial
 
 from mavlink.dialects import Autopilot
+from mavlink.dialects.mission import Mission, home_item, numbered, placed
 from mavlink.encoding.arcs import flown_round, turn_item
 from mavlink.encoding.ends import beginning, ending
 from mavlink.encoding.fence import fence_items
@@ -23,7 +24,6 @@ from mavlink.encoding.options import EncodeError, EncodeOptions, Finish
 from mavlink.encoding.pointing import Pointings, pointings_of
 from mavlink.encoding.stops import Stop, altitudes_along, stops_along
 from mavlink.encoding.task import Task, task_of
-from mavlink.mission import Mission, home_item, numbered, placed
 from mavlink.payload import (
     ActuatorPayload,
     Payload,

@@ -11,7 +11,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Final, Literal, Protocol
 
-from mavlink.compare import Difference
+from mavlink.dialects.compare import Difference
 from mavlink.errors import BusyError, NotConnectedError, TransferFailedError
 from mavlink.transfer.machine import Progress
 from mavlink.transfer.outcome import Accepted, Outcome, Refused, Unknown

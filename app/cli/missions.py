@@ -213,7 +213,7 @@ def download(
 
 async def _download(url: str, timeout_s: float) -> Any:
     from app.services.vehicles.connection import connected
-    from mavlink.mission import Mission
+    from mavlink.dialects.mission import Mission
     from mavlink.wire.items import MissionType
 
     async with connected(url, None, timeout_s) as client:

@@ -10,9 +10,9 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
+from mavlink.dialects.mission import Mission, placed
 from mavlink.encoding.options import EncodeError
 from mavlink.encoding.task import Task
-from mavlink.mission import Mission, placed
 from mavlink.wire.items import Command, Frame, MissionItem
 from planner.plan import PathSegment
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from mavlink.dialects.mission import placed, unplaced
 from mavlink.encoding.manoeuvres import climb_orbit, landing, takeoff_place
 from mavlink.encoding.options import EncodeError
 from mavlink.encoding.stops import MERGE_M
 from mavlink.encoding.task import Task
-from mavlink.mission import placed, unplaced
 from mavlink.wire.geometry import Xy, distance_m
 from mavlink.wire.items import Command, Frame, MissionItem
 

@@ -9,8 +9,8 @@ from shapely.geometry import LineString, Point, Polygon
 from shapely.geometry.base import BaseGeometry
 from shapely.ops import unary_union
 
+from mavlink.dialects.mission import numbered, placed
 from mavlink.encoding.options import EncodeError
-from mavlink.mission import numbered, placed
 from mavlink.wire.geometry import LocalMap, Xy
 from mavlink.wire.items import Command, Frame, MissionItem, MissionType
 from planner.plan import Fence, FlownPath, LonLat, Plan, ZoneCircle, ZonePolygon

@@ -17,6 +17,7 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 from mavlink.dialects import Autopilot
+from mavlink.dialects.mission import placed, unplaced
 from mavlink.formats.errors import FormatError
 from mavlink.formats.members import (
     boolean_of,
@@ -28,7 +29,6 @@ from mavlink.formats.members import (
     place_of,
 )
 from mavlink.formats.qgc_structure import structure_scan
-from mavlink.mission import placed, unplaced
 from mavlink.wire.items import Command, Frame, MissionItem
 from planner.plan import LonLat
 

@@ -11,9 +11,9 @@ import math
 from typing import Any
 
 from mavlink.dialects.base import CIRCLE_COMMANDS, GLOBAL_FRAMES, fence_shapes, is_polygon
+from mavlink.dialects.mission import Mission
 from mavlink.formats.errors import FormatError
 from mavlink.formats.qgc_plan_read import read_plan
-from mavlink.mission import Mission
 from mavlink.wire.items import Command, Frame, MissionItem
 
 __all__ = ["FormatError", "read_plan", "write_plan"]

@@ -9,6 +9,7 @@ from typing import Any
 
 from mavlink.dialects import Autopilot, VehicleType
 from mavlink.dialects.base import GLOBAL_FRAMES
+from mavlink.dialects.mission import Mission, home_item, numbered, placed
 from mavlink.formats.errors import FormatError
 from mavlink.formats.members import (
     boolean_of,
@@ -22,7 +23,6 @@ from mavlink.formats.members import (
 )
 from mavlink.formats.places import check_place
 from mavlink.formats.qgc_complex import expand
-from mavlink.mission import Mission, home_item, numbered, placed
 from mavlink.wire.items import Command, Frame, MissionItem, MissionType
 
 _AUTOPILOTS: dict[int, Autopilot] = {3: "ardupilot", 12: "px4"}

@@ -9,6 +9,7 @@ from typing import Any
 from shapely.geometry import LinearRing, Polygon
 
 from mavlink.dialects import Autopilot
+from mavlink.dialects.mission import placed, unplaced
 from mavlink.formats.errors import FormatError
 from mavlink.formats.members import (
     boolean_of,
@@ -19,7 +20,6 @@ from mavlink.formats.members import (
     object_of,
     place_of,
 )
-from mavlink.mission import placed, unplaced
 from mavlink.wire.geometry import LocalMap
 from mavlink.wire.geometry import distance_m as between_m
 from mavlink.wire.items import Command, Frame, MissionItem

@@ -12,9 +12,9 @@ import re
 from dataclasses import replace
 
 from mavlink.dialects import Autopilot, VehicleType
+from mavlink.dialects.mission import Mission, home_item
 from mavlink.formats.errors import FormatError
 from mavlink.formats.places import check_place
-from mavlink.mission import Mission, home_item
 from mavlink.wire.items import Command, Frame, MissionItem, MissionType
 
 HEADER = "QGC WPL 110"

@@ -6,8 +6,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Final, Literal
 
+from mavlink.dialects.mission import Mission
 from mavlink.encoding.gimbal import Hold, Protocol, hold_of, protocol_of
-from mavlink.mission import Mission
 from mavlink.payload import ActuatorPayload, CameraPayload, ImagePayload, Payload, RelayPayload
 from mavlink.wire.geometry import distance_m
 from mavlink.wire.items import Command, Frame

@@ -20,8 +20,8 @@ from app.services.flights import seen_by
 from app.services.records import TrackSample
 from app.services.vehicles.recorder import Thinner
 from mavlink.client import VehicleClient
-from mavlink.compare import differences
-from mavlink.mission import Mission
+from mavlink.dialects.compare import differences
+from mavlink.dialects.mission import Mission
 from mavlink.telemetry import VehicleState
 from mavlink.track import Track
 from mavlink.verify import VerifiedUpload

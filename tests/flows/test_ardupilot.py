@@ -19,12 +19,12 @@ from pathlib import Path
 import pytest
 
 from mavlink.client import VehicleClient
-from mavlink.compare import Difference, differences
 from mavlink.dialects import dialect_for
 from mavlink.dialects.ardupilot import ArduPilotDialect
+from mavlink.dialects.compare import Difference, differences
+from mavlink.dialects.mission import home_item, numbered, placed, unplaced
 from mavlink.encode import EncodeOptions, encode
 from mavlink.link import open_link
-from mavlink.mission import home_item, numbered, placed, unplaced
 from mavlink.transfer.outcome import Refused
 from mavlink.verify import VerifiedUpload
 from mavlink.wire.items import Command, Frame, MissionItem, MissionResult, MissionType

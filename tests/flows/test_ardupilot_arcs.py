@@ -16,10 +16,10 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from mavlink.compare import differences
+from mavlink.dialects.compare import differences
+from mavlink.dialects.mission import Mission
 from mavlink.encode import EncodeOptions, encode
 from mavlink.encoding.options import Arcs
-from mavlink.mission import Mission
 from mavlink.telemetry import VehicleState
 from mavlink.wire.items import Command, MissionType
 from tests.flows.arduplane import BINARY, HOME_ALTITUDE_M, aeroplane, arm, in_wind

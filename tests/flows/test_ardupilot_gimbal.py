@@ -10,10 +10,10 @@ from pathlib import Path
 import pytest
 
 from mavlink.client import VehicleClient
+from mavlink.dialects.mission import home_item, numbered
 from mavlink.encode import EncodeOptions, encode
 from mavlink.encoding.gimbal import parse_gimbal
 from mavlink.link import open_link
-from mavlink.mission import home_item, numbered
 from mavlink.parameter_rules import judge_parameters, names_to_read, needs_of
 from mavlink.payload import RelayPayload
 from mavlink.wire.items import Command, Frame, MissionItem, MissionType

@@ -15,11 +15,11 @@ from pathlib import Path
 
 import pytest
 
-from mavlink.compare import Difference, differences
 from mavlink.dialects import dialect_for
+from mavlink.dialects.compare import Difference, differences
+from mavlink.dialects.mission import numbered, unplaced
 from mavlink.encode import encode
 from mavlink.events import KNOWN_EVENTS, event_id
-from mavlink.mission import numbered, unplaced
 from mavlink.parameter_rules import judge_parameters, names_to_read, needs_of
 from mavlink.payload import ActuatorPayload
 from mavlink.wire.items import Command, MissionItem, MissionType

@@ -8,7 +8,7 @@ from dataclasses import replace
 from hypothesis import strategies as st
 
 from mavlink.dialects import Autopilot
-from mavlink.mission import Mission, home_item, numbered
+from mavlink.dialects.mission import Mission, home_item, numbered
 from mavlink.wire.items import Command, Frame, MissionItem, MissionType
 
 PLACED = (

@@ -9,8 +9,8 @@ from dataclasses import replace
 from functools import partial
 
 from mavlink.client import VehicleClient
-from mavlink.compare import differences
 from mavlink.dialects import dialect_for
+from mavlink.dialects.compare import differences
 from mavlink.link import memory_pair
 from mavlink.sim.faults import Fault
 from mavlink.sim.modes import Flavour

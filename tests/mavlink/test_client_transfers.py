@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import pytest
 
-from mavlink.compare import Difference
+from mavlink.dialects.compare import Difference
 from mavlink.errors import (
     BusyError,
     CodecError,

@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mavlink.compare import differences
 from mavlink.dialects import Autopilot, VehicleType
+from mavlink.dialects.compare import differences
 from mavlink.encode import EncodeError, EncodeOptions, Mission, encode
 from mavlink.encoding.gimbal import Gimbal, Protocol
 from mavlink.formats.qgc_plan import read_plan, write_plan

@@ -8,8 +8,8 @@ from dataclasses import replace
 import pytest
 from shapely.geometry import LineString, Point, Polygon
 
-from mavlink.compare import differences
 from mavlink.dialects import Autopilot
+from mavlink.dialects.compare import differences
 from mavlink.encode import EncodeOptions, encode
 from mavlink.payload import CommandPayload, Payload
 from mavlink.sim.autopilot import SimulatedAircraft

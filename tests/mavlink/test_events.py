@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from pymavlink.dialects.v20 import ardupilotmega as dialect
 
 from mavlink.client import VehicleClient
-from mavlink.compare import Difference
+from mavlink.dialects.compare import Difference
 from mavlink.events import EventOrder, event_id, read_event
 from mavlink.link import memory_pair
 from mavlink.telemetry import VehicleState, updated

@@ -19,8 +19,8 @@ from pathlib import Path
 import pytest
 
 from mavlink.client import VehicleClient
-from mavlink.compare import differences
 from mavlink.dialects import dialect_for
+from mavlink.dialects.compare import differences
 from mavlink.encode import EncodeOptions, encode
 from mavlink.formats import write_waypoints
 from mavlink.link import open_link

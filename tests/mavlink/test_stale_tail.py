@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from mavlink.compare import Difference, differences
 from mavlink.dialects import dialect_for
+from mavlink.dialects.compare import Difference, differences
 from mavlink.wire.items import Frame, MissionItem, MissionType
 from tests.mavlink.aircraft import LOST_AFTER_S, flying
 from tests.mavlink.transfer.vehicle import StubVehicle, waypoints

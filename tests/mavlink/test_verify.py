@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import pytest
 
-from mavlink.mission import numbered, placed
+from mavlink.dialects.mission import numbered, placed
 from mavlink.transfer.machine import Progress
 from mavlink.transfer.outcome import Accepted, Outcome
 from mavlink.verify import upload_and_verify

@@ -12,7 +12,7 @@ from app.services.planning import PlanningService
 from app.services.vehicles.inspection import ParameterReport, inspect, mission_needs, read_parameters
 from app.services.vehicles.preflight import Preflight
 from app.services.vehicles.vehicle import Vehicle
-from mavlink.mission import Mission
+from mavlink.dialects.mission import Mission
 
 
 class Checks:

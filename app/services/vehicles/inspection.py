@@ -12,9 +12,9 @@ from app.services.missions import PARTS, MissionChoice, PartName
 from app.services.vehicles.preflight import Observed, Preflight, preflight, settle_m
 from app.services.vehicles.uploads import UploadReport, comparing
 from mavlink.client import VehicleClient
+from mavlink.dialects.mission import Mission
 from mavlink.encoding.options import DEFAULT_PAYLOAD
 from mavlink.errors import TransferFailedError
-from mavlink.mission import Mission
 from mavlink.parameter_rules import (
     Needs,
     ParameterFinding,

@@ -6,7 +6,7 @@ import math
 from dataclasses import asdict
 from typing import Any
 
-from mavlink.compare import Difference
+from mavlink.dialects.compare import Difference
 from mavlink.telemetry import VehicleState
 from mavlink.wire.items import Command, Frame, MissionItem
 

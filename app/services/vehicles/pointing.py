@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from mavlink.mission import Mission
+from mavlink.dialects.mission import Mission
 from mavlink.parameter_rules import Needs
 from planner.errors import Finding
 from planner.plan import Plan

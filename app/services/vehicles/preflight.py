@@ -8,8 +8,8 @@ from typing import Any, Literal
 
 from app.services.missions import PARTS, PartName, mission_findings
 from app.services.vehicles.pointing import pointing_findings
+from mavlink.dialects.mission import Mission
 from mavlink.encoding.arcs import circles_widen_m
-from mavlink.mission import Mission
 from mavlink.parameter_rules import Needs, ParameterFinding, judge_parameters
 from mavlink.telemetry import VehicleState
 from mavlink.wire.geometry import distance_m

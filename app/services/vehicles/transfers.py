@@ -34,7 +34,7 @@ from app.services.vehicles.uploads import (
 )
 from app.services.vehicles.vehicle import Vehicle
 from mavlink import errors as mavlink_errors
-from mavlink.mission import Mission
+from mavlink.dialects.mission import Mission
 from mavlink.transfer.machine import Progress
 from mavlink.transfer.outcome import Outcome
 from mavlink.wire.geometry import distance_m

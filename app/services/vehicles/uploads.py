@@ -13,9 +13,9 @@ from app.services.vehicles.preflight import Preflight
 from app.services.vehicles.recorder import is_flying
 from app.services.work import finding_json
 from mavlink.client import VehicleClient
-from mavlink.compare import Difference, differences
 from mavlink.dialects import Dialect
-from mavlink.mission import Mission
+from mavlink.dialects.compare import Difference, differences
+from mavlink.dialects.mission import Mission
 from mavlink.telemetry import VehicleState
 from mavlink.transfer.machine import Progress
 from mavlink.transfer.outcome import Unknown

@@ -9,12 +9,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mavlink.compare import differences
 from mavlink.dialects import Autopilot, VehicleType
+from mavlink.dialects.compare import differences
+from mavlink.dialects.mission import Mission
 from mavlink.encode import EncodeError, EncodeOptions, encode
 from mavlink.encoding.arcs import widened
 from mavlink.encoding.options import Arcs
-from mavlink.mission import Mission
 from mavlink.wire.items import Command, MissionItem
 from tests.mavlink.missions import KINDS, W, commands, local
 from tests.mavlink.plans import LEGS, START, Leg, flown, make_plan

@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 from pyproj import Geod
 from shapely.geometry import Polygon
 
+from mavlink.dialects.mission import Mission
 from mavlink.formats import FormatError, read_plan, write_plan
-from mavlink.mission import Mission
 from mavlink.wire.items import Command, Frame, MissionItem
 from tests.mavlink.strategies import same
 

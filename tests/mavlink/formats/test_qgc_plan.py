@@ -12,9 +12,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mavlink.dialects import Autopilot, VehicleType
+from mavlink.dialects.mission import Mission
 from mavlink.encode import EncodeOptions, encode
 from mavlink.formats import FormatError, read_plan, write_plan
-from mavlink.mission import Mission
 from mavlink.wire.items import Command
 from tests.mavlink.plans import make_plan
 from tests.mavlink.strategies import missions, same

@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 from pymavlink import mavwp
 
 from mavlink.dialects import Autopilot
+from mavlink.dialects.mission import Mission
 from mavlink.encode import EncodeOptions, encode
 from mavlink.formats import FormatError, read_waypoints, write_waypoints
-from mavlink.mission import Mission
 from mavlink.wire.items import Command, Frame
 from tests.mavlink.plans import make_plan
 from tests.mavlink.strategies import missions, same

@@ -10,8 +10,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mavlink.compare import differences
 from mavlink.dialects import Autopilot, VehicleType, dialect_for
+from mavlink.dialects.compare import differences
 from mavlink.encode import EncodeOptions, encode
 from mavlink.sim.acceptance import as_stored, refusal
 from mavlink.sim.geodesy import Place

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from mavlink.dialects import Dialect, DialectFinding, dialect_for
 from mavlink.dialects.base import fence_shapes
-from mavlink.mission import home_item, numbered, placed, unplaced
+from mavlink.dialects.mission import home_item, numbered, placed, unplaced
 from mavlink.wire.items import Command, Frame, MissionItem, MissionResult, MissionType
 from tests.mavlink.strategies import numbers, placed_items, placeless_items, same
 
