@@ -4,7 +4,7 @@ import json
 import sys
 from pathlib import Path
 
-from mavlink.encode import encode
+from mavlink.encoding.encode import encode
 from mavlink.formats.qgc_plan import write_plan as write_qgc_plan
 from planner.errors import PlannerError
 from planner.geojson import read_scenario, write_plan

@@ -10,6 +10,7 @@ from types import TracebackType
 from typing import Final, Self
 
 from mavlink.driver import Driver
+from mavlink.encoding.payload import Payload
 from mavlink.errors import NotConnectedError, TransferFailedError, VehicleNotFoundError
 from mavlink.flight import FlightCommands
 from mavlink.forward.hub import Forwards
@@ -22,7 +23,6 @@ from mavlink.outputs import (
     pulse_parameters,
     switched_by,
 )
-from mavlink.payload import Payload
 from mavlink.telemetry import VehicleState
 from mavlink.track import TrackRecorder
 from mavlink.transfer.command import CommandMachine, CommandOutcome

@@ -14,8 +14,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final
 
-from mavlink.modes import Autopilot
-from mavlink.payload import (
+from mavlink.encoding.payload import (
     PX4_OUTPUTS,
     ActuatorPayload,
     CameraPayload,
@@ -25,6 +24,7 @@ from mavlink.payload import (
     RelayPayload,
     ServoPayload,
 )
+from mavlink.modes import Autopilot
 from mavlink.wire.messages import Message
 
 SERVO_OUTPUT_RAW: Final = 36

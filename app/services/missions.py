@@ -10,9 +10,9 @@ from typing import Literal
 from app.services.documents import read_object
 from app.services.errors import NotFoundError, RefusedError
 from mavlink.dialects.mission import Mission
-from mavlink.encode import EncodeError, EncodeOptions, encode
+from mavlink.encoding.encode import EncodeError, EncodeOptions, encode
 from mavlink.encoding.gimbal import GimbalError, parse_gimbal
-from mavlink.payload import PayloadError, parse_payload
+from mavlink.encoding.payload import PayloadError, parse_payload
 from mavlink.wire.items import MissionType
 from planner.errors import Finding
 from planner.geojson import read_plan

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 from app.services.records import FlightEvent, TrackSample
-from mavlink.payload import CameraPayload, ImagePayload, parse_payload
+from mavlink.encoding.payload import CameraPayload, ImagePayload, parse_payload
 from mavlink.wire.geometry import distance_m
 
 #: Further apart than this times the spacing: a photo is missing between two.

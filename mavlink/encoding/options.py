@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Literal, get_args
 
 from mavlink.encoding.gimbal import Gimbal
-from mavlink.payload import Payload, RelayPayload
+from mavlink.encoding.payload import Payload, RelayPayload
 
 Finish = Literal["auto", "rtl", "land", "loiter"]
 Arcs = Literal["auto", "points", "loiter"]

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 from typing import Final
 
-from mavlink.payload import RelayPayload, ServoPayload
+from mavlink.encoding.payload import RelayPayload, ServoPayload
 from mavlink.rules.base import Needs, ParameterFinding, Rule, Values, any_of, camera, check, lands
 from mavlink.rules.flight import bank, corners, l1_period, loiter, speed
 from mavlink.rules.gimbal import ARDUPILOT as GIMBAL

@@ -8,7 +8,7 @@ from typing import Final, Literal
 
 from mavlink.dialects.mission import Mission
 from mavlink.encoding.gimbal import Hold, Protocol, hold_of, protocol_of
-from mavlink.payload import ActuatorPayload, CameraPayload, ImagePayload, Payload, RelayPayload
+from mavlink.encoding.payload import ActuatorPayload, CameraPayload, ImagePayload, Payload, RelayPayload
 from mavlink.wire.geometry import distance_m
 from mavlink.wire.items import Command, Frame
 from planner.plan import Plan

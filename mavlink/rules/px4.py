@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from typing import Final
 
+from mavlink.encoding.payload import ActuatorPayload, CameraPayload
 from mavlink.outputs import px4_outputs
-from mavlink.payload import ActuatorPayload, CameraPayload
 from mavlink.rules.base import Needs, ParameterFinding, Rule, Values, check, lands
 from mavlink.rules.flight import SWITCH_DISTANCE, bank, corners, loiter, speed
 from mavlink.rules.gimbal import PX4 as GIMBAL

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from app.routers.bodies import EXAMPLE
-from mavlink.encode import encode
+from mavlink.encoding.encode import encode
 from mavlink.formats import read_plan, read_waypoints, write_plan, write_waypoints
 from tests.app.imports.samples import GPX, RING, kml, line, placemark, polygon, shapefiles
 from tests.app.test_cli import Command, swathplan

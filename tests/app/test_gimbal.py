@@ -11,10 +11,10 @@ import pytest
 from app.routers.bodies import EXAMPLE
 from app.services.vehicles.pointing import pointing_findings
 from app.settings import Settings
-from mavlink.encode import EncodeOptions, encode
+from mavlink.encoding.encode import EncodeOptions, encode
 from mavlink.encoding.gimbal import parse_gimbal
+from mavlink.encoding.payload import RelayPayload
 from mavlink.parameter_rules import needs_of
-from mavlink.payload import RelayPayload
 from mavlink.wire.items import Command
 from tests.app.conftest import stored
 from tests.app.test_problems import check_problem

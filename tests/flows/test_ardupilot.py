@@ -23,7 +23,7 @@ from mavlink.dialects import dialect_for
 from mavlink.dialects.ardupilot import ArduPilotDialect
 from mavlink.dialects.compare import Difference, differences
 from mavlink.dialects.mission import home_item, numbered, placed, unplaced
-from mavlink.encode import EncodeOptions, encode
+from mavlink.encoding.encode import EncodeOptions, encode
 from mavlink.link import open_link
 from mavlink.transfer.outcome import Refused
 from mavlink.verify import VerifiedUpload

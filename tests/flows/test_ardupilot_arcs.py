@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from mavlink.dialects.compare import differences
 from mavlink.dialects.mission import Mission
-from mavlink.encode import EncodeOptions, encode
+from mavlink.encoding.encode import EncodeOptions, encode
 from mavlink.encoding.options import Arcs
 from mavlink.telemetry import VehicleState
 from mavlink.wire.items import Command, MissionType

@@ -12,9 +12,9 @@ from pathlib import Path
 
 import pytest
 
-from mavlink.encode import EncodeOptions, encode
+from mavlink.encoding.encode import EncodeOptions, encode
+from mavlink.encoding.payload import RelayPayload
 from mavlink.parameter_rules import judge_parameters, names_to_read, needs_of
-from mavlink.payload import RelayPayload
 from mavlink.track import TrackPoint
 from mavlink.wire.items import Command
 from planner.frames import LocalFrame

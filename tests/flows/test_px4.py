@@ -18,10 +18,10 @@ import pytest
 from mavlink.dialects import dialect_for
 from mavlink.dialects.compare import Difference, differences
 from mavlink.dialects.mission import numbered, unplaced
-from mavlink.encode import encode
+from mavlink.encoding.encode import encode
+from mavlink.encoding.payload import ActuatorPayload
 from mavlink.events import KNOWN_EVENTS, event_id
 from mavlink.parameter_rules import judge_parameters, names_to_read, needs_of
-from mavlink.payload import ActuatorPayload
 from mavlink.wire.items import Command, MissionItem, MissionType
 from planner.geojson import read_scenario
 from planner.pipeline import make_plan

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from mavlink.encode import encode
+from mavlink.encoding.encode import encode
 from planner.geojson import read_scenario
 from planner.pipeline import make_plan
 from tests.flows.flying import CASES, WIND, case_document, figures, from_end_m, inside_fence, store

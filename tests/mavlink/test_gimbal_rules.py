@@ -7,8 +7,9 @@ from dataclasses import replace
 import pytest
 
 from mavlink.dialects import Autopilot, VehicleType
-from mavlink.encode import EncodeOptions, encode
+from mavlink.encoding.encode import EncodeOptions, encode
 from mavlink.encoding.gimbal import Gimbal
+from mavlink.encoding.payload import RelayPayload
 from mavlink.parameter_rules import (
     Needs,
     judge_parameters,
@@ -17,8 +18,7 @@ from mavlink.parameter_rules import (
     other_names,
     unanswered,
 )
-from mavlink.payload import RelayPayload
-from tests.mavlink.missions import KINDS
+from tests.mavlink.encoding.missions import KINDS
 from tests.mavlink.plans import make_plan
 
 ARDUPILOT = {

@@ -21,7 +21,7 @@ import pytest
 from mavlink.client import VehicleClient
 from mavlink.dialects import dialect_for
 from mavlink.dialects.compare import differences
-from mavlink.encode import EncodeOptions, encode
+from mavlink.encoding.encode import EncodeOptions, encode
 from mavlink.formats import write_waypoints
 from mavlink.link import open_link
 from mavlink.links.udp import open_udp

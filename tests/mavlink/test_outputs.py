@@ -12,6 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mavlink.client import VehicleClient
+from mavlink.encoding.payload import ActuatorPayload, Payload, parse_payload, switch_items
 from mavlink.link import memory_pair
 from mavlink.outputs import (
     CameraOutput,
@@ -23,7 +24,6 @@ from mavlink.outputs import (
     pulse_parameters,
     switched_by,
 )
-from mavlink.payload import ActuatorPayload, Payload, parse_payload, switch_items
 from mavlink.sim.modes import Flavour
 from mavlink.sim.run import serve_link
 from mavlink.sim.settings import SimSettings

@@ -9,7 +9,14 @@ import pytest
 from pyproj import Geod
 
 from mavlink.dialects import Autopilot
-from mavlink.encode import encode
+from mavlink.encoding.encode import encode
+from mavlink.encoding.payload import (
+    ActuatorPayload,
+    CameraPayload,
+    RelayPayload,
+    ServoPayload,
+    parse_payload,
+)
 from mavlink.parameter_rules import (
     RULES,
     Needs,
@@ -18,13 +25,6 @@ from mavlink.parameter_rules import (
     needs_of,
     other_names,
     unanswered,
-)
-from mavlink.payload import (
-    ActuatorPayload,
-    CameraPayload,
-    RelayPayload,
-    ServoPayload,
-    parse_payload,
 )
 from mavlink.wire.items import Command
 from tests.mavlink.plans import make_plan

@@ -17,10 +17,10 @@ from app.services.vehicles.simulated import SimulatedAircraft, SimulatorProcess,
 from app.services.vehicles.times import DEFAULT_TIMES, LinkTimes
 from mavlink import errors as mavlink_errors
 from mavlink.client import VehicleClient
+from mavlink.encoding.payload import PayloadError, parse_payload
 from mavlink.forward.hub import Forwards
 from mavlink.link import FORMS, open_link
 from mavlink.links.replay import parse_replay
-from mavlink.payload import PayloadError, parse_payload
 from planner.errors import Finding
 
 #: Latitude, longitude in degrees, metres above sea level.

@@ -27,9 +27,9 @@ from app.services.vehicles.recordings import RecordingFile, Recordings
 from app.services.vehicles.times import DEFAULT_TIMES, LinkTimes
 from app.services.vehicles.transfers import Transfers
 from app.services.vehicles.vehicle import Vehicle
+from mavlink.encoding.payload import parse_payload
 from mavlink.forward.address import ForwardAddress
 from mavlink.outputs import output_of
-from mavlink.payload import parse_payload
 
 log = structlog.get_logger(__name__)
 

@@ -14,6 +14,7 @@ from app.services.vehicles.uploads import UploadReport, comparing
 from mavlink.client import VehicleClient
 from mavlink.dialects.mission import Mission
 from mavlink.encoding.options import DEFAULT_PAYLOAD
+from mavlink.encoding.payload import parse_payload
 from mavlink.errors import TransferFailedError
 from mavlink.parameter_rules import (
     Needs,
@@ -24,7 +25,6 @@ from mavlink.parameter_rules import (
     other_names,
     unanswered,
 )
-from mavlink.payload import parse_payload
 from mavlink.transfer.parameters import Parameter
 from planner.errors import Finding
 from planner.plan import Plan

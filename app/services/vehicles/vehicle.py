@@ -24,10 +24,10 @@ from app.services.vehicles.uploads import UploadReport, read_back
 from mavlink import errors as mavlink_errors
 from mavlink.client import VehicleClient
 from mavlink.encoding.options import DEFAULT_PAYLOAD
+from mavlink.encoding.payload import parse_payload
 from mavlink.forward.address import ForwardAddress
 from mavlink.forward.hub import Forwards
 from mavlink.forward.outlet import Outlet
-from mavlink.payload import parse_payload
 from mavlink.recording import TlogWriter
 from mavlink.telemetry import VehicleState
 from mavlink.wire.items import MissionType

@@ -11,7 +11,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from app.imports import FORMATS, ImportOptions, RegionFileError, import_regions
-from mavlink.encode import encode
+from mavlink.encoding.encode import encode
 from mavlink.formats import FormatError, read_plan, read_waypoints, write_waypoints
 from tests.app.imports.samples import (
     GPX,

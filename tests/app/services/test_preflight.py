@@ -8,9 +8,9 @@ from typing import Any
 import pytest
 
 from app.services.vehicles.preflight import Check, Observed, preflight, settle_m
-from mavlink.encode import encode
+from mavlink.encoding.encode import encode
+from mavlink.encoding.payload import RelayPayload
 from mavlink.parameter_rules import needs_of
-from mavlink.payload import RelayPayload
 from mavlink.telemetry import VehicleState
 from planner.plan import Plan, Violation
 from tests.mavlink.plans import make_plan, square_fence

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from mavlink.dialects import Autopilot, VehicleType, dialect_for
 from mavlink.dialects.compare import differences
-from mavlink.encode import EncodeOptions, encode
+from mavlink.encoding.encode import EncodeOptions, encode
 from mavlink.sim.acceptance import as_stored, refusal
 from mavlink.sim.geodesy import Place
 from mavlink.sim.modes import Flavour

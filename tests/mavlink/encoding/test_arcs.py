@@ -12,11 +12,11 @@ from hypothesis import strategies as st
 from mavlink.dialects import Autopilot, VehicleType
 from mavlink.dialects.compare import differences
 from mavlink.dialects.mission import Mission
-from mavlink.encode import EncodeError, EncodeOptions, encode
 from mavlink.encoding.arcs import widened
+from mavlink.encoding.encode import EncodeError, EncodeOptions, encode
 from mavlink.encoding.options import Arcs
 from mavlink.wire.items import Command, MissionItem
-from tests.mavlink.missions import KINDS, W, commands, local
+from tests.mavlink.encoding.missions import KINDS, W, commands, local
 from tests.mavlink.plans import LEGS, START, Leg, flown, make_plan
 
 T = Command.NAV_LOITER_TURNS

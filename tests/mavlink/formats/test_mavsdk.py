@@ -14,7 +14,7 @@ import pytest
 
 from mavlink.dialects import Autopilot
 from mavlink.dialects.mission import Mission
-from mavlink.encode import EncodeOptions, encode
+from mavlink.encoding.encode import EncodeOptions, encode
 from mavlink.formats import read_plan, write_plan, write_waypoints
 from mavlink.wire.items import MissionItem
 from tests.mavlink.formats.test_qgc_complex import CORRIDOR, SURVEY, TRANSECTS, plan_of, simple

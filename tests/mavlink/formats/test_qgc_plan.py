@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from mavlink.dialects import Autopilot, VehicleType
 from mavlink.dialects.mission import Mission
-from mavlink.encode import EncodeOptions, encode
+from mavlink.encoding.encode import EncodeOptions, encode
 from mavlink.formats import FormatError, read_plan, write_plan
 from mavlink.wire.items import Command
 from tests.mavlink.plans import make_plan

@@ -12,7 +12,7 @@ from pymavlink import mavwp
 
 from mavlink.dialects import Autopilot
 from mavlink.dialects.mission import Mission
-from mavlink.encode import EncodeOptions, encode
+from mavlink.encoding.encode import EncodeOptions, encode
 from mavlink.formats import FormatError, read_waypoints, write_waypoints
 from mavlink.wire.items import Command, Frame
 from tests.mavlink.plans import make_plan

@@ -9,10 +9,10 @@ import pytest
 from shapely.geometry import Point
 
 from mavlink.dialects import Autopilot, VehicleType
-from mavlink.encode import EncodeError, EncodeOptions, encode
+from mavlink.encoding.encode import EncodeError, EncodeOptions, encode
 from mavlink.wire.items import Command
 from planner.route import Pose
-from tests.mavlink.missions import (
+from tests.mavlink.encoding.missions import (
     L,
     R,
     W,

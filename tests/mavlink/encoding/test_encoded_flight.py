@@ -10,8 +10,8 @@ from shapely.geometry import LineString, Point, Polygon
 
 from mavlink.dialects import Autopilot
 from mavlink.dialects.compare import differences
-from mavlink.encode import EncodeOptions, encode
-from mavlink.payload import CommandPayload, Payload
+from mavlink.encoding.encode import EncodeOptions, encode
+from mavlink.encoding.payload import CommandPayload, Payload
 from mavlink.sim.autopilot import SimulatedAircraft
 from mavlink.sim.dynamics import AircraftState
 from mavlink.sim.geodesy import Place

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import pytest
 
-from mavlink.encode import EncodeError, encode
+from mavlink.encoding.encode import EncodeError, encode
 from planner.plan import Fence, ZoneCircle, ZonePolygon
 from tests.mavlink.plans import lonlat, make_plan, square_fence
 

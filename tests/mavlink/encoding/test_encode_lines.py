@@ -13,8 +13,8 @@ from pymavlink.dialects.v20 import common as wire
 from shapely.geometry import LineString, MultiPoint, Point
 
 from mavlink.dialects import Autopilot, VehicleType
-from mavlink.encode import EncodeError, EncodeOptions, encode
-from tests.mavlink.missions import (
+from mavlink.encoding.encode import EncodeError, EncodeOptions, encode
+from tests.mavlink.encoding.missions import (
     KINDS,
     W,
     arcs,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from mavlink.payload import (
+from mavlink.encoding.payload import (
     ActuatorPayload,
     CameraPayload,
     CommandPayload,

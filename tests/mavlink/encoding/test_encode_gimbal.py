@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from mavlink.dialects import Autopilot, VehicleType
 from mavlink.dialects.compare import differences
-from mavlink.encode import EncodeError, EncodeOptions, Mission, encode
+from mavlink.encoding.encode import EncodeError, EncodeOptions, Mission, encode
 from mavlink.encoding.gimbal import Gimbal, Protocol
 from mavlink.formats.qgc_plan import read_plan, write_plan
 from mavlink.formats.waypoints import read_waypoints, write_waypoints
@@ -20,7 +20,7 @@ from mavlink.sim.modes import Flavour
 from mavlink.sim.settings import SimSettings
 from mavlink.wire.items import Command, MissionItem, MissionType
 from planner.plan import Plan
-from tests.mavlink.missions import KINDS, A, L, R, W, commands
+from tests.mavlink.encoding.missions import KINDS, A, L, R, W, commands
 from tests.mavlink.plans import Leg, make_plan
 from tests.mavlink.sim.helpers import Station
 

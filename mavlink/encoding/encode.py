@@ -21,10 +21,7 @@ from mavlink.encoding.ends import beginning, ending
 from mavlink.encoding.fence import fence_items
 from mavlink.encoding.manoeuvres import MARGIN_M
 from mavlink.encoding.options import EncodeError, EncodeOptions, Finish
-from mavlink.encoding.pointing import Pointings, pointings_of
-from mavlink.encoding.stops import Stop, altitudes_along, stops_along
-from mavlink.encoding.task import Task, task_of
-from mavlink.payload import (
+from mavlink.encoding.payload import (
     ActuatorPayload,
     Payload,
     PayloadError,
@@ -32,6 +29,9 @@ from mavlink.payload import (
     ServoPayload,
     switch_items,
 )
+from mavlink.encoding.pointing import Pointings, pointings_of
+from mavlink.encoding.stops import Stop, altitudes_along, stops_along
+from mavlink.encoding.task import Task, task_of
 from mavlink.wire.items import Command, Frame, MissionItem, MissionResult, MissionType
 from planner.plan import LonLat, Plan
 

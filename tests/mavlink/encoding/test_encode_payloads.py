@@ -7,8 +7,8 @@ import math
 import pytest
 
 from mavlink.dialects import Autopilot
-from mavlink.encode import EncodeError, EncodeOptions, encode
-from mavlink.payload import (
+from mavlink.encoding.encode import EncodeError, EncodeOptions, encode
+from mavlink.encoding.payload import (
     ActuatorPayload,
     CameraPayload,
     CommandPayload,
@@ -17,7 +17,7 @@ from mavlink.payload import (
     ServoPayload,
 )
 from mavlink.wire.items import Command, Frame
-from tests.mavlink.missions import (
+from tests.mavlink.encoding.missions import (
     W,
     flight,
 )

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 from shapely.geometry import LineString, Polygon
 
 from mavlink.dialects import Autopilot, VehicleType
-from mavlink.encode import Mission
+from mavlink.encoding.encode import Mission
 from mavlink.wire.items import Command, MissionItem
 from planner.plan import Plan
 from planner.route import Pose

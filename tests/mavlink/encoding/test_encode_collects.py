@@ -8,13 +8,13 @@ from dataclasses import replace
 import pytest
 
 from mavlink.dialects import Autopilot, VehicleType
-from mavlink.encode import EncodeOptions, encode
-from mavlink.payload import (
+from mavlink.encoding.encode import EncodeOptions, encode
+from mavlink.encoding.payload import (
     CameraPayload,
 )
 from mavlink.wire.items import Command, degrees_e7
 from planner.plan import ZoneCircle
-from tests.mavlink.missions import (
+from tests.mavlink.encoding.missions import (
     KINDS,
     A,
     R,
