@@ -15,7 +15,7 @@ from mavlink.errors import NotConnectedError, TransferFailedError, VehicleNotFou
 from mavlink.flight import FlightCommands
 from mavlink.forward.hub import Forwards
 from mavlink.link import Link
-from mavlink.outputs import (
+from mavlink.state.outputs import (
     INTERVALS_HZ,
     SensorOutput,
     function_parameters,
@@ -23,8 +23,8 @@ from mavlink.outputs import (
     pulse_parameters,
     switched_by,
 )
-from mavlink.telemetry import VehicleState
-from mavlink.track import TrackRecorder
+from mavlink.state.telemetry import VehicleState
+from mavlink.state.track import TrackRecorder
 from mavlink.transfer.command import CommandMachine, CommandOutcome
 from mavlink.transfer.machine import DEFAULT_SETTINGS, Progress, TransferSettings
 from mavlink.transfer.parameters import Parameter, ParameterListMachine, ParametersMachine

@@ -9,8 +9,8 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 
-from mavlink.modes import mode_parameters
-from mavlink.telemetry import VehicleState
+from mavlink.state.modes import mode_parameters
+from mavlink.state.telemetry import VehicleState
 from mavlink.transfer.command import CommandOutcome
 from mavlink.transfer.outcome import Outcome
 from mavlink.wire.items import Command

@@ -11,8 +11,8 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-from mavlink.modes import GROUND_STATION_TYPE, NO_AUTOPILOT
-from mavlink.telemetry import VehicleState
+from mavlink.state.modes import GROUND_STATION_TYPE, NO_AUTOPILOT
+from mavlink.state.telemetry import VehicleState
 from mavlink.wire.messages import Message
 
 

@@ -12,7 +12,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Final
 
-from mavlink.telemetry import KEPT_TEXTS, StatusText, VehicleState
+from mavlink.state.telemetry import KEPT_TEXTS, StatusText, VehicleState
 from mavlink.transfer.outcome import Accepted, Outcome, Unknown
 from mavlink.wire.items import MissionType
 from mavlink.wire.messages import Message

@@ -12,7 +12,7 @@ from typing import Final
 
 from mavlink.driver import Driver
 from mavlink.errors import NotConnectedError, TransferFailedError, UnsupportedError
-from mavlink.telemetry import VehicleState
+from mavlink.state.telemetry import VehicleState
 from mavlink.transfer.clear import ClearMachine, SetCurrentMachine, flown_for
 from mavlink.transfer.download import DownloadMachine
 from mavlink.transfer.machine import Progress, TransferSettings

@@ -16,7 +16,7 @@ from app.cli.planning import ScenarioFile, make
 if TYPE_CHECKING:
     from app.services.records import TrackSample
     from mavlink.client import VehicleClient
-    from mavlink.telemetry import VehicleState
+    from mavlink.state.telemetry import VehicleState
 
 #: Without news from the vehicle for this long, in real time, the flight is given up.
 STALLED_S = 20.0

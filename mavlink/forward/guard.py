@@ -17,8 +17,8 @@ from enum import StrEnum
 from typing import Final
 
 from mavlink.errors import BusyError
-from mavlink.modes import mode_name
-from mavlink.telemetry import VehicleState
+from mavlink.state.modes import mode_name
+from mavlink.state.telemetry import VehicleState
 from mavlink.wire.items import Command
 from mavlink.wire.messages import Message
 

@@ -12,7 +12,7 @@ from mavlink.errors import LinkError
 from mavlink.forward.address import ForwardAddress
 from mavlink.forward.guard import Guard, Verdict
 from mavlink.forward.outlet import Outlet
-from mavlink.telemetry import VehicleState
+from mavlink.state.telemetry import VehicleState
 from mavlink.wire.messages import Message
 
 

@@ -6,10 +6,10 @@ import math
 from typing import Final
 
 from mavlink.encoding.payload import ActuatorPayload, CameraPayload
-from mavlink.outputs import px4_outputs
 from mavlink.rules.base import Needs, ParameterFinding, Rule, Values, check, lands
 from mavlink.rules.flight import SWITCH_DISTANCE, bank, corners, loiter, speed
 from mavlink.rules.gimbal import PX4 as GIMBAL
+from mavlink.state.outputs import px4_outputs
 from mavlink.wire.items import Command
 
 _APPROACH_SLOPE_DEG: Final = 4.0

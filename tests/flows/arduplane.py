@@ -16,7 +16,7 @@ from pathlib import Path
 
 from mavlink.client import VehicleClient
 from mavlink.link import open_link
-from mavlink.telemetry import VehicleState
+from mavlink.state.telemetry import VehicleState
 from tests.flows.flying import Flight, until_disarmed
 
 BINARY = os.environ.get("SWATHPLAN_ARDUPLANE", "")

@@ -22,8 +22,8 @@ from app.services.vehicles.recorder import Thinner
 from mavlink.client import VehicleClient
 from mavlink.dialects.compare import differences
 from mavlink.dialects.mission import Mission
-from mavlink.telemetry import VehicleState
-from mavlink.track import Track
+from mavlink.state.telemetry import VehicleState
+from mavlink.state.track import Track
 from mavlink.verify import VerifiedUpload
 from mavlink.wire.items import MissionType
 from planner.coverage.flown import FlownCoverage

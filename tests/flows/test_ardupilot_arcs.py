@@ -20,7 +20,7 @@ from mavlink.dialects.compare import differences
 from mavlink.dialects.mission import Mission
 from mavlink.encoding.encode import EncodeOptions, encode
 from mavlink.encoding.options import Arcs
-from mavlink.telemetry import VehicleState
+from mavlink.state.telemetry import VehicleState
 from mavlink.wire.items import Command, MissionType
 from tests.flows.arduplane import BINARY, HOME_ALTITUDE_M, aeroplane, arm, in_wind
 from tests.flows.flying import STALLED_S, WIND

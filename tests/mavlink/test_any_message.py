@@ -10,8 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from pymavlink.dialects.v20 import ardupilotmega as dialect
 
-from mavlink.telemetry import VehicleState, updated
-from mavlink.track import TrackRecorder
+from mavlink.state.telemetry import VehicleState, updated
+from mavlink.state.track import TrackRecorder
 from mavlink.transfer.clear import ClearMachine, SetCurrentMachine
 from mavlink.transfer.command import CommandMachine
 from mavlink.transfer.download import DownloadMachine

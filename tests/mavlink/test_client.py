@@ -13,7 +13,7 @@ from mavlink.errors import (
 )
 from mavlink.link import memory_pair
 from mavlink.links.udp import open_udp
-from mavlink.telemetry import VehicleState
+from mavlink.state.telemetry import VehicleState
 from mavlink.transfer.outcome import Accepted, Unknown
 from mavlink.wire.codec import Codec
 from mavlink.wire.items import Command, MissionType

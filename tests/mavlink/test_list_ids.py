@@ -10,7 +10,7 @@ from pymavlink.dialects.v20 import ardupilotmega as dialect
 
 from mavlink.client import VehicleClient
 from mavlink.list_ids import ListIds
-from mavlink.telemetry import VehicleState
+from mavlink.state.telemetry import VehicleState
 from mavlink.transfer.outcome import Accepted, Unknown
 from mavlink.wire.codec import Codec
 from mavlink.wire.items import MissionItem, MissionType

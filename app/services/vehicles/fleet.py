@@ -29,7 +29,7 @@ from app.services.vehicles.transfers import Transfers
 from app.services.vehicles.vehicle import Vehicle
 from mavlink.encoding.payload import parse_payload
 from mavlink.forward.address import ForwardAddress
-from mavlink.outputs import output_of
+from mavlink.state.outputs import output_of
 
 log = structlog.get_logger(__name__)
 

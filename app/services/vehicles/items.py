@@ -7,7 +7,7 @@ from dataclasses import asdict
 from typing import Any
 
 from mavlink.dialects.compare import Difference
-from mavlink.telemetry import VehicleState
+from mavlink.state.telemetry import VehicleState
 from mavlink.wire.items import Command, Frame, MissionItem
 
 _PLACELESS = frozenset({int(Frame.MISSION)})

@@ -11,7 +11,7 @@ from app.services.vehicles.pointing import pointing_findings
 from mavlink.dialects.mission import Mission
 from mavlink.encoding.arcs import circles_widen_m
 from mavlink.parameter_rules import Needs, ParameterFinding, judge_parameters
-from mavlink.telemetry import VehicleState
+from mavlink.state.telemetry import VehicleState
 from mavlink.wire.geometry import distance_m
 from planner.errors import Finding
 from planner.plan import Plan

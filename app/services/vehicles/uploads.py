@@ -16,7 +16,7 @@ from mavlink.client import VehicleClient
 from mavlink.dialects import Dialect
 from mavlink.dialects.compare import Difference, differences
 from mavlink.dialects.mission import Mission
-from mavlink.telemetry import VehicleState
+from mavlink.state.telemetry import VehicleState
 from mavlink.transfer.machine import Progress
 from mavlink.transfer.outcome import Unknown
 from mavlink.verify import Pending, VerifiedUpload, resolve

@@ -29,7 +29,7 @@ from mavlink.forward.address import ForwardAddress
 from mavlink.forward.hub import Forwards
 from mavlink.forward.outlet import Outlet
 from mavlink.recording import TlogWriter
-from mavlink.telemetry import VehicleState
+from mavlink.state.telemetry import VehicleState
 from mavlink.wire.items import MissionType
 from mavlink.wire.messages import Message
 

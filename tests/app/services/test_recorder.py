@@ -16,11 +16,11 @@ from app.services.vehicles.recorder import LANDED_LOOKS, FlightRecorder, HeldPla
 from app.settings import Settings
 from mavlink.client import VehicleClient
 from mavlink.link import memory_pair
-from mavlink.outputs import RelayOutput
-from mavlink.telemetry import VehicleState
-from mavlink.track import TrackRecorder
-from tests.mavlink.test_outputs import received
-from tests.mavlink.test_telemetry import at
+from mavlink.state.outputs import RelayOutput
+from mavlink.state.telemetry import VehicleState
+from mavlink.state.track import TrackRecorder
+from tests.mavlink.state.test_outputs import received
+from tests.mavlink.state.test_telemetry import at
 
 PLAN = HeldPlan("plan-1", "uav-1", "relay:2", RelayOutput(2))
 GROUND = VehicleState(connected=True, armed=False, landed=True)

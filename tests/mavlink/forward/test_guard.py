@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from mavlink.errors import BusyError
 from mavlink.forward.guard import EXCHANGE_OVER_S, Guard, Verdict, flies_mission
-from mavlink.telemetry import VehicleState
+from mavlink.state.telemetry import VehicleState
 from mavlink.wire.messages import Message
 
 VEHICLE = VehicleState(system_id=1, component_id=1, connected=True, autopilot="ardupilot", type="fixed_wing")

@@ -6,13 +6,13 @@ import math
 
 import pytest
 
-from mavlink.modes import mode_name
 from mavlink.sim.autopilot import SimulatedAircraft
 from mavlink.sim.dynamics import GRAVITY_M_S2, AircraftState, FlightCommand, HoverCommand, Limits, Wind
 from mavlink.sim.geodesy import Place
 from mavlink.sim.modes import Flavour
 from mavlink.sim.multirotor import MultirotorModel
 from mavlink.sim.settings import SimSettings
+from mavlink.state.modes import mode_name
 from mavlink.wire.items import Command, MissionItem
 from tests.mavlink.sim.helpers import HOME, Station, arc_waypoints, east_north_m, item, place_at, waypoint
 

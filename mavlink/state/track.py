@@ -11,8 +11,8 @@ import math
 from dataclasses import dataclass
 from typing import Final, Literal
 
-from mavlink.outputs import CameraOutput, RelayOutput, SensorOutput, ServoOutput
-from mavlink.telemetry import VehicleState, finite, is_sensor_switch
+from mavlink.state.outputs import CameraOutput, RelayOutput, SensorOutput, ServoOutput
+from mavlink.state.telemetry import VehicleState, finite, is_sensor_switch
 from mavlink.wire.messages import Message
 
 # Older than this before the last point is a reboot, not a datagram that was overtaken.

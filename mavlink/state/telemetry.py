@@ -12,8 +12,15 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Final
 
-from mavlink.events import read_event
-from mavlink.modes import BOOT_MODE, Autopilot, VehicleType, autopilot_name, mode_name, vehicle_type_name
+from mavlink.state.events import read_event
+from mavlink.state.modes import (
+    BOOT_MODE,
+    Autopilot,
+    VehicleType,
+    autopilot_name,
+    mode_name,
+    vehicle_type_name,
+)
 from mavlink.wire.messages import Message
 
 _ARMED: Final = 0x80

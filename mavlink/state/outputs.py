@@ -24,7 +24,7 @@ from mavlink.encoding.payload import (
     RelayPayload,
     ServoPayload,
 )
-from mavlink.modes import Autopilot
+from mavlink.state.modes import Autopilot
 from mavlink.wire.messages import Message
 
 SERVO_OUTPUT_RAW: Final = 36

@@ -7,9 +7,9 @@ from functools import partial
 
 import pytest
 
-from mavlink.modes import Autopilot, VehicleType, mode_name, mode_parameters
-from mavlink.telemetry import VehicleState, updated
-from mavlink.track import SensorEvent, TrackPoint, TrackRecorder
+from mavlink.state.modes import Autopilot, VehicleType, mode_name, mode_parameters
+from mavlink.state.telemetry import VehicleState, updated
+from mavlink.state.track import SensorEvent, TrackPoint, TrackRecorder
 from mavlink.wire.codec import Codec
 from mavlink.wire.messages import Message, Value
 
@@ -324,7 +324,7 @@ def test_a_camera_without_a_position_has_the_vehicles() -> None:
 
 def test_a_very_long_flight_is_thinned_not_cut(monkeypatch: pytest.MonkeyPatch) -> None:
     """Beyond the limit every second point goes, from then on also of those to come; the ends stay."""
-    monkeypatch.setattr("mavlink.track._MOST_POINTS", 10)
+    monkeypatch.setattr("mavlink.state.track._MOST_POINTS", 10)
     points = record(*[at(1000 * second) for second in range(60)]).track().points
     assert len(points) <= 11
     assert points[0].time_s == 0.0

@@ -13,9 +13,9 @@ from pymavlink.dialects.v20 import ardupilotmega as dialect
 
 from mavlink.client import VehicleClient
 from mavlink.dialects.compare import Difference
-from mavlink.events import EventOrder, event_id, read_event
 from mavlink.link import memory_pair
-from mavlink.telemetry import VehicleState, updated
+from mavlink.state.events import EventOrder, event_id, read_event
+from mavlink.state.telemetry import VehicleState, updated
 from mavlink.wire.codec import Codec
 from mavlink.wire.items import MissionItem, MissionType
 from mavlink.wire.messages import Message

@@ -14,7 +14,10 @@ from hypothesis import strategies as st
 from mavlink.client import VehicleClient
 from mavlink.encoding.payload import ActuatorPayload, Payload, parse_payload, switch_items
 from mavlink.link import memory_pair
-from mavlink.outputs import (
+from mavlink.sim.modes import Flavour
+from mavlink.sim.run import serve_link
+from mavlink.sim.settings import SimSettings
+from mavlink.state.outputs import (
     CameraOutput,
     RelayOutput,
     SensorOutput,
@@ -24,14 +27,11 @@ from mavlink.outputs import (
     pulse_parameters,
     switched_by,
 )
-from mavlink.sim.modes import Flavour
-from mavlink.sim.run import serve_link
-from mavlink.sim.settings import SimSettings
-from mavlink.telemetry import VehicleState, updated
-from mavlink.track import Track, TrackRecorder, unwrapped_s
+from mavlink.state.telemetry import VehicleState, updated
+from mavlink.state.track import Track, TrackRecorder, unwrapped_s
 from mavlink.wire.codec import Codec
 from mavlink.wire.messages import Message
-from tests.mavlink.test_telemetry import at, received
+from tests.mavlink.state.test_telemetry import at, received
 
 
 def recorded(output: SensorOutput | None, *messages: Message) -> Track:
