@@ -19,7 +19,7 @@ from app.services.house import House, Limits
 from app.services.vehicles.recordings import Recordings
 from app.settings import Settings
 from app.version import VERSION
-from mavlink.recording import TlogLimits
+from mavlink.links.recording import TlogLimits
 
 DESCRIPTION = """Plans how an aircraft sees regions of interest with a side-looking sensor, among threats, and
 puts the mission into an ArduPilot or PX4 vehicle.

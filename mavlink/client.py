@@ -14,7 +14,7 @@ from mavlink.encoding.payload import Payload
 from mavlink.errors import NotConnectedError, TransferFailedError, VehicleNotFoundError
 from mavlink.flight import FlightCommands
 from mavlink.forward.hub import Forwards
-from mavlink.link import Link
+from mavlink.links.link import Link
 from mavlink.state.outputs import (
     INTERVALS_HZ,
     SensorOutput,

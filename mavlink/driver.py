@@ -17,7 +17,7 @@ from mavlink.errors import BusyError, CodecError, LinkError, NotConnectedError, 
 from mavlink.forward.hub import Forwards
 from mavlink.identity import Identity
 from mavlink.jobs import Job
-from mavlink.link import DirectLink, Link, ReplayLink
+from mavlink.links.link import DirectLink, Link, ReplayLink
 from mavlink.list_ids import ListIds
 from mavlink.state.events import EVENT_MESSAGES, EventOrder
 from mavlink.state.modes import GROUND_STATION_TYPE, NO_AUTOPILOT

@@ -114,7 +114,7 @@ def _check_vehicle(vehicle: str | None, forwards: list[tuple[str, bool]], simula
     from app.services.vehicles.connection import is_replay, simulated_of
     from app.services.vehicles.forwarding import read_forwards, refuse_loops
     from mavlink.errors import AddressError
-    from mavlink.link import parse_address
+    from mavlink.links.link import parse_address
 
     try:
         if vehicle is not None and simulated_of(vehicle) is None and not is_replay(vehicle):

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from mavlink.errors import AddressError
-from mavlink.link import parse_address
+from mavlink.links.link import parse_address
 
 LOOPBACK: Final = "127.0.0.1"
 FORMS: Final = (

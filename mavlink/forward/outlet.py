@@ -12,7 +12,7 @@ from typing import Final, Protocol
 
 from mavlink.errors import LinkError
 from mavlink.forward.address import ForwardAddress
-from mavlink.link import Link
+from mavlink.links.link import Link
 from mavlink.links.tcp import open_tcp_client, open_tcp_server
 from mavlink.links.udp import open_udp
 from mavlink.wire.codec import Codec

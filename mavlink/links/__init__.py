@@ -1,1 +1,1 @@
-"""The kinds of link, one a file; ``mavlink.link`` chooses among them by address."""
+"""The kinds of link, one a file; ``mavlink.links.link`` chooses among them by address."""

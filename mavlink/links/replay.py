@@ -11,7 +11,7 @@ from typing import Final
 from urllib.parse import parse_qsl
 
 from mavlink.errors import AddressError, LinkError
-from mavlink.recording import read_tlog
+from mavlink.links.recording import read_tlog
 from mavlink.wire.codec import Codec
 
 #: Longer silences of a recording are cut short to this.

@@ -9,7 +9,7 @@ import sys
 from dataclasses import replace
 
 from mavlink.errors import CodecError, LinkError
-from mavlink.link import Link, PacedLink, open_link, parse_address
+from mavlink.links.link import Link, PacedLink, open_link, parse_address
 from mavlink.sim.autopilot import SimulatedAircraft
 from mavlink.sim.faults import Fault
 from mavlink.sim.geodesy import Place

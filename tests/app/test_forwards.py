@@ -15,8 +15,8 @@ import pytest
 from app.main import create_app
 from app.server import Welcome, _greet
 from app.settings import Settings
+from mavlink.links.recording import STAMP
 from mavlink.links.udp import open_udp
-from mavlink.recording import STAMP
 from mavlink.sim.settings import SimSettings
 from mavlink.wire.codec import Codec
 from mavlink.wire.messages import Message

@@ -20,7 +20,7 @@ from pymavlink.dialects.v20 import ardupilotmega
 from app.main import create_app
 from app.services.house import House, Limits
 from app.settings import Settings
-from mavlink.link import Link
+from mavlink.links.link import Link
 from mavlink.links.tcp import open_tcp_server
 from mavlink.sim.modes import Flavour
 from mavlink.sim.run import serve, serve_link

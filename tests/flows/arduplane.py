@@ -15,7 +15,7 @@ from contextlib import asynccontextmanager, contextmanager
 from pathlib import Path
 
 from mavlink.client import VehicleClient
-from mavlink.link import open_link
+from mavlink.links.link import open_link
 from mavlink.state.telemetry import VehicleState
 from tests.flows.flying import Flight, until_disarmed
 

@@ -20,7 +20,7 @@ from pathlib import Path
 from mavlink.client import VehicleClient
 from mavlink.encoding.options import DEFAULT_PAYLOAD
 from mavlink.encoding.payload import Payload
-from mavlink.link import open_link
+from mavlink.links.link import open_link
 from mavlink.wire.codec import Codec
 from mavlink.wire.messages import Message
 from tests.flows.flying import Flight, until_disarmed

@@ -24,7 +24,7 @@ from mavlink.dialects.ardupilot import ArduPilotDialect
 from mavlink.dialects.compare import Difference, differences
 from mavlink.dialects.mission import home_item, numbered, placed, unplaced
 from mavlink.encoding.encode import EncodeOptions, encode
-from mavlink.link import open_link
+from mavlink.links.link import open_link
 from mavlink.transfer.outcome import Refused
 from mavlink.verify import VerifiedUpload
 from mavlink.wire.items import Command, Frame, MissionItem, MissionResult, MissionType

@@ -14,7 +14,7 @@ from mavlink.client import VehicleClient
 from mavlink.encoding.encode import EncodeOptions, encode
 from mavlink.encoding.gimbal import parse_gimbal
 from mavlink.encoding.payload import ActuatorPayload
-from mavlink.link import open_link
+from mavlink.links.link import open_link
 from mavlink.parameter_rules import judge_parameters, names_to_read, needs_of
 from mavlink.wire.items import Command
 from tests.flows.flying import store

@@ -10,7 +10,7 @@ from typing import Self
 
 from mavlink.client import VehicleClient
 from mavlink.errors import LinkError
-from mavlink.link import Link, LinkFaults, MemoryLink, memory_pair
+from mavlink.links.link import Link, LinkFaults, MemoryLink, memory_pair
 from mavlink.links.memory import NO_FAULTS
 from mavlink.transfer.machine import TransferSettings
 from mavlink.wire.codec import Codec

@@ -11,7 +11,7 @@ from mavlink.errors import (
     NotConnectedError,
     VehicleNotFoundError,
 )
-from mavlink.link import memory_pair
+from mavlink.links.link import memory_pair
 from mavlink.links.udp import open_udp
 from mavlink.state.telemetry import VehicleState
 from mavlink.transfer.outcome import Accepted, Unknown

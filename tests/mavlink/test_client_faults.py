@@ -11,7 +11,7 @@ from functools import partial
 from mavlink.client import VehicleClient
 from mavlink.dialects import dialect_for
 from mavlink.dialects.compare import differences
-from mavlink.link import memory_pair
+from mavlink.links.link import memory_pair
 from mavlink.sim.faults import Fault
 from mavlink.sim.modes import Flavour
 from mavlink.sim.run import serve_link

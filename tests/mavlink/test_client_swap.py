@@ -10,7 +10,7 @@ import pytest
 
 from mavlink.client import VehicleClient
 from mavlink.errors import NotConnectedError
-from mavlink.link import MemoryLink, memory_pair
+from mavlink.links.link import MemoryLink, memory_pair
 from mavlink.wire.codec import Codec
 from mavlink.wire.items import Command, MissionType
 from mavlink.wire.messages import Message

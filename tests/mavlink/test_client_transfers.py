@@ -15,7 +15,7 @@ from mavlink.errors import (
     NotConnectedError,
     TransferFailedError,
 )
-from mavlink.link import LinkFaults
+from mavlink.links.link import LinkFaults
 from mavlink.transfer.machine import Progress
 from mavlink.transfer.outcome import Accepted, Refused, Unknown
 from mavlink.wire.items import Command, MissionItem, MissionResult, MissionType

@@ -10,7 +10,7 @@ from dataclasses import replace
 import pytest
 
 from mavlink.client import VehicleClient
-from mavlink.link import memory_pair
+from mavlink.links.link import memory_pair
 from mavlink.sim.modes import Flavour
 from mavlink.sim.run import serve_link
 from mavlink.sim.settings import SimSettings

@@ -23,7 +23,7 @@ from mavlink.dialects import dialect_for
 from mavlink.dialects.compare import differences
 from mavlink.encoding.encode import EncodeOptions, encode
 from mavlink.formats import write_waypoints
-from mavlink.link import open_link
+from mavlink.links.link import open_link
 from mavlink.links.udp import open_udp
 from mavlink.sim.geodesy import Place
 from mavlink.sim.run import serve_link

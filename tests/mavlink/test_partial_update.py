@@ -9,7 +9,7 @@ import pytest
 
 from mavlink.client import VehicleClient
 from mavlink.errors import NotConnectedError, UnsupportedError
-from mavlink.link import memory_pair
+from mavlink.links.link import memory_pair
 from mavlink.sim.faults import Fault
 from mavlink.sim.modes import Flavour
 from mavlink.transfer.outcome import Accepted, Refused, Unknown

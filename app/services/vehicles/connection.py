@@ -19,7 +19,7 @@ from mavlink import errors as mavlink_errors
 from mavlink.client import VehicleClient
 from mavlink.encoding.payload import PayloadError, parse_payload
 from mavlink.forward.hub import Forwards
-from mavlink.link import FORMS, open_link
+from mavlink.links.link import FORMS, open_link
 from mavlink.links.replay import parse_replay
 from planner.errors import Finding
 

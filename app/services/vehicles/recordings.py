@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Final
 
 from app.services.errors import NotFoundError
-from mavlink.recording import SUFFIX, TlogLimits, TlogWriter
+from mavlink.links.recording import SUFFIX, TlogLimits, TlogWriter
 
 #: Names this service gives; anything else asked for is not there.
 _FOLDER: Final = re.compile(r"[0-9a-f-]{36}")

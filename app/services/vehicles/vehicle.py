@@ -28,7 +28,7 @@ from mavlink.encoding.payload import parse_payload
 from mavlink.forward.address import ForwardAddress
 from mavlink.forward.hub import Forwards
 from mavlink.forward.outlet import Outlet
-from mavlink.recording import TlogWriter
+from mavlink.links.recording import TlogWriter
 from mavlink.state.telemetry import VehicleState
 from mavlink.wire.items import MissionType
 from mavlink.wire.messages import Message

@@ -15,7 +15,7 @@ from app.services.store.flights import FlightStore
 from app.services.vehicles.recorder import LANDED_LOOKS, FlightRecorder, HeldPlan, is_flying
 from app.settings import Settings
 from mavlink.client import VehicleClient
-from mavlink.link import memory_pair
+from mavlink.links.link import memory_pair
 from mavlink.state.outputs import RelayOutput
 from mavlink.state.telemetry import VehicleState
 from mavlink.state.track import TrackRecorder

@@ -15,7 +15,7 @@ from mavlink.forward import outlet as outlet_module
 from mavlink.forward.address import ForwardAddress, parse_forward
 from mavlink.forward.hub import Forwards
 from mavlink.forward.outlet import QUEUE_BYTES, Outlet
-from mavlink.link import memory_pair, open_link
+from mavlink.links.link import memory_pair, open_link
 from mavlink.links.tcp import open_tcp_server
 from mavlink.links.udp import UdpLink, open_udp
 from mavlink.transfer.outcome import Accepted

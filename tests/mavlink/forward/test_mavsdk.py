@@ -12,7 +12,7 @@ from mavlink.client import VehicleClient
 from mavlink.forward.address import parse_forward
 from mavlink.forward.hub import Forwards
 from mavlink.forward.outlet import Outlet
-from mavlink.link import memory_pair
+from mavlink.links.link import memory_pair
 from mavlink.sim.acceptance import as_stored
 from mavlink.sim.modes import Flavour
 from mavlink.sim.run import serve_link

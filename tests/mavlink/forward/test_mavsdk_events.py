@@ -14,7 +14,7 @@ from pymavlink.dialects.v20 import ardupilotmega as dialect
 from mavlink.client import VehicleClient
 from mavlink.forward.address import parse_forward
 from mavlink.forward.hub import Forwards
-from mavlink.link import memory_pair
+from mavlink.links.link import memory_pair
 from mavlink.state.events import event_id
 from mavlink.wire.messages import Message
 from tests.mavlink.aircraft import Aircraft

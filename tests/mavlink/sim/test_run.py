@@ -11,7 +11,7 @@ from itertools import pairwise
 
 import pytest
 
-from mavlink.link import Link, MemoryLink, memory_pair, open_link
+from mavlink.links.link import Link, MemoryLink, memory_pair, open_link
 from mavlink.links.memory import NO_FAULTS
 from mavlink.sim.modes import Flavour
 from mavlink.sim.run import main, parser, serve, serve_link, settings_of

@@ -13,7 +13,7 @@ from pymavlink.dialects.v20 import ardupilotmega as dialect
 
 from mavlink.client import VehicleClient
 from mavlink.dialects.compare import Difference
-from mavlink.link import memory_pair
+from mavlink.links.link import memory_pair
 from mavlink.state.events import EventOrder, event_id, read_event
 from mavlink.state.telemetry import VehicleState, updated
 from mavlink.wire.codec import Codec

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from mavlink.client import VehicleClient
 from mavlink.encoding.payload import ActuatorPayload, Payload, parse_payload, switch_items
-from mavlink.link import memory_pair
+from mavlink.links.link import memory_pair
 from mavlink.sim.modes import Flavour
 from mavlink.sim.run import serve_link
 from mavlink.sim.settings import SimSettings

@@ -9,8 +9,8 @@ import pty
 import pytest
 
 from mavlink.errors import LinkError
-from mavlink.link import DirectLink, Link, LinkFaults, memory_pair, open_link
 from mavlink.links.inbox import Inbox
+from mavlink.links.link import DirectLink, Link, LinkFaults, memory_pair, open_link
 from mavlink.links.tcp import TcpClientLink, open_tcp_server
 from mavlink.links.udp import open_udp
 

@@ -10,8 +10,8 @@ import pytest
 
 from mavlink.client import VehicleClient
 from mavlink.errors import LinkError, NotConnectedError, ReadOnlyError
-from mavlink.link import open_link
-from mavlink.recording import TlogWriter, read_tlog
+from mavlink.links.link import open_link
+from mavlink.links.recording import TlogWriter, read_tlog
 from mavlink.wire.codec import Codec
 from mavlink.wire.items import MissionType
 from mavlink.wire.messages import Message

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pymavlink import mavutil
 
-from mavlink.recording import STAMP, TlogLimits, TlogWriter, read_tlog
+from mavlink.links.recording import STAMP, TlogLimits, TlogWriter, read_tlog
 from mavlink.wire.codec import Codec
 from mavlink.wire.messages import Message
 
