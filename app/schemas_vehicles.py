@@ -19,7 +19,7 @@ from app.services.vehicles.uploads import UploadReport
 from app.services.vehicles.vehicle import Vehicle
 from app.services.work import finding_json
 from mavlink.forward.outlet import Outlet
-from mavlink.parameter_rules import ParameterFinding
+from mavlink.rules.table import ParameterFinding
 
 Part = Literal["mission", "fence", "rally"]
 CommandName = Literal["arm", "disarm", "start", "pause", "resume", "rtl", "goto_item"]

@@ -14,7 +14,7 @@ from app.settings import Settings
 from mavlink.encoding.encode import EncodeOptions, encode
 from mavlink.encoding.gimbal import parse_gimbal
 from mavlink.encoding.payload import RelayPayload
-from mavlink.parameter_rules import needs_of
+from mavlink.rules.table import needs_of
 from mavlink.wire.items import Command
 from tests.app.conftest import stored
 from tests.app.test_problems import check_problem

@@ -14,7 +14,7 @@ import pytest
 
 from mavlink.encoding.encode import EncodeOptions, encode
 from mavlink.encoding.payload import RelayPayload
-from mavlink.parameter_rules import judge_parameters, names_to_read, needs_of
+from mavlink.rules.table import judge_parameters, names_to_read, needs_of
 from mavlink.state.track import TrackPoint
 from mavlink.wire.items import Command
 from planner.frames import LocalFrame

@@ -20,7 +20,7 @@ from mavlink.dialects.compare import Difference, differences
 from mavlink.dialects.mission import numbered, unplaced
 from mavlink.encoding.encode import encode
 from mavlink.encoding.payload import ActuatorPayload
-from mavlink.parameter_rules import judge_parameters, names_to_read, needs_of
+from mavlink.rules.table import judge_parameters, names_to_read, needs_of
 from mavlink.state.events import KNOWN_EVENTS, event_id
 from mavlink.wire.items import Command, MissionItem, MissionType
 from planner.geojson import read_scenario

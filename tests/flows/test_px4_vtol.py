@@ -13,7 +13,7 @@ import pytest
 
 from mavlink.encoding.encode import EncodeOptions, encode
 from mavlink.encoding.payload import parse_payload
-from mavlink.parameter_rules import judge_parameters, names_to_read, needs_of
+from mavlink.rules.table import judge_parameters, names_to_read, needs_of
 from planner.geojson import read_scenario
 from planner.pipeline import make_plan
 from tests.flows.flying import case_document, figures, from_end_m, inside_fence, store

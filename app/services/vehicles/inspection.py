@@ -16,7 +16,7 @@ from mavlink.dialects.mission import Mission
 from mavlink.encoding.options import DEFAULT_PAYLOAD
 from mavlink.encoding.payload import parse_payload
 from mavlink.errors import TransferFailedError
-from mavlink.parameter_rules import (
+from mavlink.rules.table import (
     Needs,
     ParameterFinding,
     judge_parameters,

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from mavlink.dialects.mission import Mission
-from mavlink.parameter_rules import Needs
+from mavlink.rules.table import Needs
 from planner.errors import Finding
 from planner.plan import Plan
 

@@ -10,7 +10,7 @@ from app.services.missions import PARTS, PartName, mission_findings
 from app.services.vehicles.pointing import pointing_findings
 from mavlink.dialects.mission import Mission
 from mavlink.encoding.arcs import circles_widen_m
-from mavlink.parameter_rules import Needs, ParameterFinding, judge_parameters
+from mavlink.rules.table import Needs, ParameterFinding, judge_parameters
 from mavlink.state.telemetry import VehicleState
 from mavlink.wire.geometry import distance_m
 from planner.errors import Finding

@@ -10,7 +10,7 @@ import pytest
 from app.services.vehicles.preflight import Check, Observed, preflight, settle_m
 from mavlink.encoding.encode import encode
 from mavlink.encoding.payload import RelayPayload
-from mavlink.parameter_rules import needs_of
+from mavlink.rules.table import needs_of
 from mavlink.state.telemetry import VehicleState
 from planner.plan import Plan, Violation
 from tests.mavlink.plans import make_plan, square_fence

@@ -10,7 +10,7 @@ from mavlink.dialects import Autopilot, VehicleType
 from mavlink.encoding.encode import EncodeOptions, encode
 from mavlink.encoding.gimbal import Gimbal
 from mavlink.encoding.payload import RelayPayload
-from mavlink.parameter_rules import (
+from mavlink.rules.table import (
     Needs,
     judge_parameters,
     names_to_read,

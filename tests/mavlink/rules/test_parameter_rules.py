@@ -17,7 +17,7 @@ from mavlink.encoding.payload import (
     ServoPayload,
     parse_payload,
 )
-from mavlink.parameter_rules import (
+from mavlink.rules.table import (
     RULES,
     Needs,
     judge_parameters,
