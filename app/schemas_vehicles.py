@@ -18,8 +18,8 @@ from app.services.vehicles.preflight import Preflight
 from app.services.vehicles.uploads import UploadReport
 from app.services.vehicles.vehicle import Vehicle
 from app.services.work import finding_json
-from mavlink.forward.outlet import Outlet
 from mavlink.rules.table import ParameterFinding
+from mavlink.station.forward.outlet import Outlet
 
 Part = Literal["mission", "fence", "rally"]
 CommandName = Literal["arm", "disarm", "start", "pause", "resume", "rtl", "goto_item"]

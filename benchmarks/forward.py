@@ -15,10 +15,10 @@ import time
 from mavsdk import logging as mavsdk_logging
 
 from benchmarks.link import fields, mission, vehicle
-from mavlink.client import VehicleClient
-from mavlink.forward.address import parse_forward
-from mavlink.forward.hub import Forwards
 from mavlink.links.udp import open_udp
+from mavlink.station.client import VehicleClient
+from mavlink.station.forward.address import parse_forward
+from mavlink.station.forward.hub import Forwards
 from mavlink.wire.items import MissionType
 
 ITEMS = 1000

@@ -20,8 +20,8 @@ from mavsdk.asyncio.plugins.mission_raw import MissionItem as PeerItem
 from mavsdk.asyncio.plugins.mission_raw import MissionRawAsync
 from mavsdk.asyncio.plugins.mission_raw_server import MissionRawServerAsync
 
-from mavlink.client import VehicleClient
 from mavlink.links.udp import open_udp
+from mavlink.station.client import VehicleClient
 from mavlink.wire.items import Command, Frame, MissionItem, MissionType
 
 #: Items of a long mission, and of one longer than any autopilot holds.

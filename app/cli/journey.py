@@ -15,8 +15,8 @@ from app.cli.planning import ScenarioFile, make
 
 if TYPE_CHECKING:
     from app.services.records import TrackSample
-    from mavlink.client import VehicleClient
     from mavlink.state.telemetry import VehicleState
+    from mavlink.station.client import VehicleClient
 
 #: Without news from the vehicle for this long, in real time, the flight is given up.
 STALLED_S = 20.0

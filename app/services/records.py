@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from typing import Any, Literal
 
-from mavlink.forward.address import ForwardAddress
+from mavlink.station.forward.address import ForwardAddress
 
 PlanState = Literal["queued", "running", "done", "failed", "cancelled"]
 ENDED: frozenset[PlanState] = frozenset({"done", "failed", "cancelled"})

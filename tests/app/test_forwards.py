@@ -25,7 +25,7 @@ from tests.app.test_problems import check_problem
 from tests.app.test_restart import autopilot, free_port, service
 from tests.app.test_two_operators import uploading
 from tests.app.test_vehicles import VEHICLES, faulty_vehicle, until
-from tests.mavlink.forward.test_hub import Station
+from tests.mavlink.station.forward.test_hub import Station
 
 ARM = 400
 #: The first announcement of a list is lost: an upload that takes its time.

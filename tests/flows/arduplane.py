@@ -14,9 +14,9 @@ from collections.abc import AsyncIterator, Iterator, Mapping
 from contextlib import asynccontextmanager, contextmanager
 from pathlib import Path
 
-from mavlink.client import VehicleClient
 from mavlink.links.link import open_link
 from mavlink.state.telemetry import VehicleState
+from mavlink.station.client import VehicleClient
 from tests.flows.flying import Flight, until_disarmed
 
 BINARY = os.environ.get("SWATHPLAN_ARDUPLANE", "")

@@ -19,12 +19,12 @@ from shapely.geometry import LineString, Polygon
 from app.services.flights import seen_by
 from app.services.records import TrackSample
 from app.services.vehicles.recorder import Thinner
-from mavlink.client import VehicleClient
 from mavlink.dialects.compare import differences
 from mavlink.dialects.mission import Mission
 from mavlink.state.telemetry import VehicleState
 from mavlink.state.track import Track
-from mavlink.verify import VerifiedUpload
+from mavlink.station.client import VehicleClient
+from mavlink.station.verify import VerifiedUpload
 from mavlink.wire.items import MissionType
 from planner.coverage.flown import FlownCoverage
 from planner.plan import Plan

@@ -17,10 +17,10 @@ from collections.abc import AsyncIterator, Iterator, Mapping
 from contextlib import asynccontextmanager, contextmanager
 from pathlib import Path
 
-from mavlink.client import VehicleClient
 from mavlink.encoding.options import DEFAULT_PAYLOAD
 from mavlink.encoding.payload import Payload
 from mavlink.links.link import open_link
+from mavlink.station.client import VehicleClient
 from mavlink.wire.codec import Codec
 from mavlink.wire.messages import Message
 from tests.flows.flying import Flight, until_disarmed

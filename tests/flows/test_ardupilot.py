@@ -18,15 +18,15 @@ from pathlib import Path
 
 import pytest
 
-from mavlink.client import VehicleClient
 from mavlink.dialects import dialect_for
 from mavlink.dialects.ardupilot import ArduPilotDialect
 from mavlink.dialects.compare import Difference, differences
 from mavlink.dialects.mission import home_item, numbered, placed, unplaced
 from mavlink.encoding.encode import EncodeOptions, encode
 from mavlink.links.link import open_link
+from mavlink.station.client import VehicleClient
+from mavlink.station.verify import VerifiedUpload
 from mavlink.transfer.outcome import Refused
-from mavlink.verify import VerifiedUpload
 from mavlink.wire.items import Command, Frame, MissionItem, MissionResult, MissionType
 from planner.geojson import read_scenario
 from planner.pipeline import make_plan

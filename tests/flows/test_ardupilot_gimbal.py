@@ -9,13 +9,13 @@ from pathlib import Path
 
 import pytest
 
-from mavlink.client import VehicleClient
 from mavlink.dialects.mission import home_item, numbered
 from mavlink.encoding.encode import EncodeOptions, encode
 from mavlink.encoding.gimbal import parse_gimbal
 from mavlink.encoding.payload import RelayPayload
 from mavlink.links.link import open_link
 from mavlink.rules.table import judge_parameters, names_to_read, needs_of
+from mavlink.station.client import VehicleClient
 from mavlink.wire.items import Command, Frame, MissionItem, MissionType
 from tests.flows.arduplane import BINARY, PARAMETERS, arduplane, booted, fly
 from tests.flows.flying import store

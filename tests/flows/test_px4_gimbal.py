@@ -10,12 +10,12 @@ from pathlib import Path
 
 import pytest
 
-from mavlink.client import VehicleClient
 from mavlink.encoding.encode import EncodeOptions, encode
 from mavlink.encoding.gimbal import parse_gimbal
 from mavlink.encoding.payload import ActuatorPayload
 from mavlink.links.link import open_link
 from mavlink.rules.table import judge_parameters, names_to_read, needs_of
+from mavlink.station.client import VehicleClient
 from mavlink.wire.items import Command
 from tests.flows.flying import store
 from tests.flows.gimbals import EVERY_US, STATUS, Watch, ends_of_passes, two_sided

@@ -9,7 +9,7 @@ from sqlalchemy import delete, select, update
 from app.services.records import HeldMission, SentMission, VehicleRecord
 from app.services.store.database import Database
 from app.services.store.tables import VehicleRow
-from mavlink.forward.address import ForwardAddress
+from mavlink.station.forward.address import ForwardAddress
 
 
 def _record(row: VehicleRow) -> VehicleRecord:

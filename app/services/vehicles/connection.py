@@ -16,11 +16,11 @@ from app.services.vehicles import hints
 from app.services.vehicles.simulated import SimulatedAircraft, SimulatorProcess, parse_simulated
 from app.services.vehicles.times import DEFAULT_TIMES, LinkTimes
 from mavlink import errors as mavlink_errors
-from mavlink.client import VehicleClient
 from mavlink.encoding.payload import PayloadError, parse_payload
-from mavlink.forward.hub import Forwards
 from mavlink.links.link import FORMS, open_link
 from mavlink.links.replay import parse_replay
+from mavlink.station.client import VehicleClient
+from mavlink.station.forward.hub import Forwards
 from planner.errors import Finding
 
 #: Latitude, longitude in degrees, metres above sea level.

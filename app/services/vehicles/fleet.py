@@ -28,8 +28,8 @@ from app.services.vehicles.times import DEFAULT_TIMES, LinkTimes
 from app.services.vehicles.transfers import Transfers
 from app.services.vehicles.vehicle import Vehicle
 from mavlink.encoding.payload import parse_payload
-from mavlink.forward.address import ForwardAddress
 from mavlink.state.outputs import output_of
+from mavlink.station.forward.address import ForwardAddress
 
 log = structlog.get_logger(__name__)
 

@@ -9,9 +9,9 @@ import structlog
 
 from app.services.errors import RefusedError
 from mavlink.errors import AddressError
-from mavlink.forward.address import FORMS, ForwardAddress, looped, parse_forward
-from mavlink.forward.guard import CHANGES
-from mavlink.forward.outlet import Outlet
+from mavlink.station.forward.address import FORMS, ForwardAddress, looped, parse_forward
+from mavlink.station.forward.guard import CHANGES
+from mavlink.station.forward.outlet import Outlet
 from mavlink.wire.messages import Message
 from planner.errors import Finding
 

@@ -11,7 +11,6 @@ from app.services.errors import LinkError, RefusedError
 from app.services.missions import PARTS, MissionChoice, PartName
 from app.services.vehicles.preflight import Observed, Preflight, preflight, settle_m
 from app.services.vehicles.uploads import UploadReport, comparing
-from mavlink.client import VehicleClient
 from mavlink.dialects.mission import Mission
 from mavlink.encoding.options import DEFAULT_PAYLOAD
 from mavlink.encoding.payload import parse_payload
@@ -25,6 +24,7 @@ from mavlink.rules.table import (
     other_names,
     unanswered,
 )
+from mavlink.station.client import VehicleClient
 from mavlink.transfer.parameters import Parameter
 from planner.errors import Finding
 from planner.plan import Plan

@@ -9,10 +9,10 @@ import structlog
 
 from app.services.records import FlightEvent, FlightState, TrackSample
 from app.services.store.flights import FlightStore
-from mavlink.client import VehicleClient
 from mavlink.state.outputs import SensorOutput
 from mavlink.state.telemetry import VehicleState
 from mavlink.state.track import SensorEvent, Track, TrackPoint, TrackRecorder
+from mavlink.station.client import VehicleClient
 
 log = structlog.get_logger(__name__)
 

@@ -12,14 +12,14 @@ from app.services.vehicles.items import difference_json, item_json
 from app.services.vehicles.preflight import Preflight
 from app.services.vehicles.recorder import is_flying
 from app.services.work import finding_json
-from mavlink.client import VehicleClient
 from mavlink.dialects import Dialect
 from mavlink.dialects.compare import Difference, differences
 from mavlink.dialects.mission import Mission
 from mavlink.state.telemetry import VehicleState
+from mavlink.station.client import VehicleClient
+from mavlink.station.verify import Pending, VerifiedUpload, resolve
 from mavlink.transfer.machine import Progress
 from mavlink.transfer.outcome import Unknown
-from mavlink.verify import Pending, VerifiedUpload, resolve
 from mavlink.wire.items import MissionItem
 from planner.errors import Finding
 from planner.plan import Plan

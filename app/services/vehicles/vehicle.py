@@ -22,14 +22,14 @@ from app.services.vehicles.simulated import SimulatedAircraft
 from app.services.vehicles.times import DEFAULT_TIMES, LinkTimes
 from app.services.vehicles.uploads import UploadReport, read_back
 from mavlink import errors as mavlink_errors
-from mavlink.client import VehicleClient
 from mavlink.encoding.options import DEFAULT_PAYLOAD
 from mavlink.encoding.payload import parse_payload
-from mavlink.forward.address import ForwardAddress
-from mavlink.forward.hub import Forwards
-from mavlink.forward.outlet import Outlet
 from mavlink.links.recording import TlogWriter
 from mavlink.state.telemetry import VehicleState
+from mavlink.station.client import VehicleClient
+from mavlink.station.forward.address import ForwardAddress
+from mavlink.station.forward.hub import Forwards
+from mavlink.station.forward.outlet import Outlet
 from mavlink.wire.items import MissionType
 from mavlink.wire.messages import Message
 

@@ -14,11 +14,11 @@ from app.services.store.database import Database
 from app.services.store.flights import FlightStore
 from app.services.vehicles.recorder import LANDED_LOOKS, FlightRecorder, HeldPlan, is_flying
 from app.settings import Settings
-from mavlink.client import VehicleClient
 from mavlink.links.link import memory_pair
 from mavlink.state.outputs import RelayOutput
 from mavlink.state.telemetry import VehicleState
 from mavlink.state.track import TrackRecorder
+from mavlink.station.client import VehicleClient
 from tests.mavlink.state.test_outputs import received
 from tests.mavlink.state.test_telemetry import at
 

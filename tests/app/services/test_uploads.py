@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from app.services.vehicles.uploads import PartResult
+from mavlink.station.verify import VerifiedUpload
 from mavlink.transfer.outcome import Accepted
-from mavlink.verify import VerifiedUpload
 from tests.mavlink.transfer.vehicle import waypoints
 
 

@@ -8,14 +8,14 @@ from pathlib import Path
 
 import pytest
 
-from mavlink.client import VehicleClient
 from mavlink.errors import LinkError, NotConnectedError, ReadOnlyError
 from mavlink.links.link import open_link
 from mavlink.links.recording import TlogWriter, read_tlog
+from mavlink.station.client import VehicleClient
 from mavlink.wire.codec import Codec
 from mavlink.wire.items import MissionType
 from mavlink.wire.messages import Message
-from tests.mavlink.aircraft import flying
+from tests.mavlink.station.aircraft import flying
 from tests.mavlink.transfer.vehicle import waypoints
 
 

@@ -11,15 +11,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pymavlink.dialects.v20 import ardupilotmega as dialect
 
-from mavlink.client import VehicleClient
 from mavlink.dialects.compare import Difference
 from mavlink.links.link import memory_pair
 from mavlink.state.events import EventOrder, event_id, read_event
 from mavlink.state.telemetry import VehicleState, updated
+from mavlink.station.client import VehicleClient
 from mavlink.wire.codec import Codec
 from mavlink.wire.items import MissionItem, MissionType
 from mavlink.wire.messages import Message
-from tests.mavlink.aircraft import flying
+from tests.mavlink.station.aircraft import flying
 from tests.mavlink.transfer.vehicle import waypoints
 
 LAND_MISSING = "navigator_mis_land_missing"

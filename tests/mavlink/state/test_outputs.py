@@ -11,7 +11,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mavlink.client import VehicleClient
 from mavlink.encoding.payload import ActuatorPayload, Payload, parse_payload, switch_items
 from mavlink.links.link import memory_pair
 from mavlink.sim.modes import Flavour
@@ -29,6 +28,7 @@ from mavlink.state.outputs import (
 )
 from mavlink.state.telemetry import VehicleState, updated
 from mavlink.state.track import Track, TrackRecorder, unwrapped_s
+from mavlink.station.client import VehicleClient
 from mavlink.wire.codec import Codec
 from mavlink.wire.messages import Message
 from tests.mavlink.state.test_telemetry import at, received

@@ -38,7 +38,7 @@ def storm(seed: int, loss: float, most: int, refusing: bool) -> Ending:
     vehicle.held[0] = old = ITEMS[: random.randint(0, most)]
     machine = UploadMachine(items, MissionType.MISSION, 1, 1)
     Air(machine, vehicle, Weather(loss, 0.05, 0.05, seed)).run()
-    for again in range(3):  # as mavlink.verify does
+    for again in range(3):  # as mavlink.station.verify does
         download = DownloadMachine(MissionType.MISSION, 1, 1)
         Air(download, vehicle, Weather(loss, 0.05, 0.05, 1_000_000 + 3 * seed + again)).run()
         if download.outcome == Accepted():

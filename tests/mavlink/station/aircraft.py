@@ -8,10 +8,10 @@ import time
 from collections.abc import AsyncIterator, Callable
 from typing import Self
 
-from mavlink.client import VehicleClient
 from mavlink.errors import LinkError
 from mavlink.links.link import Link, LinkFaults, MemoryLink, memory_pair
 from mavlink.links.memory import NO_FAULTS
+from mavlink.station.client import VehicleClient
 from mavlink.transfer.machine import TransferSettings
 from mavlink.wire.codec import Codec
 from mavlink.wire.messages import Message, Value

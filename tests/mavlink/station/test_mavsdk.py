@@ -7,8 +7,8 @@ import math
 import pytest
 
 from benchmarks.link import fields, mission, run, vehicle
-from mavlink.client import VehicleClient
 from mavlink.links.udp import open_udp
+from mavlink.station.client import VehicleClient
 from mavlink.transfer.outcome import Accepted
 from mavlink.wire.items import Command, MissionItem, MissionType
 

@@ -10,10 +10,10 @@ import pytest
 from mavlink.sim.modes import Flavour
 from mavlink.wire.items import MissionType
 from tests.mavlink.sim.helpers import landing_mission, numbered, waypoint
-from tests.mavlink.test_mavproxy import assert_same, mavproxy
+from tests.mavlink.station.test_mavproxy import assert_same, mavproxy
 
 pytest.importorskip("mavsdk")
-from tests.mavlink.forward.test_mavsdk import forwarded
+from tests.mavlink.station.forward.test_mavsdk import forwarded
 
 pytestmark = pytest.mark.skipif(find_spec("MAVProxy") is None, reason="MAVProxy is not installed")
 

@@ -8,15 +8,15 @@ from collections.abc import Sequence
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as dialect
 
-from mavlink.client import VehicleClient
-from mavlink.list_ids import ListIds
 from mavlink.state.telemetry import VehicleState
+from mavlink.station.client import VehicleClient
+from mavlink.station.list_ids import ListIds
 from mavlink.transfer.outcome import Accepted, Unknown
 from mavlink.wire.codec import Codec
 from mavlink.wire.items import MissionItem, MissionType
 from mavlink.wire.messages import Message
-from tests.mavlink.aircraft import Aircraft, flying
-from tests.mavlink.test_client_transfers import compare
+from tests.mavlink.station.aircraft import Aircraft, flying
+from tests.mavlink.station.test_client_transfers import compare
 from tests.mavlink.transfer.vehicle import waypoints
 
 MISSION, FENCE = MissionType.MISSION, MissionType.FENCE

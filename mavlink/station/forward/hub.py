@@ -9,10 +9,10 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import Protocol
 
 from mavlink.errors import LinkError
-from mavlink.forward.address import ForwardAddress
-from mavlink.forward.guard import Guard, Verdict
-from mavlink.forward.outlet import Outlet
 from mavlink.state.telemetry import VehicleState
+from mavlink.station.forward.address import ForwardAddress
+from mavlink.station.forward.guard import Guard, Verdict
+from mavlink.station.forward.outlet import Outlet
 from mavlink.wire.messages import Message
 
 

@@ -9,8 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mavlink.errors import BusyError
-from mavlink.forward.guard import EXCHANGE_OVER_S, Guard, Verdict, flies_mission
 from mavlink.state.telemetry import VehicleState
+from mavlink.station.forward.guard import EXCHANGE_OVER_S, Guard, Verdict, flies_mission
 from mavlink.wire.messages import Message
 
 VEHICLE = VehicleState(system_id=1, component_id=1, connected=True, autopilot="ardupilot", type="fixed_wing")

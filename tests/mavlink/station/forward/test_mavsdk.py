@@ -8,15 +8,15 @@ from collections.abc import AsyncIterator, Awaitable, Callable
 
 import pytest
 
-from mavlink.client import VehicleClient
-from mavlink.forward.address import parse_forward
-from mavlink.forward.hub import Forwards
-from mavlink.forward.outlet import Outlet
 from mavlink.links.link import memory_pair
 from mavlink.sim.acceptance import as_stored
 from mavlink.sim.modes import Flavour
 from mavlink.sim.run import serve_link
 from mavlink.sim.settings import SimSettings
+from mavlink.station.client import VehicleClient
+from mavlink.station.forward.address import parse_forward
+from mavlink.station.forward.hub import Forwards
+from mavlink.station.forward.outlet import Outlet
 from mavlink.wire.items import Command, MissionType
 from tests.mavlink.sim.helpers import HOME, item, landing_mission, numbered, place_at, waypoint
 from tests.mavlink.sim.test_mavsdk import fields

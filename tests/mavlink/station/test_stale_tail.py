@@ -8,7 +8,7 @@ from dataclasses import replace
 from mavlink.dialects import dialect_for
 from mavlink.dialects.compare import Difference, differences
 from mavlink.wire.items import Frame, MissionItem, MissionType
-from tests.mavlink.aircraft import LOST_AFTER_S, flying
+from tests.mavlink.station.aircraft import LOST_AFTER_S, flying
 from tests.mavlink.transfer.vehicle import StubVehicle, waypoints
 
 PLANE = dialect_for("ardupilot", "fixed_wing")

@@ -14,15 +14,15 @@ from dataclasses import replace
 from typing import Any, Final
 
 from mavlink.errors import BusyError, CodecError, LinkError, NotConnectedError, ReadOnlyError
-from mavlink.forward.hub import Forwards
-from mavlink.identity import Identity
-from mavlink.jobs import Job
 from mavlink.links.link import DirectLink, Link, ReplayLink
-from mavlink.list_ids import ListIds
 from mavlink.state.events import EVENT_MESSAGES, EventOrder
 from mavlink.state.modes import GROUND_STATION_TYPE, NO_AUTOPILOT
 from mavlink.state.telemetry import VehicleState, updated
 from mavlink.state.track import CAMERA_MESSAGES, TrackRecorder
+from mavlink.station.forward.hub import Forwards
+from mavlink.station.identity import Identity
+from mavlink.station.jobs import Job
+from mavlink.station.list_ids import ListIds
 from mavlink.transfer.command import CommandMachine, CommandOutcome
 from mavlink.transfer.machine import Machine, Progress
 from mavlink.transfer.outcome import Outcome, Unknown

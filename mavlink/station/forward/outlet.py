@@ -11,10 +11,10 @@ from dataclasses import dataclass, fields
 from typing import Final, Protocol
 
 from mavlink.errors import LinkError
-from mavlink.forward.address import ForwardAddress
 from mavlink.links.link import Link
 from mavlink.links.tcp import open_tcp_client, open_tcp_server
 from mavlink.links.udp import open_udp
+from mavlink.station.forward.address import ForwardAddress
 from mavlink.wire.codec import Codec
 from mavlink.wire.messages import Message
 

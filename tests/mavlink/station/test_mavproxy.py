@@ -18,7 +18,6 @@ from pathlib import Path
 
 import pytest
 
-from mavlink.client import VehicleClient
 from mavlink.dialects import dialect_for
 from mavlink.dialects.compare import differences
 from mavlink.encoding.encode import EncodeOptions, encode
@@ -28,6 +27,7 @@ from mavlink.links.udp import open_udp
 from mavlink.sim.geodesy import Place
 from mavlink.sim.run import serve_link
 from mavlink.sim.settings import SimSettings
+from mavlink.station.client import VehicleClient
 from mavlink.wire.items import MissionItem, MissionType
 from tests.mavlink.plans import make_plan
 

@@ -9,11 +9,11 @@ from dataclasses import replace
 
 import pytest
 
-from mavlink.client import VehicleClient
 from mavlink.links.link import memory_pair
 from mavlink.sim.modes import Flavour
 from mavlink.sim.run import serve_link
 from mavlink.sim.settings import SimSettings
+from mavlink.station.client import VehicleClient
 from mavlink.transfer.machine import DEFAULT_SETTINGS
 from mavlink.transfer.outcome import Accepted, Unknown
 from mavlink.wire.items import Command, Frame, MissionItem, MissionType

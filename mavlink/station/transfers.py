@@ -10,16 +10,10 @@ from contextlib import AbstractContextManager
 from dataclasses import replace
 from typing import Final
 
-from mavlink.driver import Driver
 from mavlink.errors import NotConnectedError, TransferFailedError, UnsupportedError
 from mavlink.state.telemetry import VehicleState
-from mavlink.transfer.clear import ClearMachine, SetCurrentMachine, flown_for
-from mavlink.transfer.download import DownloadMachine
-from mavlink.transfer.machine import Progress, TransferSettings
-from mavlink.transfer.outcome import Accepted, Outcome, Unknown
-from mavlink.transfer.partial import PartialUpdateMachine
-from mavlink.transfer.upload import UploadMachine
-from mavlink.verify import (
+from mavlink.station.driver import Driver
+from mavlink.station.verify import (
     Compare,
     Pending,
     VerifiedUpload,
@@ -27,6 +21,12 @@ from mavlink.verify import (
     update_and_verify,
     upload_and_verify,
 )
+from mavlink.transfer.clear import ClearMachine, SetCurrentMachine, flown_for
+from mavlink.transfer.download import DownloadMachine
+from mavlink.transfer.machine import Progress, TransferSettings
+from mavlink.transfer.outcome import Accepted, Outcome, Unknown
+from mavlink.transfer.partial import PartialUpdateMachine
+from mavlink.transfer.upload import UploadMachine
 from mavlink.wire.items import MissionItem, MissionType
 
 # PX4 judges a mission within moments of its acknowledgement, and gives its reasons one by one.

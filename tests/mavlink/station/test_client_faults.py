@@ -8,7 +8,6 @@ from collections.abc import AsyncIterator
 from dataclasses import replace
 from functools import partial
 
-from mavlink.client import VehicleClient
 from mavlink.dialects import dialect_for
 from mavlink.dialects.compare import differences
 from mavlink.links.link import memory_pair
@@ -16,9 +15,10 @@ from mavlink.sim.faults import Fault
 from mavlink.sim.modes import Flavour
 from mavlink.sim.run import serve_link
 from mavlink.sim.settings import SimSettings
+from mavlink.station.client import VehicleClient
+from mavlink.station.verify import Compare, VerifiedUpload
 from mavlink.transfer.machine import TransferSettings
 from mavlink.transfer.outcome import Accepted, Refused, Unknown
-from mavlink.verify import Compare, VerifiedUpload
 from mavlink.wire.items import Command, MissionItem, MissionType
 
 # The count and questions are repeated early; the patience with a vehicle that asks again each second stays.

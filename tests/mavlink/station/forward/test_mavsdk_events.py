@@ -11,19 +11,19 @@ import zlib
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as dialect
 
-from mavlink.client import VehicleClient
-from mavlink.forward.address import parse_forward
-from mavlink.forward.hub import Forwards
 from mavlink.links.link import memory_pair
 from mavlink.state.events import event_id
+from mavlink.station.client import VehicleClient
+from mavlink.station.forward.address import parse_forward
+from mavlink.station.forward.hub import Forwards
 from mavlink.wire.messages import Message
-from tests.mavlink.aircraft import Aircraft
+from tests.mavlink.station.aircraft import Aircraft
 from tests.mavlink.transfer.vehicle import StubVehicle
 
 pytest.importorskip("mavsdk")
 from mavsdk.asyncio.plugins.events import EventsAsync
 
-from tests.mavlink.forward.test_mavsdk import second_station
+from tests.mavlink.station.forward.test_mavsdk import second_station
 
 pytestmark = pytest.mark.mavsdk
 

@@ -7,17 +7,17 @@ from dataclasses import replace
 
 import pytest
 
-from mavlink.client import VehicleClient
 from mavlink.errors import NotConnectedError, UnsupportedError
 from mavlink.links.link import memory_pair
 from mavlink.sim.faults import Fault
 from mavlink.sim.modes import Flavour
+from mavlink.station.client import VehicleClient
+from mavlink.station.verify import VerifiedUpload
 from mavlink.transfer.outcome import Accepted, Refused, Unknown
-from mavlink.verify import VerifiedUpload
 from mavlink.wire.items import MissionItem, MissionResult, MissionType
-from tests.mavlink.aircraft import flying
-from tests.mavlink.test_client_faults import comparison, mission, simulated
-from tests.mavlink.test_client_transfers import compare
+from tests.mavlink.station.aircraft import flying
+from tests.mavlink.station.test_client_faults import comparison, mission, simulated
+from tests.mavlink.station.test_client_transfers import compare
 from tests.mavlink.transfer.vehicle import waypoints
 
 MISSION = MissionType.MISSION

@@ -18,7 +18,7 @@ from mavlink.transfer.outcome import Accepted
 from mavlink.wire.codec import Codec
 from mavlink.wire.items import MissionType
 from mavlink.wire.messages import Message
-from tests.mavlink.aircraft import flying
+from tests.mavlink.station.aircraft import flying
 from tests.mavlink.transfer.vehicle import waypoints
 
 NAMES = sorted(definition.msgname for definition in dialect.mavlink_map.values())

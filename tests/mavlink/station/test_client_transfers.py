@@ -20,7 +20,7 @@ from mavlink.transfer.machine import Progress
 from mavlink.transfer.outcome import Accepted, Refused, Unknown
 from mavlink.wire.items import Command, MissionItem, MissionResult, MissionType
 from mavlink.wire.messages import Message
-from tests.mavlink.aircraft import HASTY, LOST_AFTER_S, flying
+from tests.mavlink.station.aircraft import HASTY, LOST_AFTER_S, flying
 from tests.mavlink.transfer.vehicle import waypoints
 
 MISSION, FENCE = MissionType.MISSION, MissionType.FENCE

@@ -8,13 +8,13 @@ from collections.abc import AsyncIterator
 
 import pytest
 
-from mavlink.client import VehicleClient
 from mavlink.errors import NotConnectedError
 from mavlink.links.link import MemoryLink, memory_pair
+from mavlink.station.client import VehicleClient
 from mavlink.wire.codec import Codec
 from mavlink.wire.items import Command, MissionType
 from mavlink.wire.messages import Message
-from tests.mavlink.aircraft import HASTY, LOST_AFTER_S, Aircraft
+from tests.mavlink.station.aircraft import HASTY, LOST_AFTER_S, Aircraft
 from tests.mavlink.transfer.vehicle import StubVehicle, waypoints
 
 MISSION = MissionType.MISSION

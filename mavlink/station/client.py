@@ -9,11 +9,8 @@ from dataclasses import replace
 from types import TracebackType
 from typing import Final, Self
 
-from mavlink.driver import Driver
 from mavlink.encoding.payload import Payload
 from mavlink.errors import NotConnectedError, TransferFailedError, VehicleNotFoundError
-from mavlink.flight import FlightCommands
-from mavlink.forward.hub import Forwards
 from mavlink.links.link import Link
 from mavlink.state.outputs import (
     INTERVALS_HZ,
@@ -25,10 +22,13 @@ from mavlink.state.outputs import (
 )
 from mavlink.state.telemetry import VehicleState
 from mavlink.state.track import TrackRecorder
+from mavlink.station.driver import Driver
+from mavlink.station.flight import FlightCommands
+from mavlink.station.forward.hub import Forwards
+from mavlink.station.transfers import MissionTransfers
 from mavlink.transfer.command import CommandMachine, CommandOutcome
 from mavlink.transfer.machine import DEFAULT_SETTINGS, Progress, TransferSettings
 from mavlink.transfer.parameters import Parameter, ParameterListMachine, ParametersMachine
-from mavlink.transfers import MissionTransfers
 from mavlink.wire.codec import Codec
 from mavlink.wire.items import Command
 

@@ -9,9 +9,9 @@ from dataclasses import replace
 import pytest
 
 from mavlink.dialects.mission import numbered, placed
+from mavlink.station.verify import upload_and_verify
 from mavlink.transfer.machine import Progress
 from mavlink.transfer.outcome import Accepted, Outcome
-from mavlink.verify import upload_and_verify
 from mavlink.wire.items import Command, Frame, MissionItem, MissionType
 
 HERE = (8.5, 47.4)

@@ -9,20 +9,20 @@ from collections.abc import AsyncIterator, Callable
 
 import pytest
 
-from mavlink.client import VehicleClient
 from mavlink.errors import BusyError, LinkError
-from mavlink.forward import outlet as outlet_module
-from mavlink.forward.address import ForwardAddress, parse_forward
-from mavlink.forward.hub import Forwards
-from mavlink.forward.outlet import QUEUE_BYTES, Outlet
 from mavlink.links.link import memory_pair, open_link
 from mavlink.links.tcp import open_tcp_server
 from mavlink.links.udp import UdpLink, open_udp
+from mavlink.station.client import VehicleClient
+from mavlink.station.forward import outlet as outlet_module
+from mavlink.station.forward.address import ForwardAddress, parse_forward
+from mavlink.station.forward.hub import Forwards
+from mavlink.station.forward.outlet import QUEUE_BYTES, Outlet
 from mavlink.transfer.outcome import Accepted
 from mavlink.wire.codec import Codec
 from mavlink.wire.items import MissionType
 from mavlink.wire.messages import Message, Value
-from tests.mavlink.aircraft import Aircraft
+from tests.mavlink.station.aircraft import Aircraft
 from tests.mavlink.transfer.vehicle import StubVehicle, waypoints
 
 ARM = 400

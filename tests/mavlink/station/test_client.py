@@ -6,7 +6,6 @@ import asyncio
 
 import pytest
 
-from mavlink.client import VehicleClient
 from mavlink.errors import (
     NotConnectedError,
     VehicleNotFoundError,
@@ -14,11 +13,12 @@ from mavlink.errors import (
 from mavlink.links.link import memory_pair
 from mavlink.links.udp import open_udp
 from mavlink.state.telemetry import VehicleState
+from mavlink.station.client import VehicleClient
 from mavlink.transfer.outcome import Accepted, Unknown
 from mavlink.wire.codec import Codec
 from mavlink.wire.items import Command, MissionType
 from mavlink.wire.messages import Message
-from tests.mavlink.aircraft import HASTY, Aircraft, flying
+from tests.mavlink.station.aircraft import HASTY, Aircraft, flying
 from tests.mavlink.transfer.vehicle import StubVehicle, waypoints
 
 MISSION = MissionType.MISSION

@@ -8,7 +8,7 @@ import pytest
 
 from mavlink.transfer.outcome import Accepted
 from mavlink.wire.items import Command
-from tests.mavlink.aircraft import flying
+from tests.mavlink.station.aircraft import flying
 
 
 async def test_commands_are_answered_and_take_turns() -> None:

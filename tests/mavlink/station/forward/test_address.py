@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from mavlink.errors import AddressError
-from mavlink.forward.address import ForwardAddress, looped, parse_forward
+from mavlink.station.forward.address import ForwardAddress, looped, parse_forward
 
 
 @pytest.mark.parametrize(
