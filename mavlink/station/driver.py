@@ -23,10 +23,10 @@ from mavlink.station.forward.hub import Forwards
 from mavlink.station.identity import Identity
 from mavlink.station.jobs import Job
 from mavlink.station.list_ids import ListIds
+from mavlink.station.under_way import UnderWay
 from mavlink.transfer.command import CommandMachine, CommandOutcome
 from mavlink.transfer.machine import Machine, Progress
-from mavlink.transfer.outcome import Outcome, Unknown
-from mavlink.transfer.upload import UploadMachine
+from mavlink.transfer.outcome import Outcome
 from mavlink.wire.codec import Codec
 from mavlink.wire.messages import Message
 
@@ -77,9 +77,7 @@ class Driver:
         self._outgoing: deque[bytes] = deque()
         self._heard_s = -math.inf
         self._heartbeat_s = -math.inf
-        self._transfer: Job[Any] | None = None
-        self._lingering: UploadMachine | None = None
-        self._commands: dict[int, deque[Job[CommandOutcome]]] = {}
+        self._under_way = UnderWay(clock, self._queue, self._wake)
         self._watchers: set[asyncio.Event] = set()
         self._recorders: set[TrackRecorder] = set()
         self.events = EventOrder()
@@ -112,39 +110,16 @@ class Driver:
     ) -> Outcome:
         """Run a transfer to its end. Raises BusyError when another one is under way."""
         self.require_free()
-        job = Job(machine, progress)
-        self._transfer, self._lingering = job, None
-        self._send(machine.start(self._clock()), job)
-        try:
-            return await job.done
-        except (asyncio.CancelledError, CodecError):
-            self._send(machine.cancel(self._clock()), job)
-            raise
-        finally:
-            if self._transfer is job:
-                self._transfer = None
+        return await self._under_way.transfer(machine, progress)
 
     async def command(self, machine: CommandMachine) -> CommandOutcome:
         """Run a command to its end; those of the same number take turns, as their answers look alike."""
         self.require_connected()
-        job = self.post(machine)
-        try:
-            return await job.done
-        except (asyncio.CancelledError, CodecError):
-            machine.cancel(self._clock())
-            queue = self._commands.get(machine.command)
-            if queue and queue[0] is job:
-                self._next_command(machine.command)
-            raise
+        return await self._under_way.command(machine)
 
     def post(self, machine: CommandMachine) -> Job[CommandOutcome]:
         """Queue a command without waiting for it."""
-        queue = self._commands.setdefault(machine.command, deque())
-        job = Job(machine, None)
-        queue.append(job)
-        if len(queue) == 1:
-            self._send(machine.start(self._clock()), job)
-        return job
+        return self._under_way.post(machine)
 
     def pass_on(self, frame: bytes) -> bool:
         """Send another ground station's frame as it is, and record it; False when too many wait."""
@@ -171,7 +146,7 @@ class Driver:
     def require_free(self) -> None:
         """Raise BusyError when a transfer is under way, and what ``require_connected`` raises."""
         self.require_connected()
-        if self._transfer is not None:
+        if self._under_way.transferring:
             raise BusyError("another transfer with this vehicle is under way")
 
     def require_connected(self) -> None:
@@ -200,7 +175,7 @@ class Driver:
             raise NotConnectedError(self._failure)
         if self.state.connected or self.state.other_system != system_id:
             raise NotConnectedError(f"no autopilot of system {system_id} is heard in the vehicle's place")
-        self._abandon()
+        self._under_way.abandon()
         self.events, self.list_ids = EventOrder(), ListIds()
         self._identity.adopt(system_id)
         self._set_state(VehicleState())
@@ -275,12 +250,8 @@ class Driver:
         while self._outgoing:
             await self._link.send(self._outgoing.popleft())
 
-    def _send(self, messages: list[Message], job: Job[Any]) -> None:
-        """Queue a job's messages for the task, and wake it should it be waiting."""
-        self._queue(messages, job)
-        self._wake()
-
     def _queue(self, messages: list[Message], job: Job[Any]) -> None:
+        """Queue a job's messages for the task."""
         try:
             self._outgoing.extend([self._codec.pack(message) for message in messages])
         except CodecError as error:
@@ -290,18 +261,11 @@ class Driver:
         if self._timeout is not None and not self._timeout.expired():
             self._timeout.reschedule(asyncio.get_running_loop().time())
 
-    def _machines(self) -> Iterator[Job[Any]]:
-        if self._transfer is not None:
-            yield self._transfer
-        for queue in self._commands.values():
-            if queue:
-                yield queue[0]
-
     def _next_deadline_s(self) -> float:
         deadline_s = self._heartbeat_s + _HEARTBEAT_EVERY_S
         if self.state.connected:
             deadline_s = min(deadline_s, self._heard_s + self._lost_after_s)
-        return min([deadline_s, *(job.machine.deadline_s for job in self._machines())])
+        return min(deadline_s, self._under_way.deadline_s)
 
     def _let_time_pass(self) -> None:
         now_s = self._clock()
@@ -316,10 +280,7 @@ class Driver:
         if self.state.connected and now_s >= self._heard_s + self._lost_after_s:
             self._lose()
         self._change(self._identity.waited(self.state, now_s))
-        for job in list(self._machines()):
-            if now_s >= job.machine.deadline_s:
-                self._send(job.machine.tick(now_s), job)
-                self._settle(job)
+        self._under_way.let_time_pass(now_s)
 
     def _take(self, message: Message) -> None:
         now_s = self._clock()
@@ -342,14 +303,8 @@ class Driver:
             recorder.take(message, self.state)
         if message.fields.get("target_system", 0) not in (0, self._codec.system_id):
             return  # meant for another ground station on the same link
-        for job in list(self._machines()):
-            answers = job.machine.receive(message, now_s)
-            if answers:
-                self._queue(answers, job)
-            self._settle(job)
-        if self._lingering is not None:
-            answers = self._lingering.receive(message, now_s)
-            self._outgoing.extend([self._codec.pack(answer) for answer in answers])
+        answers = self._under_way.receive(message, now_s)
+        self._outgoing.extend([self._codec.pack(answer) for answer in answers])
 
     def _event_is_new(self, message: Message) -> bool:
         """Whether to read on; events that were lost on the way are asked for again."""
@@ -360,41 +315,10 @@ class Driver:
             self._outgoing.extend([self._codec.pack(request) for request in requests])
         return new
 
-    def _settle(self, job: Job[Any]) -> None:
-        job.report()
-        machine = job.machine
-        if machine.outcome is None:
-            return
-        if job is self._transfer:
-            self._transfer = None
-            if isinstance(machine, UploadMachine):
-                self._lingering = machine
-        elif isinstance(machine, CommandMachine):
-            self._next_command(machine.command)
-
-    def _next_command(self, command: int) -> None:
-        queue = self._commands[command]
-        queue.popleft()
-        while queue and queue[0].machine.outcome is not None:
-            queue.popleft()  # cancelled while it waited
-        if queue:
-            self._send(queue[0].machine.start(self._clock()), queue[0])
-
     def _lose(self) -> None:
         """The vehicle has vanished: nobody can tell what it still took in."""
         self._set_state(replace(self.state, connected=False))
-        self._abandon()
-
-    def _abandon(self) -> None:
-        if self._transfer is not None:
-            asked = self._transfer.machine.progress.done
-            self._transfer.finish(Unknown("link-lost", asked or None))
-            self._transfer = None
-        self._lingering = None
-        for queue in self._commands.values():
-            for job in queue:
-                job.finish(CommandOutcome(getattr(job.machine, "command", 0), None))
-        self._commands.clear()
+        self._under_way.abandon()
 
     def _fail(self, reason: str) -> None:
         if self._failure is not None:
@@ -403,7 +327,7 @@ class Driver:
             self._forwards.leave(self)
         self._failure = reason
         self._set_state(replace(self.state, connected=False))
-        self._abandon()
+        self._under_way.abandon()
 
     def _change(self, state: VehicleState) -> None:
         """Take over a state that may be the same."""
