@@ -26,7 +26,7 @@ class Checks:
 
         What is read back for it also tells whether the vehicle still holds what it was sent.
         """
-        async with vehicle.busy(f"pre-flight check for plan {plan_id}"):
+        async with vehicle.turns.busy(f"pre-flight check for plan {plan_id}"):
             plan = plan_of(await self._planning.plan_text(plan_id))
             choice = for_vehicle(vehicle, choice)
             mission = await asyncio.to_thread(encode_plan, plan, choice)
@@ -49,7 +49,7 @@ class Checks:
         LinkError
             The vehicle is not there, or answers about none of them.
         """
-        async with vehicle.busy("reading parameters"):
+        async with vehicle.turns.busy("reading parameters"):
             if plan_id is None:
                 return await read_parameters(vehicle.client, names, None)
             plan = plan_of(await self._planning.plan_text(plan_id))

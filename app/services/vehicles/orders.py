@@ -21,11 +21,11 @@ FLYING_ORDERS: Final = frozenset({"arm", "start", "resume", "goto_item"})
 
 async def give_order(vehicle: Vehicle, command: str, seq: int | None) -> CommandOutcome | Outcome:
     """Give an explicit flight command; raises CommandRefusedError when the vehicle says no."""
-    vehicle.require_orders(command)
+    vehicle.turns.require_orders(command)
     log.info("flight command", vehicle=vehicle.name, command=command, seq=seq)
     try:
         if command in FLYING_ORDERS:
-            with vehicle.ordering(command):
+            with vehicle.turns.ordering(command):
                 outcome = await _order(vehicle, command, seq)
         else:
             outcome = await _order(vehicle, command, seq)

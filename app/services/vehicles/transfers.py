@@ -76,7 +76,7 @@ class Transfers:
         LinkError
             The vehicle is not there.
         """
-        async with vehicle.busy(f"upload of plan {plan_id}", changes=True):
+        async with vehicle.turns.busy(f"upload of plan {plan_id}", changes=True):
             plan = plan_of(await self._planning.plan_text(plan_id))
             # Now, as somebody may delete the plan meanwhile.
             scenario = json.loads(await self._planning.scenario_text(plan_id))
@@ -90,7 +90,7 @@ class Transfers:
             report.payload, report.gimbal = choice.payload, choice.gimbal
 
             def tell(part: PartName, made: Progress) -> None:
-                vehicle.progress = {"part": part, "done": made.done, "total": made.total}
+                vehicle.turns.progress = {"part": part, "done": made.done, "total": made.total}
                 vehicle.tell()
 
             if "mission" in parts:
@@ -105,7 +105,7 @@ class Transfers:
 
     async def download(self, vehicle: Vehicle, parts: Sequence[PartName]) -> dict[str, list[dict[str, Any]]]:
         """What a vehicle holds, part by part."""
-        async with vehicle.busy("download"):
+        async with vehicle.turns.busy("download"):
             try:
                 return {
                     name: [item_json(item) for item in await vehicle.client.download(PARTS[name])]
@@ -116,7 +116,7 @@ class Transfers:
 
     async def clear(self, vehicle: Vehicle, parts: Sequence[PartName]) -> dict[str, Outcome]:
         """Empty a vehicle's lists."""
-        async with vehicle.busy("clearing", changes=True):
+        async with vehicle.turns.busy("clearing", changes=True):
             outcomes: dict[str, Outcome] = {}
             for name in parts:
                 outcomes[name] = await vehicle.client.clear(PARTS[name])
@@ -180,7 +180,7 @@ class Transfers:
         LinkError
             There is no link.
         """
-        async with vehicle.busy("acknowledging another aircraft", changes=True):
+        async with vehicle.turns.busy("acknowledging another aircraft", changes=True):
             if vehicle.state.connected or vehicle.state.other_system != system_id:
                 raise ConflictError(f"no system {system_id} answers in the place of {vehicle.name}")
             await vehicle.begin_anew()

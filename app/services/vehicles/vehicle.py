@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-from collections.abc import AsyncIterator, Awaitable, Callable, Iterator
-from contextlib import asynccontextmanager, contextmanager
+from collections.abc import Awaitable, Callable
 from datetime import UTC, datetime
-from typing import Any, Literal
+from typing import Literal
 
 import structlog
 
@@ -20,6 +19,7 @@ from app.services.vehicles.recorder import FlightRecorder, HeldPlan
 from app.services.vehicles.recordings import Recordings
 from app.services.vehicles.simulated import SimulatedAircraft
 from app.services.vehicles.times import DEFAULT_TIMES, LinkTimes
+from app.services.vehicles.turns import Turns
 from app.services.vehicles.uploads import UploadReport, read_back
 from mavlink import errors as mavlink_errors
 from mavlink.encoding.options import DEFAULT_PAYLOAD
@@ -79,10 +79,6 @@ class Vehicle:
         self.link_failure: str | None = None
         self.held: HeldPlan | None = None
         self.upload: UploadReport | None = None
-        self.progress: dict[str, Any] | None = None
-        self.operation: str | None = None
-        self._changing = False
-        self._orders: list[str] = []
         self._gone = False
         self.simulated: SimulatedAircraft | None = simulated_of(url)
         self.replay = is_replay(url)
@@ -90,6 +86,7 @@ class Vehicle:
         self.system_id = record.system_id if self._is_itself else 0
         self._identified = identified
         self.forwards = Forwards(self._station_said)
+        self.turns = Turns(record.name, self.replay, self.forwards)
         self._forward = record.forward
         self._recordings = None if self.replay else recordings
         self._writer: TlogWriter | None = None
@@ -286,7 +283,7 @@ class Vehicle:
         A read-back tells, until the vehicle reports another id or falls silent; where there was none, its id
         is a first sign. Of one that is silent, or gives no ids and was not read, nothing is known.
         """
-        if self.sent is None or not self.state.connected or self._changing:
+        if self.sent is None or not self.state.connected or self.turns.changing:
             return "unknown", None
         expected, reported = self.sent.list_id, self.state.mission_id
         if MissionType.MISSION in self.client.replaced:
@@ -296,11 +293,6 @@ class Vehicle:
         if expected is None or reported is None:
             return "unknown", None
         return ("held" if reported == expected else "differs"), "id"
-
-    def require_orders(self, what: str) -> None:
-        """Raise ConflictError for a recording, which takes none."""
-        if self.replay:
-            raise ConflictError(f"{self.name} is a recording: it takes no transfers and no commands ({what})")
 
     async def _drop(self) -> None:
         connection, self._connection = self._connection, None
@@ -312,50 +304,6 @@ class Vehicle:
         """Put a simulated aircraft somewhere else: a new one on a new link."""
         await self._shut()
         await self.open(home, timeout_s)
-
-    @asynccontextmanager
-    async def busy(self, operation: str, *, changes: bool = False) -> AsyncIterator[None]:
-        """One operation at a time; raises BusyError naming the one at work.
-
-        Parameters
-        ----------
-        changes
-            Whether it changes what the vehicle holds; then no order to fly may be under way.
-        """
-        self.require_orders(operation)
-        if self.operation is not None:
-            raise BusyError(f"{self.name} is busy: {self.operation}")
-        if changes and self._orders:
-            raise BusyError(f"{self.name} is busy: the order {self._orders[0]} is not answered yet")
-        self.operation, self._changing = operation, changes
-        try:
-            with self.forwards.reserved(changes=changes):
-                yield
-        except mavlink_errors.BusyError as error:
-            raise BusyError(f"{self.name} is busy: {error}") from error
-        except (mavlink_errors.NotConnectedError, mavlink_errors.LinkError) as error:
-            raise LinkError(f"{self.name}: {error}") from error
-        finally:
-            self.operation = None
-            self._changing = False
-            self.progress = None
-
-    @contextmanager
-    def ordering(self, order: str) -> Iterator[None]:
-        """An order to fly is under way; raises BusyError while what is to be flown is being changed."""
-        if self._changing:
-            raise BusyError(f"{self.name} is busy: {self.operation}; {order} waits for its end")
-        station = self.forwards.changing
-        if station is not None:
-            raise BusyError(
-                f"{self.name} is busy: another ground station (system {station}) is changing its mission; "
-                f"{order} waits for its end"
-            )
-        self._orders.append(order)
-        try:
-            yield
-        finally:
-            self._orders.remove(order)
 
     async def _watch(self) -> None:
         """Follow the vehicle; open the link anew when it fails, as a TCP peer that restarts makes it do."""
@@ -383,7 +331,7 @@ class Vehicle:
                 elif self._is_itself and state.system_id != self.system_id:
                     self.system_id = state.system_id
                     await self._identified(self)
-                elif self.operation is not None or self.forwards.exchanging is not None:
+                elif self.turns.operation is not None or self.forwards.exchanging is not None:
                     pass  # somebody is at the lists: what they hold is read afterwards
                 elif self.pending and tries:
                     tries -= 1
@@ -396,7 +344,7 @@ class Vehicle:
     async def _confirm(self, held: HeldMission, *, last: bool) -> None:
         """Read back whether it holds what it held before; a vehicle that does not answer is not believed."""
         try:
-            async with self.busy("reading back the mission held before the restart"):
+            async with self.turns.busy("reading back the mission held before the restart"):
                 same = await self._still_holds(self, held)
                 if same:
                     await self.hold(held)
@@ -426,7 +374,7 @@ class Vehicle:
         report = self.upload
         assert report is not None
         with contextlib.suppress(LinkError, BusyError):
-            async with self.busy("reading back an upload whose outcome is unknown"):
+            async with self.turns.busy("reading back an upload whose outcome is unknown"):
                 await read_back(client, report)
         if not self.pending:
             log.info("unknown upload resolved", vehicle=self.name, outcome=report.outcome)
