@@ -10,8 +10,8 @@ from fastapi.responses import HTMLResponse
 from app.deps import FleetDep, FlightsDep, PlanningDep, SettingsDep
 from app.problems import responses
 from app.routers.streams import page_answer
-from app.schemas import PlanOut
-from app.schemas_vehicles import FlightList, FlightOut
+from app.schemas.flights import FlightList, FlightOut
+from app.schemas.plans import PlanOut
 from app.services.documents import write_json
 
 router = APIRouter(prefix="/api/v1/flights", tags=["flights"])

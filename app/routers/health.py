@@ -6,7 +6,7 @@ from fastapi import APIRouter, Response
 from prometheus_client import CONTENT_TYPE_LATEST, generate_latest
 
 from app.deps import HouseDep
-from app.schemas import Health
+from app.schemas.health import Health
 from app.version import VERSION
 
 router = APIRouter(tags=["health"])

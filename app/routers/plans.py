@@ -13,7 +13,7 @@ from app.deps import PlanningDep, SettingsDep
 from app.problems import responses
 from app.routers.bodies import SCENARIO_BODY
 from app.routers.streams import event_stream
-from app.schemas import PlanList, PlanOut, PlanStateName
+from app.schemas.plans import PlanList, PlanOut, PlanStateName
 from app.services.documents import read_object
 
 router = APIRouter(prefix="/api/v1/plans", tags=["plans"])

@@ -10,7 +10,8 @@ from fastapi import APIRouter, Query, Request, Response
 from app.deps import PlanningDep
 from app.problems import responses
 from app.routers.bodies import SCENARIO_BODY
-from app.schemas import FindingOut, ValidationOut
+from app.schemas.base import FindingOut
+from app.schemas.plans import ValidationOut
 from app.services.documents import read_object, write_json
 from app.services.errors import RefusedError
 from app.services.regions_import import FORMAT_OF_MEDIA_TYPE, ImportOptions, import_file

@@ -13,22 +13,15 @@ from sse_starlette import EventSourceResponse, ServerSentEvent
 from app.deps import ChecksDep, FleetDep, TransfersDep
 from app.problems import responses
 from app.routers.streams import event_stream, file_stream
-from app.schemas_vehicles import (
-    ClearedOut,
+from app.schemas.forwards import ForwardsIn, ForwardsOut
+from app.schemas.missions import ClearedOut, HeldOut, MissionIn, Part, UploadOut
+from app.schemas.preflight import ParametersOut, PreflightIn, PreflightOut
+from app.schemas.vehicles import (
     CommandIn,
     CommandOut,
-    ForwardsIn,
-    ForwardsOut,
-    HeldOut,
     IdentityIn,
     LogList,
     LogOut,
-    MissionIn,
-    ParametersOut,
-    Part,
-    PreflightIn,
-    PreflightOut,
-    UploadOut,
     VehicleIn,
     VehicleList,
     VehicleOut,

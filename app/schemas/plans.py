@@ -1,31 +1,16 @@
-"""Bodies of requests and answers."""
+"""Bodies of answers about scenarios and plans."""
 
 from __future__ import annotations
 
 from datetime import datetime
 from typing import Any, Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, Field
 
-from app.services.records import PlanRecord, TerrainRecord
+from app.schemas.base import FindingOut
+from app.services.records import PlanRecord
 
 PlanStateName = Literal["queued", "running", "done", "failed", "cancelled"]
-
-
-class Strict(BaseModel):
-    """A request body: unknown members, NaN and infinities are refused."""
-
-    model_config = ConfigDict(extra="forbid", allow_inf_nan=False, strict=True)
-
-
-class FindingOut(BaseModel):
-    """One thing wrong, or worth knowing, about a scenario."""
-
-    feature: str
-    rule: str
-    message: str
-    fix: str
-    severity: Literal["error", "warning"]
 
 
 class ValidationOut(BaseModel):
@@ -98,42 +83,3 @@ class PlanList(BaseModel):
 
     plans: list[PlanOut]
     total: int
-
-
-class TerrainOut(BaseModel):
-    """An elevation raster's record."""
-
-    id: str = Field(description="What the member `terrain` of a scenario holds.")
-    name: str
-    bounds_deg: tuple[float, float, float, float] = Field(description="West, south, east, north.")
-    resolution_m: float = Field(description="Distance between posts, the finer of the two.")
-    rows: int
-    columns: int
-    min_m: float
-    max_m: float
-    known_fraction: float = Field(description="The part of the posts that have a height.")
-    datum: str = Field(description="What the heights count from.")
-    sha256: str = Field(description="Of the file as it was sent.")
-    created_at: datetime
-    links: dict[str, str]
-
-    @classmethod
-    def of(cls, record: TerrainRecord) -> Self:
-        """The answer for a record."""
-        members = {name: getattr(record, name) for name in TerrainRecord.__slots__}
-        return cls(**members, links={"self": f"/api/v1/terrain/{record.id}"})
-
-
-class TerrainList(BaseModel):
-    """Elevation rasters, newest first."""
-
-    terrain: list[TerrainOut]
-    total: int
-
-
-class Health(BaseModel):
-    """A probe's answer."""
-
-    status: Literal["ok", "starting"]
-    version: str
-    checks: dict[str, bool] = Field(default_factory=dict)

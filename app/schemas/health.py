@@ -1,0 +1,15 @@
+"""The body of a probe's answer."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import BaseModel, Field
+
+
+class Health(BaseModel):
+    """A probe's answer."""
+
+    status: Literal["ok", "starting"]
+    version: str
+    checks: dict[str, bool] = Field(default_factory=dict)

@@ -1,0 +1,142 @@
+"""Bodies of requests and answers about vehicles."""
+
+from __future__ import annotations
+
+from datetime import datetime
+from typing import Any, Literal, Self
+
+from pydantic import BaseModel, Field
+
+from app.schemas.base import Strict
+from app.schemas.forwards import ForwardIn, ForwardOut, ForwardsOut
+from app.schemas.missions import SentOut, UploadOut
+from app.services.vehicles.forwarding import MOST_FORWARDS
+from app.services.vehicles.items import state_json
+from app.services.vehicles.vehicle import Vehicle
+
+CommandName = Literal["arm", "disarm", "start", "pause", "resume", "rtl", "goto_item"]
+
+
+class VehicleIn(Strict):
+    """A vehicle to connect."""
+
+    name: str = Field(
+        min_length=1,
+        max_length=100,
+        pattern=r"^[^\x00-\x1f\x7f]*[^\s\x00-\x1f\x7f][^\x00-\x1f\x7f]*$",
+        description="Something to see, and no control characters.",
+        examples=["uav-1"],
+    )
+    url: str = Field(
+        min_length=1,
+        max_length=300,
+        description="udpin:host:port, udpout:host:port, tcp:host:port, serial:device:baud, or sim: for a "
+        "simulated aircraft, e.g. sim:?speedup=20&home=33.48,-117.75&autopilot=px4&airspeed=20"
+        "&turn_radius=100&wind=8,270. sim: alone is a fixed wing, type=multirotor the other kind. Without a "
+        "home it stands where the plan it gets begins. A recording "
+        "(.tlog) is watched with replay:path?speedup=10&plan=<id of the plan flown>&payload=<as uploaded>.",
+        examples=["sim:", "udpin:127.0.0.1:14550"],
+    )
+    timeout_s: float = Field(
+        default=10.0, ge=0.1, le=60, description="How long to wait for its first heartbeat."
+    )
+    forward: list[ForwardIn] = Field(
+        default=[], max_length=MOST_FORWARDS, description="Other ground stations that hear it too."
+    )
+
+
+class VehicleOut(BaseModel):
+    """A vehicle and how it is."""
+
+    id: str
+    name: str
+    url: str
+    connected: bool
+    system_id: int | None = Field(description="Its MAVLink system; null: not heard yet.")
+    other_system: int | None = Field(
+        description="Another autopilot that answers in its place while it is silent: a swapped aircraft. It "
+        "is not talked to until it is acknowledged, or let go and connected as another vehicle."
+    )
+    link_failure: str | None = Field(description="Why its link is not open; it is tried again and again.")
+    simulated: bool
+    replay: bool = Field(description="It is a recording: it takes no transfers and no commands.")
+    created_at: datetime
+    operation: str | None = Field(description="What is at work on it now.")
+    transfer: dict[str, Any] | None = Field(description="Of an upload at work: part, done, total.")
+    pending: bool = Field(description="An upload's outcome is unknown; it is read back on reconnection.")
+    plan_id: str | None = Field(description="The plan it holds, read back and compared.")
+    sent: SentOut | None = Field(description="The mission last sent from here; null: none, or cleared.")
+    flight_id: str | None = Field(description="The flight being recorded.")
+    forward: list[ForwardOut] = Field(description="Other ground stations its link is forwarded to.")
+    upload: UploadOut | None = Field(description="The last upload, without its items.")
+    state: dict[str, Any] = Field(description="Position, attitude, mode, mission, battery …; null: not said.")
+
+    @classmethod
+    def of(cls, vehicle: Vehicle) -> Self:
+        """The answer for a vehicle."""
+        return cls(
+            id=vehicle.id,
+            name=vehicle.name,
+            url=vehicle.url,
+            connected=vehicle.state.connected,
+            system_id=vehicle.state.system_id or vehicle.system_id or None,
+            other_system=vehicle.state.other_system,
+            link_failure=vehicle.link_failure,
+            simulated=vehicle.simulated is not None,
+            replay=vehicle.replay,
+            created_at=vehicle.created_at,
+            operation=vehicle.turns.operation,
+            transfer=vehicle.turns.progress,
+            pending=vehicle.pending,
+            plan_id=vehicle.held.plan_id if vehicle.held else None,
+            sent=SentOut.of(vehicle),
+            flight_id=vehicle.flight_id,
+            forward=ForwardsOut.of(vehicle).forward,
+            upload=UploadOut.of(vehicle.upload, items=False) if vehicle.upload else None,
+            state=state_json(vehicle.state),
+        )
+
+
+class VehicleList(BaseModel):
+    """Vehicles, oldest first."""
+
+    vehicles: list[VehicleOut]
+
+
+class LogOut(BaseModel):
+    """One recording of a vehicle's link."""
+
+    name: str
+    size_bytes: int
+    ended_at: datetime = Field(description="When it was last written to.")
+    url: str = Field(description="Where to download it; play it with the vehicle address replay:<file>.")
+
+
+class LogList(BaseModel):
+    """Recordings of a vehicle's link, oldest first."""
+
+    vehicle_id: str
+    failure: str | None = Field(description="Why the link is no longer recorded, e.g. a full disk.")
+    logs: list[LogOut]
+
+
+class IdentityIn(Strict):
+    """The aircraft that is the vehicle from now on."""
+
+    system_id: int = Field(ge=1, le=255, description="As other_system says.")
+
+
+class CommandIn(Strict):
+    """An explicit flight command."""
+
+    command: CommandName
+    seq: int | None = Field(default=None, ge=0, le=65535, description="Item, for goto_item.")
+
+
+class CommandOut(BaseModel):
+    """What became of a command; a refusal is a 409 problem."""
+
+    vehicle_id: str
+    command: CommandName
+    outcome: Literal["accepted", "unknown"]
+    detail: str
