@@ -9,7 +9,7 @@ from fastapi import Depends, Request
 from app.services.flights import FlightService
 from app.services.house import House
 from app.services.planning import PlanningService
-from app.services.terrain import TerrainService
+from app.services.terrain.service import TerrainService
 from app.services.vehicles.checks import Checks
 from app.services.vehicles.fleet import Fleet
 from app.services.vehicles.transfers import Transfers

@@ -85,7 +85,7 @@ def with_terrain(document: dict[str, Any], path: str) -> tuple[dict[str, Any], T
     """A scenario that lies on the raster in a file, and the raster; the file's name is the terrain's."""
     from app.cli.output import read_bytes
     from app.services.errors import RefusedError
-    from app.services.rasters import read_raster
+    from app.services.terrain.rasters import read_raster
 
     name = document.get("terrain") or Path(path).stem
     try:

@@ -9,7 +9,7 @@ from fastapi import APIRouter, Query, Request, Response
 from app.deps import TerrainDep
 from app.problems import responses
 from app.schemas.terrain import TerrainList, TerrainOut
-from app.services.rasters import VerticalDatum
+from app.services.terrain.rasters import VerticalDatum
 
 router = APIRouter(prefix="/api/v1/terrain", tags=["terrain"])
 

@@ -18,7 +18,7 @@ from app.services.store.plans import PlanStore
 from app.services.store.terrain import TerrainStore
 from app.services.store.uploads import UploadStore
 from app.services.store.vehicles import VehicleStore
-from app.services.terrain import TerrainService
+from app.services.terrain.service import TerrainService
 from app.services.validation import Verdict, judge
 from app.services.vehicles.checks import Checks
 from app.services.vehicles.fleet import Fleet

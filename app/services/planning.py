@@ -20,9 +20,9 @@ from app.services.hub import Hub
 from app.services.metrics import PLANNING_SECONDS, PLANS_ENDED, PLANS_RUNNING
 from app.services.pool import Pool, WorkerDiedError
 from app.services.progress_pipe import progress_pipe
-from app.services.rasters import stored_terrain
 from app.services.records import PlanRecord
 from app.services.store.plans import PlanStore
+from app.services.terrain.rasters import stored_terrain
 from app.services.validation import Verdict, judge
 from planner.airspace.terrain import Terrain
 

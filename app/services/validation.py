@@ -23,7 +23,7 @@ def judge(document: Mapping[str, Any], terrain_folder: str | None = None) -> Ver
 
     ``terrain_folder`` is where uploaded rasters are.
     """
-    from app.services.rasters import stored_terrain
+    from app.services.terrain.rasters import stored_terrain
     from planner.validate import findings
 
     found = findings(document, None if terrain_folder is None else partial(stored_terrain, terrain_folder))

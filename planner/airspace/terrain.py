@@ -1,6 +1,6 @@
 """The ground's height: an elevation raster in degrees, and its piece on the scenario's local grid.
 
-Files are read at the edges (``app.services.rasters``); what arrives here is a plain value. Everything that
+Files are read at the edges (``app.services.terrain``); what arrives here is a plain value. Everything that
 needs a height asks one surface, the bilinear one between the posts of ``Ground``, so that the planner and
 the judge cannot differ about it.
 """

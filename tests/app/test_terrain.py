@@ -22,9 +22,9 @@ from typer.testing import CliRunner
 
 from app.cli.root import cli
 from app.main import create_app
-from app.services import rasters
 from app.services.errors import RefusedError
-from app.services.rasters import pack, read_raster, stored_terrain, unpack
+from app.services.terrain import rasters
+from app.services.terrain.rasters import pack, read_raster, stored_terrain, unpack
 from app.settings import Settings
 from tests.app.conftest import fake_house, serving
 from tests.app.rasters import jacksboro, ramp, written

@@ -11,10 +11,10 @@ from pathlib import Path
 import numpy as np
 
 from app.services.errors import RefusedError
-from app.services.rasters import VerticalDatum, known_fraction, pack, read_raster, stored_terrain
 from app.services.records import TerrainRecord
 from app.services.store.plans import now
 from app.services.store.terrain import TerrainStore
+from app.services.terrain.rasters import VerticalDatum, known_fraction, pack, read_raster, stored_terrain
 from planner.airspace.terrain import Terrain
 from planner.errors import Finding
 
