@@ -6,7 +6,7 @@ from typing import Annotated, cast
 
 from fastapi import Depends, Request
 
-from app.services.flights import FlightService
+from app.services.flights.service import FlightService
 from app.services.house import House
 from app.services.planning import PlanningService
 from app.services.terrain.service import TerrainService

@@ -9,7 +9,7 @@ from pathlib import Path
 import structlog
 
 from app.services import work
-from app.services.flights import FlightService
+from app.services.flights.service import FlightService
 from app.services.planning import PlanningService, Task
 from app.services.pool import Pool, WorkerPool
 from app.services.store.database import Database

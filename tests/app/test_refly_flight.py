@@ -12,7 +12,7 @@ from shapely.geometry import shape
 from shapely.geometry.base import BaseGeometry
 
 from app.routers.bodies import EXAMPLE
-from app.services.as_flown import TRIGGER_M
+from app.services.flights.as_flown import TRIGGER_M
 from planner.geojson import read_scenario
 from tests.app.test_problems import check_problem
 from tests.app.test_vehicles import connected, until

@@ -12,15 +12,15 @@ from shapely import transform
 from shapely.geometry import mapping
 from shapely.geometry.base import BaseGeometry
 
-from app.services.as_flown import SEEN_FRACTION, SLIVER_M, SLIVER_M2, gaps, regions_json, triggers
 from app.services.documents import read_object
 from app.services.errors import ConflictError, NotFoundError
-from app.services.gpx import write_gpx
+from app.services.flights.as_flown import SEEN_FRACTION, SLIVER_M, SLIVER_M2, gaps, regions_json, triggers
+from app.services.flights.gpx import write_gpx
+from app.services.flights.photos import photos_of, spacing_of, switched_by_photos
+from app.services.flights.refly import refly_scenario
 from app.services.missions import plan_of
-from app.services.photos import photos_of, spacing_of, switched_by_photos
 from app.services.planning import PlanningService
 from app.services.records import FlightEvent, FlightRecord, TrackSample
-from app.services.refly import refly_scenario
 from app.services.report import write_flight_report
 from app.services.store.flights import FlightStore
 from planner.airspace.terrain import Terrains

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
-from app.services.photos import MISSING_PART, Spacing, place_of
+from app.services.flights.photos import MISSING_PART, Spacing, place_of
 from app.services.records import FlightEvent, TrackSample
 from planner.coverage.flown import FlownCoverage
 from planner.plan import Collect, Plan

@@ -14,11 +14,11 @@ from shapely.geometry import LineString, shape
 
 from app.main import create_app
 from app.routers.bodies import EXAMPLE
-from app.services.as_flown import SLIVER_M, gaps
+from app.services.flights.as_flown import SLIVER_M, gaps
+from app.services.flights.refly import refly_scenario
 from app.services.house import House
 from app.services.missions import plan_of
 from app.services.records import TrackSample
-from app.services.refly import refly_scenario
 from app.services.store.flights import FlightStore
 from app.settings import Settings
 from planner.coverage.flown import FlownCoverage

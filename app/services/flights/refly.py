@@ -6,7 +6,7 @@ import copy
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from app.services.as_flown import Gap
+from app.services.flights.as_flown import Gap
 from planner.frames import LocalFrame
 
 #: Properties of a region that no longer hold for a part of it.

@@ -9,7 +9,7 @@ import httpx
 
 from app.imports import ImportOptions, import_regions
 from app.main import create_app
-from app.services.gpx import write_gpx
+from app.services.flights.gpx import write_gpx
 from app.services.records import FlightRecord, TrackSample
 from app.settings import Settings
 from tests.app.conftest import fake_house, serving

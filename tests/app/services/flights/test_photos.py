@@ -11,16 +11,16 @@ from hypothesis import strategies as st
 
 from app.main import create_app
 from app.routers.bodies import EXAMPLE
+from app.services.flights.photos import Spacing, photos_of, spacing_of, switched_by_photos
 from app.services.missions import plan_of
-from app.services.photos import Spacing, photos_of, spacing_of, switched_by_photos
 from app.services.records import FlightEvent, TrackSample
 from app.services.store.flights import FlightStore
 from app.settings import Settings
 from planner.frames import LocalFrame
 from planner.plan import Plan
 from tests.app.conftest import fake_house, serving
+from tests.app.services.flights.test_refly import SCENARIO, Flown, track_of
 from tests.app.test_problems import check_problem
-from tests.app.test_refly import SCENARIO, Flown, track_of
 
 FRAME = LocalFrame(-117.75, 33.5)
 SPEED_M_S = 20.0
