@@ -11,7 +11,7 @@ from app.deps import PlanningDep
 from app.problems import responses
 from app.routers.streams import page_answer
 from app.services.missions import AutopilotName, MissionChoice, mission_bytes, plan_of
-from app.services.report import write_report
+from app.services.reports.report import write_report
 
 router = APIRouter(prefix="/api/v1/plans/{plan_id}", tags=["artefacts"])
 

@@ -21,7 +21,7 @@ from app.services.flights.refly import refly_scenario
 from app.services.missions import plan_of
 from app.services.planning import PlanningService
 from app.services.records import FlightEvent, FlightRecord, TrackSample
-from app.services.report import write_flight_report
+from app.services.reports.report import write_flight_report
 from app.services.store.flights import FlightStore
 from planner.airspace.terrain import Terrains
 from planner.coverage import flown

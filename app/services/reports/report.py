@@ -11,9 +11,9 @@ from typing import Any
 from jinja2 import Environment, FileSystemLoader, StrictUndefined, Template, select_autoescape
 
 from app.services.records import FlightRecord, PlanRecord
-from app.services.report_map import draw_map
+from app.services.reports.report_map import draw_map
 
-TEMPLATES = Path(__file__).resolve().parents[1] / "templates"
+TEMPLATES = Path(__file__).resolve().parents[2] / "templates"
 
 
 def _number(value: float | None, decimals: int = 1) -> str:

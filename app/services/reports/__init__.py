@@ -1,0 +1,1 @@
+"""Pages to print: of a plan and of a flight."""
