@@ -101,7 +101,7 @@ def import_(
     points threats of --radius-m, footprints of buildings obstacles of --height-m.
     """
     from app.services.errors import RefusedError
-    from app.services.regions_import import ImportOptions, import_file
+    from app.services.scenarios.regions_import import ImportOptions, import_file
 
     options = ImportOptions(role.value if role else None, width_m, radius_m, height_m, crs)
     try:

@@ -186,7 +186,7 @@ def plan(
 
 def validate(scenario: ScenarioFile, as_json: Json = False) -> None:
     """Check a scenario without planning it; exits with 2 when it is refused."""
-    from app.services.validation import judge
+    from app.services.scenarios.validation import judge
     from app.services.work import finding_json
 
     verdict = judge(read_document(scenario))

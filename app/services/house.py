@@ -12,6 +12,7 @@ from app.services import work
 from app.services.flights.service import FlightService
 from app.services.planning import PlanningService, Task
 from app.services.pool import Pool, WorkerPool
+from app.services.scenarios.validation import Verdict, judge
 from app.services.store.database import Database
 from app.services.store.flights import FlightStore
 from app.services.store.plans import PlanStore
@@ -19,7 +20,6 @@ from app.services.store.terrain import TerrainStore
 from app.services.store.uploads import UploadStore
 from app.services.store.vehicles import VehicleStore
 from app.services.terrain.service import TerrainService
-from app.services.validation import Verdict, judge
 from app.services.vehicles.checks import Checks
 from app.services.vehicles.fleet import Fleet
 from app.services.vehicles.recordings import Recordings

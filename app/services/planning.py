@@ -21,9 +21,9 @@ from app.services.metrics import PLANNING_SECONDS, PLANS_ENDED, PLANS_RUNNING
 from app.services.pool import Pool, WorkerDiedError
 from app.services.progress_pipe import progress_pipe
 from app.services.records import PlanRecord
+from app.services.scenarios.validation import Verdict, judge
 from app.services.store.plans import PlanStore
 from app.services.terrain.rasters import stored_terrain
-from app.services.validation import Verdict, judge
 from planner.airspace.terrain import Terrain
 
 log = structlog.get_logger(__name__)

@@ -9,9 +9,9 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-from app.services import validation
+from app.services.scenarios import validation
+from app.services.scenarios.validation import Verdict
 from app.services.summary import summary_of
-from app.services.validation import Verdict
 from app.services.work import PipeProgress, WorkResult, plan_scenario
 from planner.errors import Finding
 

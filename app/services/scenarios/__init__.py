@@ -1,0 +1,1 @@
+"""Scenarios before they are planned: judged, and made of other programs' files."""
