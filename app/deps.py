@@ -8,7 +8,7 @@ from fastapi import Depends, Request
 
 from app.services.flights.service import FlightService
 from app.services.house import House
-from app.services.planning import PlanningService
+from app.services.plans.planning import PlanningService
 from app.services.terrain.service import TerrainService
 from app.services.vehicles.checks import Checks
 from app.services.vehicles.fleet import Fleet

@@ -14,7 +14,7 @@ from starlette.exceptions import HTTPException
 
 from app.services import errors
 from app.services.documents import write_json
-from app.services.work import finding_json
+from app.services.plans.work import finding_json
 
 log = structlog.get_logger(__name__)
 

@@ -88,7 +88,7 @@ async def _fly(
 ) -> bool:
     """Upload, fly and judge; whether everything was as it should be."""
     from app.services.flights.service import seen_by
-    from app.services.missions import MissionChoice, encode_plan
+    from app.services.plans.missions import MissionChoice, encode_plan
     from app.services.vehicles.connection import connected
     from app.services.vehicles.uploads import judge_upload, new_report, send_parts
     from planner.geojson import read_plan, read_scenario

@@ -13,7 +13,7 @@ import typer
 from app.cli.output import CommandError, Exit, Json, Output, emit, emit_bytes, emit_json, read_document, say
 
 if TYPE_CHECKING:
-    from app.services.missions import MissionChoice
+    from app.services.plans.missions import MissionChoice
     from planner.plan import Plan
 
 PlanFile = Annotated[str, typer.Argument(help="Plan GeoJSON; - is standard input.", metavar="PLAN")]
@@ -108,7 +108,7 @@ def export(
 
     With --json and -o FILE the file's name, format and size go to standard output.
     """
-    from app.services.missions import MissionChoice, mission_bytes
+    from app.services.plans.missions import MissionChoice, mission_bytes
 
     document = read_plan_file(plan)
     choice = MissionChoice(vehicle, autopilot.value if autopilot else None, payload, gimbal)
@@ -142,7 +142,7 @@ def upload(
 
     Exits with 0 when the vehicle holds what was meant, else with 1. Nothing arms or moves the vehicle.
     """
-    from app.services.missions import MissionChoice
+    from app.services.plans.missions import MissionChoice
 
     document = read_plan_file(plan)
     names = list(dict.fromkeys(choice.value for choice in part or [PartChoice.MISSION]))
@@ -169,7 +169,7 @@ def upload(
 async def _upload(
     plan: Plan, url: str, parts: list[Any], choice: MissionChoice, override: str | None, timeout_s: float
 ) -> dict[str, Any]:
-    from app.services.missions import encode_plan
+    from app.services.plans.missions import encode_plan
     from app.services.vehicles.connection import connected
     from app.services.vehicles.uploads import judge_upload, new_report, report_json, send_parts
 

@@ -113,7 +113,7 @@ def read_document(source: str) -> dict[str, Any]:
 def fail(error: CommandError, as_json: bool) -> NoReturn:
     """Tell an error on standard error and end."""
     if as_json:
-        from app.services.work import finding_json
+        from app.services.plans.work import finding_json
 
         body = {"error": str(error), "errors": [finding_json(f) for f in error.findings], **error.more}
         say(json.dumps(body, ensure_ascii=False, default=str))

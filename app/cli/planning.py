@@ -179,15 +179,15 @@ def plan(
     emit_json(document, output)
     tell_plan(document)
     if as_json and output != "-":
-        from app.services.summary import summary_of
+        from app.services.plans.summary import summary_of
 
         emit_json(summary_of(document))
 
 
 def validate(scenario: ScenarioFile, as_json: Json = False) -> None:
     """Check a scenario without planning it; exits with 2 when it is refused."""
+    from app.services.plans.work import finding_json
     from app.services.scenarios.validation import judge
-    from app.services.work import finding_json
 
     verdict = judge(read_document(scenario))
     if as_json:

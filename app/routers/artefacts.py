@@ -10,7 +10,7 @@ from fastapi import APIRouter, Query, Response
 from app.deps import PlanningDep
 from app.problems import responses
 from app.routers.streams import page_answer
-from app.services.missions import AutopilotName, MissionChoice, mission_bytes, plan_of
+from app.services.plans.missions import AutopilotName, MissionChoice, mission_bytes, plan_of
 from app.services.reports.report import write_report
 
 router = APIRouter(prefix="/api/v1/plans/{plan_id}", tags=["artefacts"])

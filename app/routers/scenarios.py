@@ -14,8 +14,8 @@ from app.schemas.base import FindingOut
 from app.schemas.plans import ValidationOut
 from app.services.documents import read_object, write_json
 from app.services.errors import RefusedError
+from app.services.plans.work import finding_json
 from app.services.scenarios.regions_import import FORMAT_OF_MEDIA_TYPE, ImportOptions, import_file
-from app.services.work import finding_json
 
 router = APIRouter(prefix="/api/v1/scenarios", tags=["scenarios"])
 

@@ -26,7 +26,7 @@ from app.schemas.vehicles import (
     VehicleList,
     VehicleOut,
 )
-from app.services.missions import MissionChoice
+from app.services.plans.missions import MissionChoice
 from app.services.vehicles.orders import give_order
 from mavlink.transfer.command import CommandOutcome
 

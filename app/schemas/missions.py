@@ -9,9 +9,9 @@ from pydantic import BaseModel, Field, field_validator, model_validator
 
 from app.schemas.base import FindingOut, Strict
 from app.schemas.preflight import GIMBAL_IS, PreflightOut
+from app.services.plans.work import finding_json
 from app.services.vehicles.uploads import UploadReport
 from app.services.vehicles.vehicle import Vehicle
-from app.services.work import finding_json
 
 Part = Literal["mission", "fence", "rally"]
 

@@ -8,10 +8,10 @@ from pathlib import Path
 
 import structlog
 
-from app.services import work
 from app.services.flights.service import FlightService
-from app.services.planning import PlanningService, Task
-from app.services.pool import Pool, WorkerPool
+from app.services.plans import work
+from app.services.plans.planning import PlanningService, Task
+from app.services.plans.pool import Pool, WorkerPool
 from app.services.scenarios.validation import Verdict, judge
 from app.services.store.database import Database
 from app.services.store.flights import FlightStore

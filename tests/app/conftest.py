@@ -17,8 +17,8 @@ from app.logging import configure
 from app.main import create_app
 from app.routers.bodies import EXAMPLE
 from app.services.house import House, Limits
+from app.services.plans.work import plan_scenario
 from app.services.vehicles.times import LinkTimes
-from app.services.work import plan_scenario
 from app.settings import Settings
 from mavlink.transfer.machine import TransferSettings
 from tests.app import fakes

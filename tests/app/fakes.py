@@ -9,10 +9,10 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
+from app.services.plans.summary import summary_of
+from app.services.plans.work import PipeProgress, WorkResult, plan_scenario
 from app.services.scenarios import validation
 from app.services.scenarios.validation import Verdict
-from app.services.summary import summary_of
-from app.services.work import PipeProgress, WorkResult, plan_scenario
 from planner.errors import Finding
 
 

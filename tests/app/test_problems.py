@@ -169,7 +169,7 @@ async def test_unforeseen_error_is_a_bare_500(
     async def broken(*_: object) -> None:
         raise RuntimeError("a secret of the inside")
 
-    monkeypatch.setattr("app.services.planning.PlanningService.get", broken)
+    monkeypatch.setattr("app.services.plans.planning.PlanningService.get", broken)
     answer = await client.get(PLANS + "/x", headers={"X-Request-ID": "abc"})
     check_problem(answer, 500)
     assert "secret" not in answer.text

@@ -18,8 +18,8 @@ from app.services.flights.as_flown import SEEN_FRACTION, SLIVER_M, SLIVER_M2, ga
 from app.services.flights.gpx import write_gpx
 from app.services.flights.photos import photos_of, spacing_of, switched_by_photos
 from app.services.flights.refly import refly_scenario
-from app.services.missions import plan_of
-from app.services.planning import PlanningService
+from app.services.plans.missions import plan_of
+from app.services.plans.planning import PlanningService
 from app.services.records import FlightEvent, FlightRecord, TrackSample
 from app.services.reports.report import write_flight_report
 from app.services.store.flights import FlightStore

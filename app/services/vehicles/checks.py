@@ -7,8 +7,8 @@ import json
 from collections.abc import Sequence
 from dataclasses import replace
 
-from app.services.missions import MissionChoice, encode_plan, plan_of
-from app.services.planning import PlanningService
+from app.services.plans.missions import MissionChoice, encode_plan, plan_of
+from app.services.plans.planning import PlanningService
 from app.services.vehicles.inspection import ParameterReport, inspect, mission_needs, read_parameters
 from app.services.vehicles.preflight import Preflight
 from app.services.vehicles.vehicle import Vehicle

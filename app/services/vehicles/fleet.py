@@ -15,8 +15,8 @@ import structlog
 from app.services.errors import ConflictError, NotFoundError, ServiceError
 from app.services.hub import Hub
 from app.services.metrics import VEHICLES
-from app.services.missions import plan_of
-from app.services.planning import PlanningService
+from app.services.plans.missions import plan_of
+from app.services.plans.planning import PlanningService
 from app.services.records import VehicleRecord
 from app.services.store.flights import FlightStore
 from app.services.store.vehicles import VehicleStore

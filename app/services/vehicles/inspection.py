@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from app.services.errors import LinkError, RefusedError
-from app.services.missions import PARTS, MissionChoice, PartName
+from app.services.plans.missions import PARTS, MissionChoice, PartName
 from app.services.vehicles.preflight import Observed, Preflight, preflight, settle_m
 from app.services.vehicles.uploads import UploadReport, comparing
 from mavlink.dialects.mission import Mission

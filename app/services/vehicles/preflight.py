@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from app.services.missions import PARTS, PartName, mission_findings
+from app.services.plans.missions import PARTS, PartName, mission_findings
 from app.services.vehicles.pointing import pointing_findings
 from mavlink.dialects.mission import Mission
 from mavlink.encoding.arcs import circles_widen_m

@@ -12,8 +12,8 @@ import structlog
 
 from app.services.errors import ConflictError, LinkError, NotFoundError, RefusedError
 from app.services.metrics import UPLOADS
-from app.services.missions import PARTS, MissionChoice, PartName, encode_plan, plan_of
-from app.services.planning import PlanningService
+from app.services.plans.missions import PARTS, MissionChoice, PartName, encode_plan, plan_of
+from app.services.plans.planning import PlanningService
 from app.services.records import HeldMission, SentMission
 from app.services.store.uploads import UploadStore
 from app.services.store.vehicles import VehicleStore

@@ -7,11 +7,11 @@ from dataclasses import dataclass, field
 from typing import Any, Final, Literal
 
 from app.services.errors import RefusedError, UnsafeError
-from app.services.missions import PARTS, PartName, mission_findings
+from app.services.plans.missions import PARTS, PartName, mission_findings
+from app.services.plans.work import finding_json
 from app.services.vehicles.items import difference_json, item_json
 from app.services.vehicles.preflight import Preflight
 from app.services.vehicles.recorder import is_flying
-from app.services.work import finding_json
 from mavlink.dialects import Dialect
 from mavlink.dialects.compare import Difference, differences
 from mavlink.dialects.mission import Mission

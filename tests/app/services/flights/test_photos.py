@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from app.main import create_app
 from app.routers.bodies import EXAMPLE
 from app.services.flights.photos import Spacing, photos_of, spacing_of, switched_by_photos
-from app.services.missions import plan_of
+from app.services.plans.missions import plan_of
 from app.services.records import FlightEvent, TrackSample
 from app.services.store.flights import FlightStore
 from app.settings import Settings

@@ -17,7 +17,7 @@ from app.routers.bodies import EXAMPLE
 from app.services.flights.as_flown import SLIVER_M, gaps
 from app.services.flights.refly import refly_scenario
 from app.services.house import House
-from app.services.missions import plan_of
+from app.services.plans.missions import plan_of
 from app.services.records import TrackSample
 from app.services.store.flights import FlightStore
 from app.settings import Settings

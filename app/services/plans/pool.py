@@ -12,7 +12,7 @@ from typing import Any, Protocol
 import structlog
 from pebble import ProcessExpired, ProcessPool
 
-from app.services import work
+from app.services.plans import work
 
 log = structlog.get_logger(__name__)
 

@@ -13,13 +13,13 @@ from typing import Any
 
 import structlog
 
-from app.services import work
 from app.services.documents import write_json
 from app.services.errors import ConflictError, NotFoundError, OverloadedError, RefusedError
 from app.services.hub import Hub
 from app.services.metrics import PLANNING_SECONDS, PLANS_ENDED, PLANS_RUNNING
-from app.services.pool import Pool, WorkerDiedError
-from app.services.progress_pipe import progress_pipe
+from app.services.plans import work
+from app.services.plans.pool import Pool, WorkerDiedError
+from app.services.plans.progress_pipe import progress_pipe
 from app.services.records import PlanRecord
 from app.services.scenarios.validation import Verdict, judge
 from app.services.store.plans import PlanStore

@@ -86,7 +86,7 @@ def finding_json(finding: Any) -> dict[str, str]:
 
 def plan_scenario(scenario_text: str, progress_path: str, terrain_folder: str | None = None) -> WorkResult:
     """Plan one scenario, reporting into the pipe at ``progress_path``; rasters are in ``terrain_folder``."""
-    from app.services.summary import summary_of
+    from app.services.plans.summary import summary_of
     from app.services.terrain.rasters import stored_terrain
     from planner import errors
     from planner.geojson import read_scenario, write_plan

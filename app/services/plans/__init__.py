@@ -1,0 +1,1 @@
+"""Plans: asked for, made in worker processes, and turned into missions."""
