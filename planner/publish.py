@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
-from shapely.geometry import MultiPolygon, Polygon
+from shapely.geometry import LinearRing, MultiPolygon, Polygon
 
 from planner.airspace.shapes import DiscShape, hard_shapes
 from planner.airspace.threats import curve_risk
@@ -43,6 +43,10 @@ from planner.vehicle.wind import duration_s
 #: chord in longitude and latitude must not leave the straight by more than a centimetre or so.
 MAX_ARC_EDGE_M = 5.0
 MAX_STRAIGHT_EDGE_M = 1000.0
+#: From this latitude on straights have more vertices, so that the chord stays as near; the last degree counts
+#: as one.
+STEEP_DEG = 60.0
+MOST_STEEP_DEG = 89.9
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,7 +143,7 @@ def _footprints(
 ) -> Iterator[Footprint]:
     """The ground seen: the pass's own footprint, on terrain one for each part really seen."""
     if scenario.terrain is None:
-        ring = _lonlats(scenario, np.asarray(collect.footprint.exterior.coords)[:, :2])
+        ring = _ring(scenario, collect.footprint.exterior)
         yield Footprint(aircraft.name, seq, name, collect.sensor, ring, sensor.resolution_m)
         return
     line_m = (collect.start, collect.end)
@@ -148,9 +152,7 @@ def _footprints(
     tidy = seen.area.simplify(scenario.terrain.step_m / 20.0)
     parts = [part for part in shapely.get_parts(tidy) if part.area > scenario.terrain.step_m**2 / 10.0]
     for part in parts:
-        outer, *holes = (
-            _lonlats(scenario, np.asarray(ring.coords)[:, :2]) for ring in (part.exterior, *part.interiors)
-        )
+        outer, *holes = (_ring(scenario, ring) for ring in (part.exterior, *part.interiors))
         yield Footprint(
             aircraft.name,
             seq,
@@ -172,10 +174,7 @@ def uncovered(
         Uncovered(
             name,
             tuple(
-                tuple(
-                    _lonlats(scenario, np.asarray(ring.coords)[:, :2])
-                    for ring in (part.exterior, *part.interiors)
-                )
+                tuple(_ring(scenario, ring) for ring in (part.exterior, *part.interiors))
                 for part in (shape.geoms if isinstance(shape, MultiPolygon) else [shape])
             ),
             float(shape.area),
@@ -229,12 +228,30 @@ def _segments(scenario: Scenario, path: Path) -> tuple[PathSegment, ...]:
 
 
 def _line(scenario: Scenario, path: Path) -> tuple[LonLatAlt, ...]:
-    points = path.sample(MAX_ARC_EDGE_M, MAX_STRAIGHT_EDGE_M)[:, :2]
+    points = path.sample(MAX_ARC_EDGE_M, _straight_edge_m(scenario))[:, :2]
     return tuple((lon, lat, scenario.altitude_m) for lon, lat in _lonlats(scenario, points))
 
 
+def _ring(scenario: Scenario, ring: LinearRing) -> tuple[LonLat, ...]:
+    """A ring of ground; nearer to the pole its edges are cut: straight in metres they are not in degrees."""
+    if abs(scenario.frame.lat_deg) > STEEP_DEG:
+        ring = shapely.segmentize(ring, _straight_edge_m(scenario))
+    return _lonlats(scenario, shapely.get_coordinates(ring))
+
+
+def _straight_edge_m(scenario: Scenario) -> float:
+    """``MAX_STRAIGHT_EDGE_M``, less towards the poles, where a line straight in degrees bends more."""
+    lat_deg = abs(scenario.frame.lat_deg)
+    if lat_deg <= STEEP_DEG:
+        return MAX_STRAIGHT_EDGE_M
+    bend = math.tan(math.radians(min(lat_deg, MOST_STEEP_DEG))) / math.tan(math.radians(STEEP_DEG))
+    return MAX_STRAIGHT_EDGE_M / math.sqrt(bend)
+
+
 def _lonlats(scenario: Scenario, points: object) -> tuple[LonLat, ...]:
-    return tuple((float(lon), float(lat)) for lon, lat in scenario.frame.to_wgs84(np.asarray(points)))
+    """Places in degrees; longitudes go on from the first, beyond ±180 where the line crosses there."""
+    lons, lats = scenario.frame.to_wgs84(np.asarray(points)).T
+    return tuple(zip(np.unwrap(lons, period=360.0).tolist(), lats.tolist(), strict=True))
 
 
 def assemble(

@@ -2,44 +2,58 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import math
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from planner.frames import MAX_EXTENT_M, WGS84, LocalFrame
-from planner.geojson.features import name_of
+from planner.geojson.features import RawFeature, name_of
 from planner.geojson.fields import Findings, is_finite
-from planner.geojson.geometry import LonLat, positions_of
+from planner.geojson.geometry import positions_of
+from planner.geojson.sheet import MOST_LONGITUDE_DEG, LonLat, arc_deg, wrapped_deg
 
 #: From corner to corner of everything.
 MOST_M = 2.0 * MAX_EXTENT_M
+#: Beyond this latitude a degree of longitude says little about width.
+POLAR_DEG = 80.0
 KEEP_WITHIN = f"Keep everything within {MOST_M / 1000.0:.0f} km; check the axis order (longitude first)."
 
 
 @dataclass(frozen=True, slots=True)
 class _Box:
-    """The positions of one feature, or of all, by their least and greatest longitude and latitude."""
+    """The positions of one feature, or of all, with the middle and the diagonal of a box round them."""
 
     name: str
-    low: LonLat
-    high: LonLat
+    places: tuple[LonLat, ...]
+    middle: LonLat
+    reach_m: float
 
     @classmethod
-    def of(cls, name: str, places: list[LonLat]) -> _Box:
+    def of(cls, name: str, places: Sequence[LonLat]) -> _Box:
         lons, lats = zip(*places, strict=True)
-        return cls(name, (min(lons), min(lats)), (max(lons), max(lats)))
-
-    @property
-    def middle(self) -> LonLat:
-        return ((self.low[0] + self.high[0]) / 2.0, (self.low[1] + self.high[1]) / 2.0)
-
-    @property
-    def reach_m(self) -> float:
-        return _apart_m(self.low, self.high)
+        south, north = min(lats), max(lats)
+        west, east = arc_deg(lons)
+        if max(-south, north) <= POLAR_DEG and east - west <= 180.0:
+            middle = ((west + east) / 2.0, (south + north) / 2.0)
+            reach_m = _apart_m((west, south), (east, north))
+        else:
+            # Near a pole a box of degrees is a ring: there the box is one of metres on a plane at the pole.
+            pole = (0.0, math.copysign(90.0, south + north))
+            zeros = np.zeros(len(lons))
+            azimuths_deg, _, away_m = WGS84.inv(zeros, zeros + pole[1], np.array(lons), np.array(lats))
+            turned = np.radians(azimuths_deg)
+            x_m, y_m = away_m * np.sin(turned), away_m * np.cos(turned)
+            at_m = ((x_m.min() + x_m.max()) / 2.0, (y_m.min() + y_m.max()) / 2.0)
+            lon, lat, _ = WGS84.fwd(*pole, math.degrees(math.atan2(*at_m)), math.hypot(*at_m))
+            middle, reach_m = (float(lon), float(lat)), math.hypot(np.ptp(x_m), np.ptp(y_m))
+        return cls(name, tuple(places), (wrapped_deg(middle[0]), middle[1]), reach_m)
 
     @property
     def too_wide(self) -> bool:
-        return self.reach_m > MOST_M or self.high[0] - self.low[0] > 180.0
+        return self.reach_m > MOST_M
 
 
 def frame_of(raw_features: list[Any], findings: Findings) -> LocalFrame | None:
@@ -63,12 +77,19 @@ def frame_of(raw_features: list[Any], findings: Findings) -> LocalFrame | None:
         else:
             findings.error("scenario", "no-positions", "has no valid position", "Add features with geometry.")
         return None
-    whole = _Box.of("scenario", [corner for box in boxes for corner in (box.low, box.high)])
-    middle = (round(whole.middle[0], 6), round(whole.middle[1], 6))
+    whole = _Box.of("scenario", [place for box in boxes for place in box.places])
     if whole.too_wide:
-        _blame(whole, boxes, findings)
-        return LocalFrame(0.0, 0.0) if abs(middle[1]) > 85.0 else LocalFrame(*middle)
-    return LocalFrame(*middle)
+        rest = _largest_cluster(boxes)
+        _blame(whole, boxes, rest, findings)
+        at = rest or boxes[:1]
+        whole = _Box.of("rest", [place for box in at for place in box.places[:1]])
+    return LocalFrame(round(whole.middle[0], 6), round(whole.middle[1], 6))
+
+
+def within(frame: LocalFrame, feature: RawFeature) -> bool:
+    """Whether a feature is near enough to the frame's origin to be read in it."""
+    origin = (frame.lon_deg, frame.lat_deg)
+    return all(_apart_m(origin, place) <= 2.0 * MOST_M for place in _places({"geometry": feature.geometry}))
 
 
 def _places(feature: Any, exchanged: bool = False) -> Iterator[LonLat]:
@@ -77,16 +98,21 @@ def _places(feature: Any, exchanged: bool = False) -> Iterator[LonLat]:
         if len(value) < 2 or not all(is_finite(v) for v in value[:2]):
             continue
         lon, lat = value[1::-1] if exchanged else value[:2]
-        if abs(lon) <= 180.0 and abs(lat) <= 90.0:
+        if abs(lon) <= MOST_LONGITUDE_DEG and abs(lat) <= 90.0:
             yield (float(lon), float(lat))
 
 
-def _blame(whole: _Box, boxes: list[_Box], findings: Findings) -> None:
+def _largest_cluster(boxes: list[_Box]) -> list[_Box]:
+    """The features that are not too wide and near most others."""
+    others = [box for box in boxes if not box.too_wide]
+    near = [[other for other in others if _apart_m(box.middle, other.middle) <= MOST_M] for box in others]
+    return max(near, key=len, default=[])
+
+
+def _blame(whole: _Box, boxes: list[_Box], rest: list[_Box], findings: Findings) -> None:
     """A finding for each feature too wide or far from most others; for the scenario where none stands out."""
     wide = [box for box in boxes if box.too_wide]
     others = [box for box in boxes if not box.too_wide]
-    near = [[other for other in others if _apart_m(box.middle, other.middle) <= MOST_M] for box in others]
-    rest = max(near, key=len, default=[])
     away = [box for box in others if box not in rest]
     for box in wide:
         findings.error(
@@ -97,10 +123,10 @@ def _blame(whole: _Box, boxes: list[_Box], findings: Findings) -> None:
         )
     if wide and len(rest) == len(others):
         return
-    if 2 * len(rest) <= len(others):
+    if 2 * len(rest) <= len(others) or not away:
         findings.error("scenario", "extent-too-large", f"spans {whole.reach_m / 1000.0:.0f} km", KEEP_WITHIN)
         return
-    amid = _Box.of("rest", [corner for box in rest for corner in (box.low, box.high)]).middle
+    amid = _Box.of("rest", [place for box in rest for place in box.places]).middle
     for box in away:
         far_m = _apart_m(box.middle, amid)
         lon, lat = box.middle

@@ -21,16 +21,17 @@ POINT_TARGET_RADIUS_M = 1.0
 #: More visits than this are a slip of the pen: each is a stop of the tour.
 MOST_REVISITS = 50
 
+#: A MultiLineString, and a MultiPolygon of all but regions, is one line or polygon cut at the antimeridian.
 GEOMETRIES = {
-    "roi": ("Polygon", "MultiPolygon", "LineString", "Point"),
+    "roi": ("Polygon", "MultiPolygon", "LineString", "MultiLineString", "Point"),
     "threat": ("Point",),
-    "no_fly": ("Polygon", "Point"),
-    "obstacle": ("Polygon",),
-    "area": ("Polygon",),
+    "no_fly": ("Polygon", "MultiPolygon", "Point"),
+    "obstacle": ("Polygon", "MultiPolygon"),
+    "area": ("Polygon", "MultiPolygon"),
     "start": ("Point",),
     "end": ("Point",),
     "base": ("Point",),
-    "importance": ("Polygon",),
+    "importance": ("Polygon", "MultiPolygon"),
 }
 
 
@@ -94,15 +95,15 @@ def read_region(raw: RawFeature, frame: LocalFrame, findings: Findings) -> Regio
     area: Polygon | MultiPolygon | None = None
     axis: LineString | None = None
     if kind in ("Polygon", "MultiPolygon"):
-        area = shapes.area(raw.name, dict(raw.geometry), frame, findings)
-    elif kind == "LineString":
+        area = shapes.area(raw.name, raw.geometry, frame, findings)
+    elif kind in ("LineString", "MultiLineString"):
         width_m = fields.number("width_m", above=0.0)
-        axis = shapes.line(raw.name, dict(raw.geometry), frame, findings)
+        axis = shapes.line(raw.name, raw.geometry, frame, findings)
         if axis is not None and width_m is not None:
             area = axis.buffer(width_m / 2.0, cap_style="flat")
     else:
         radius_m = fields.number("radius_m", 0.0, minimum=0.0)
-        place = shapes.point(raw.name, dict(raw.geometry), frame, findings)
+        place = shapes.point(raw.name, raw.geometry, frame, findings)
         if place is not None and radius_m is not None:
             area = Point(place).buffer(max(radius_m, POINT_TARGET_RADIUS_M), quad_segs=16)
     revisits = int(fields.integer("revisits", 1, minimum=1))
@@ -150,7 +151,7 @@ def read_threat(raw: RawFeature, frame: LocalFrame, findings: Findings) -> Threa
         fields.raw("intensity_m")
     height_m = fields.number("height_m", math.inf, above=0.0)
     hard = fields.flag("hard", False)
-    centre = shapes.point(raw.name, dict(raw.geometry), frame, findings)
+    centre = shapes.point(raw.name, raw.geometry, frame, findings)
     fields.refuse_unknown(also_known=("intensity_m",))
     if model is None or radius_m is None or intensity_m is None or height_m is None or centre is None:
         return None
@@ -166,11 +167,11 @@ def read_no_fly(raw: RawFeature, frame: LocalFrame, findings: Findings) -> NoFly
     zone: NoFlyZone | None = None
     if raw.geometry["type"] == "Point":
         radius_m = fields.number("radius_m", above=0.0)
-        centre = shapes.point(raw.name, dict(raw.geometry), frame, findings)
+        centre = shapes.point(raw.name, raw.geometry, frame, findings)
         if centre is not None and radius_m is not None:
             zone = NoFlyZone(raw.name, None, centre, radius_m, floor_m or 0.0, ceiling_m or 0.0)
     else:
-        area = shapes.polygon(raw.name, raw.geometry.get("coordinates"), frame, findings)
+        area = shapes.polygon(raw.name, raw.geometry, frame, findings)
         if area is not None:
             zone = NoFlyZone(raw.name, area, None, None, floor_m or 0.0, ceiling_m or 0.0)
     fields.refuse_unknown()
@@ -185,7 +186,7 @@ def read_obstacle(raw: RawFeature, frame: LocalFrame, findings: Findings) -> Obs
     """Role ``obstacle``."""
     height_m = raw.fields.number("height_m", above=0.0)
     base_m = raw.fields.number("base_m", 0.0)
-    area = shapes.polygon(raw.name, raw.geometry.get("coordinates"), frame, findings)
+    area = shapes.polygon(raw.name, raw.geometry, frame, findings)
     raw.fields.refuse_unknown()
     if height_m is None or base_m is None or area is None:
         return None
@@ -194,7 +195,7 @@ def read_obstacle(raw: RawFeature, frame: LocalFrame, findings: Findings) -> Obs
 
 def read_area(raw: RawFeature, frame: LocalFrame, findings: Findings) -> Polygon | None:
     """Role ``area``."""
-    area = shapes.polygon(raw.name, raw.geometry.get("coordinates"), frame, findings)
+    area = shapes.polygon(raw.name, raw.geometry, frame, findings)
     raw.fields.refuse_unknown()
     return area
 
@@ -202,7 +203,7 @@ def read_area(raw: RawFeature, frame: LocalFrame, findings: Findings) -> Polygon
 def read_terminal(raw: RawFeature, frame: LocalFrame, findings: Findings) -> Terminal | None:
     """Roles ``start``, ``end`` and ``base``."""
     heading_deg = raw.fields.number("heading_deg", None, minimum=0.0, maximum=360.0)
-    place = shapes.point(raw.name, dict(raw.geometry), frame, findings)
+    place = shapes.point(raw.name, raw.geometry, frame, findings)
     raw.fields.refuse_unknown()
     if place is None:
         return None

@@ -2,23 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Any
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from itertools import combinations
+from typing import Any, TypeGuard, TypeVar
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 from shapely import segmentize
 from shapely.geometry import LineString, MultiPolygon, Polygon
+from shapely.geometry.base import BaseGeometry
 from shapely.validation import explain_validity
 
 from planner.frames import LocalFrame
 from planner.geojson.fields import Findings, is_finite
+from planner.geojson.sheet import MOST_LONGITUDE_DEG, LonLat, continued, goes_round, multi
 
 #: An edge of a GeoJSON ring is straight in longitude and latitude; cut to pieces this long it is, within a
 #: centimetre at latitudes below 60°, straight in the local frame as well.
 EDGE_PIECE_DEG = 0.005
-
-LonLat = tuple[float, float]
+#: Nearer to the pole a degree of longitude is shorter and a parallel rounder: pieces are as long as
+#: keeps them within this of a parallel.
+STEEP_DEG = 60.0
+CHORD_M = 0.01
+EARTH_M = 6.4e6
+#: The two sides of a cut through a pole come out this close to each other, not equal.
+POLAR_GRID_M = 1e-5
+#: Of the whole; less is the rounding of coordinates.
+OVERLAP = 1e-9
 
 
 def positions_of(geometry: Any) -> Iterator[Any]:
@@ -75,8 +88,12 @@ def _fault(value: Any) -> tuple[str, str, str] | None:
             + (": this looks like latitude, longitude order, write" if swapped else ": write")
             + " [longitude, latitude].",
         )
-    if abs(lon) > 180.0:
-        return "longitude-out-of-range", f"has longitude {lon:g}", "Longitude lies in [-180, 180]."
+    if abs(lon) > MOST_LONGITUDE_DEG:
+        return (
+            "longitude-out-of-range",
+            f"has longitude {lon:g}",
+            "Longitude lies in [-180, 180]; what crosses the antimeridian may go on to 360.",
+        )
     return None
 
 
@@ -87,33 +104,102 @@ def _ring(owner: str, value: Any, findings: Findings) -> list[LonLat] | None:
     ring = positions(owner, value, findings)
     if ring is None:
         return None
-    if ring[0] != ring[-1]:
+    if not _same(ring[0], ring[-1]):
         findings.error(
             owner, "ring-not-closed", "has a ring whose last position is not its first", "Repeat the first."
         )
         return None
-    if len(set(ring)) < 3:
+    distinct = len({(lon % 360.0, lat) for lon, lat in ring})
+    if distinct < 3:
         findings.error(
             owner,
             "ring-too-short",
-            f"has a ring of {len(set(ring))} distinct positions",
+            f"has a ring of {distinct} distinct positions",
             "Give three or more.",
         )
         return None
     return ring
 
 
-def polygon(owner: str, rings: Any, frame: LocalFrame, findings: Findings) -> Polygon | None:
-    """A valid polygon in the local frame, or None after a finding."""
+def _same(one: LonLat, other: LonLat) -> bool:
+    """Whether two positions are one place, its longitude perhaps counted once more round."""
+    return one[1] == other[1] and (one[0] - other[0]) % 360.0 == 0.0
+
+
+def polygon(owner: str, geometry: Mapping[str, Any], frame: LocalFrame, findings: Findings) -> Polygon | None:
+    """A valid polygon in the local frame, or None after a finding.
+
+    A MultiPolygon is one where its parts are: RFC 7946 cuts at the antimeridian what crosses it.
+    """
+    shape = area(owner, geometry, frame, findings)
+    if isinstance(shape, MultiPolygon):
+        findings.error(
+            owner,
+            "several-polygons",
+            f"is {len(shape.geoms)} polygons apart from each other",
+            "Give each a feature of its own.",
+        )
+        return None
+    return shape
+
+
+def area(
+    owner: str, geometry: Mapping[str, Any], frame: LocalFrame, findings: Findings
+) -> Polygon | MultiPolygon | None:
+    """A Polygon or MultiPolygon in the local frame; parts that only touch become one."""
+    coordinates = geometry.get("coordinates")
+    if geometry["type"] == "Polygon":
+        sheet = _sheet(owner, coordinates, frame, findings)
+        return None if sheet is None else _to_local(sheet, frame)
+    if not isinstance(coordinates, list) or not coordinates:
+        findings.error(owner, "ring-empty", "has no polygon", "Give at least one polygon.")
+        return None
+    found = [_sheet(owner, part, frame, findings) for part in coordinates]
+    sheets = [sheet for sheet in found if sheet is not None]
+    if len(sheets) != len(found):
+        return None
+    polar = any(sheet.polar for sheet in sheets)
+    parts = [_to_local(sheet, frame) for sheet in sheets] if polar else [sheet.shape for sheet in sheets]
+    whole = MultiPolygon([piece for part in parts for piece in multi(part)])
+    if whole.is_valid and not polar:
+        return _to_local(_Sheet(whole), frame)
+    overlap = sum(one.intersection(other).area for one, other in combinations(parts, 2))
+    if overlap > OVERLAP * whole.area:
+        findings.error(
+            owner, "polygons-overlap", "has overlapping polygons", "Unite them, or make them regions apart."
+        )
+        return None
+    united = areal(shapely.union_all(parts, grid_size=POLAR_GRID_M if polar else None))
+    return united if polar else _to_local(_Sheet(united), frame)
+
+
+@dataclass(frozen=True, slots=True)
+class _Sheet:
+    """A shape on a sheet of degrees, or in local metres where it reaches a pole, which no sheet shows."""
+
+    shape: Polygon | MultiPolygon
+    polar: bool = False
+
+
+def _sheet(owner: str, rings: Any, frame: LocalFrame, findings: Findings) -> _Sheet | None:
+    """A valid polygon, or None after a finding."""
     if not isinstance(rings, list) or not rings:
         findings.error(owner, "ring-empty", "has no ring", "Give an outer ring of at least four positions.")
         return None
-    read = [_ring(owner, ring, findings) for ring in rings]
-    if any(ring is None for ring in read):
+    found = [_ring(owner, ring, findings) for ring in rings]
+    read = [ring for ring in found if ring is not None]
+    if len(read) != len(found):
         return None
-    shape = Polygon(read[0] or [], [ring for ring in read[1:] if ring])
+    outer = continued(read[0], frame.lon_deg)
+    lons = [lon for lon, _ in outer]
+    sheets = [outer, *(continued(hole, (min(lons) + max(lons)) / 2.0) for hole in read[1:])]
+    polar = any(goes_round(ring) or max(abs(lat) for _, lat in ring) == 90.0 for ring in sheets)
+    if polar:
+        shape = Polygon(_round(sheets[0], frame), [_round(ring, frame) for ring in sheets[1:]])
+    else:
+        shape = Polygon(sheets[0], sheets[1:])
     if not shape.is_valid:
-        reason = explain_validity(shape)
+        reason = _reason(shape, frame if polar else None)
         if reason.startswith(("Hole lies outside", "Holes are nested")):
             findings.error(
                 owner,
@@ -132,52 +218,87 @@ def polygon(owner: str, rings: Any, frame: LocalFrame, findings: Findings) -> Po
     if shape.area == 0.0:
         findings.error(owner, "ring-no-area", "has no area", "Give positions that are not on one line.")
         return None
-    fine = segmentize(shape, EDGE_PIECE_DEG)
-    return Polygon(
-        frame.to_local(fine.exterior.coords), [frame.to_local(hole.coords) for hole in fine.interiors]
-    )
+    return _Sheet(shape, polar)
 
 
-def area(
-    owner: str, geometry: dict[str, Any], frame: LocalFrame, findings: Findings
-) -> Polygon | MultiPolygon | None:
-    """A Polygon or MultiPolygon in the local frame."""
-    if geometry["type"] == "Polygon":
-        return polygon(owner, geometry.get("coordinates"), frame, findings)
-    parts = geometry.get("coordinates")
-    if not isinstance(parts, list) or not parts:
-        findings.error(owner, "ring-empty", "has no polygon", "Give at least one polygon.")
-        return None
-    shapes = [polygon(owner, part, frame, findings) for part in parts]
-    sound = [shape for shape in shapes if shape is not None]
-    if len(sound) != len(shapes):
-        return None
-    whole = MultiPolygon(sound)
-    if not whole.is_valid:
-        findings.error(
-            owner, "polygons-overlap", "has overlapping polygons", "Unite them, or make them regions apart."
-        )
-        return None
-    return whole
+def _round(ring: list[LonLat], frame: LocalFrame) -> NDArray[np.float64]:
+    """A ring that goes round a pole, or touches it, in local metres; the pole has one place, not a line."""
+    if goes_round(ring):
+        ring = [place for place in ring if abs(place[1]) < 90.0]
+        ring = [*ring, ring[0]] if ring[0] != ring[-1] and not goes_round(ring) else ring
+    local_m = shapely.get_coordinates(_fine(LineString(ring), frame))
+    steps_m = np.hypot(*np.diff(local_m, axis=0).T)
+    kept = local_m[np.concatenate([[True], steps_m > POLAR_GRID_M])]
+    return np.concatenate([kept[:-1], kept[:1]]) if np.hypot(*(kept[-1] - kept[0])) < POLAR_GRID_M else kept
 
 
-def line(owner: str, geometry: dict[str, Any], frame: LocalFrame, findings: Findings) -> LineString | None:
-    """A LineString in the local frame."""
+def _reason(shape: Polygon, frame: LocalFrame | None) -> str:
+    """Why a polygon is not valid, with the place in degrees."""
+    reason = explain_validity(shape)
+    text, bracket, place = reason.partition("[")
+    if frame is None or not bracket:
+        return reason
+    lon_deg, lat_deg = frame.to_wgs84([float(value) for value in place.rstrip("]").split()])
+    return f"{text}[{lon_deg:.7f} {lat_deg:.7f}]"
+
+
+def _to_local(sheet: _Sheet, frame: LocalFrame) -> Polygon | MultiPolygon:
+    return sheet.shape if sheet.polar else _fine(sheet.shape, frame)
+
+
+Shape = TypeVar("Shape", Polygon, MultiPolygon, Polygon | MultiPolygon, LineString)
+
+
+def _fine(shape: Shape, frame: LocalFrame) -> Shape:
+    """A shape on a sheet of degrees in the local frame, its edges straight in degrees."""
+    least_deg = min(abs(shape.bounds[1]), abs(shape.bounds[3]))
+    piece_deg = EDGE_PIECE_DEG
+    if least_deg > STEEP_DEG:
+        double = math.sin(2.0 * math.radians(min(least_deg, 89.99)))
+        piece_deg = math.degrees(math.sqrt(16.0 * CHORD_M / (EARTH_M * double)))
+    local: Shape = shapely.transform(segmentize(shape, piece_deg), frame.to_local)
+    return local
+
+
+def line(owner: str, geometry: Mapping[str, Any], frame: LocalFrame, findings: Findings) -> LineString | None:
+    """A LineString in the local frame, or a MultiLineString whose parts follow each other."""
     coordinates = geometry.get("coordinates")
-    if not isinstance(coordinates, list) or len(coordinates) < 2:
+    parts = coordinates if geometry["type"] == "MultiLineString" else [coordinates]
+    if not isinstance(parts, list) or not parts or not all(_is_line(part) for part in parts):
         findings.error(owner, "line-too-short", "needs two positions", "Give two positions or more.")
         return None
-    sound = positions(owner, coordinates, findings)
-    if sound is None:
-        return None
+    sound: list[LonLat] = []
+    for part in parts:
+        more = positions(owner, part, findings)
+        if more is None:
+            return None
+        if sound and not _same(sound[-1], more[0]):
+            findings.error(
+                owner,
+                "line-in-parts",
+                "has a part that does not begin where the one before ends",
+                "Give each part a feature of its own.",
+            )
+            return None
+        sound += more
     if len(set(sound)) < 2:
         findings.error(owner, "line-too-short", "has no length", "Give two different positions.")
         return None
-    return LineString(frame.to_local(segmentize(LineString(sound), EDGE_PIECE_DEG).coords))
+    return _fine(LineString(continued(sound, frame.lon_deg)), frame)
+
+
+def _is_line(value: Any) -> TypeGuard[list[Any]]:
+    return isinstance(value, list) and len(value) >= 2
+
+
+def areal(shape: BaseGeometry) -> Polygon | MultiPolygon:
+    """The polygons of a shape."""
+    parts = [part for part in shapely.get_parts(shape) if isinstance(part, Polygon)]
+    return parts[0] if len(parts) == 1 else MultiPolygon(parts)
 
 
 def point(
-    owner: str, geometry: dict[str, Any], frame: LocalFrame, findings: Findings
+    owner: str, geometry: Mapping[str, Any], frame: LocalFrame, findings: Findings
 ) -> tuple[float, float] | None:
     """A Point in the local frame."""
     place = position(owner, geometry.get("coordinates"), findings)
@@ -185,8 +306,3 @@ def point(
         return None
     east_m, north_m = frame.to_local(place)
     return (float(east_m), float(north_m))
-
-
-def ring_lonlat(frame: LocalFrame, coords: NDArray[np.float64] | Any) -> tuple[LonLat, ...]:
-    """A closed ring of WGS 84 positions of a shapely ring in the local frame."""
-    return tuple((float(lon), float(lat)) for lon, lat in frame.to_wgs84(np.asarray(coords)[:, :2]))

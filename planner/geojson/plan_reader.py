@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from typing import Any, NoReturn
 
 from planner.errors import Finding, ScenarioError
+from planner.geojson.sheet import joined
 from planner.plan import (
     Collect,
     Fence,
@@ -175,24 +176,28 @@ def _transit(p: Mapping[str, Any], line: Any) -> Transit:
     )
 
 
-def _footprint(p: Mapping[str, Any], rings: Any) -> Footprint:
+def _footprint(p: Mapping[str, Any], coordinates: Any) -> Footprint:
+    (rings,) = _polygons(coordinates)
     return Footprint(
         p["vehicle"],
         p["seq"],
         p["roi"],
         p["sensor"],
-        _ring(rings[0]),
+        rings[0],
         p["resolution_m"],
         p["niirs"],
-        tuple(_ring(r) for r in rings[1:]),
+        rings[1:],
         p.get("shadow_m2"),
         p.get("layover_m2"),
     )
 
 
 def _uncovered(p: Mapping[str, Any], coordinates: Any) -> Uncovered:
+    return Uncovered(p["roi"], _polygons(coordinates), p["area_m2"], p["reason"])
+
+
+def _polygons(coordinates: Any) -> tuple[tuple[tuple[tuple[float, float], ...], ...], ...]:
+    """Polygons as rings; what was cut at the antimeridian is one again."""
     many = isinstance(coordinates[0][0][0], list)
-    polygons = coordinates if many else [coordinates]
-    return Uncovered(
-        p["roi"], tuple(tuple(_ring(r) for r in rings) for rings in polygons), p["area_m2"], p["reason"]
-    )
+    read = [[_ring(ring) for ring in rings] for rings in (coordinates if many else [coordinates])]
+    return tuple(tuple(_ring(ring) for ring in rings) for rings in joined(read))

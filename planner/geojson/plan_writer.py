@@ -1,11 +1,16 @@
-"""Plan to GeoJSON, role by role."""
+"""Plan to GeoJSON, role by role.
+
+Where the plan crosses the antimeridian its lines go on beyond ±180°, since a mission is one line; ground is
+cut in two, as RFC 7946 (3.1.9) asks.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import asdict
 from typing import Any
 
+from planner.geojson.sheet import cut
 from planner.plan import (
     Collect,
     FlownPath,
@@ -46,9 +51,8 @@ def write_plan(plan: Plan) -> dict[str, Any]:
         ),
         *(_path(p) for p in plan.paths),
         *(
-            _feature(
-                "Polygon",
-                [_ring(r) for r in (f.ring, *f.holes)],
+            _ground(
+                [(f.ring, *f.holes)],
                 role="footprint",
                 vehicle=f.vehicle,
                 seq=f.seq,
@@ -61,11 +65,8 @@ def write_plan(plan: Plan) -> dict[str, Any]:
             for f in plan.footprints
         ),
         *(
-            _feature(
-                "MultiPolygon" if len(u.polygons) > 1 else "Polygon",
-                [[_ring(r) for r in p] for p in u.polygons]
-                if len(u.polygons) > 1
-                else [_ring(r) for r in u.polygons[0]],
+            _ground(
+                u.polygons,
                 role="uncovered",
                 roi=u.roi,
                 area_m2=round(u.area_m2, 2),
@@ -168,6 +169,14 @@ def _segment(s: PathSegment) -> dict[str, Any]:
     return out
 
 
+def _ground(polygons: Sequence[Sequence[Ring]], **properties: Any) -> dict[str, Any]:
+    """Polygons on the ground, cut where they cross the antimeridian (RFC 7946, 3.1.9)."""
+    rings = [[_ring(ring) for ring in part] for polygon in polygons for part in cut(polygon)]
+    if len(rings) > 1:
+        return _feature("MultiPolygon", rings, **properties)
+    return _feature("Polygon", rings[0], **properties)
+
+
 def _feature(kind: str, coordinates: Any, **properties: Any) -> dict[str, Any]:
     return {
         "type": "Feature",
@@ -197,7 +206,7 @@ def _line3(line: Iterable[tuple[float, float, float]]) -> list[list[float]]:
     return [[*_lonlat((lon, lat)), round(alt, DECIMALS_M)] for lon, lat, alt in line]
 
 
-def _ring(ring: Ring) -> list[list[float]]:
+def _ring(ring: Sequence[LonLat]) -> list[list[float]]:
     """A closed ring of whatever winding the writer of the plan gave it."""
     return [list(_lonlat(place)) for place in ring]
 

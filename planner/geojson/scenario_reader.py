@@ -13,7 +13,7 @@ from shapely.geometry import Polygon
 from planner.airspace.terrain import Terrains, find_terrain
 from planner.errors import ScenarioError
 from planner.geojson import equipment, features
-from planner.geojson.extent import frame_of
+from planner.geojson.extent import frame_of, within
 from planner.geojson.fields import Fields, Findings, is_finite
 from planner.geojson.relief import set_on_terrain
 from planner.geojson.rules import check_together
@@ -79,9 +79,11 @@ def _read(document: Any, findings: Findings, terrains: Terrains | None) -> Scena
     raws = _raw_features(raw_features, findings)
     if frame is None:
         return None
+    # What is too far off is found already, and has no place in the frame.
+    near = raws if not findings.errors else [raw for raw in raws if within(frame, raw)]
 
     def each(role: str, reader: Any) -> list[Any]:
-        values = [reader(raw, frame, findings) for raw in raws if raw.role == role]
+        values = [reader(raw, frame, findings) for raw in near if raw.role == role]
         return [value for value in values if value is not None]
 
     regions = each("roi", features.read_region)

@@ -96,7 +96,7 @@ BAD: dict[str, tuple[dict[str, Any], str, str]] = {
         "latitude-out-of-range",
     ),
     "longitude": (
-        small(feature("X", "threat", "Point", [181, 0], model="missile", radius_m=10)),
+        small(feature("X", "threat", "Point", [361, 0], model="missile", radius_m=10)),
         "X",
         "longitude-out-of-range",
     ),
@@ -370,7 +370,7 @@ def test_a_ring_of_swapped_axes_is_one_finding() -> None:
     assert [f.rule for f in found] == ["latitude-out-of-range"]
     assert "position 1, the first of 5 of 5" in found[0].message
     assert "looks like latitude, longitude order" in found[0].fix
-    mixed = [[0, 0], [0, 91], [181, 0], [0, 92], ["x", 0], [0, 0]]
+    mixed = [[0, 0], [0, 91], [361, 0], [0, 92], ["x", 0], [0, 0]]
     found = [f for f in findings(small(feature("X", "roi", "Polygon", [mixed]))) if f.feature == "X"]
     assert [f.rule for f in found] == ["latitude-out-of-range", "longitude-out-of-range", "bad-position"]
     assert "has latitude 91" in found[0].message
