@@ -193,7 +193,8 @@ def _connect(
     starts = [Anchor(*scenario.start.position, scenario.start.angle_rad)] + [
         Anchor(*p.end, p.angle_rad) for p in route.passes
     ]
-    goals = [_settled(p, aircraft.settle_m) for p in route.passes] + [
+    settling = [p.settling(aircraft.settle_m) for p in route.passes]
+    goals = [Anchor(*pose.position, pose.angle_rad) for pose in settling] + [
         Anchor(*scenario.end.position, scenario.end.angle_rad)
     ]
     names = [scenario.start.name, *("+".join(p.regions) for p in route.passes), scenario.end.name]
@@ -241,13 +242,6 @@ def _leg(
         else:
             return path, "ssas"
     return connect_by_cost(start, goal, zones, radius_m, risk, stop), "tangent"
-
-
-def _settled(collect: CollectPass, settle_m: float) -> Anchor:
-    """Where the straight flight before a collect begins."""
-    ahead = collect.start[0] - collect.end[0], collect.start[1] - collect.end[1]
-    scale = settle_m / collect.length_m
-    return Anchor(collect.start[0] + scale * ahead[0], collect.start[1] + scale * ahead[1], collect.angle_rad)
 
 
 def _extended(path: Path, collect: CollectPass) -> Path:

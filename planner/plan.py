@@ -174,8 +174,8 @@ class Violation:
     Parameters
     ----------
     constraint
-        ``turn-radius``, ``area``, ``hard-zone``, ``coverage``, ``collect-straight``, ``continuity``,
-        ``range``, ``flight-time``, ``energy``, ``soft-threat``.
+        ``turn-radius``, ``area``, ``hard-zone``, ``coverage``, ``collect-straight``, ``settling``,
+        ``continuity``, ``range``, ``flight-time``, ``energy``, ``soft-threat``.
     feature
         The region, zone or vehicle concerned.
     where

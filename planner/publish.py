@@ -39,9 +39,11 @@ from planner.transit.certificate import proven_m
 from planner.vehicle.aircraft import Aircraft
 from planner.vehicle.wind import duration_s
 
-#: Vertices of the published line: on arcs (the contract asks for at most 10 m) and on straights, where the
-#: chord in longitude and latitude must not leave the straight by more than a centimetre or so.
+#: Vertices of the published line: on arcs (the contract asks for at most 10 m; closer on tight ones, so that
+#: chords stay near the arc and hardly shorter than it) and on straights, where the chord in longitude and
+#: latitude must not leave the straight by more than a centimetre or so.
 MAX_ARC_EDGE_M = 5.0
+MAX_ARC_EDGE_RAD = 0.08
 MAX_STRAIGHT_EDGE_M = 1000.0
 #: From this latitude on straights have more vertices, so that the chord stays as near; the last degree counts
 #: as one.
@@ -228,7 +230,9 @@ def _segments(scenario: Scenario, path: Path) -> tuple[PathSegment, ...]:
 
 
 def _line(scenario: Scenario, path: Path) -> tuple[LonLatAlt, ...]:
-    points = path.sample(MAX_ARC_EDGE_M, _straight_edge_m(scenario))[:, :2]
+    tightest_m = min(segment.radius_m for segment in path.segments)
+    arc_edge_m = min(MAX_ARC_EDGE_M, MAX_ARC_EDGE_RAD * tightest_m)
+    points = path.sample(arc_edge_m, _straight_edge_m(scenario))[:, :2]
     return tuple((lon, lat, scenario.altitude_m) for lon, lat in _lonlats(scenario, points))
 
 

@@ -70,6 +70,12 @@ class CollectPass:
         """Pose at sensor on."""
         return Pose(*self.start, self.angle_rad)
 
+    def settling(self, settle_m: float) -> Pose:
+        """Pose where the straight flight before it begins."""
+        scale = settle_m / self.length_m
+        ahead = self.end[0] - self.start[0], self.end[1] - self.start[1]
+        return Pose(self.start[0] - scale * ahead[0], self.start[1] - scale * ahead[1], self.angle_rad)
+
     @property
     def exit(self) -> Pose:
         """Pose at sensor off."""

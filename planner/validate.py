@@ -59,10 +59,11 @@ def unseeable(scenario: Scenario) -> tuple[Finding, ...]:
     # The paper's methods, asked for by name, know two passes at most.
     wide = scenario.method.coverage == "auto" and scenario.method.routing in ("auto", "joint")
     required = {region.name for region in scenario.regions if region.required}
+    settle_m = scenario.aircraft[0].in_wind(scenario.wind.speed_m_s).settle_m
     for region in scenario.regions:
         try:
             sensor, height_m = sensing(scenario, scenario.sensor_for(region), region.area)
-            can_be_seen(region, sensor, height_m, scenario.area, wide=wide)
+            can_be_seen(region, sensor, height_m, scenario.area, wide=wide, settle_m=settle_m)
         except InfeasibleError as error:
             found.append(_finding(error, region.name in required))
     # Passes without number are not held against an area or zones.

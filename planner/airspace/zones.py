@@ -244,10 +244,14 @@ def keep_out(airspace: Airspace, level: Level, margin_m: float = 0.0, soft: bool
     for obstacle in airspace.obstacles:
         if level.height_m <= obstacle.base_m + obstacle.height_m + clearance_m:
             polygons.extend(_inflated(obstacle.name, obstacle.area, margin_m + clearance_m))
-    area = airspace.area
-    if area is not None and margin_m > 0.0:
-        area = area.buffer(-margin_m, join_style="mitre", mitre_limit=MITRE_LIMIT)
-    return KeepOut(tuple(discs), tuple(polygons), area)
+    return KeepOut(tuple(discs), tuple(polygons), inner_area(airspace.area, margin_m))
+
+
+def inner_area(area: Polygon | None, margin_m: float) -> Polygon | MultiPolygon | None:
+    """What of the operating area is this far from its edge; None without an area."""
+    if area is None or margin_m <= 0.0:
+        return area
+    return _areal(area.buffer(-margin_m, join_style="mitre", mitre_limit=MITRE_LIMIT))
 
 
 def _inflated(name: str, area: Polygon, margin_m: float) -> list[PolygonZone]:

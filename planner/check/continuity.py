@@ -10,19 +10,23 @@ from numpy.typing import NDArray
 from shapely.geometry import LineString, Point
 from shapely.ops import substring
 
-from planner.check.kinematics import LENGTH_TOLERANCE
+from planner.check.kinematics import LENGTH_TOLERANCE, MAX_ARC_EDGE_M
 from planner.check.places import PLACE_TOLERANCE_M, lonlat
 from planner.plan import FlownPath, Plan, Violation
 from planner.scenario import Scenario
 
-#: A path's first and last edge may be the chord of an arc.
-END_ANGLE_TOLERANCE_RAD = math.radians(3.0)
+#: Directions at the ends count as met up to this.
+END_ANGLE_TOLERANCE_RAD = math.radians(1.0)
 
 
 def terminal_violations(
-    scenario: Scenario, path: FlownPath, line_m: NDArray[np.float64]
+    scenario: Scenario, path: FlownPath, line_m: NDArray[np.float64], radius_m: float
 ) -> Iterator[Violation]:
-    """The path begins at the start and ends at the end, in their directions."""
+    """The path begins at the start and ends at the end, in their directions.
+
+    The first and the last edge may be chords of arcs of ``radius_m`` or wider, which begin and end off the
+    chord's direction by half of what they turn.
+    """
     for terminal, place, direction in (
         (scenario.start, line_m[0], line_m[1] - line_m[0]),
         (scenario.end, line_m[-1], line_m[-1] - line_m[-2]),
@@ -41,7 +45,7 @@ def terminal_violations(
             off_rad = abs(
                 math.remainder(math.atan2(direction[1], direction[0]) - terminal.angle_rad, math.tau)
             )
-            if off_rad > END_ANGLE_TOLERANCE_RAD:
+            if off_rad > END_ANGLE_TOLERANCE_RAD + _chord_rad(math.hypot(*direction), radius_m):
                 yield Violation(
                     "continuity",
                     terminal.name,
@@ -52,10 +56,15 @@ def terminal_violations(
                 )
 
 
+def _chord_rad(edge_m: float, radius_m: float) -> float:
+    """How far the direction at an end of an arc may be off its chord; none for edges too long for one."""
+    return 0.0 if edge_m > MAX_ARC_EDGE_M else math.asin(min(1.0, edge_m / (2.0 * radius_m)))
+
+
 def collect_violations(
-    scenario: Scenario, plan: Plan, path: FlownPath, line: LineString
+    scenario: Scenario, plan: Plan, path: FlownPath, line: LineString, settle_m: float
 ) -> Iterator[Violation]:
-    """Each collect lies on the path, where it says, straight and in its direction."""
+    """Each collect lies on the path where it says, in its direction, and what is flown before is straight."""
     for collect in plan.collects_of(path.vehicle):
         (east0, north0), (east1, north1) = scenario.frame.to_local([place[:2] for place in collect.line])
         length_m = math.hypot(east1 - east0, north1 - north0)
@@ -81,3 +90,26 @@ def collect_violations(
                 "m",
                 collect.line[0][:2],
             )
+        straight_m = _straight_before_m(line, from_m, (east0, north0), along)
+        if straight_m < settle_m - PLACE_TOLERANCE_M:
+            yield Violation(
+                "settling",
+                collect.roi,
+                f"{straight_m:.1f} m before collect {collect.seq} are straight, {settle_m:.1f} m are wanted",
+                settle_m - straight_m,
+                "m",
+                collect.line[0][:2],
+            )
+
+
+def _straight_before_m(
+    line: LineString, at_m: float, place: tuple[float, float], along: NDArray[np.float64]
+) -> float:
+    """How far back from a place on it a line is flown straight in a direction."""
+    before = np.asarray(substring(line, 0.0, at_m).coords)[::-1]
+    offset = before - np.array(place)
+    behind_m = -(offset @ along)
+    across_m = np.abs(offset[:, 0] * along[1] - offset[:, 1] * along[0])
+    off = (across_m > PLACE_TOLERANCE_M) | (np.diff(behind_m, prepend=-PLACE_TOLERANCE_M) < 0.0)
+    first = int(np.argmax(off)) if off.any() else len(behind_m)
+    return float(behind_m[:first].max(initial=0.0))

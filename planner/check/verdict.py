@@ -66,10 +66,10 @@ def judge(scenario: Scenario, plan: Plan) -> Verdict:
         violations += turn_violations(scenario, aircraft, path, radius_m, where)
         violations += place_violations(scenario, path, line)
         violations += clearance_violations(scenario, plan, path, line_m)
-        violations += terminal_violations(scenario, path, line_m)
+        violations += terminal_violations(scenario, path, line_m, aircraft.ground_turn_radius_m)
         violations += duration_violations(path, time_s)
         violations += limit_violations(aircraft, path, lengths_m[-1], time_s)
-        violations += collect_violations(scenario, plan, path, line)
+        violations += collect_violations(scenario, plan, path, line, aircraft.settle_m)
     coverage, unseen, missed = covered(scenario, plan)
     violations += missed
     length_m = math.fsum(lengths_m)

@@ -11,11 +11,12 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 from shapely.geometry import Polygon
+from shapely.geometry.base import BaseGeometry
 
 from planner.coverage import decompose
 from planner.coverage.classify import STEP_RAD, Spans, angles_around, fits, hull_points, spans_at
 from planner.coverage.merge import MergedRegion, split_region
-from planner.coverage.segments import Floats, Neighbourhood, too_wide
+from planner.coverage.segments import Floats, Neighbourhood, flown_straight, too_wide
 from planner.coverage.sweeps import Sweep, flyable_headings
 from planner.errors import InfeasibleError
 from planner.route import CollectPass
@@ -119,11 +120,14 @@ def can_be_seen(
     step_rad: float = STEP_RAD,
     *,
     wide: bool = False,
+    settle_m: float = 0.0,
 ) -> None:
     """Whether some choice of passes sees each part of a region from inside the operating area.
 
     Parameters
     ----------
+    settle_m
+        Straight flight before each pass, inside the area too.
     wide
         Whether sweeps of any number of lanes are allowed, of the whole or of divisions of it; without, the
         paper's one or two passes.
@@ -137,17 +141,16 @@ def can_be_seen(
     if area is not None:
         shapely.prepare(area)
     for part in split_region(region):
-        if wide and _can_be_swept(part, sensor, height_m, area):
+        if wide and _can_be_swept(part, sensor, height_m, area, settle_m):
             continue
         least = neighbourhoods(part, sensor, height_m, step_rad)
         # One pass may leave the area where two, further in, do not.
-        if any(_some_inside(side, area) for side in least):
+        if any(_some_inside(side, area, settle_m) for side in least):
             continue
         if least[0].turns == 0:
             try:
-                if any(
-                    _some_inside(side, area) for side in neighbourhoods(part, sensor, height_m, step_rad, 1)
-                ):
+                two = neighbourhoods(part, sensor, height_m, step_rad, 1)
+                if any(_some_inside(side, area, settle_m) for side in two):
                     continue
             except InfeasibleError:
                 pass
@@ -155,21 +158,25 @@ def can_be_seen(
             "area",
             region.name,
             f"every pass that sees it leaves the operating area: the line runs "
-            f"{sensor.near_m(height_m):.0f} m or more beside the region",
+            f"{sensor.near_m(height_m):.0f} m or more beside the region"
+            + (f" and begins with {settle_m:.0f} m of straight flight" if settle_m > 0.0 else ""),
             "enlarge the area round the region, fly lower, or let the sensor look to both sides",
             part.centroid,
         )
 
 
-def _can_be_swept(part: MergedRegion, sensor: SarSensor, height_m: float, area: Polygon | None) -> bool:
+def _can_be_swept(
+    part: MergedRegion, sensor: SarSensor, height_m: float, area: Polygon | None, settle_m: float
+) -> bool:
     """Whether the lanes of some sweep, of the whole or of each piece of some division, stay in the area."""
     if sensor.mode == "spotlight":
         return False
-    if any(flyable_headings(Sweep(part, sensor, height_m, 0, extra), area).any() for extra in (0, 1)):
+    whole = (Sweep(part, sensor, height_m, 0, extra) for extra in (0, 1))
+    if any(flyable_headings(sweep, area, settle_m).any() for sweep in whole):
         return True
     return not decompose.is_plain(part.area) and any(
         all(
-            flyable_headings(Sweep(replace(part, area=piece), sensor, height_m), area).any()
+            flyable_headings(Sweep(replace(part, area=piece), sensor, height_m), area, settle_m).any()
             for piece in pieces
         )
         for pieces in decompose.cuts(part.area)
@@ -231,7 +238,7 @@ def check_sensor(region: Region, sensor: SarSensor, height_m: float) -> None:
         )
 
 
-def inside(lines: Floats, area: Polygon | None) -> NDArray[np.bool_]:
+def inside(lines: Floats, area: BaseGeometry | None) -> NDArray[np.bool_]:
     """Which of the lines, shape (..., 2, 2), stay in the operating area (constraint c4); shape (...)."""
     if area is None:
         return np.ones(lines.shape[:-2], dtype=np.bool_)
@@ -244,15 +251,15 @@ def complementary(etas: Floats) -> NDArray[np.bool_]:
     return etas[:, None] + etas[None, :] <= 1.0 + 1e-12
 
 
-def _some_inside(side: Neighbourhood, area: Polygon | None) -> bool:
+def _some_inside(side: Neighbourhood, area: Polygon | None, settle_m: float) -> bool:
     for count in (3, 21):
         grid = np.linspace(0.0, 1.0, count)
-        first = inside(side.lines(grid), area)
+        first = inside(flown_straight(side.lines(grid), settle_m), area)
         if side.turns == 0:
             if first.any():
                 return True
             continue
-        second = inside(side.lines(grid, opposite=True), area)
+        second = inside(flown_straight(side.lines(grid, opposite=True), settle_m), area)
         if (first[:, :, None] & second[:, None, :] & complementary(grid)).any():
             return True
     return False

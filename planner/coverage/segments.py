@@ -98,6 +98,15 @@ class Neighbourhood:
         return collect_along(self.region, self.sensor, self.height_m, self.look, line, angle_rad, eta)
 
 
+def flown_straight(lines: Floats, settle_m: float) -> Floats:
+    """What is flown straight for passes along lines, shape (..., 2, 2): settling run and pass."""
+    if settle_m == 0.0:
+        return lines
+    ahead = lines[..., 1, :] - lines[..., 0, :]
+    ahead = ahead / np.hypot(ahead[..., 0], ahead[..., 1])[..., None]
+    return np.stack([lines[..., 0, :] - settle_m * ahead, lines[..., 1, :]], axis=-2)
+
+
 def segment(
     region: MergedRegion,
     sensor: SarSensor,

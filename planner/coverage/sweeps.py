@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from planner.coverage import kernels
 from planner.coverage.classify import ROUNDING_M, angles_around, hull_points, spans_at
 from planner.coverage.merge import MergedRegion
-from planner.coverage.segments import Neighbourhood, collect_along
+from planner.coverage.segments import Neighbourhood, collect_along, flown_straight
 from planner.route import CollectPass, Look
 from planner.sensors.sar import SarSensor
 from planner.sensors.strip import strip_on, swaths_m
@@ -253,8 +253,8 @@ def sweep_passes(sweep: Sweep, angle_rad: float, eta: float, order: Ints) -> tup
     return tuple(passes)
 
 
-def flyable_headings(sweep: Sweep, area: shapely.Polygon | None) -> NDArray[np.bool_]:
-    """At which of the sweep's headings every lane has a state inside the area, shape (M,)."""
+def flyable_headings(sweep: Sweep, area: shapely.Polygon | None, settle_m: float = 0.0) -> NDArray[np.bool_]:
+    """At which of the sweep's headings every lane, settling run and all, can be inside the area, (M,)."""
     angles_rad = sweep.angles_rad
     flyable = np.zeros(len(angles_rad), dtype=np.bool_)
     counts = sweep.lanes(angles_rad)
@@ -265,7 +265,8 @@ def flyable_headings(sweep: Sweep, area: shapely.Polygon | None) -> NDArray[np.b
             continue
         lanes = lanes_at(sweep, angles_rad[rows], np.array([0.0, 0.5, 1.0]), int(count))
         shapely.prepare(area)
-        inside = np.asarray(shapely.covers(area, shapely.linestrings(lanes.lines)), dtype=np.bool_)
+        flown = shapely.linestrings(flown_straight(lanes.lines, settle_m))
+        inside = np.asarray(shapely.covers(area, flown), dtype=np.bool_)
         inside &= _allowed(sweep, lanes.headings_rad)[:, None, None, :]
         flyable[rows] = np.any(np.all(np.any(inside, axis=3), axis=2), axis=1)
     return flyable

@@ -70,7 +70,7 @@ class Legs:
         if self._wind.speed_m_s > 0.0:
             cost_m *= float(still_air_factor(collect.angle_rad, self._airspeed_m_s, self._wind))
         if len(self._soft):
-            line = np.array([collect.start, collect.end])
+            line = np.array([collect.settling(self._settle_m).position, collect.end])
             cost_m += risk_m(line, self._soft)
         return cost_m
 
@@ -86,10 +86,8 @@ class Legs:
 
     def arrives(self, collect: CollectPass) -> Anchor:
         """Where a transit to a pass ends: before its settling run."""
-        scale = self._settle_m / collect.length_m
-        ahead = collect.end[0] - collect.start[0], collect.end[1] - collect.start[1]
-        place = collect.start[0] - scale * ahead[0], collect.start[1] - scale * ahead[1]
-        return Anchor(*place, collect.angle_rad)
+        pose = collect.settling(self._settle_m)
+        return Anchor(*pose.position, pose.angle_rad)
 
     def _find(self, start: Anchor, goal: Anchor) -> float:
         try:

@@ -11,8 +11,11 @@ from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
 from planner.airspace.shapes import hard_shapes, soft_shapes
+from planner.airspace.zones import inner_area
 from planner.coverage.merge import GRID_M
 from planner.coverage.neighbourhood import inside
+from planner.coverage.segments import flown_straight
+from planner.routing.legs import TRANSIT_MARGIN_M
 from planner.scenario import Scenario
 from planner.vehicle.aircraft import Aircraft
 
@@ -89,11 +92,11 @@ class Room:
         ndarray
             int16, shape (...).
         """
+        flown = flown_straight(lines, self.settle_m)
+        entry, exits = flown[..., 0, :], flown[..., 1, :]
         ahead = lines[..., 1, :] - lines[..., 0, :]
         ahead = ahead / np.hypot(ahead[..., 0], ahead[..., 1])[..., None]
-        entry, exits = lines[..., 0, :] - self.settle_m * ahead, lines[..., 1, :]
-        flown = np.stack([entry, exits], axis=-2)
-        allowed = inside(flown, self.area) & ~_meets(self.hard, flown)
+        allowed = inside(flown, inner_area(self.area, TRANSIT_MARGIN_M)) & ~_meets(self.hard, flown)
         grades = np.where(allowed, 0, FORBIDDEN).astype(np.int16)
         grades += CROSSES_THREAT * _meets(self.soft, flown)
         left = np.stack([-ahead[..., 1], ahead[..., 0]], axis=-1) * self.turn_radius_m

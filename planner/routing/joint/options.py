@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import shapely
 from numpy.typing import NDArray
-from shapely.geometry import Polygon
+from shapely.geometry import MultiPolygon, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from planner.airspace.terrain import Ground
@@ -18,7 +18,7 @@ from planner.coverage.alternatives import of_visit
 from planner.coverage.classify import fits, hull_points, spans_at
 from planner.coverage.merge import GRID_M
 from planner.coverage.neighbourhood import complementary, inside
-from planner.coverage.segments import Neighbourhood
+from planner.coverage.segments import Neighbourhood, flown_straight
 from planner.coverage.sweeps import VARIANTS, Judge, Side, Sweep, Swept, best_sweeps, sweep_passes
 from planner.dubins.kernels import dubins_lengths
 from planner.route import CollectPass, Look
@@ -45,7 +45,8 @@ class Surroundings:
     Parameters
     ----------
     area, room
-        The operating area, and where the centre of a full turn may be; None without an area.
+        Where passes may be of the operating area, and where the centre of a full turn may be; None without an
+        area.
     hard, soft
         Discs that may not, and should not, be entered, shape (K, 3).
     prices, yields
@@ -65,8 +66,8 @@ class Surroundings:
         Terrain, and the flight's level over its datum: ground that a pass leaves in shadow or layover costs.
     """
 
-    area: Polygon | None
-    room: Polygon | None
+    area: Polygon | MultiPolygon | None
+    room: BaseGeometry | None
     hard: Floats
     soft: Floats
     hard_polygons: tuple[Polygon, ...]
@@ -319,14 +320,15 @@ def hidden_m(side: Side, passes: Sequence[CollectPass], around: Surroundings) ->
 
 
 def _judge(lines: Floats, around: Surroundings) -> tuple[NDArray[np.bool_], Floats]:
-    """Which lines (M, K, 2, 2) keep the hard constraints, and what each costs."""
+    """Which lines (M, K, 2, 2), settled before, keep the hard constraints, and what each costs."""
     shape = lines.shape[:2]
+    lines = flown_straight(lines, around.settle_m)
     good = inside(lines, around.area)
     geometry = shapely.linestrings(lines)
     for polygon in around.hard_polygons:
         good &= ~shapely.intersects(polygon, geometry)
     delta = lines[:, :, 1] - lines[:, :, 0]
-    cost_m = np.hypot(delta[..., 0], delta[..., 1]) + around.settle_m
+    cost_m = np.hypot(delta[..., 0], delta[..., 1])
     if around.wind.speed_m_s > 0.0:
         courses_rad = np.arctan2(delta[..., 1], delta[..., 0])
         cost_m = cost_m * still_air_factor(courses_rad, around.airspeed_m_s, around.wind)

@@ -11,6 +11,7 @@ import shapely
 from numpy.typing import NDArray
 
 from planner.airspace.shapes import DiscShape, hard_shapes
+from planner.airspace.zones import inner_area
 from planner.coverage.merge import MergedRegion, merge_regions
 from planner.coverage.neighbourhood import check_sensor
 from planner.coverage.sweeps import Side
@@ -20,6 +21,7 @@ from planner.routing.joint.options import Surroundings
 from planner.routing.joint.prices import INSIDE_FACTOR, soft_prices
 from planner.routing.joint.relaxation import explained
 from planner.routing.joint.targets import can_be_flown, targets
+from planner.routing.legs import TRANSIT_MARGIN_M
 from planner.scenario import Scenario
 from planner.sensors.view import sensing
 from planner.vehicle.aircraft import Aircraft
@@ -34,7 +36,7 @@ def surroundings(scenario: Scenario, aircraft: Aircraft) -> Surroundings:
     """Area, discs and polygons, with the margin transits keep."""
     hard = list(hard_shapes(scenario.airspace, scenario.level))
     radius_m = aircraft.planned_turn_radius_m
-    area = scenario.area
+    area = inner_area(scenario.area, TRANSIT_MARGIN_M)
     priced = soft_prices(scenario)
     soft = priced[:, :3] + np.array([0.0, 0.0, MARGIN_M])
     polygons = tuple(
@@ -42,7 +44,7 @@ def surroundings(scenario: Scenario, aircraft: Aircraft) -> Surroundings:
     )
     return Surroundings(
         area=area,
-        room=None if area is None else area.buffer(-radius_m),
+        room=None if scenario.area is None else scenario.area.buffer(-radius_m),
         hard=_discs([shape for shape in hard if isinstance(shape, DiscShape)]),
         soft=soft,
         hard_polygons=polygons,

@@ -15,9 +15,9 @@ from shapely.geometry import LineString, Point, Polygon, box
 from planner.airspace.zones import keep_out
 from planner.geojson import read_scenario
 from planner.pipeline import make_plan
+from planner.routing.joint import visible
 from planner.routing.joint.barriers import COLUMNS, polygon_rows, rows_of
 from planner.routing.joint.kernels import detour_m
-from planner.routing.joint.route import visible
 from tests.planner.scenarios import feature, small, square
 
 places = st.tuples(st.floats(-1000.0, 1000.0), st.floats(-1000.0, 1000.0))

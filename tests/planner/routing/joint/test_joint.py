@@ -17,8 +17,8 @@ from planner.errors import InfeasibleError
 from planner.geojson import read_scenario
 from planner.route import Anchor, Pose
 from planner.routing.greedy.route import greedy
+from planner.routing.joint import route as joint
 from planner.routing.joint.route import joint_route, kernels
-from planner.routing.joint.route import route as joint
 from planner.scenario import Scenario
 from tests.planner.scenarios import case, feature, small, square
 
