@@ -9,6 +9,7 @@ from fastapi import Depends, Request
 from app.services.flights.service import FlightService
 from app.services.house import House
 from app.services.plans.planning import PlanningService
+from app.services.scenarios.kept import ScenarioService
 from app.services.terrain.service import TerrainService
 from app.services.vehicles.checks import Checks
 from app.services.vehicles.fleet import Fleet
@@ -26,6 +27,10 @@ async def _settings(request: Request) -> Settings:
 
 async def _planning(house: Annotated[House, Depends(_house)]) -> PlanningService:
     return house.planning
+
+
+async def _scenarios(house: Annotated[House, Depends(_house)]) -> ScenarioService:
+    return house.scenarios
 
 
 async def _fleet(house: Annotated[House, Depends(_house)]) -> Fleet:
@@ -51,6 +56,7 @@ def _terrain(house: Annotated[House, Depends(_house)]) -> TerrainService:
 HouseDep = Annotated[House, Depends(_house)]
 SettingsDep = Annotated[Settings, Depends(_settings)]
 PlanningDep = Annotated[PlanningService, Depends(_planning)]
+ScenariosDep = Annotated[ScenarioService, Depends(_scenarios)]
 FleetDep = Annotated[Fleet, Depends(_fleet)]
 TransfersDep = Annotated[Transfers, Depends(_transfers)]
 ChecksDep = Annotated[Checks, Depends(_checks)]

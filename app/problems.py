@@ -25,6 +25,7 @@ TYPE_PREFIX = "urn:problem-type:swathplan:"
 TABLE: tuple[tuple[type[errors.ServiceError], int, str, str], ...] = (
     (errors.NotFoundError, 404, "not-found", "There is no such thing"),
     (errors.BusyError, 409, "busy", "Another operation is at work"),
+    (errors.ChangedError, 412, "scenario-changed", "Somebody else has changed the scenario"),
     (errors.ConflictError, 409, "conflict", "Not possible in the present state"),
     (errors.UnsafeError, 409, "unsafe", "Not to be flown without an explicit override"),
     (errors.RefusedError, 422, "refused", "The input is refused"),

@@ -74,3 +74,16 @@ SCENARIO_BODY: dict[str, Any] = {
     "required": True,
     "content": {"application/json": _MEDIA, "application/geo+json": _MEDIA},
 }
+
+_DRAFT: dict[str, Any] = {
+    "schema": {
+        "title": "Draft",
+        "description": "A scenario that may be unfinished; it is kept as it is.",
+        "type": "object",
+    }
+}
+
+DRAFT_BODY: dict[str, Any] = {
+    "required": True,
+    "content": {"application/json": _DRAFT, "application/geo+json": _DRAFT},
+}

@@ -9,7 +9,7 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Header, Query, Request, Response
 from sse_starlette import EventSourceResponse, ServerSentEvent
 
-from app.deps import PlanningDep, SettingsDep
+from app.deps import PlanningDep, ScenariosDep, SettingsDep
 from app.problems import responses
 from app.routers.bodies import SCENARIO_BODY
 from app.routers.streams import event_stream
@@ -31,14 +31,23 @@ EVENT_STREAM: dict[int | str, dict[str, Any]] = {
     "",
     status_code=202,
     summary="Plan a scenario",
-    responses=responses(409, 422, 429),
+    responses=responses(404, 409, 422, 429),
     openapi_extra={"requestBody": SCENARIO_BODY},
 )
 async def post_plan(
     request: Request,
     response: Response,
     planning: PlanningDep,
+    scenarios: ScenariosDep,
     settings: SettingsDep,
+    scenario_id: Annotated[
+        str | None,
+        Query(
+            max_length=36,
+            description="The kept scenario the body is of: the plan is `stale` once that one is another, or "
+            "deleted.",
+        ),
+    ] = None,
     wait: Annotated[float, Query(ge=0, description="Seconds to hold the answer for the plan's end.")] = 0.0,
     idempotency_key: Annotated[
         str | None,
@@ -54,7 +63,9 @@ async def post_plan(
     The answer is 202 with the plan's record and its place in `Location`, also when `wait` saw its end.
     """
     document = read_object(await request.body())
-    record = await planning.submit(document, idempotency_key)
+    if scenario_id is not None:
+        await scenarios.get(scenario_id)
+    record = await planning.submit(document, idempotency_key, scenario_id)
     if wait > 0 and not record.ended:
         record = await planning.wait(record.id, min(wait, settings.max_wait_s))
     response.headers["Location"] = f"/api/v1/plans/{record.id}"

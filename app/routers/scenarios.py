@@ -1,23 +1,112 @@
-"""Scenarios judged without planning them."""
+"""Scenarios: kept while people are at work on them, judged without planning, read from other files."""
 
 from __future__ import annotations
 
 import asyncio
+import re
 from typing import Annotated, Any, Literal
 
-from fastapi import APIRouter, Query, Request, Response
+from fastapi import APIRouter, Header, Query, Request, Response
 
-from app.deps import PlanningDep
+from app.deps import PlanningDep, ScenariosDep
 from app.problems import responses
-from app.routers.bodies import SCENARIO_BODY
+from app.routers.bodies import DRAFT_BODY, SCENARIO_BODY
 from app.schemas.base import FindingOut
 from app.schemas.plans import ValidationOut
+from app.schemas.scenarios import ScenarioList, ScenarioOut, ScenarioTextOut
 from app.services.documents import read_object, write_json
 from app.services.errors import RefusedError
 from app.services.plans.work import finding_json
 from app.services.scenarios.regions_import import FORMAT_OF_MEDIA_TYPE, ImportOptions, import_file
+from planner.errors import Finding
 
 router = APIRouter(prefix="/api/v1/scenarios", tags=["scenarios"])
+
+#: An ETag; quoted, and the weak form, which proxies make of the strong one, counts too.
+_TAG = re.compile(r'(?:W/)?"?(\d{1,9})"?')
+IfMatch = Annotated[
+    str,
+    Header(
+        max_length=40,
+        description="The revision it was read at, as `ETag` gave it; `*` for any.",
+        examples=['"3"'],
+    ),
+]
+
+
+def _revision(if_match: str) -> int | None:
+    """The revision an ``If-Match`` names; None for any."""
+    if if_match.strip() == "*":
+        return None
+    found = _TAG.fullmatch(if_match.strip())
+    if found is None:
+        message = "If-Match names no revision"
+        raise RefusedError(message, (Finding("If-Match", "if-match", message, 'send the ETag, e.g. "3"'),))
+    return int(found[1])
+
+
+@router.post(
+    "",
+    status_code=201,
+    summary="Keep a scenario",
+    responses=responses(422),
+    openapi_extra={"requestBody": DRAFT_BODY},
+)
+async def keep(request: Request, scenarios: ScenariosDep, response: Response) -> ScenarioOut:
+    """Keep a scenario people are at work on; it may be unfinished, and is not judged."""
+    record = await scenarios.add(read_object(await request.body()))
+    response.headers["Location"] = f"/api/v1/scenarios/{record.id}"
+    response.headers["ETag"] = f'"{record.revision}"'
+    return ScenarioOut.of(record)
+
+
+@router.get("", summary="List kept scenarios", responses=responses(422))
+async def list_kept(
+    scenarios: ScenariosDep,
+    limit: Annotated[int, Query(ge=1, le=1000)] = 50,
+    offset: Annotated[int, Query(ge=0, le=2**31)] = 0,
+) -> ScenarioList:
+    """Kept scenarios without their texts, the one changed last first."""
+    records = await scenarios.newest(limit, offset)
+    return ScenarioList(
+        scenarios=[ScenarioOut.of(record) for record in records], total=await scenarios.count()
+    )
+
+
+@router.get("/{scenario_id}", summary="Read a kept scenario", responses=responses(404))
+async def get_kept(scenario_id: str, scenarios: ScenariosDep, response: Response) -> ScenarioTextOut:
+    """The scenario and its revision, which is also the `ETag`."""
+    record, document = await scenarios.read(scenario_id)
+    response.headers["ETag"] = f'"{record.revision}"'
+    return ScenarioTextOut.whole(record, document)
+
+
+@router.put(
+    "/{scenario_id}",
+    summary="Change a kept scenario",
+    responses=responses(404, 412, 422),
+    openapi_extra={"requestBody": DRAFT_BODY},
+)
+async def change(
+    scenario_id: str, request: Request, scenarios: ScenariosDep, response: Response, if_match: IfMatch
+) -> ScenarioOut:
+    """Put another text in its place; plans made of the one before are stale from now on.
+
+    412 when somebody else has changed it since the revision in `If-Match`: read it again, or keep this one as
+    a scenario of its own. The same text again changes nothing, not even the revision.
+    """
+    document = read_object(await request.body())
+    record = await scenarios.change(scenario_id, document, _revision(if_match))
+    response.headers["ETag"] = f'"{record.revision}"'
+    return ScenarioOut.of(record)
+
+
+@router.delete(
+    "/{scenario_id}", status_code=204, summary="Delete a kept scenario", responses=responses(404, 412, 422)
+)
+async def remove(scenario_id: str, scenarios: ScenariosDep, if_match: IfMatch = "*") -> None:
+    """Forget it; plans made of it stay, and are stale."""
+    await scenarios.remove(scenario_id, _revision(if_match))
 
 
 @router.post(

@@ -119,10 +119,10 @@ async def upload(
 ) -> UploadOut:
     """Encode the plan for the autopilot that is there, upload, read back, compare.
 
-    Plans that break a hard constraint, missions for another kind of vehicle and vehicles in flight are
-    refused (409) unless `override` is true and `reason` says why. `outcome` tells what the vehicle said:
-    `accepted`, `refused`, or `unknown` when it vanished meanwhile; `held` and `differences` tell what it
-    holds.
+    Plans that break a hard constraint, plans whose kept scenario is another by now (`plan-stale`), missions
+    for another kind of vehicle and vehicles in flight are refused (409) unless `override` is true and
+    `reason` says why. `outcome` tells what the vehicle said: `accepted`, `refused`, or `unknown` when it
+    vanished meanwhile; `held` and `differences` tell what it holds.
     """
     choice = MissionChoice(body.vehicle, None, body.payload, body.gimbal)
     report = await transfers.upload(

@@ -29,7 +29,8 @@ class MissionIn(Strict):
     )
     gimbal: str | None = Field(default=None, max_length=200, description=GIMBAL_IS)
     override: bool = Field(
-        default=False, description="Upload although a hard constraint is broken; needs a reason."
+        default=False,
+        description="Upload although a hard constraint is broken, or the plan is stale; needs a reason.",
     )
     reason: str | None = Field(
         default=None, min_length=3, max_length=500, description="Why to override; logged with the upload."

@@ -36,6 +36,11 @@ class PlanOut(BaseModel):
     violations: list[dict[str, Any]] | None = Field(description="Of a done plan; empty when none.")
     methods: dict[str, Any] | None = Field(description="The algorithm used in each stage.")
     scenario_hash: str | None
+    scenario_id: str | None = Field(description="The kept scenario it was made of.")
+    stale: bool | None = Field(
+        description="Whether that scenario is another one by now; null for a plan made of none."
+    )
+    stale_reason: str | None = Field(description="Why it is stale.")
     planner_version: str | None
     seed: int | None
     error: dict[str, Any] | None = Field(description="Of a failed plan: type, title, detail, errors.")
@@ -70,7 +75,10 @@ class PlanOut(BaseModel):
             metrics=summary.get("metrics"),
             violations=summary.get("violations"),
             methods=summary.get("methods"),
-            scenario_hash=summary.get("scenario_hash"),
+            scenario_hash=summary.get("scenario_hash", record.scenario_hash),
+            scenario_id=record.scenario_id,
+            stale=record.stale,
+            stale_reason=record.stale_reason,
             planner_version=summary.get("planner_version"),
             seed=summary.get("seed"),
             error=record.error,

@@ -109,3 +109,9 @@ def write_json(document: Mapping[str, Any], indent: int | None = None) -> str:
     """Write JSON; raises ValueError on NaN, which no JSON reader takes."""
     separators = (",", ":") if indent is None else None
     return json.dumps(document, ensure_ascii=False, allow_nan=False, indent=indent, separators=separators)
+
+
+def name_of(scenario: Mapping[str, Any]) -> str:
+    """What a scenario is called."""
+    name = scenario.get("name")
+    return name[:200] if isinstance(name, str) and name else "scenario"

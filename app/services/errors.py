@@ -5,7 +5,8 @@
     ServiceError
     ├── NotFoundError          no such plan, vehicle, flight, region
     ├── ConflictError          not possible in the present state
-    │   └── BusyError          another operation is at work on the same vehicle
+    │   ├── BusyError          another operation is at work on the same vehicle
+    │   └── ChangedError       somebody else has changed it meanwhile
     ├── RefusedError           the input is wrong; carries findings
     ├── UnsafeError            the plan breaks a hard constraint, or the autopilot cannot hold it
     ├── OverloadedError        no room for more work now
@@ -37,6 +38,10 @@ class ConflictError(ServiceError):
 
 class BusyError(ConflictError):
     """Another operation is at work on the same vehicle."""
+
+
+class ChangedError(ConflictError):
+    """Somebody else has changed it since it was read."""
 
 
 class RefusedError(ServiceError):

@@ -12,10 +12,12 @@ from app.services.flights.service import FlightService
 from app.services.plans import work
 from app.services.plans.planning import PlanningService, Task
 from app.services.plans.pool import Pool, WorkerPool
+from app.services.scenarios.kept import ScenarioService
 from app.services.scenarios.validation import Verdict, judge
 from app.services.store.database import Database
 from app.services.store.flights import FlightStore
 from app.services.store.plans import PlanStore
+from app.services.store.scenarios import ScenarioStore
 from app.services.store.terrain import TerrainStore
 from app.services.store.uploads import UploadStore
 from app.services.store.vehicles import VehicleStore
@@ -63,6 +65,7 @@ class House:
         self.pool = pool or WorkerPool(limits.workers, initialiser)
         folder = terrain_folder(limits.database)
         self.terrain = TerrainService(TerrainStore(self.database), folder)
+        self.scenarios = ScenarioService(ScenarioStore(self.database))
         self.planning = PlanningService(
             PlanStore(self.database),
             self.pool,

@@ -131,6 +131,26 @@ class VehicleRecord:
 
 
 @dataclass(frozen=True, slots=True)
+class KeptScenario:
+    """A scenario people are at work on, without its text.
+
+    Parameters
+    ----------
+    revision
+        Counts the changes, from 1.
+    scenario_hash
+        As plans tell of the scenario they were made of.
+    """
+
+    id: str
+    name: str
+    revision: int
+    scenario_hash: str
+    created_at: datetime
+    changed_at: datetime
+
+
+@dataclass(frozen=True, slots=True)
 class PlanRecord:
     """One request to plan and what became of it.
 
@@ -143,6 +163,12 @@ class PlanRecord:
         ``seed``.
     error
         Of a failed one: ``type``, ``title``, ``detail`` and ``errors``, as in a problem document.
+    scenario_id
+        The kept scenario it was made of; None when it was made of none.
+    scenario_hash
+        Of the scenario that was posted; None for plans older than kept scenarios.
+    kept_hash
+        The kept scenario's hash at present; None when it is deleted.
     """
 
     id: str
@@ -156,8 +182,25 @@ class PlanRecord:
     warnings: tuple[dict[str, Any], ...]
     summary: dict[str, Any] | None
     error: dict[str, Any] | None
+    scenario_id: str | None = None
+    scenario_hash: str | None = None
+    kept_hash: str | None = None
 
     @property
     def ended(self) -> bool:
         """Whether nothing more will happen to it."""
         return self.state in ENDED
+
+    @property
+    def stale(self) -> bool | None:
+        """Whether its scenario is another one by now; None where nobody can tell."""
+        return None if self.scenario_id is None else self.kept_hash != self.scenario_hash
+
+    @property
+    def stale_reason(self) -> str | None:
+        """Why it is stale; None when it is not."""
+        if not self.stale:
+            return None
+        if self.kept_hash is None:
+            return "the scenario it was made of has been deleted"
+        return "the scenario is another than the one it was made of: it has been changed since"

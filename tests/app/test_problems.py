@@ -190,6 +190,6 @@ async def test_map_does_not_hide_the_interface(settings: Settings, tmp_path: Pat
         assert "<title>map</title>" in (await client.get("/")).text
         check_problem(await client.get("/no-such-file"), 404)
         check_problem(await client.get("/api/v1/nothing"), 404)
-        check_problem(await client.get("/api/v1/scenarios/validate"), 405)
+        check_problem(await client.patch("/api/v1/scenarios/validate"), 405)
         check_problem(await client.patch(PLANS), 405)
         check_problem(await client.post("/health/live"), 405)

@@ -13,7 +13,7 @@ from typing import Any
 
 import structlog
 
-from app.services.documents import write_json
+from app.services.documents import name_of, write_json
 from app.services.errors import ConflictError, NotFoundError, OverloadedError, RefusedError
 from app.services.hub import Hub
 from app.services.metrics import PLANNING_SECONDS, PLANS_ENDED, PLANS_RUNNING
@@ -25,6 +25,7 @@ from app.services.scenarios.validation import Verdict, judge
 from app.services.store.plans import PlanStore
 from app.services.terrain.rasters import stored_terrain
 from planner.airspace.terrain import Terrain
+from planner.geojson import scenario_hash
 
 log = structlog.get_logger(__name__)
 
@@ -117,13 +118,17 @@ class PlanningService:
             return ()
         return (str(self._terrain_folder),)
 
-    async def submit(self, document: Mapping[str, Any], key: str | None = None) -> PlanRecord:
+    async def submit(
+        self, document: Mapping[str, Any], key: str | None = None, scenario_id: str | None = None
+    ) -> PlanRecord:
         """Queue a scenario.
 
         Parameters
         ----------
         key
             Idempotency key: the same key with the same scenario answers with the plan made the first time.
+        scenario_id
+            The kept scenario it is made of; the plan is stale once that one is another.
 
         Raises
         ------
@@ -149,7 +154,9 @@ class PlanningService:
             detail = f"{first.feature}: {first.message}" if count == 1 else f"{count} rules are broken"
             raise RefusedError(f"the scenario is refused: {detail}", verdict.errors)
         warnings = [work.finding_json(finding) for finding in verdict.warnings]
-        record = await self._store.add(_name_of(document), text, digest, warnings, key)
+        record = await self._store.add(
+            name_of(document), text, digest, warnings, key, scenario_id, scenario_hash(document)
+        )
         self._queue.put_nowait(record.id)
         return record
 
@@ -298,8 +305,3 @@ class PlanningService:
             PLANS_ENDED.labels(state=state).inc()
             log.info("plan ended", plan_id=plan_id, state=state, reason=(result.error or {}).get("detail"))
             await self._announce(plan_id)
-
-
-def _name_of(document: Mapping[str, Any]) -> str:
-    name = document.get("name")
-    return name[:200] if isinstance(name, str) and name else "scenario"

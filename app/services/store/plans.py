@@ -7,13 +7,13 @@ from collections.abc import Sequence
 from datetime import UTC, datetime
 from typing import Any, cast
 
-from sqlalchemy import delete, func, select, update
+from sqlalchemy import Select, delete, func, select, update
 from sqlalchemy.exc import IntegrityError
 
 from app.services.errors import ConflictError, NotFoundError
 from app.services.records import PlanRecord, PlanState
 from app.services.store.database import Database
-from app.services.store.tables import PlanDocumentRow, PlanRow
+from app.services.store.tables import PlanDocumentRow, PlanRow, ScenarioRow
 
 
 def now() -> datetime:
@@ -21,7 +21,14 @@ def now() -> datetime:
     return datetime.now(UTC)
 
 
-def _record(row: PlanRow) -> PlanRecord:
+def _records() -> Select[PlanRow, str]:
+    """Plans, each with the present hash of the kept scenario it was made of."""
+    return select(PlanRow, ScenarioRow.scenario_hash).outerjoin(
+        ScenarioRow, ScenarioRow.id == PlanRow.scenario_id
+    )
+
+
+def _record(row: PlanRow, kept_hash: str | None) -> PlanRecord:
     return PlanRecord(
         id=row.id,
         name=row.name,
@@ -34,6 +41,9 @@ def _record(row: PlanRow) -> PlanRecord:
         warnings=tuple(row.warnings),
         summary=row.summary,
         error=row.error,
+        scenario_id=row.scenario_id,
+        scenario_hash=row.scenario_hash,
+        kept_hash=kept_hash,
     )
 
 
@@ -44,7 +54,14 @@ class PlanStore:
         self._database = database
 
     async def add(
-        self, name: str, scenario: str, body_sha256: str, warnings: Sequence[dict[str, Any]], key: str | None
+        self,
+        name: str,
+        scenario: str,
+        body_sha256: str,
+        warnings: Sequence[dict[str, Any]],
+        key: str | None,
+        scenario_id: str | None,
+        scenario_hash: str,
     ) -> PlanRecord:
         """A new queued plan; raises ConflictError when the idempotency key has been used meanwhile."""
         row = PlanRow(
@@ -56,6 +73,8 @@ class PlanStore:
             idempotency_key=key,
             body_sha256=body_sha256,
             warnings=list(warnings),
+            scenario_id=scenario_id,
+            scenario_hash=scenario_hash,
         )
         try:
             async with self._database.session() as session:
@@ -64,30 +83,29 @@ class PlanStore:
                 session.add(PlanDocumentRow(plan_id=row.id, scenario=scenario))
         except IntegrityError as error:
             raise ConflictError(f"the idempotency key {key} is in use") from error
-        return _record(row)
+        return await self.get(row.id)
 
     async def by_key(self, key: str) -> tuple[PlanRecord, str] | None:
         """The plan an idempotency key stands for, and the digest of its scenario."""
         async with self._database.session() as session:
-            row = await session.scalar(select(PlanRow).where(PlanRow.idempotency_key == key))
-        return None if row is None else (_record(row), row.body_sha256)
+            found = (await session.execute(_records().where(PlanRow.idempotency_key == key))).first()
+        return None if found is None else (_record(*found), found[0].body_sha256)
 
     async def get(self, plan_id: str) -> PlanRecord:
         """One plan; raises NotFoundError."""
         async with self._database.session() as session:
-            row = await session.scalar(select(PlanRow).where(PlanRow.id == plan_id))
-        if row is None:
+            found = (await session.execute(_records().where(PlanRow.id == plan_id))).first()
+        if found is None:
             raise NotFoundError("plan", plan_id)
-        return _record(row)
+        return _record(*found)
 
     async def newest(self, limit: int, offset: int = 0, state: str | None = None) -> tuple[PlanRecord, ...]:
         """Plans, newest first."""
-        query = select(PlanRow).order_by(PlanRow.number.desc()).limit(limit).offset(offset)
+        query = _records().order_by(PlanRow.number.desc()).limit(limit).offset(offset)
         if state is not None:
             query = query.where(PlanRow.state == state)
         async with self._database.session() as session:
-            rows = await session.scalars(query)
-            return tuple(_record(row) for row in rows)
+            return tuple(_record(*found) for found in await session.execute(query))
 
     async def count(self, state: str | None = None) -> int:
         """How many plans there are, of one state or of all."""

@@ -49,6 +49,23 @@ class PlanRow(Base):
     warnings: Mapped[list[dict[str, Any]]] = mapped_column(JSON)
     summary: Mapped[dict[str, Any] | None] = mapped_column(JSON)
     error: Mapped[dict[str, Any] | None] = mapped_column(JSON)
+    scenario_id: Mapped[str | None] = mapped_column(String(36))
+    scenario_hash: Mapped[str | None] = mapped_column(String(64))
+
+
+class ScenarioRow(Base):
+    """One scenario people are at work on; it may be unfinished. Plans keep copies of their own."""
+
+    __tablename__ = "scenarios"
+
+    number: Mapped[int] = mapped_column(Integer, primary_key=True, autoincrement=True)
+    id: Mapped[str] = mapped_column(String(36), unique=True)
+    name: Mapped[str] = mapped_column(String(200))
+    revision: Mapped[int] = mapped_column(Integer)
+    scenario_hash: Mapped[str] = mapped_column(String(64))
+    document: Mapped[str] = mapped_column(Text)
+    created_at: Mapped[datetime] = mapped_column(UtcTime)
+    changed_at: Mapped[datetime] = mapped_column(UtcTime)
 
 
 class PlanDocumentRow(Base):

@@ -70,7 +70,7 @@ class Transfers:
         Raises
         ------
         UnsafeError
-            The plan must not be flown without an override.
+            The plan must not be flown without an override, or is stale.
         BusyError
             Another operation is at work on the vehicle.
         LinkError
@@ -80,11 +80,12 @@ class Transfers:
             plan = plan_of(await self._planning.plan_text(plan_id))
             # Now, as somebody may delete the plan meanwhile.
             scenario = json.loads(await self._planning.scenario_text(plan_id))
+            stale = (await self._planning.get(plan_id)).stale_reason
             if not vehicle.state.connected:
                 raise LinkError(f"{vehicle.name}: {vehicle.client.absence}")
             mission = await asyncio.to_thread(encode_plan, plan, for_vehicle(vehicle, choice))
             findings = _pointed(plan, scenario, mission, choice) if "mission" in parts else ()
-            findings += judge_upload(plan, mission, parts, vehicle.state, override)
+            findings += judge_upload(plan, mission, parts, vehicle.state, override, stale)
             await _bring_home(vehicle, plan)
             report = await self._begin(vehicle, plan_id, mission, parts, override, findings)
             report.payload, report.gimbal = choice.payload, choice.gimbal

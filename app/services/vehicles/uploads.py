@@ -30,6 +30,8 @@ STATUSES: tuple[OutcomeName, ...] = ("accepted", "not_attempted", "different", "
 
 #: What to do about a plan that breaks a hard constraint.
 _AGAIN: Final = "change the scenario so that the constraint holds and plan again, or override"
+#: And about one whose scenario is another by now.
+_STALE: Final = "plan the scenario as it is now and upload that plan, or override"
 
 
 @dataclass(slots=True)
@@ -147,17 +149,27 @@ def report_json(report: UploadReport) -> dict[str, Any]:
 
 
 def judge_upload(
-    plan: Plan, mission: Mission, parts: Sequence[PartName], state: VehicleState, override: str | None
+    plan: Plan,
+    mission: Mission,
+    parts: Sequence[PartName],
+    state: VehicleState,
+    override: str | None,
+    stale: str | None = None,
 ) -> tuple[Finding, ...]:
     """Refuse what must not go up; returns what is worth knowing.
+
+    Parameters
+    ----------
+    stale
+        Why the plan is no longer that of its scenario; None while it is, or where nobody can tell.
 
     Raises
     ------
     RefusedError
         The autopilot would refuse or lose part of it: no override helps.
     UnsafeError
-        A hard violation, another kind of vehicle, or one in flight; an override with a reason passes. A
-        vehicle that is still starting; then no override helps.
+        A hard violation, a plan whose scenario is another by now, another kind of vehicle, or one in flight;
+        an override with a reason passes. A vehicle that is still starting; then no override helps.
     """
     if state.booting:
         message = f"the vehicle is still starting ({state.mode or 'boot'}) and stores nothing yet"
@@ -171,6 +183,8 @@ def judge_upload(
         Finding(violation.feature, violation.constraint, violation.message, _AGAIN)
         for violation in plan.hard_violations
     ]
+    if stale is not None:
+        dangers.append(Finding("plan", "plan-stale", f"the plan is stale: {stale}", _STALE))
     if "mission" in parts and state.type not in ("other", mission.vehicle_type):
         message = f"the plan is for a {mission.vehicle_type}, the vehicle is a {state.type}"
         dangers.append(Finding("vehicle", "vehicle-type", message, "plan for this vehicle, or override"))

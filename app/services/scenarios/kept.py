@@ -1,0 +1,65 @@
+"""Scenarios people are at work on: kept by the service, so that no page's memory is the only one."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from typing import Any
+
+from app.services.documents import name_of, write_json
+from app.services.records import KeptScenario
+from app.services.store.scenarios import ScenarioStore
+from planner.geojson import scenario_hash
+
+
+class ScenarioService:
+    """Kept scenarios; none is judged before it is planned."""
+
+    def __init__(self, store: ScenarioStore) -> None:
+        self._store = store
+
+    async def add(self, document: Mapping[str, Any]) -> KeptScenario:
+        """Keep a new one."""
+        return await self._store.add(name_of(document), write_json(document), scenario_hash(document))
+
+    async def get(self, scenario_id: str) -> KeptScenario:
+        """One without its text; raises NotFoundError."""
+        return (await self._store.read(scenario_id))[0]
+
+    async def read(self, scenario_id: str) -> tuple[KeptScenario, dict[str, Any]]:
+        """One and its text; raises NotFoundError."""
+        record, text = await self._store.read(scenario_id)
+        return record, json.loads(text)
+
+    async def newest(self, limit: int, offset: int) -> tuple[KeptScenario, ...]:
+        """Without their texts, the one changed last first."""
+        return await self._store.newest(limit, offset)
+
+    async def count(self) -> int:
+        """How many there are."""
+        return await self._store.count()
+
+    async def change(
+        self, scenario_id: str, document: Mapping[str, Any], revision: int | None
+    ) -> KeptScenario:
+        """Put another text in its place.
+
+        Parameters
+        ----------
+        revision
+            The one the change was made to; None for whichever it is at.
+
+        Raises
+        ------
+        NotFoundError
+            There is none of this id.
+        ChangedError
+            Somebody else has changed it since that revision.
+        """
+        return await self._store.change(
+            scenario_id, name_of(document), write_json(document), scenario_hash(document), revision
+        )
+
+    async def remove(self, scenario_id: str, revision: int | None) -> None:
+        """Forget one; raises as ``change``."""
+        await self._store.delete(scenario_id, revision)
