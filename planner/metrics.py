@@ -10,6 +10,7 @@ from planner.plan import Metrics
 from planner.route import CollectPass
 from planner.scenario import Scenario
 from planner.vehicle.aircraft import Aircraft
+from planner.vehicle.limits import Use
 from planner.vehicle.wind import duration_s
 
 #: Distance between dividing points when risk is summed along the line (section 5.2, Li et al. 2018).
@@ -50,6 +51,12 @@ def measure(
         coverage=coverage,
         planning_time_s=planning_time_s,
     )
+
+
+def used(scenario: Scenario, aircraft: Aircraft, path: Path) -> Use:
+    """What of its range, time and energy an aircraft uses for a path, in the scenario's wind."""
+    flown_s = duration_s(path, aircraft.airspeed_m_s, scenario.wind)
+    return Use(path.length_m, flown_s, energy_wh(aircraft, flown_s))
 
 
 def turns(path: Path) -> int:

@@ -13,8 +13,8 @@ from planner.check import judge
 from planner.coverage.sweeps import Side
 from planner.dubins.path import Path, Segment, join
 from planner.errors import Finding, InfeasibleError
-from planner.metrics import measure
-from planner.plan import Plan
+from planner.metrics import measure, used
+from planner.plan import LeftOut, Plan
 from planner.progress import Progress, Stop, never, raise_if, silent
 from planner.publish import Leg, assemble, uncovered, whole_path
 from planner.route import Anchor, CollectPass, Route
@@ -23,10 +23,12 @@ from planner.routing.joint.hidden import hidden_findings
 from planner.routing.joint.route import joint_route
 from planner.routing.legs import TRANSIT_MARGIN_M as TRANSIT_MARGIN_M
 from planner.scenario import Scenario
+from planner.tasks.limits import Dropped, within_limits
 from planner.tasks.wind import in_wind
 from planner.transit import ssas_connector
 from planner.transit.refine import Risk, connect_by_cost
 from planner.vehicle.aircraft import Aircraft
+from planner.vehicle.limits import Use
 from planner.version import __version__
 from planner.wishes import Method
 
@@ -60,7 +62,24 @@ class _Stopwatch:
         began = self.clock() if self.clock else 0.0
         yield
         if self.clock:
-            self.seconds[name] = round(self.clock() - began, 6)
+            self.seconds[name] = round(self.seconds.get(name, 0.0) + self.clock() - began, 6)
+
+
+@dataclass(frozen=True, slots=True)
+class _Flight:
+    """A route with the legs that join its passes, and what the whole uses."""
+
+    route: Route
+    dropped: tuple[Finding, ...]
+    sides: tuple[tuple[Side, ...], ...] | None
+    legs: tuple[Leg, ...]
+    notes: tuple[str, ...]
+    use: Use
+
+    @property
+    def passes(self) -> tuple[CollectPass, ...]:
+        """In flight order."""
+        return self.route.passes
 
 
 def make_plan(
@@ -92,11 +111,25 @@ def make_plan(
     aircraft = scenario.aircraft[0]
     methods = chosen_methods(scenario.method)
     watch = _Stopwatch(clock)
-    with watch.stage("routing"):
-        enough = _budget(clock, scenario.time_budget_s)
-        route, dropped, sides = _route(scenario, aircraft, methods, _part(progress, 0.0, 0.5), stop, enough)
-    with watch.stage("transit"):
-        legs, notes = _connect(scenario, aircraft, methods, route, _part(progress, 0.5, 0.9), stop)
+    enough = _budget(clock, scenario.time_budget_s)
+
+    def fly(asked: Scenario, report: Progress) -> _Flight:
+        with watch.stage("routing"):
+            route, dropped, sides = _route(asked, aircraft, methods, _part(report, 0.0, 0.5), stop, enough)
+        with watch.stage("transit"):
+            legs, notes = _connect(asked, aircraft, methods, route, _part(report, 0.5, 0.9), stop)
+        use = used(asked, aircraft, whole_path(legs, route.passes))
+        return _Flight(route, dropped, sides, legs, notes, use)
+
+    flight, left = within_limits(
+        fly(scenario, progress),
+        lambda names: fly(_without(scenario, names), silent),
+        {region.name: region.priority for region in scenario.regions if not region.required},
+        aircraft,
+        (scenario.start.position, scenario.end.position),
+    )
+    route, sides, legs, notes = flight.route, flight.sides, flight.legs, flight.notes
+    dropped = flight.dropped + tuple(_over(each) for each in left)
     dropped += hidden_findings(scenario, route.passes, by_paper=methods["coverage"] == "li2018")
     with watch.stage("publish"):
         path = whole_path(legs, route.passes)
@@ -125,6 +158,7 @@ def make_plan(
             coverage=verdict.coverage,
             planning_time_s=dict(watch.seconds),
             lower_bound_m=bound_m,
+            left_out=_left_out(dropped, left),
             gap=1.0 - bound_m / path.length_m,
         ),
         violations=verdict.violations,
@@ -177,6 +211,34 @@ def _route(
 def _dropped(error: InfeasibleError) -> Finding:
     rule = f"{NOT_SEEN}{error.constraint}"
     return Finding(error.feature, rule, error.message, error.relaxation, "warning")
+
+
+def _without(scenario: Scenario, names: frozenset[str]) -> Scenario:
+    """The scenario without some regions."""
+    return replace(scenario, regions=tuple(r for r in scenario.regions if r.name not in names))
+
+
+def _over(dropped: Dropped) -> Finding:
+    excess = dropped.excess
+    return Finding(
+        dropped.name,
+        f"{NOT_SEEN}{excess.constraint}",
+        f"is left out: with it the flight takes {excess.used:.0f} {excess.unit}, there are "
+        f"{excess.limit:.0f} {excess.unit}",
+        "Raise the limit, its priority, or plan it as a flight of its own.",
+        "warning",
+    )
+
+
+def _left_out(dropped: tuple[Finding, ...], left: tuple[Dropped, ...]) -> tuple[LeftOut, ...]:
+    """What is not seen at all, and why, for the metrics."""
+    margins = {each.name: each.excess.margin for each in left}
+    return tuple(
+        LeftOut(name, finding.rule.removeprefix(NOT_SEEN), margins.get(name))
+        for finding in dropped
+        if finding.rule.startswith(NOT_SEEN)
+        for name in finding.feature.split("+")
+    )
 
 
 def _connect(

@@ -196,6 +196,23 @@ class Violation:
 
 
 @dataclass(frozen=True, slots=True)
+class LeftOut:
+    """A region that need not be seen and is not.
+
+    Parameters
+    ----------
+    reason
+        ``range``, ``flight-time``, ``energy``, or what keeps every pass from seeing it: ``swath``, ``area`` …
+    margin
+        By how much a flight with it is over that limit, in m, s or Wh; None for other reasons.
+    """
+
+    roi: str
+    reason: str
+    margin: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class Metrics:
     """What the plan costs and gives.
 
@@ -221,6 +238,7 @@ class Metrics:
     gap: float | None = None
     flight_length_m: float | None = None
     flight_duration_s: float | None = None
+    left_out: tuple[LeftOut, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

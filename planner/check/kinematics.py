@@ -58,7 +58,7 @@ def limit_violations(
     for constraint, used, limit, unit in (
         ("range", length_m, aircraft.max_range_m, "m"),
         ("flight-time", time_s, aircraft.max_flight_time_s, "s"),
-        ("energy", energy_wh, aircraft.energy_wh, "Wh"),
+        ("energy", energy_wh, aircraft.usable_wh, "Wh"),
     ):
         if used is not None and limit is not None and used > limit:
             yield Violation(

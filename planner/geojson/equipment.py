@@ -12,7 +12,12 @@ from planner.geojson.fields import Fields, Findings
 from planner.route import Look
 from planner.sensors.sar import SarSensor
 from planner.sensors.sar_modes import scansar_resolution_m, turned_for_rad
-from planner.vehicle.aircraft import Aircraft, turn_radius_from_bank_m, turn_radius_from_load_factor_m
+from planner.vehicle.aircraft import (
+    DEFAULT_RESERVE,
+    Aircraft,
+    turn_radius_from_bank_m,
+    turn_radius_from_load_factor_m,
+)
 from planner.wishes import Method, Objective
 
 SPEED_OF_LIGHT_M_S = 299_792_458.0
@@ -50,10 +55,13 @@ def read_aircraft(raw: Any, index: int, findings: Findings) -> Aircraft | None:
     max_climb_deg = fields.number("max_climb_deg", 8.0, above=0.0, below=90.0)
     energy_wh = fields.number("energy_wh", None, above=0.0)
     power_w = fields.number("cruise_power_w", None, above=0.0)
+    reserve = fields.number("reserve", DEFAULT_RESERVE, minimum=0.0, below=1.0)
     range_m = fields.number("max_range_m", None, above=0.0)
     time_s = fields.number("max_flight_time_s", None, above=0.0)
     settle_m = fields.number("settle_m", 0.0, minimum=0.0)
     base = fields.text("base", None)
+    if "reserve" in fields and energy_wh is None:
+        fields.wrong("reserve", "is a part of energy_wh, which is missing", "Add energy_wh or remove it.")
     if energy_wh is not None and power_w is None:
         fields.wrong(
             "energy_wh",
@@ -64,11 +72,11 @@ def read_aircraft(raw: Any, index: int, findings: Findings) -> Aircraft | None:
     fields.refuse_unknown()
     if name is None or airspeed_m_s is None or radius_m is None or max_climb_deg is None or settle_m is None:
         return None
-    if kind is None or autopilot is None:
+    if kind is None or autopilot is None or reserve is None:
         return None
     return Aircraft(
         name, kind, autopilot, airspeed_m_s, radius_m, max_climb_deg, energy_wh, power_w, range_m, time_s,
-        settle_m, base,
+        settle_m, base, reserve=reserve,
     )  # fmt: skip
 
 

@@ -18,6 +18,8 @@ from planner.wishes import Region
 
 #: A point target without a radius still has to be inside a footprint, as a disc this large.
 POINT_TARGET_RADIUS_M = 1.0
+#: Corners of a disc's polygon to a quarter.
+DISC_QUADRANT = 32
 #: More visits than this are a slip of the pen: each is a stop of the tour.
 MOST_REVISITS = 50
 
@@ -105,7 +107,9 @@ def read_region(raw: RawFeature, frame: LocalFrame, findings: Findings) -> Regio
         radius_m = fields.number("radius_m", 0.0, minimum=0.0)
         place = shapes.point(raw.name, raw.geometry, frame, findings)
         if place is not None and radius_m is not None:
-            area = Point(place).buffer(max(radius_m, POINT_TARGET_RADIUS_M), quad_segs=16)
+            # Drawn round the disc: one in it would leave slivers of the target unseen.
+            outer_m = max(radius_m, POINT_TARGET_RADIUS_M) / math.cos(math.pi / (4.0 * DISC_QUADRANT))
+            area = Point(place).buffer(outer_m, quad_segs=DISC_QUADRANT)
     revisits = int(fields.integer("revisits", 1, minimum=1))
     if revisits > MOST_REVISITS:
         fields.wrong("revisits", f"is {revisits}", f"Give {MOST_REVISITS} at most.", rule="out-of-range")

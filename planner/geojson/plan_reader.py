@@ -12,6 +12,7 @@ from planner.plan import (
     Fence,
     FlownPath,
     Footprint,
+    LeftOut,
     Metrics,
     PathSegment,
     Phase,
@@ -78,7 +79,7 @@ def read_plan(document: Any) -> Plan:
                     for z in document["fence"]["exclusion_circles"]
                 ),
             ),
-            metrics=Metrics(**document["metrics"]),
+            metrics=_metrics(document["metrics"]),
             violations=tuple(
                 Violation(**(v | {"where": None if v["where"] is None else _place(v["where"])}))
                 for v in document["violations"]
@@ -190,6 +191,10 @@ def _footprint(p: Mapping[str, Any], coordinates: Any) -> Footprint:
         p.get("shadow_m2"),
         p.get("layover_m2"),
     )
+
+
+def _metrics(p: Mapping[str, Any]) -> Metrics:
+    return Metrics(**{**p, "left_out": tuple(LeftOut(**each) for each in p.get("left_out", ()))})
 
 
 def _uncovered(p: Mapping[str, Any], coordinates: Any) -> Uncovered:

@@ -11,6 +11,9 @@ STANDARD_GRAVITY_M_S2 = 9.80665
 VehicleType = Literal["fixed_wing", "multirotor", "vtol"]
 Autopilot = Literal["ardupilot", "px4"]
 
+#: Share of the energy kept where a scenario says nothing else.
+DEFAULT_RESERVE = 0.2
+
 #: Planned arcs are this much wider than the aircraft's limit, so that no rounding makes a turn too tight.
 TURN_RADIUS_MARGIN = 1.001
 
@@ -28,7 +31,9 @@ class Aircraft:
     min_turn_radius_m
         Tightest turn it flies at that airspeed, in the air mass, > 0.
     energy_wh, max_range_m, max_flight_time_s
-        What one flight may use; None where not limited.
+        What one flight has; None where not limited.
+    reserve
+        Share of the energy that is kept.
     cruise_power_w
         Electrical power in cruise: the simplest power model; None where unknown.
     settle_m
@@ -54,6 +59,12 @@ class Aircraft:
     settle_m: float = 0.0
     base: str | None = None
     wind_m_s: float = 0.0
+    reserve: float = DEFAULT_RESERVE
+
+    @property
+    def usable_wh(self) -> float | None:
+        """Energy that a flight may use; None where not limited."""
+        return None if self.energy_wh is None else self.energy_wh * (1.0 - self.reserve)
 
     def in_wind(self, wind_m_s: float) -> Aircraft:
         """The same aircraft in a steady wind of this speed: its turns over the ground are wider.

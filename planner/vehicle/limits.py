@@ -1,0 +1,51 @@
+"""What a flight uses, and which limits of its aircraft that exceeds: the one place that compares the two."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from planner.vehicle.aircraft import Aircraft
+
+
+@dataclass(frozen=True, slots=True)
+class Use:
+    """Length and time of a flight, and its energy where there is a power model."""
+
+    length_m: float
+    duration_s: float
+    energy_wh: float | None
+
+    def scaled(self, factor: float) -> Use:
+        """A flight longer by a factor."""
+        energy_wh = None if self.energy_wh is None else factor * self.energy_wh
+        return Use(factor * self.length_m, factor * self.duration_s, energy_wh)
+
+
+@dataclass(frozen=True, slots=True)
+class Excess:
+    """A limit that a flight is over: its name among the violations, what is used, what there is, the unit."""
+
+    constraint: str
+    used: float
+    limit: float
+    unit: str
+
+    @property
+    def margin(self) -> float:
+        """By how much, > 0."""
+        return self.used - self.limit
+
+
+def exceeded(aircraft: Aircraft, use: Use) -> tuple[Excess, ...]:
+    """The limits that a flight is over, the one most exceeded first."""
+    rows = (
+        ("range", use.length_m, aircraft.max_range_m, "m"),
+        ("flight-time", use.duration_s, aircraft.max_flight_time_s, "s"),
+        ("energy", use.energy_wh, aircraft.usable_wh, "Wh"),
+    )
+    found = [
+        Excess(constraint, used, limit, unit)
+        for constraint, used, limit, unit in rows
+        if used is not None and limit is not None and used > limit
+    ]
+    return tuple(sorted(found, key=lambda excess: -excess.used / excess.limit))
