@@ -14,6 +14,7 @@ from shapely.geometry.polygon import orient
 from app.imports.errors import RegionFileError, file_error
 from app.imports.shapes import MAX_POSITIONS, MAX_SHAPES, LonLat, Rings, Shape
 from planner.errors import Finding
+from planner.geojson.sheet import MOST_LONGITUDE_DEG, continued, wrapped_deg
 
 ROLES = ("roi", "threat", "no_fly", "area", "obstacle", "start", "end", "base", "importance")
 KINDS: dict[str, tuple[str, ...]] = {
@@ -222,7 +223,7 @@ def _judge(name: str, role: str, shape: Shape) -> list[Finding]:
 
 
 def _on_earth(place: LonLat) -> bool:
-    return abs(place[0]) <= 180.0 and abs(place[1]) <= 90.0
+    return abs(place[0]) <= MOST_LONGITUDE_DEG and abs(place[1]) <= 90.0
 
 
 def _add_values(
@@ -280,9 +281,9 @@ def _add_model(properties: dict[str, Any], name: str, shape: Shape, notes: list[
 
 def _geometry(shape: Shape) -> dict[str, Any]:
     if shape.kind == "point":
-        return {"type": "Point", "coordinates": list(shape.parts[0][0][0])}
+        return {"type": "Point", "coordinates": _place(shape.parts[0][0][0])}
     if shape.kind == "line":
-        return {"type": "LineString", "coordinates": [list(place) for place in shape.parts[0][0]]}
+        return {"type": "LineString", "coordinates": [_place(place) for place in shape.parts[0][0]]}
     polygons = [_rings(part) for part in shape.parts]
     if len(polygons) == 1:
         return {"type": "Polygon", "coordinates": polygons[0]}
@@ -291,5 +292,11 @@ def _geometry(shape: Shape) -> dict[str, Any]:
 
 def _rings(part: Rings) -> list[list[list[float]]]:
     """Closed rings, the outer counter-clockwise and holes clockwise (RFC 7946)."""
-    polygon = orient(Polygon(part[0], list(part[1:])))
-    return [[[float(x), float(y)] for x, y in ring.coords] for ring in (polygon.exterior, *polygon.interiors)]
+    near_deg = part[0][0][0]
+    polygon = orient(Polygon(continued(part[0], near_deg), [continued(ring, near_deg) for ring in part[1:]]))
+    return [[_place((x, y)) for x, y in ring.coords] for ring in (polygon.exterior, *polygon.interiors)]
+
+
+def _place(place: LonLat) -> list[float]:
+    """Within ±180°; what crosses there jumps to the other side, as the scenario's reader takes it."""
+    return [wrapped_deg(float(place[0])), float(place[1])]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from mavlink.dialects import Autopilot, Dialect, VehicleType, dialect_for
-from mavlink.wire.items import Command, Frame, MissionItem, MissionType, degrees_e7
+from mavlink.wire.items import Command, Frame, MissionItem, MissionType, degrees_e7, longitude_e7
 from planner.plan import LonLat
 
 
@@ -75,7 +75,7 @@ def placed(
         param3=param3,
         param4=param4,
         x=degrees_e7(place[1]),
-        y=degrees_e7(place[0]),
+        y=longitude_e7(place[0]),
         z=round(altitude_m, 2),
     )
 

@@ -15,6 +15,7 @@ from dataclasses import replace
 from functools import partial
 
 from mavlink.dialects import Autopilot
+from mavlink.dialects.base import GLOBAL_FRAMES
 from mavlink.dialects.mission import Mission, home_item, numbered, placed
 from mavlink.encoding.arcs import flown_round, turn_item
 from mavlink.encoding.ends import beginning, ending
@@ -91,8 +92,8 @@ def encode(
     flight = _flight(task, (stop for stop in stops if stop.along_m > first.skipped_m), on, off, pointing)
     fence, fence_notes = fence_items(plan, (task.path,))
     return Mission(
-        mission=numbered([*home, *first.items, *flight, *pointing.rest, *last.items]),
-        fence=fence,
+        mission=numbered([*home, *_placed([*first.items, *flight, *pointing.rest, *last.items])]),
+        fence=tuple(_placed(fence)),
         rally=_rally(task),
         autopilot=task.dialect.autopilot,
         vehicle=task.vehicle.name,
@@ -217,4 +218,12 @@ def _rally(task: Task) -> tuple[MissionItem, ...]:
     # ArduPilot keeps whole metres.
     height_m = float(max(1, math.floor(task.altitude_over_home_m)))
     home = placed(Command.NAV_RALLY_POINT, task.plan.home, height_m, Frame.GLOBAL_RELATIVE_ALT)
-    return numbered([home], MissionType.RALLY)
+    return numbered(_placed([home]), MissionType.RALLY)
+
+
+def _placed(items: Iterable[MissionItem]) -> list[MissionItem]:
+    """The items; latitude 0 with longitude 0, "here" to autopilots, is named a centimetre beside."""
+    return [
+        replace(item, y=1) if item.frame in GLOBAL_FRAMES and item.x == item.y == 0 else item
+        for item in items
+    ]

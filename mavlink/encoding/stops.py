@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
-from mavlink.wire.geometry import LocalMap, arc_points, chord_step_rad, distance_m
+from mavlink.wire.geometry import LocalMap, arc_points, chord_step_rad, distance_m, here
 from planner.plan import Collect, FlownPath, LonLat, PathSegment
 
 #: Places nearer than this along the path are one; those of a collect win.
@@ -67,9 +67,9 @@ def stops_along(
     stops: list[Stop] = []
     skipped: list[tuple[float, float]] = []
     for collect in collects:
-        (start_lon, start_lat, _), (end_lon, end_lat, _) = collect.line
-        stops.append(Stop(collect.start_m, (start_lon, start_lat), altitude(collect.start_m), on=1))
-        end = Stop(collect.end_m, (end_lon, end_lat), altitude(collect.end_m))
+        start, end_place = (here(place[:2]) for place in collect.line)
+        stops.append(Stop(collect.start_m, start, altitude(collect.start_m), on=1))
+        end = Stop(collect.end_m, end_place, altitude(collect.end_m))
         beyond_m = collect.end_m + off_delay_m
         if may_overshoot is not None and _straight_left_m(path, collect) < off_delay_m - MERGE_M:
             place = _beyond(collect, local, off_delay_m)
@@ -85,15 +85,15 @@ def stops_along(
     for segment in path.segments:
         if flown_round(segment):
             end_m = segment.start_m + segment.length_m
-            stops.append(Stop(segment.start_m, segment.start, altitude(segment.start_m)))
-            stops.append(Stop(end_m, segment.end, altitude(end_m), arc=segment))
+            stops.append(Stop(segment.start_m, here(segment.start), altitude(segment.start_m)))
+            stops.append(Stop(end_m, here(segment.end), altitude(end_m), arc=segment))
             continue
         places = _segment_places(segment, local, chord_error_m)
         for number, place in enumerate(places):
             along_m = segment.start_m + segment.length_m * number / (len(places) - 1)
             if not any(since_m <= along_m <= until_m for since_m, until_m in skipped):
-                stops.append(Stop(along_m, place, altitude(along_m)))
-    return _merged(stops, {(c.line[0][:2]) for c in collects} | {(c.line[1][:2]) for c in collects})
+                stops.append(Stop(along_m, here(place), altitude(along_m)))
+    return _merged(stops, {here(place[:2]) for collect in collects for place in collect.line})
 
 
 def _segment_places(segment: PathSegment, local: LocalMap, chord_error_m: float) -> list[LonLat]:

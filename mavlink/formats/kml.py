@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 import threading
+from collections.abc import Sequence
 
 import simplekml
 
-from mavlink.wire.geometry import LocalMap, offset
-from planner.plan import Collect, FlownPath, Footprint, Plan, ZoneCircle, ZonePolygon
+from mavlink.wire.geometry import LocalMap, here, offset
+from planner.plan import Collect, FlownPath, Footprint, LonLat, LonLatAlt, Plan, ZoneCircle, ZonePolygon
 
 _PATH = "ff00a5ff"
 _COLLECT = "ff00ff00"
@@ -51,7 +52,7 @@ def write_kml(plan: Plan, vehicle: str | None = None) -> str:
 
 def _document(plan: Plan, names: list[str], mode: str) -> str:
     document = simplekml.Kml(name=_text(plan.name))
-    home = document.newpoint(name="home", coords=[plan.home])
+    home = document.newpoint(name="home", coords=[here(plan.home)])
     home.description = "Take-off"
     for name in names:
         folder = document.newfolder(name=_text(name))
@@ -74,7 +75,7 @@ def _document(plan: Plan, names: list[str], mode: str) -> str:
 
 
 def _add_path(folder: simplekml.Folder, path: FlownPath, mode: str) -> None:
-    line = folder.newlinestring(name=f"path of {_text(path.vehicle)}", coords=list(path.line))
+    line = folder.newlinestring(name=f"path of {_text(path.vehicle)}", coords=_line(path.line))
     line.altitudemode = mode
     line.description = f"{path.length_m / 1000.0:.2f} km, {path.duration_s:.0f} s"
     line.style.linestyle.color = _PATH
@@ -83,7 +84,7 @@ def _add_path(folder: simplekml.Folder, path: FlownPath, mode: str) -> None:
 
 def _add_collect(folder: simplekml.Folder, collect: Collect, mode: str) -> None:
     line = folder.newlinestring(
-        name=f"collect {collect.seq}: {_text(collect.roi)}", coords=list(collect.line)
+        name=f"collect {collect.seq}: {_text(collect.roi)}", coords=_line(collect.line)
     )
     line.altitudemode = mode
     line.description = _text(
@@ -120,8 +121,14 @@ def _add_circle(folder: simplekml.Folder, circle: ZoneCircle) -> None:
     _add_zone(folder, ZonePolygon(circle.name, ring), barred=True)
 
 
-def _closed(ring: tuple[tuple[float, float], ...]) -> list[tuple[float, float]]:
-    return [*ring, ring[0]] if ring[0] != ring[-1] else list(ring)
+def _line(line: Sequence[LonLatAlt]) -> list[LonLatAlt]:
+    """Within ±180°, as KML has it; viewers draw the short way across."""
+    return [(*here((lon, lat)), altitude_m) for lon, lat, altitude_m in line]
+
+
+def _closed(ring: Sequence[LonLat]) -> list[LonLat]:
+    places = [here(place) for place in ring]
+    return [*places, places[0]] if places[0] != places[-1] else places
 
 
 def _text(text: str) -> str:

@@ -12,7 +12,7 @@ from typing import Protocol
 
 from mavlink.sim.dynamics import AircraftState
 from mavlink.sim.executor import place_of
-from mavlink.sim.geodesy import Place
+from mavlink.sim.geodesy import MOST_LATITUDE_DEG, Place
 from mavlink.sim.modes import Flavour, Mode, mode_of_command
 from mavlink.sim.payload import Payload
 from mavlink.sim.pilot import Pilot
@@ -217,7 +217,11 @@ def _set_home(aircraft: Aircraft, order: Order) -> Outcome:
     home = aircraft.state.place
     if order.param1 != 1.0:
         home = place_of(replace(order.item, frame=Frame.GLOBAL), home)
-    if not (math.isfinite(home.altitude_m) and abs(home.lat_deg) <= 89.0 and abs(home.lon_deg) <= 180.0):
+    if not (
+        math.isfinite(home.altitude_m)
+        and abs(home.lat_deg) <= MOST_LATITUDE_DEG
+        and abs(home.lon_deg) <= 180.0
+    ):
         return _denied("Home denied: no such place")
     aircraft.move_home(home)
     return CommandResult.ACCEPTED, _now(aircraft, "HOME_POSITION")

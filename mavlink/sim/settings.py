@@ -8,7 +8,7 @@ from importlib.util import find_spec
 
 from mavlink.sim.dynamics import GRAVITY_M_S2, JSBSIM_FASTEST_M_S, JSBSIM_SLOWEST_M_S, Limits
 from mavlink.sim.faults import parse_faults
-from mavlink.sim.geodesy import Place
+from mavlink.sim.geodesy import MOST_LATITUDE_DEG, Place
 from mavlink.sim.guidance import Tuning
 from mavlink.sim.modes import Flavour
 
@@ -132,9 +132,10 @@ class SimSettings:
             )
         if not 0.0 <= self.wind_m_s < 0.9 * self.airspeed_m_s:
             raise ValueError(f"wind of {self.wind_m_s} m/s cannot be flown at {self.airspeed_m_s} m/s")
-        if not abs(self.home.lat_deg) <= 89.0:
+        if not abs(self.home.lat_deg) <= MOST_LATITUDE_DEG:
             raise ValueError(
-                f"home latitude must be within 89 degrees of the equator, not {self.home.lat_deg}"
+                f"home latitude must be within {MOST_LATITUDE_DEG:g} degrees of the equator, "
+                f"not {self.home.lat_deg}"
             )
         if self.max_bank_deg is not None and not 5.0 <= self.max_bank_deg <= 75.0:
             raise ValueError(f"max_bank_deg is 5 to 75 degrees, not {self.max_bank_deg!r}")

@@ -24,6 +24,12 @@ def distance_m(a: LonLat, b: LonLat) -> float:
     return float(_WGS84.inv(a[0], a[1], b[0], b[1])[2])
 
 
+def here(place: LonLat) -> LonLat:
+    """A place of a line that may go on beyond ±180°, with its longitude within."""
+    lon_deg, lat_deg = place
+    return (lon_deg if abs(lon_deg) <= 180.0 else (lon_deg + 180.0) % 360.0 - 180.0), lat_deg
+
+
 @lru_cache(maxsize=32)
 def _transformers(lon_deg: float, lat_deg: float) -> tuple[Transformer, Transformer]:
     local = f"+proj=tmerc +lat_0={lat_deg!r} +lon_0={lon_deg!r} +k_0=1 +ellps=WGS84 +units=m +no_defs"

@@ -148,3 +148,8 @@ class MissionItem:
 def degrees_e7(degrees: float) -> int:
     """Degrees as the wire's integer of 1e-7 degrees, rounded to nearest."""
     return round(degrees * 1e7)
+
+
+def longitude_e7(degrees: float) -> int:
+    """A longitude, of a line that may go on beyond ±180°, as the wire has it: within ±180°."""
+    return degrees_e7(degrees - 360.0 * round(degrees / 360.0))

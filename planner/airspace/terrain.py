@@ -106,7 +106,9 @@ class Terrain:
     def _interpolated(self, places: Floats, heights: NDArray[np.float32]) -> Floats:
         a, b, c, d, e, f = self.affine
         determinant = a * e - b * d
-        lon, lat = places[..., 0] - c, places[..., 1] - f
+        west, _, east, _ = self.bounds_deg
+        turns = np.round(((west + east) / 2.0 - places[..., 0]) / 360.0)
+        lon, lat = places[..., 0] + 360.0 * turns - c, places[..., 1] - f
         column, row = (e * lon - b * lat) / determinant, (a * lat - d * lon) / determinant
         # A place on the last post must not fall off it by rounding.
         rows, columns = heights.shape

@@ -56,6 +56,11 @@ class _Box:
         return self.reach_m > MOST_M
 
 
+def middle_of(places: Sequence[LonLat]) -> LonLat:
+    """The middle of a box round places, across the antimeridian and near the poles too."""
+    return _Box.of("", places).middle
+
+
 def frame_of(raw_features: list[Any], findings: Findings) -> LocalFrame | None:
     """A frame in the middle of everything.
 

@@ -18,7 +18,7 @@ from shapely.validation import explain_validity
 
 from planner.frames import LocalFrame
 from planner.geojson.fields import Findings, is_finite
-from planner.geojson.sheet import MOST_LONGITUDE_DEG, LonLat, continued, goes_round, multi
+from planner.geojson.sheet import MOST_LONGITUDE_DEG, LonLat, continued, cut, goes_round, multi
 
 #: An edge of a GeoJSON ring is straight in longitude and latitude; cut to pieces this long it is, within a
 #: centimetre at latitudes below 60°, straight in the local frame as well.
@@ -289,6 +289,24 @@ def line(owner: str, geometry: Mapping[str, Any], frame: LocalFrame, findings: F
 
 def _is_line(value: Any) -> TypeGuard[list[Any]]:
     return isinstance(value, list) and len(value) >= 2
+
+
+def written(shape: BaseGeometry, frame: LocalFrame) -> dict[str, Any]:
+    """The polygons of a local shape as GeoJSON, cut where they cross the antimeridian."""
+    polygons = [
+        piece
+        for part in multi(areal(shape))
+        for piece in cut(
+            [
+                [(float(lon), float(lat)) for lon, lat in frame.to_wgs84(shapely.get_coordinates(ring))]
+                for ring in (part.exterior, *part.interiors)
+            ]
+        )
+    ]
+    rings = [[[list(place) for place in ring] for ring in polygon] for polygon in polygons]
+    if len(rings) == 1:
+        return {"type": "Polygon", "coordinates": rings[0]}
+    return {"type": "MultiPolygon", "coordinates": rings}
 
 
 def areal(shape: BaseGeometry) -> Polygon | MultiPolygon:

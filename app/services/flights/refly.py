@@ -8,6 +8,7 @@ from typing import Any
 
 from app.services.flights.as_flown import Gap
 from planner.frames import LocalFrame
+from planner.geojson.geometry import written
 
 #: Properties of a region that no longer hold for a part of it.
 OF_THE_WHOLE = frozenset({"name", "width_m", "radius_m", "time_window_s", "revisits"})
@@ -52,15 +53,11 @@ def _regions(document: Mapping[str, Any], gaps: Sequence[Gap], frame: LocalFrame
     for number, gap in enumerate(gaps[:MOST_GAPS], start=1):
         properties = {k: v for k, v in asked.get(gap.roi, {}).items() if k not in OF_THE_WHOLE}
         name = f"{gap.roi} gap {number}"
-        rings = [
-            [[float(lon), float(lat)] for lon, lat in frame.to_wgs84(list(ring.coords))]
-            for ring in (gap.area.exterior, *gap.area.interiors)
-        ]
         regions.append(
             {
                 "type": "Feature",
                 "id": name,
-                "geometry": {"type": "Polygon", "coordinates": rings},
+                "geometry": written(gap.area, frame),
                 "properties": properties | {"role": "roi"},
             }
         )

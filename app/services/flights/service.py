@@ -5,12 +5,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
-from functools import partial
 from typing import Any
-
-from shapely import transform
-from shapely.geometry import mapping
-from shapely.geometry.base import BaseGeometry
 
 from app.services.documents import read_object
 from app.services.errors import ConflictError, NotFoundError
@@ -25,8 +20,9 @@ from app.services.reports.report import write_flight_report
 from app.services.store.flights import FlightStore
 from planner.airspace.terrain import Terrains
 from planner.coverage import flown
-from planner.frames import LocalFrame
 from planner.geojson import read_scenario
+from planner.geojson.geometry import written
+from planner.geojson.sheet import continued
 from planner.plan import Plan
 from planner.scenario import Scenario
 
@@ -128,9 +124,13 @@ def _feature(geometry: dict[str, Any], **properties: Any) -> dict[str, Any]:
     return {"type": "Feature", "geometry": geometry, "properties": properties}
 
 
-def _place(sample: TrackSample) -> list[float]:
-    place = [sample.lon_deg, sample.lat_deg]
-    return place if sample.altitude_amsl_m is None else [*place, sample.altitude_amsl_m]
+def _line(samples: Sequence[TrackSample]) -> list[list[float]]:
+    """A line's positions; its longitudes go on from the first, beyond ±180° where it crosses there."""
+    places = continued([(sample.lon_deg, sample.lat_deg) for sample in samples], samples[0].lon_deg)
+    return [
+        [lon, lat] if sample.altitude_amsl_m is None else [lon, lat, sample.altitude_amsl_m]
+        for (lon, lat), sample in zip(places, samples, strict=True)
+    ]
 
 
 _OF_A_PHOTO = ("time_s", "index", "altitude_home_m", "heading_deg", "roll_deg", "pitch_deg")
@@ -150,7 +150,7 @@ def track_geojson(
     """
     features = []
     if len(samples) > 1:
-        line = {"type": "LineString", "coordinates": [_place(sample) for sample in samples]}
+        line = {"type": "LineString", "coordinates": _line(samples)}
         columns = {
             "times_s": [sample.time_s for sample in samples],
             "altitudes_home_m": [sample.altitude_home_m for sample in samples],
@@ -161,7 +161,7 @@ def track_geojson(
         }
         features.append(_feature(line, role="track", vehicle=record.vehicle_name, **columns))
     for run in _runs(samples):
-        line = {"type": "LineString", "coordinates": [_place(sample) for sample in run]}
+        line = {"type": "LineString", "coordinates": _line(run)}
         times = {"start_s": run[0].time_s, "end_s": run[-1].time_s}
         features.append(_feature(line, role="sensor_on", vehicle=record.vehicle_name, **times))
     for photo in photos:
@@ -225,9 +225,8 @@ def _coverage(flight: _Flown) -> dict[str, Any]:
     switched = triggers(
         scenario, plan, record.plan_vehicle, samples, flight.photos, spacing_of(record.payload)
     )
-    to_wgs84 = partial(_to_wgs84, scenario.frame)
     features = [
-        _feature(mapping(to_wgs84(shape)), role=role, roi=name, fraction=result.fraction[name])
+        _feature(written(shape, scenario.frame), role=role, roi=name, fraction=result.fraction[name])
         for role, shapes in (("seen", result.seen), ("unseen", result.unseen))
         for name, shape in shapes.items()
         if not shape.is_empty
@@ -261,7 +260,3 @@ def _refly(flight: _Flown, here: tuple[float, float, float | None] | None) -> di
 def _report(flight: _Flown) -> str:
     track = track_geojson(flight.record, flight.samples)
     return write_flight_report(flight.record, read_object(flight.scenario_text), track, _coverage(flight))
-
-
-def _to_wgs84(frame: LocalFrame, shape: BaseGeometry) -> BaseGeometry:
-    return transform(shape, frame.to_wgs84)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
-METRES_PER_DEGREE = 111_195.0
+from planner.frames import LocalFrame
+from planner.geojson.extent import middle_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,15 +37,14 @@ def draw_map(scenario: dict[str, Any], plan: dict[str, Any]) -> Picture | None:
     places = [place for feature in features for place in _places(feature["geometry"]["coordinates"])]
     if not places:
         return None
-    west, east = min(p[0] for p in places), max(p[0] for p in places)
-    south, north = min(p[1] for p in places), max(p[1] for p in places)
-    # An equirectangular picture is true enough on paper at the size of a flight.
-    across = METRES_PER_DEGREE * math.cos(math.radians((south + north) / 2))
-    width, height = (east - west) * across, (north - south) * METRES_PER_DEGREE
+    frame = LocalFrame(*middle_of([(place[0], place[1]) for place in places]))
+    local_m = frame.to_local([place[:2] for place in places])
+    (west, south), (east, north) = local_m.min(axis=0), local_m.max(axis=0)
+    width, height = float(east - west), float(north - south)
     unit = max(width, height, 1.0) / 100
 
-    def put(place: list[float]) -> tuple[float, float]:
-        return (place[0] - west) * across, (north - place[1]) * METRES_PER_DEGREE
+    def put(drawn: list[list[float]]) -> list[tuple[float, float]]:
+        return [(float(e - west), float(north - n)) for e, n in frame.to_local([at[:2] for at in drawn])]
 
     shapes = [shape for feature in features for shape in _shapes(feature, put)]
     order = ("area", "footprint", "roi", "threat", "no_fly", "obstacle", "path", "collect", "start", "end")
@@ -71,10 +70,13 @@ def _shapes(feature: dict[str, Any], put: Any) -> Iterator[Shape]:
     coordinates = geometry["coordinates"]
     match geometry["type"]:
         case "Point":
-            x, y = put(coordinates)
+            ((x, y),) = put([coordinates])
             yield Shape(kind, x=x, y=y, radius=float(properties.get("radius_m", 0.0)), label=label)
         case "LineString":
             yield Shape(kind, _line(coordinates, put), label=label)
+        case "MultiLineString":
+            for line in coordinates:
+                yield Shape(kind, _line(line, put), label=label)
         case "Polygon":
             yield Shape(kind, _line(coordinates[0], put), label=label)
         case "MultiPolygon":
@@ -83,4 +85,4 @@ def _shapes(feature: dict[str, Any], put: Any) -> Iterator[Shape]:
 
 
 def _line(places: list[list[float]], put: Any) -> str:
-    return " ".join(f"{x:.1f},{y:.1f}" for x, y in map(put, places))
+    return " ".join(f"{x:.1f},{y:.1f}" for x, y in put(places))

@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 from app.services.errors import RefusedError
 from planner.airspace.terrain import Terrain
 from planner.errors import Finding
+from planner.geojson.sheet import MOST_LONGITUDE_DEG
 
 Affine = tuple[float, float, float, float, float, float]
 VerticalDatum = Literal["EGM96", "EGM2008", "ellipsoid"]
@@ -112,12 +113,13 @@ def _check_place(heights: NDArray[np.float32], affine: Affine) -> None:
     a, b, c, d, e, f = affine
     rows, columns = heights.shape
     reach = [(a * j + b * i + c, d * j + e * i + f) for i in (0, rows - 1) for j in (0, columns - 1)]
-    on_earth = all(abs(lon) <= 180.5 and abs(lat) <= 90.0 for lon, lat in reach)
+    on_earth = all(abs(lon) <= MOST_LONGITUDE_DEG and abs(lat) <= 90.0 for lon, lat in reach)
     if not on_earth or abs(a * e - b * d) < 1e-16:
         _refuse(
             "no-georeference",
             f"its corners are at {', '.join(f'{lon:g} {lat:g}' for lon, lat in reach)}",
-            "Send a file that lies within longitudes −180 to 180 and latitudes −90 to 90.",
+            "Send a file that lies within longitudes −180 to 180 (across the antimeridian: to 360) "
+            "and latitudes −90 to 90.",
         )
 
 

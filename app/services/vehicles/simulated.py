@@ -12,6 +12,7 @@ from urllib.parse import parse_qsl
 
 from app.services.errors import LinkError, RefusedError
 from mavlink.sim.faults import Fault
+from mavlink.sim.geodesy import MOST_LATITUDE_DEG
 from mavlink.sim.run import parser, settings_of
 from planner.errors import Finding
 
@@ -89,7 +90,7 @@ def parse_simulated(url: str) -> SimulatedAircraft:
     for name, text in options:
         if name == "home":
             lat_deg, lon_deg, *altitude_m = _floats(name, text, (2, 3))
-            if abs(lat_deg) > 89 or abs(lon_deg) > 180:
+            if abs(lat_deg) > MOST_LATITUDE_DEG or abs(lon_deg) > 180:
                 _refuse(f"home={text}: latitude first, then longitude, in degrees")
             home = (lat_deg, lon_deg, altitude_m[0] if altitude_m else 0.0)
         elif name == "wind":

@@ -11,7 +11,10 @@ from shapely.geometry import shape
 
 from app.imports import ImportOptions, RegionFileError, import_regions
 from app.imports.archive import MAX_MEMBERS
+from planner.geojson import read_scenario
 from tests.app.imports.samples import HOLE, RING, folder, kml, line, packed, placemark, point, polygon
+from tests.planner.moved import GEOD
+from tests.planner.scenarios import small
 
 
 def imported(data: bytes, **options: Any) -> list[dict[str, Any]]:
@@ -212,3 +215,15 @@ def test_damaged_and_encrypted_archives_are_refused() -> None:
         assert archive.infolist()[0].flag_bits == 0
     locked[offset + 8] |= 1
     assert rule_of(bytes(locked)) == "archive-encrypted"
+
+
+@pytest.mark.parametrize("east", [-179.99, 180.01])
+def test_a_polygon_across_the_antimeridian_is_a_region_of_its_size(east: float) -> None:
+    """Drawn with longitudes that jump or go on beyond 180°, it is imported and read as one region."""
+    ring = [(179.99, 10.0), (east, 10.0), (east, 10.01), (179.99, 10.01), (179.99, 10.0)]
+    (made,) = imported(kml(placemark("A", polygon(ring))))
+    start = {"type": "Feature", "properties": {"role": "start"}}
+    start["geometry"] = {"type": "Point", "coordinates": [180.0, 10.0]}
+    scenario = read_scenario(small(features=[made, start]))
+    wanted_m2 = abs(GEOD.polygon_area_perimeter([179.99, 180.01, 180.01, 179.99], [10, 10, 10.01, 10.01])[0])
+    assert scenario.regions[0].area.area == pytest.approx(wanted_m2, rel=1e-3)

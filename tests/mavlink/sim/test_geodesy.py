@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from mavlink.sim.geodesy import moved, offset_m, wrap_rad
 from tests.mavlink.sim.helpers import GEOD
 
-LAT = st.floats(-70.0, 70.0)
+LAT = st.floats(-89.9, 89.9)
 LON = st.floats(-180.0, 180.0)
 AZIMUTH = st.floats(0.0, 360.0)
 
@@ -27,7 +27,7 @@ def test_offset_is_the_geodesic(lat: float, lon: float, azimuth_deg: float, dist
     assert math.dist((north_m, east_m), expected) < 1e-3 * distance_m
 
 
-@given(st.floats(-60.0, 60.0), LON, AZIMUTH)
+@given(LAT, LON, AZIMUTH)
 def test_a_straight_line_is_a_geodesic(lat: float, lon: float, azimuth_deg: float) -> None:
     """Seen from its middle, both ends of a 20 km geodesic lie on one straight line to within 0.2 m."""
     sides = []

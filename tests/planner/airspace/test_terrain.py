@@ -200,3 +200,19 @@ def test_the_judge_measures_clearance_on_the_line() -> None:
     heights[:, :] = np.nan
     unknown = [v for v in judge(hilly, plan).violations if v.constraint == "terrain-clearance"]
     assert "no heights" in unknown[0].message
+
+
+@pytest.mark.parametrize("middle", [(180.0, 10.0), (-180.0, 10.0), (40.0, 89.0)], ids=str)
+def test_a_raster_across_the_antimeridian_or_near_a_pole(middle: tuple[float, float]) -> None:
+    """Heights are those of the place, whichever side of ±180° its longitude is counted from."""
+    frame = LocalFrame(*middle)
+    terrain = raster(lambda e, n: 200.0 + 0.02 * e + 0.01 * n, frame, half_deg=0.1)
+    half_m = 0.08 * 111_000.0 * math.cos(math.radians(middle[1]))
+    ground = local_ground(terrain, frame, (-half_m, -half_m, half_m, half_m))
+    for share in (-0.9, -0.01, 0.01, 0.9):
+        place_m = np.array([share * half_m, -share * half_m])
+        wanted_m = 200.0 + 0.02 * place_m[0] + 0.01 * place_m[1]
+        assert float(ground.at(place_m)) == pytest.approx(wanted_m, abs=0.5)
+        lon, lat = frame.to_wgs84(place_m)
+        for turn_deg in (-360.0, 0.0, 360.0):
+            assert float(terrain.heights_at([lon + turn_deg, lat])) == pytest.approx(wanted_m, abs=0.5)
