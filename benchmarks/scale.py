@@ -19,7 +19,7 @@ import numpy as np
 from shapely.geometry import MultiPoint, Point, mapping
 
 from planner.geojson import read_scenario
-from planner.pipeline import make_plan
+from planner.pipeline import make_plan, with_bound
 from planner.warm import warm_up
 
 #: Regions and threats.
@@ -89,6 +89,7 @@ def _row(regions: int, threats: int, seed: int, repeats: int) -> dict[str, Any]:
         began = time.perf_counter()
         plan = make_plan(scenario, clock=time.perf_counter)
         seconds.append(time.perf_counter() - began)
+    plan = with_bound(scenario, plan, clock=time.perf_counter)
     return {
         "bench": "scale",
         "regions": regions,

@@ -10,7 +10,6 @@ from dataclasses import dataclass, field, replace
 from planner.airspace.zones import KeepOut, keep_out
 from planner.bounds.ways import plan_bound_m
 from planner.check import judge
-from planner.coverage.sweeps import Side
 from planner.dubins.path import Path, Segment, join
 from planner.errors import Finding, InfeasibleError
 from planner.metrics import measure, used
@@ -36,6 +35,9 @@ Clock = Callable[[], float]
 
 #: The search for better routes ends after this part of the scenario's time budget.
 ROUTING_SHARE = 0.6
+
+#: The bound takes no more than this part of the time for plan and bound together.
+BOUND_SHARE = 1.0 / 3.0
 
 #: What the rules of findings about regions left out begin with.
 NOT_SEEN = "not-seen-"
@@ -71,7 +73,6 @@ class _Flight:
 
     route: Route
     dropped: tuple[Finding, ...]
-    sides: tuple[tuple[Side, ...], ...] | None
     legs: tuple[Leg, ...]
     notes: tuple[str, ...]
     use: Use
@@ -115,11 +116,11 @@ def make_plan(
 
     def fly(asked: Scenario, report: Progress) -> _Flight:
         with watch.stage("routing"):
-            route, dropped, sides = _route(asked, aircraft, methods, _part(report, 0.0, 0.5), stop, enough)
+            route, dropped = _route(asked, aircraft, methods, _part(report, 0.0, 0.5), stop, enough)
         with watch.stage("transit"):
             legs, notes = _connect(asked, aircraft, methods, route, _part(report, 0.5, 0.9), stop)
         use = used(asked, aircraft, whole_path(legs, route.passes))
-        return _Flight(route, dropped, sides, legs, notes, use)
+        return _Flight(route, dropped, legs, notes, use)
 
     flight, left = within_limits(
         fly(scenario, progress),
@@ -128,7 +129,7 @@ def make_plan(
         aircraft,
         (scenario.start.position, scenario.end.position),
     )
-    route, sides, legs, notes = flight.route, flight.sides, flight.legs, flight.notes
+    route, legs, notes = flight.route, flight.legs, flight.notes
     dropped = flight.dropped + tuple(_over(each) for each in left)
     dropped += hidden_findings(scenario, route.passes, by_paper=methods["coverage"] == "li2018")
     with watch.stage("publish"):
@@ -143,9 +144,6 @@ def make_plan(
             planner_version=__version__,
             warnings=tuple(str(f) for f in (*scenario.warnings, *dropped)) + notes,
         )
-    with watch.stage("bound"):
-        left_out = {name for f in dropped if f.rule.startswith(NOT_SEEN) for name in f.feature.split("+")}
-        bound_m = plan_bound_m(scenario, aircraft, sides, path.length_m, left_out, stop)
     progress("check", 0.95)
     with watch.stage("check"):
         verdict = judge(scenario, draft)
@@ -157,13 +155,48 @@ def make_plan(
             draft.metrics,
             coverage=verdict.coverage,
             planning_time_s=dict(watch.seconds),
-            lower_bound_m=bound_m,
             left_out=_left_out(dropped, left),
-            gap=1.0 - bound_m / path.length_m,
         ),
         violations=verdict.violations,
         uncovered=uncovered(scenario, verdict.unseen, reasons),
     )
+
+
+def with_bound(
+    scenario: Scenario, plan: Plan, stop: Stop = never, enough: Stop = never, clock: Clock | None = None
+) -> Plan:
+    """The same plan with what no plan over the regions it sees is shorter than, and how far it is above that.
+
+    Parameters
+    ----------
+    scenario
+        What ``plan`` was made of.
+    stop, enough
+        The one cancels; the other ends the search for a better bound.
+    clock
+        Seconds, for ``metrics.planning_time_s``.
+    """
+    scenario = in_wind(scenario)
+    watch = _Stopwatch(clock)
+    length_m = plan.metrics.length_m
+    left_out = {r.name for r in scenario.regions} - {name for c in plan.collects for name in c.regions}
+    with watch.stage("bound"):
+        bound_m = plan_bound_m(scenario, scenario.aircraft[0], length_m, left_out, stop, enough)
+    return replace(
+        plan,
+        metrics=replace(
+            plan.metrics,
+            lower_bound_m=bound_m,
+            gap=1.0 - bound_m / length_m,
+            planning_time_s=plan.metrics.planning_time_s | watch.seconds,
+        ),
+    )
+
+
+def time_for_bound_s(planned_s: float, budget_s: float | None) -> float:
+    """How long the bound may be looked for after planning that took so long: a third of the whole."""
+    spare_s = math.inf if budget_s is None else max(budget_s - planned_s, 0.0)
+    return min(BOUND_SHARE / (1.0 - BOUND_SHARE) * planned_s, spare_s)
 
 
 def chosen_methods(method: Method) -> dict[str, str]:
@@ -194,18 +227,17 @@ def _route(
     progress: Progress,
     stop: Stop,
     enough: Stop,
-) -> tuple[Route, tuple[Finding, ...], tuple[tuple[Side, ...], ...] | None]:
-    """The route, what was left out, and the ways to see each region where they are the joint choice's."""
+) -> tuple[Route, tuple[Finding, ...]]:
+    """The route and what was left out."""
     if methods["routing"] != "joint":
         aware = methods["routing"] == "li2018-threat-aware"
         chosen = greedy(scenario, progress, stop, threat_aware=aware, aircraft=aircraft)
         if not chosen.route.passes:
             why = "; ".join(error.message for error in chosen.dropped)
             raise InfeasibleError("swath", "scenario", f"no region can be seen: {why}", "see the findings")
-        return chosen.route, tuple(_dropped(error) for error in chosen.dropped), None
+        return chosen.route, tuple(_dropped(error) for error in chosen.dropped)
     joint = joint_route(scenario, aircraft, progress, stop, enough)
-    # The bound is over all methods, not over the paper's coverage alone.
-    return joint.route, joint.dropped, joint.sides if methods["coverage"] == "sweeps" else None
+    return joint.route, joint.dropped
 
 
 def _dropped(error: InfeasibleError) -> Finding:

@@ -10,7 +10,7 @@ from numba.core.dispatcher import Dispatcher
 
 from planner.airspace.terrain import Terrain
 from planner.geojson import read_scenario
-from planner.pipeline import make_plan
+from planner.pipeline import make_plan, with_bound
 
 #: Small, and enough to run each stage by each of its methods.
 _SCENARIO: dict[str, Any] = {
@@ -99,7 +99,8 @@ def load() -> None:
     A process that is to plan at once is ready sooner than by :func:`warm_up`.
     """
     one = [feature for feature in _SCENARIO["features"] if feature["id"] not in ("R1", "R2")]
-    make_plan(read_scenario(_SCENARIO | {"features": one}))
+    scenario = read_scenario(_SCENARIO | {"features": one})
+    with_bound(scenario, make_plan(scenario))
     if compiled():
         warm_up()
 
@@ -123,9 +124,11 @@ def warm_up() -> None:
         {"routing": "li2018", "transit": "ssas", "smoothing": "fillet"},
         {"routing": "li2018", "transit": "ssas", "smoothing": "shortcut"},
     ):
-        make_plan(read_scenario(_SCENARIO | {"method": method}))
+        scenario = read_scenario(_SCENARIO | {"method": method})
+        with_bound(scenario, make_plan(scenario))
     # Beyond nine passes the order is searched and bounded otherwise.
-    make_plan(read_scenario(_many()))
+    many = read_scenario(_many())
+    with_bound(many, make_plan(many))
     # The scenario lies at 0° N 0° E.
     plain = Terrain("plain", np.zeros((21, 21), dtype=np.float32), (0.1, 0.0, -1.0, 0.0, -0.1, 1.0))
     make_plan(read_scenario(_SCENARIO | {"terrain": "plain"}, {"plain": plain}))

@@ -17,6 +17,7 @@ class Benchmark(StrEnum):
 
     SAR = "sar"
     SCALE = "scale"
+    BOUND = "bound"
     LINK = "link"
     TRANSIT = "transit"
     KERNELS = "kernels"

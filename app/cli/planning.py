@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 import time
+from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -30,6 +31,14 @@ ScenarioFile = Annotated[
 
 #: Of more violations than these the number is told.
 VIOLATIONS_SHOWN = 20
+
+
+class Bound(StrEnum):
+    """How far to look for what no plan is shorter than."""
+
+    SHARE = "share"
+    FULL = "full"
+    NONE = "none"
 
 
 class Narrator:
@@ -96,25 +105,34 @@ def with_terrain(document: dict[str, Any], path: str) -> tuple[dict[str, Any], T
 
 
 def make(
-    document: dict[str, Any], time_limit_s: float | None = None, terrain: Terrain | None = None
+    document: dict[str, Any],
+    time_limit_s: float | None = None,
+    terrain: Terrain | None = None,
+    bound: Bound = Bound.NONE,
 ) -> dict[str, Any]:
     """Plan a scenario in this process; returns the plan document."""
     from planner import errors
     from planner.geojson import write_plan
-    from planner.pipeline import make_plan
+    from planner.pipeline import make_plan, time_for_bound_s, with_bound
     from planner.validate import laborious, read_valid
 
-    narrator = Narrator()
+    narrator, limit = Narrator(), Deadline(time_limit_s)
     try:
         scenario = read_valid(document, None if terrain is None else {terrain.name: terrain})
         for warning in scenario.warnings + laborious(scenario):
             say(f"warning: {warning}")
+        began_s = time.monotonic()
         plan = make_plan(
             scenario,
             progress=narrator,
-            stop=Deadline(time_limit_s),
+            stop=limit,
             clock=time.perf_counter,
         )
+        if bound is not Bound.NONE:
+            narrator("bound", 1.0)
+            share_s = time_for_bound_s(time.monotonic() - began_s, scenario.time_budget_s)
+            share = Deadline(share_s if bound is Bound.SHARE else None)
+            plan = with_bound(scenario, plan, enough=lambda: share() or limit(), clock=time.perf_counter)
         return write_plan(plan)
     except errors.ScenarioError as error:
         raise CommandError("the scenario is refused", Exit.BAD_INPUT, error.findings) from error
@@ -164,6 +182,12 @@ def plan(
         str | None,
         typer.Option(help="Elevation raster to plan on: GeoTIFF, DTED or SRTM HGT.", metavar="FILE"),
     ] = None,
+    bound: Annotated[
+        Bound,
+        typer.Option(
+            help="What no plan is shorter than: looked for in a third of the time, to the end, or not."
+        ),
+    ] = Bound.SHARE,
     as_json: Json = False,
 ) -> None:
     """Plan a scenario; the result is plan GeoJSON.
@@ -175,7 +199,7 @@ def plan(
     ground = None
     if terrain is not None:
         asked, ground = with_terrain(asked, terrain)
-    document = make(asked, time_limit_s, ground)
+    document = make(asked, time_limit_s, ground, bound)
     emit_json(document, output)
     tell_plan(document)
     if as_json and output != "-":

@@ -21,7 +21,8 @@ router = APIRouter(prefix="/api/v1/plans", tags=["plans"])
 EVENT_STREAM: dict[int | str, dict[str, Any]] = {
     200: {
         "description": "Events `progress` while it is queued or running, then one of `done`, `failed`, "
-        "`cancelled`; the data of each is the plan's record.",
+        "`cancelled`; after `done`, once it is known, `bound`: the plan's `metrics` have `lower_bound_m` and "
+        "`gap` then. The data of each is the plan's record.",
         "content": {"text/event-stream": {"schema": {"type": "string"}}},
     }
 }
@@ -97,13 +98,12 @@ async def get_plan(plan_id: str, planning: PlanningDep) -> PlanOut:
     responses=EVENT_STREAM | responses(404),
 )
 async def plan_events(plan_id: str, planning: PlanningDep) -> EventSourceResponse:
-    """Server-sent events from now to the plan's end; of a plan that has ended, its end state."""
+    """Server-sent events from now to the plan's end and its bound; of an ended plan, its end state."""
     await planning.get(plan_id)
 
     async def stream() -> AsyncGenerator[ServerSentEvent, None]:
         async with aclosing(planning.events(plan_id)) as records:
-            async for record in records:
-                name = record.state if record.ended else "progress"
+            async for name, record in records:
                 yield ServerSentEvent(PlanOut.of(record).model_dump_json(), event=name)
 
     return event_stream(stream())

@@ -10,7 +10,7 @@ import structlog
 
 from app.services.flights.service import FlightService
 from app.services.plans import work
-from app.services.plans.planning import PlanningService, Task
+from app.services.plans.planning import BoundTask, PlanningService, Task
 from app.services.plans.pool import Pool, WorkerPool
 from app.services.scenarios.kept import ScenarioService
 from app.services.scenarios.validation import Verdict, judge
@@ -56,6 +56,7 @@ class House:
         limits: Limits,
         *,
         task: Task = work.plan_scenario,
+        bound_task: BoundTask = work.bound_plan,
         judge_scenario: Callable[..., Verdict] = judge,
         initialiser: Callable[[], None] = work.initialise,
         pool: Pool | None = None,
@@ -73,6 +74,7 @@ class House:
             time_limit_s=limits.plan_time_limit_s,
             max_queued=limits.max_queued_plans,
             task=task,
+            bound_task=bound_task,
             judge_scenario=judge_scenario,
             terrain_folder=folder,
         )

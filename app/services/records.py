@@ -204,3 +204,8 @@ class PlanRecord:
         if self.kept_hash is None:
             return "the scenario it was made of has been deleted"
         return "the scenario is another than the one it was made of: it has been changed since"
+
+    @property
+    def bounded(self) -> bool:
+        """Whether it tells what no plan is shorter than."""
+        return (self.summary or {}).get("metrics", {}).get("lower_bound_m") is not None

@@ -50,6 +50,8 @@ Ints = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
 TWO_PI = 2.0 * math.pi
+#: Headings asked for are flown to within this, rad.
+SAME_RAD = 2e-4
 
 
 @njit(cache=True)
@@ -320,8 +322,39 @@ def together(here: Floats, there: Floats) -> bool:
 
 
 @njit(cache=True)
+def along(here: Floats, there: Floats, slope0: Floats, slope1: Floats) -> float:
+    """The same where a pass of either cell is part of one longer pass: straight on from exit to exit.
+
+    Both lie on one line then, flown one way; inf where none of the cells do.
+    """
+    apart = here[THETA] - there[THETA]
+    apart -= TWO_PI * math.floor(apart / TWO_PI + 0.5)
+    turned = here[ALPHA] + there[ALPHA]
+    if abs(apart) > turned + SAME_RAD:
+        return np.inf
+    e = there[EXIT + E] - here[EXIT + E]
+    n = there[EXIT + N] - here[EXIT + N]
+    slack = here[EXIT + REACH] + there[EXIT + REACH] + here[LOOSE] + there[LOOSE]
+    far = math.hypot(e, n)
+    aside = abs(here[COS] * n - here[SIN] * e)
+    ahead = here[COS] * e + here[SIN] * n
+    off = math.sin(min(here[ALPHA] + SAME_RAD, 0.5 * math.pi)) * (far + slack)
+    if aside > slack + off or ahead < -slack - off:
+        return np.inf
+    flat = abs(slope0[0]) + abs(slope0[1]) + abs(slope1[0]) + abs(slope1[1])
+    return float(max(far - slack, 0.0) - flat)
+
+
+@njit(cache=True)
 def matrix(
-    cells: Floats, offsets: Ints, region: Ints, open_pairs: Flags, slopes: Floats, radius: float
+    cells: Floats,
+    offsets: Ints,
+    region: Ints,
+    looks: Floats,
+    shared: Flags,
+    open_pairs: Flags,
+    slopes: Floats,
+    radius: float,
 ) -> tuple[Floats, int]:
     """From each cell's exits to each other's exits, (N, N), and how many lines that were.
 
@@ -348,6 +381,8 @@ def matrix(
                     if open_pairs[i, j] and (region[b] != region[c] or together(cells[i], cells[j])):
                         out[i, j] = between(cells[i], cells[j], slopes[i], slopes[j], radius, gains)
                         evaluated += 1
+                        if shared[region[b], region[c]] and looks[i] == looks[j]:
+                            out[i, j] = min(out[i, j], along(cells[i], cells[j], slopes[i], slopes[j]))
     return out, evaluated
 
 

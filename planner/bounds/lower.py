@@ -56,6 +56,7 @@ def lower_bound_m(
     effort: int | None = None,
     part: float = 1.0,
     stop: Stop = never,
+    enough: Stop = never,
 ) -> float:
     """No plan that sees these regions is shorter than this.
 
@@ -69,6 +70,8 @@ def lower_bound_m(
         Lines between cells to evaluate, about two million a second.
     part
         Of the effort where it is not given.
+    stop, enough
+        The one cancels; the other ends the search for a better bound.
     """
     by_strips = [nodes(each, aircraft.settle_m, index, MOST_STRIPS) for index, each in enumerate(sides)]
     passes = [node for of_region in by_strips for node in of_region]
@@ -78,13 +81,18 @@ def lower_bound_m(
     by_sweeps = most_strips > FEW_STRIPS and len(by_strips) <= MOST_ORDERED
     if most_strips > FEW_STRIPS or (most_strips > 1 and len(passes) > EXACT_UP_TO):
         whole = [of_region[0] for of_region in by_strips]
-        best_m = sweeps_bound_m(whole, *ends, radius_m, known_m * (1.0 - GAPS[0]), stop)
+        best_m = sweeps_bound_m(whole, *ends, radius_m, known_m * (1.0 - GAPS[0]), stop, enough)
     if len(passes) <= EXACT_UP_TO and best_m < known_m * (1.0 - GAPS[0]):
         targets_m = tuple(known_m * (1.0 - gap) for gap in GAPS)
-        most = next(most for up_to, most in EFFORT_EXACT.items() if len(passes) <= up_to)
+        most = exact_effort(len(passes))
         work = effort or int(part * (most if most_strips <= FEW_STRIPS else EFFORT_BESIDES))
-        best_m = max(best_m, exact_bound_m(passes, *ends, radius_m, targets_m, work, stop))
+        best_m = max(best_m, exact_bound_m(passes, *ends, radius_m, targets_m, work, stop, enough))
     if len(passes) > 1 and best_m < known_m * (1.0 - POOR_GAP) and not by_sweeps:
         work = effort or int(part * EFFORT_TREES * len(passes))
-        best_m = max(best_m, trees_bound_m(passes, *ends, radius_m, known_m, work, stop))
+        best_m = max(best_m, trees_bound_m(passes, *ends, radius_m, known_m, work, stop, enough))
     return min(best_m, known_m)
+
+
+def exact_effort(passes: int) -> int:
+    """Lines between cells worth evaluating for so many passes."""
+    return next(most for up_to, most in EFFORT_EXACT.items() if passes <= up_to)

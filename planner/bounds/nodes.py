@@ -31,6 +31,30 @@ ANY_WIDTH = 1e6
 
 
 @dataclass(frozen=True, slots=True)
+class Seen:
+    """What seeing all of a region takes, in passes of whatever directions.
+
+    Parameters
+    ----------
+    by_area_m, around_m
+        What passes that together see all of the region are long at least, and each of them more, sensor on
+        before and after the ground, and settling.
+    fewest
+        How many they are at least, in whatever directions.
+    extent
+        Where they begin and end: least and most east and north, (2, 2).
+    one_place
+        Whether the region is so wide that ring and families are those of one place in it.
+    """
+
+    by_area_m: float
+    around_m: float
+    fewest: int
+    extent: Floats
+    one_place: bool
+
+
+@dataclass(frozen=True, slots=True)
 class Node:
     """A pass that every tour flies: the families it may be of.
 
@@ -50,6 +74,8 @@ class Node:
         0 where the region asks for one pass. Of several, counted to the right from the left of the northward
         of both directions they are flown in: 1 for the first strip, 2 for the last, 2 + k for the one k after
         the first.
+    seen
+        What seeing all of the region takes.
     """
 
     region: int
@@ -59,6 +85,7 @@ class Node:
     group: Ints
     approach_rad: tuple[float, ...] | None
     strip: int
+    seen: Seen
 
     @property
     def middle(self) -> Floats:
@@ -101,6 +128,20 @@ def nodes(sides: Sequence[Side], settle_m: float, region_index: int, most: int =
     fewest = max(math.ceil((_narrowest_m(around) - ROUNDING_M) / float(strip.swath_m.max())), 1)
     widest_m, swath_m = 2.0 * float(np.hypot(*around.T).max()), float(strip.swath_m.min())
     one_place = widest_m > MOST_COUNTED * swath_m
+    run_in_m, run_out_m = float(strip.run_in_m.min()), float(strip.run_out_m.min())
+    reach_m = math.hypot(
+        float((strip.near_m + strip.swath_m).max()),
+        settle_m + max(float(np.abs(strip.run_in_m).max()), float(np.abs(strip.run_out_m).max())),
+    )
+    least, furthest = np.array(region.area.bounds).reshape(2, 2)
+    by_area_m = region.area.area / float(strip.swath_m.max())
+    seen = Seen(
+        by_area_m,
+        max(run_in_m + run_out_m, 0.0) + settle_m,
+        max(math.ceil(by_area_m / widest_m - 1e-9), 1),
+        np.stack([least - reach_m, furthest + reach_m]),
+        one_place,
+    )
     if one_place:
         # However many strips there are, some pass sees it.
         place = region.area.representative_point().buffer(PLACE_M, quad_segs=1)
@@ -132,7 +173,7 @@ def nodes(sides: Sequence[Side], settle_m: float, region_index: int, most: int =
     groups = np.array([kind[4] for _ in sensor.looks for kind in kinds], dtype=np.int64)
     flown = min(min(strips), max(most, 2))
     return [
-        Node(region_index, ring, around, families, groups, region.approach_rad, strip)
+        Node(region_index, ring, around, families, groups, region.approach_rad, strip, seen)
         for strip in (range(1, flown + 1) if flown > 1 else (0,))
     ]
 

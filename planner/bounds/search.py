@@ -24,7 +24,7 @@ from planner.bounds import cells_kernels as cells_of
 from planner.bounds import lines_kernels as lines
 from planner.bounds import tours_kernels as tours
 from planner.bounds.nodes import Node, divided
-from planner.progress import Stop, raise_if
+from planner.progress import Stop, never, raise_if
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -98,6 +98,8 @@ def exact_bound_m(
     targets_m: tuple[float, ...],
     effort: int,
     stop: Stop,
+    enough: Stop = never,
+    shared: Flags | None = None,
 ) -> float:
     """No tour through one pass of each node is shorter.
 
@@ -110,7 +112,15 @@ def exact_bound_m(
         less effort than the next.
     effort
         Lines between cells to evaluate, or as much work.
+    stop, enough
+        The one cancels; the other ends the search for a better bound.
+    shared
+        Of which two regions passes may be parts of one, bool (R, R): a tour then goes from the end of one
+        straight on to that of the other. Tours visit nodes in the order of their passes' ends.
     """
+    if shared is None:
+        regions = 1 + max(node.region for node in nodes)
+        shared = np.zeros((regions, regions), dtype=np.bool_)
     best_m = 0.0
     for node in nodes:
         cells = cells_of.cells(node.ring, node.hull, node.families, node.boxes(HEADINGS_BEYOND))
@@ -118,10 +128,10 @@ def exact_bound_m(
             # Nothing is known of how it is seen.
             return best_m
     for target_m in targets_m:
-        found_m, spent = _prove(nodes, start, end, radius_m, target_m, effort, stop)
+        found_m, spent = _prove(nodes, start, end, radius_m, target_m, effort, stop, enough, shared)
         best_m = max(best_m, found_m)
         # The next takes several times as much, or there is hardly more to prove.
-        if found_m < target_m or spent > effort // 8:
+        if found_m < target_m or spent > effort // 8 or enough():
             break
         effort -= spent
     return best_m
@@ -135,6 +145,8 @@ def _prove(
     target_m: float,
     effort: int,
     stop: Stop,
+    enough: Stop,
+    shared: Flags,
 ) -> tuple[float, int]:
     """The bound, at most the target, and the lines evaluated."""
     count = itertools.count()
@@ -142,8 +154,10 @@ def _prove(
     spent = 0
     while heap and heap[0][0] < target_m and spent + _least_work(heap[0][2]) < effort:
         raise_if(stop)
+        if enough():
+            break
         bound_m, _, problem = heapq.heappop(heap)
-        solved = _solve(nodes, problem, start, end, radius_m, target_m)
+        solved = _solve(nodes, problem, start, end, radius_m, target_m, shared)
         if solved is None:
             continue
         spent += solved.work
@@ -184,7 +198,13 @@ def _first(nodes: list[Node]) -> Iterator[_Problem]:
 
 
 def _solve(
-    nodes: list[Node], problem: _Problem, start: Floats, end: Floats, radius_m: float, target_m: float
+    nodes: list[Node],
+    problem: _Problem,
+    start: Floats,
+    end: Floats,
+    radius_m: float,
+    target_m: float,
+    shared: Flags,
 ) -> _Solved | None:
     """The least tours through all cells; None where a node has no cell left below the target."""
     kept: list[tuple[NDArray[np.generic], ...]] = []
@@ -202,7 +222,10 @@ def _solve(
     pairs = np.ones((len(boxes), len(boxes)), dtype=np.bool_)
     if problem.open_pairs is not None:
         pairs = problem.open_pairs[parent][:, parent]
-    between, evaluated = lines.matrix(cells, offsets, region, pairs, slopes, radius_m)
+    looks = np.concatenate(
+        [node.families[rows[0][:, 0].astype(np.int64), 1] for node, rows in zip(nodes, kept, strict=True)]
+    )
+    between, evaluated = lines.matrix(cells, offsets, region, looks, shared, pairs, slopes, radius_m)
     first = lines.terminals(start, cells, cells_of.ENTRY, slopes, radius_m)
     last = lines.terminals(end, cells, cells_of.EXIT, slopes, radius_m)
     ahead = tours.ahead_costs(first, between, offsets)

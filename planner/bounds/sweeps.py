@@ -32,14 +32,17 @@ from numpy.typing import NDArray
 
 from planner.bounds import sweeps_kernels as kernels
 from planner.bounds.nodes import Node
-from planner.progress import Stop, raise_if
+from planner.progress import Stop, never, raise_if
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
-#: Headings looked at one by one, parts of the offsets; up to how many regions how many headings are a cell.
-HEADINGS, ETAS, PER_CELL = 90, 3, {5: 3, 7: 6, 9: 15, 12: 30}
+#: Headings looked at one by one, at least and at most, parts of the offsets; up to how many regions how many
+#: of the least headings are a cell.
+HEADINGS, MOST_HEADINGS, ETAS, PER_CELL = 90, 360, 3, {5: 3, 7: 6, 9: 15, 12: 30}
+#: Within half a heading's range no point of a region moves by more than this part of a swath.
+MOVED = 0.125
 #: Allowed headings are known to this, and taken for each other's opposites within this.
 ROUNDING_RAD, SAME_RAD = 1e-8, 2e-4
 #: Ways between ends of stays to look at.
@@ -149,7 +152,13 @@ class _Ways:
 
 
 def sweeps_bound_m(
-    nodes: Sequence[Node], start: Floats, end: Floats, radius_m: float, target_m: float, stop: Stop
+    nodes: Sequence[Node],
+    start: Floats,
+    end: Floats,
+    radius_m: float,
+    target_m: float,
+    stop: Stop,
+    enough: Stop = never,
 ) -> float:
     """No tour that stays at each region at least once, and flies all its strips, is shorter.
 
@@ -170,7 +179,9 @@ def sweeps_bound_m(
     for node in nodes:
         raise_if(stop)
         found.append(_stays(node, radius_m, per_cell))
-    sets, thetas = (np.concatenate([getattr(s, name) for s in found]) for name in ("sets", "thetas"))
+    looks = max(stays.sets.shape[2] for stays in found)
+    sets = np.concatenate([_padded(stays.sets, looks) for stays in found])
+    thetas = np.concatenate([stays.thetas for stays in found])
     ways = _Ways(
         tuple(found),
         kernels.from_place(start[:2], sets, thetas, 0),
@@ -181,7 +192,7 @@ def sweeps_bound_m(
     count = itertools.count()
     heap = [(ways.least_m(every), next(count), every)]
     spent = _work(every)
-    while heap and heap[0][0] < target_m and spent < EFFORT:
+    while heap and heap[0][0] < target_m and spent < EFFORT and not enough():
         raise_if(stop)
         bound_m, _, cells = heap[0]
         # Of a region seen in one pass nothing is parted.
@@ -216,6 +227,8 @@ def _least_tree_m(apart_m: Floats) -> float:
 
 
 def _stays(node: Node, radius_m: float, per_cell: int) -> _Stays:
+    if node.seen.one_place:
+        return _anywhere(node)
     families = node.families
     looks = np.unique(families[:, 1])
     groups = np.unique(node.group)
@@ -223,20 +236,43 @@ def _stays(node: Node, radius_m: float, per_cell: int) -> _Stays:
     for k, (family, group) in enumerate(zip(families, node.group, strict=True)):
         rows[np.searchsorted(groups, group), np.searchsorted(looks, family[1]), int(family[10])] = k
     thetas, alpha, ways = _headings(node)
-    per_cell = min(per_cell, len(thetas)) if node.approach_rad is None else 1
+    per_cell = per_cell * len(thetas) // HEADINGS if node.approach_rad is None else 1
     passes_m, turn_m, turns_m, sets = kernels.stays(
         node.ring, node.hull, families, rows, thetas, alpha, ways, ETAS, per_cell, radius_m
     )
     middles = 0.5 * (thetas[::per_cell] + thetas[per_cell - 1 :: per_cell])
-    return _Stays(passes_m, turn_m, turns_m, families[rows[:, 0, 0], 8] - 1.0, sets, middles)
+    counts = families[rows[:, 0, 0], 8]
+    # However they are laid, passes see no more than a swath for each metre beside run-in and run-out.
+    passes_m = np.maximum(passes_m, node.seen.by_area_m + counts[:, None] * node.seen.around_m)
+    return _Stays(passes_m, turn_m, turns_m, counts - 1.0, sets, middles)
+
+
+def _padded(sets: Floats, looks: int) -> Floats:
+    """Sets of one region with so many looks, those that are not there empty."""
+    out = np.full((*sets.shape[:2], looks, *sets.shape[3:]), np.inf)
+    out[..., [kernels.MOST_X, kernels.MOST_Y]] = -np.inf
+    out[:, :, : sets.shape[2]] = sets
+    return out
+
+
+def _anywhere(node: Node) -> _Stays:
+    """Stays of many strips: nothing is counted but how much ground they see, and how many they are."""
+    sets = np.empty((1, 4, 1, 2, 4))
+    (sets[..., kernels.LEAST_X], sets[..., kernels.LEAST_Y]) = node.seen.extent[0]
+    (sets[..., kernels.MOST_X], sets[..., kernels.MOST_Y]) = node.seen.extent[1]
+    passes_m = np.full((1, 1, 1), node.seen.by_area_m + node.seen.fewest * node.seen.around_m)
+    return _Stays(passes_m, np.zeros((1, 1, 1)), np.zeros((1, 1, 1, 4, 4)), np.zeros(1), sets, np.zeros(1))
 
 
 def _headings(node: Node) -> tuple[Floats, float, Flags]:
     """Headings from 0 to π, half the range of each, and whether they and their opposites are flown."""
     if node.approach_rad is None:
-        alpha = 0.5 * math.pi / HEADINGS
-        around = alpha * (2.0 * np.arange(HEADINGS, dtype=np.float64) + 1.0)
-        return around, alpha, np.ones((HEADINGS, 2), dtype=np.bool_)
+        far_m, swath_m = float(np.hypot(*node.hull.T).max()), float(node.families[:, 3].min())
+        finer = math.ceil(0.5 * math.pi * far_m / (MOVED * swath_m * HEADINGS))
+        count = HEADINGS * min(max(finer, 1), MOST_HEADINGS // HEADINGS)
+        alpha = 0.5 * math.pi / count
+        around = alpha * (2.0 * np.arange(count, dtype=np.float64) + 1.0)
+        return around, alpha, np.ones((count, 2), dtype=np.bool_)
     allowed = np.asarray(node.approach_rad, dtype=np.float64)
     thetas: Floats = np.unique(np.round(np.mod(allowed, math.pi), 9)).astype(np.float64)
     flown = thetas[:, None, None] + np.array([0.0, math.pi])[None, :, None]

@@ -24,7 +24,7 @@ from planner.bounds import cells_kernels as cells_of
 from planner.bounds import lines_kernels as lines
 from planner.bounds import trees_kernels as kernels
 from planner.bounds.nodes import Node, divided
-from planner.progress import Stop, raise_if
+from planner.progress import Stop, never, raise_if
 from planner.routing import tour
 
 Floats = NDArray[np.float64]
@@ -102,6 +102,7 @@ def trees_bound_m(
     known_m: float,
     effort: int,
     stop: Stop,
+    enough: Stop = never,
 ) -> float:
     """No tour through one pass of each node is shorter.
 
@@ -126,6 +127,8 @@ def trees_bound_m(
     best_m, spent = 0.0, 0
     for _ in range(ROUNDS):
         raise_if(stop)
+        if enough():
+            break
         counts = np.diff(cells.offsets)
         begins = np.concatenate([[0], np.cumsum(counts[pairs[:, 0]] * counts[pairs[:, 1]])]).astype(np.int64)
         spent += int(begins[-1])

@@ -1,9 +1,15 @@
-"""The lower bound of a plan: over every way its regions may be taken by any method.
+"""The lower bound of a plan: over every way its regions may be seen by any method.
 
-Regions close together are merged, by every method; ``auto`` may then divide what was merged, the paper's
-methods see it whole, or by its parts where that cannot be. One pass may see a region from where one method
-finds room and another none. A bound holds for all of them where it is the least over these ways. Where more
-regions are divided than are told apart, of the others one place each has to be seen, as it is by every way.
+Two bounds are looked for, and the better one counts.
+
+- Of units (``units``) none of which is near another: each is seen by passes of its own, in one pass, strip by
+  strip, or as ``auto`` divides it; where both occur the bound is the least over both. Units near these are
+  left out: seeing them as well is no shorter.
+- Of all units, where passes may be shared: a pass for each, and for places far from each other in wide ones,
+  or parts of one longer pass wherever they lie on one line.
+
+A unit near others that no single pass sees together with them may be seen in two parts by passes over
+several of them: of such a one a single place counts.
 """
 
 from __future__ import annotations
@@ -11,141 +17,173 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Collection, Sequence
-from dataclasses import replace
 
-from planner.bounds.lower import GAPS, lower_bound_m
-from planner.bounds.nodes import PLACE_M
-from planner.coverage.alternatives import families
-from planner.coverage.merge import MergedRegion, merge_regions
-from planner.coverage.segments import Neighbourhood
-from planner.coverage.sweeps import Side
+import numpy as np
+from numpy.typing import NDArray
+
+from planner.bounds.lower import EXACT_UP_TO, GAPS, exact_effort, lower_bound_m
+from planner.bounds.nodes import nodes, terminal
+from planner.bounds.search import exact_bound_m
+from planner.bounds.units import Sides, Unit, apart, groups, hull_of, near, seen_at_once, spread, units
+from planner.coverage import decompose
+from planner.coverage.merge import MergedRegion
 from planner.errors import InfeasibleError
 from planner.progress import Stop, never
-from planner.routing.joint.options import Surroundings
 from planner.routing.joint.targets import targets
-from planner.routing.joint.visible import sides_of, surroundings
+from planner.routing.joint.visible import surroundings
 from planner.scenario import Scenario
 from planner.sensors.sar import SarSensor
 from planner.sensors.view import sensing
 from planner.vehicle.aircraft import Aircraft
-from planner.wishes import Method
 
-#: Regions taken in several ways that are told apart.
+Flags = NDArray[np.bool_]
+
+#: Units taken in several ways that are told apart.
 MOST_APART = 3
-#: How far a division may reach beyond a region.
-BEYOND_M = 0.01
-
-Sides = tuple[Side, ...]
+#: Of wide units so many places at most are seen by shared passes, all units together.
+MOST_PLACES = 11
+#: Lines between cells to evaluate where places stand for what is wide.
+EFFORT_PLACES = 1_500_000
 
 
 def plan_bound_m(
     scenario: Scenario,
     aircraft: Aircraft,
-    sides: Sequence[Sides] | None,
     length_m: float,
     left_out: Collection[str] = (),
     stop: Stop = never,
+    enough: Stop = never,
 ) -> float:
     """No plan over these regions is shorter, whatever its method.
 
     Parameters
     ----------
-    sides
-        The ways to see each region, part of one or visit to one that ``auto`` chose from; None where it is
-        not asked.
     length_m
         Of a plan.
     left_out
         Names of regions that the plan leaves out.
+    stop, enough
+        The one cancels; the other ends the search for a better bound.
     """
-    straight_m = math.dist(scenario.start.position, scenario.end.position)
+    best_m = math.dist(scenario.start.position, scenario.end.position)
+
+    def sensing_of(region: MergedRegion) -> tuple[SarSensor, float]:
+        return _sensing(scenario, region)
+
+    found = units(scenario.regions, sensing_of, left_out)
+    if found:
+        linked = near(found, aircraft.settle_m)
+        # Where nothing is shared the first says most, as a rule, else the second.
+        ways = (_of_shared_m, _of_apart_m) if linked.any() else (_of_apart_m, _of_shared_m)
+        for bound in ways:
+            if best_m < length_m * (1.0 - GAPS[0]) and not enough():
+                best_m = max(best_m, bound(scenario, aircraft, found, linked, length_m, stop, enough))
+    return min(best_m, length_m)
+
+
+def _of_shared_m(
+    scenario: Scenario,
+    aircraft: Aircraft,
+    found: Sequence[Unit],
+    linked: Flags,
+    length_m: float,
+    stop: Stop,
+    enough: Stop,
+) -> float:
+    """Of all units, or of as many places as the order can be searched for; 0 where nothing can be shared."""
+    if not linked.any() and all(unit.whole for unit in found):
+        return 0.0
+    asked = _pieces(found, _in_parts(found, linked))
+    passes = [node for k, (_, sides) in enumerate(asked) for node in nodes(sides, aircraft.settle_m, k)]
+    of = [k for k, _ in asked]
+    # Of one unit two places may be seen by one pass; two visits are two passes.
+    shared = np.array([[a != b or not found[a].whole for b in of] for a in of])
+    np.fill_diagonal(shared, False)
+    ends = (terminal(scenario.start), terminal(scenario.end))
+    targets_m = tuple(length_m * (1.0 - gap) for gap in GAPS)
+    radius_m = aircraft.planned_turn_radius_m
+    work = exact_effort(len(passes)) if all(unit.whole for unit in found) else EFFORT_PLACES
+    return exact_bound_m(passes, *ends, radius_m, targets_m, work, stop, enough, shared)
+
+
+def _pieces(found: Sequence[Unit], parts: Collection[int]) -> list[tuple[int, Sides]]:
+    """What is to be seen of each unit, its index and ways: as much as the order can be searched for."""
+    asked: list[tuple[int, Sides]] = []
+    for k, unit in enumerate(found):
+        if unit.whole:
+            asked += [(k, unit.place if k in parts else unit.sides)] * unit.visits
+    rest = [k for k, unit in enumerate(found) if not unit.whole]
+    if len(asked) > EXACT_UP_TO:
+        asked, rest = [], list(range(len(found)))
+    elif all(found[k].region.axis is not None for k in rest):
+        legs = [(leg_m, k, sides) for k in rest for leg_m, sides in found[k].legs]
+        legs.sort(key=lambda leg: -leg[0])
+        return asked + [(k, sides) for _, k, sides in legs[: EXACT_UP_TO - len(asked)]]
+    most = MOST_PLACES if rest else EXACT_UP_TO
+    places = spread([found[k] for k in rest], most - len(asked))
+    return asked + [(rest[k], found[rest[k]].seeing(place)) for k, place in places]
+
+
+def _in_parts(found: Sequence[Unit], linked: Flags) -> set[int]:
+    """Units that passes over several may see in parts: near each other, and too wide for a single pass."""
+    parts: set[int] = set()
+    for group in groups(linked):
+        if len(group) == 1:
+            continue
+        first = found[group[0]]
+        together = MergedRegion((), hull_of([found[k].region.area for k in group]), (), ())
+        if not seen_at_once(together, first.sensor, first.height_m):
+            parts.update(group)
+    return parts
+
+
+def _of_apart_m(
+    scenario: Scenario,
+    aircraft: Aircraft,
+    found: Sequence[Unit],
+    linked: Flags,
+    length_m: float,
+    stop: Stop,
+    enough: Stop,
+) -> float:
+    """Of units none of which is near another."""
+    parts = _in_parts(found, linked)
+    chosen = apart(found, linked)
+    ways: list[list[list[Sides]]] = []
+    divided = 0
+    for k in chosen:
+        unit = found[k]
+        if unit.whole:
+            ways.append([[unit.place if k in parts else unit.sides] * unit.visits])
+        elif decompose.is_plain(unit.region.area):
+            ways.append([[unit.swept] * unit.visits])
+        elif unit.region.axis is not None or divided == MOST_APART:
+            ways.append([[unit.place] * unit.visits])
+        else:
+            ways.append([[unit.swept] * unit.visits, *_divided(scenario, aircraft, unit)])
+            divided += len(ways[-1]) > 1
+    every = list(itertools.product(*ways))
     least_m = length_m
-    every = list(itertools.product(*_ways(scenario, aircraft, sides, left_out)))
     for taken in every:
-        together = [each for of_region in taken for each in of_region]
+        if enough():
+            return 0.0
+        together = [each for of_unit in taken for each in of_unit]
         # Of the next way no more is worth proving than of the worst so far.
         worth_m = min(least_m / (1.0 - GAPS[0]), length_m)
-        proved_m = 0.0
-        if together:
-            proved_m = lower_bound_m(scenario, aircraft, together, worth_m, part=1.0 / len(every), stop=stop)
+        part = 1.0 / len(every)
+        proved_m = lower_bound_m(scenario, aircraft, together, worth_m, part=part, stop=stop, enough=enough)
         least_m = min(least_m, proved_m)
-    return min(max(least_m, straight_m), length_m)
+    return least_m
 
 
-def _ways(
-    scenario: Scenario, aircraft: Aircraft, sides: Sequence[Sides] | None, left_out: Collection[str]
-) -> list[list[list[Sides]]]:
-    """Of each region the ways it may be taken, of each of these its parts and visits by their sides."""
-    if sides is None:
-        try:
-            sides = sides_of(replace(scenario, method=Method()), aircraft)
-        except InfeasibleError:
-            sides = ()
-    found = [
-        (region, _ways_of(scenario, aircraft, region, sides))
-        for region in merge_regions(scenario.regions, default_sensor=scenario.sensors[0].name)
-        if not set(region.names) & set(left_out)
-    ]
-    apart = sorted(
-        (k for k, (_, ways) in enumerate(found) if len(ways) > 1), key=lambda k: -found[k][0].area.area
-    )
-    return [
-        [_place(scenario, region)] if k in apart[MOST_APART:] else ways
-        for k, (region, ways) in enumerate(found)
-        if ways
-    ]
-
-
-def _ways_of(
-    scenario: Scenario, aircraft: Aircraft, region: MergedRegion, sides: Sequence[Sides]
-) -> list[list[Sides]]:
-    reach = region.area.buffer(BEYOND_M)
-    parts = [of_part for of_part in sides if reach.covers(of_part[0].region.area)]
-    if parts and all(of_part[0].region.area.equals(region.area) for of_part in parts):
-        return [[_with_one_pass(scenario, region, of_visit) for of_visit in parts]]
+def _divided(scenario: Scenario, aircraft: Aircraft, unit: Unit) -> list[list[Sides]]:
+    """The unit as ``auto`` divides it, where it does."""
     around = surroundings(scenario, aircraft)
-    for pieces in ((region,), region.split()):
-        try:
-            found = [
-                target.sides
-                for piece in pieces
-                for target in targets(piece, *_sensing(scenario, piece), around, wide=False)
-            ]
-        except InfeasibleError:
-            continue
-        if pieces == (region,):
-            found = _with_sweeps(scenario, region, around, found)
-        return [parts, found] if parts else [found]
-    return [parts] if parts else []
-
-
-def _with_sweeps(
-    scenario: Scenario, region: MergedRegion, around: Surroundings, of_visits: list[Sides]
-) -> list[Sides]:
-    """What ``auto`` may fly over a region that it could have divided and left whole, beside the paper's."""
-    swept = targets(region, *_sensing(scenario, region), around, whole=True)
-    if len(swept) != len(of_visits):
-        return of_visits
-    return [(*sides, *target.sides) for sides, target in zip(of_visits, swept, strict=True)]
-
-
-def _with_one_pass(scenario: Scenario, region: MergedRegion, sides: Sides) -> Sides:
-    """Where several passes are flown for want of room, another method may find it for one."""
-    if any(isinstance(side, Neighbourhood) and side.turns == 0 for side in sides):
-        return sides
     try:
-        least = next(families(region, *_sensing(scenario, region), wide=False))
+        found = targets(unit.region, unit.sensor, unit.height_m, around)
     except InfeasibleError:
-        return sides
-    return (*sides, *(side for side in least if isinstance(side, Neighbourhood) and side.turns == 0))
-
-
-def _place(scenario: Scenario, region: MergedRegion) -> list[Sides]:
-    """One place of a region, as often as it is to be visited."""
-    place = region.area.representative_point().buffer(PLACE_M, quad_segs=1)
-    there = replace(region, area=place, originals=(place,) * len(region.names), owners=region.names)
-    least = next(families(there, *_sensing(scenario, there), wide=False))
-    return [least for _ in range(region.revisits)]
+        return []
+    return [[target.sides for target in found]] if len(found) > unit.visits else []
 
 
 def _sensing(scenario: Scenario, region: MergedRegion) -> tuple[SarSensor, float]:

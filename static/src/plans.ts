@@ -90,6 +90,7 @@ function ended(id: string, madeFrom: string): void {
     running.set(record);
     if (record.state === "done") {
       await openPlan(id, madeFrom);
+      if (record.metrics?.lower_bound_m == null) watchBound(id);
       if (scenarios.text() === madeFrom) scenarios.handedOver();
     } else if (record.state === "failed") {
       const problem = problemOf(record) ?? { title: "Planning failed" };
@@ -97,6 +98,25 @@ function ended(id: string, madeFrom: string): void {
     }
     await refresh();
   });
+}
+
+/** The plan is there before what no plan is shorter than: put that beside it when it comes. */
+function watchBound(id: string): void {
+  let seen = 0;
+  const stop = follow(
+    `/plans/${encodeURIComponent(id)}/events`,
+    ({ event, data }) => {
+      const { metrics } = data as Partial<PlanRecord>;
+      const shown = open.value;
+      if (metrics?.lower_bound_m != null && shown?.record.id === id) {
+        open.set({ ...shown, plan: { ...shown.plan, metrics: { ...shown.plan.metrics, ...metrics } } });
+      }
+      // A stream that begins again has ended without one.
+      if (event === "bound" || ++seen > 1 || shown?.record.id !== id) stop();
+    },
+    () => undefined,
+    () => undefined,
+  );
 }
 
 function watchPlan(record: PlanRecord, madeFrom: string): void {

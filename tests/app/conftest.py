@@ -33,7 +33,14 @@ IMPATIENT = replace(
 
 def fake_house(limits: Limits, times: LinkTimes = QUICK) -> House:
     """Services whose planner is a stand-in, and plans in the process of the test."""
-    return House(limits, task=fakes.task, judge_scenario=fakes.judge, pool=fakes.ThreadPool(), times=times)
+    return House(
+        limits,
+        task=fakes.task,
+        bound_task=fakes.bound,
+        judge_scenario=fakes.judge,
+        pool=fakes.ThreadPool(),
+        times=times,
+    )
 
 
 def impatient_house(limits: Limits) -> House:
@@ -43,7 +50,13 @@ def impatient_house(limits: Limits) -> House:
 
 def pooled_house(limits: Limits) -> House:
     """Services whose planner is a stand-in, in planning processes that can be killed."""
-    return House(limits, task=fakes.task, judge_scenario=fakes.judge, initialiser=fakes.no_warm_up)
+    return House(
+        limits,
+        task=fakes.task,
+        bound_task=fakes.bound,
+        judge_scenario=fakes.judge,
+        initialiser=fakes.no_warm_up,
+    )
 
 
 @asynccontextmanager

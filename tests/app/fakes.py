@@ -76,3 +76,17 @@ def task(scenario_text: str, progress_path: str, *folders: str) -> WorkResult:
     progress("routing", 0.75)
     plan = {"type": "FeatureCollection", "features": [], "metrics": {"length_m": 1.0}, "violations": []}
     return WorkResult(plan=json.dumps(plan), summary={"metrics": plan["metrics"], "violations": []})
+
+
+def bound(scenario_text: str, plan_text: str, wanted_path: str, *folders: str) -> WorkResult | None:
+    """Do what the ``fake_bound`` member says: a bound, ``raise``, or ``slow`` as long as one is wanted."""
+    wanted = json.loads(scenario_text).get("fake_bound")
+    if wanted == "raise":
+        raise RuntimeError("a secret of the inside")
+    while wanted == "slow" and Path(wanted_path).exists():
+        time.sleep(0.02)
+    if wanted is None:
+        return None
+    plan = json.loads(plan_text)
+    plan["metrics"] |= {"lower_bound_m": 0.9, "gap": 0.1}
+    return WorkResult(plan=json.dumps(plan), summary=summary_of(plan))

@@ -60,6 +60,55 @@ async def test_events_end_with_the_end_state(client: httpx.AsyncClient) -> None:
         assert set(names[:-1]) <= {"progress"}
 
 
+def events_in(text: str) -> list[tuple[str, dict[str, Any]]]:
+    """The names and data of a stream's events."""
+    lines = text.splitlines()
+    names = [line[7:] for line in lines if line.startswith("event: ")]
+    data = [json.loads(line[6:]) for line in lines if line.startswith("data: ")]
+    return list(zip(names, data, strict=True))
+
+
+async def test_bound_follows_the_plan(client: httpx.AsyncClient) -> None:
+    """A plan is done, and can be read, before its bound, which comes as an event and is in the plan then."""
+    answer = await client.post(PLANS, json=scenario(fake_bound="slow"), params={"wait": 20})
+    place = answer.headers["location"]
+    assert (answer.json()["state"], answer.json()["metrics"]) == ("done", {"length_m": 1.0})
+    assert (await client.get(place + "/plan.geojson")).json()["metrics"] == {"length_m": 1.0}
+    watched = asyncio.create_task(client.get(place + "/events"))
+    # Another plan needs the one worker: the bound ends with what it has.
+    other = (await client.post(PLANS, json=scenario(), params={"wait": 20})).json()
+    assert other["state"] == "done"
+    (first, before), (second, after) = events_in((await watched).text)
+    assert (first, second) == ("done", "bound")
+    assert before["metrics"] == {"length_m": 1.0}
+    assert after["metrics"] == {"length_m": 1.0, "lower_bound_m": 0.9, "gap": 0.1}
+    assert (await client.get(place + "/plan.geojson")).json()["metrics"] == after["metrics"]
+    assert [name for name, _ in events_in((await client.get(place + "/events")).text)] == ["done"]
+
+
+@pytest.mark.parametrize("fake", ["raise", None])
+async def test_plan_without_a_bound_stays_good(client: httpx.AsyncClient, fake: str | None) -> None:
+    """Where there is no bound the events end with the plan, and the next plan gets its own."""
+    place = (await client.post(PLANS, json=scenario(fake_bound=fake))).headers["location"]
+    assert [name for name, _ in events_in((await client.get(place + "/events")).text)][-1] == "done"
+    assert (await client.get(place)).json()["state"] == "done"
+    place = (await client.post(PLANS, json=scenario(fake_bound="now"))).headers["location"]
+    assert [name for name, _ in events_in((await client.get(place + "/events")).text)][-1] == "bound"
+
+
+async def test_deleted_plan_waits_for_no_bound(client: httpx.AsyncClient) -> None:
+    """Who watches a plan deleted before its bound is let go."""
+    place = (await client.post(PLANS, json=scenario(fake_bound="slow"), params={"wait": 20})).headers[
+        "location"
+    ]
+    watched = asyncio.create_task(client.get(place + "/events"))
+    await asyncio.sleep(0.2)
+    assert (await client.delete(place)).status_code == 204
+    async with asyncio.timeout(20):
+        assert [name for name, _ in events_in((await watched).text)] == ["done"]
+    assert (await client.post(PLANS, json=scenario(), params={"wait": 20})).json()["state"] == "done"
+
+
 async def test_running_plan_reports_progress_and_can_be_cancelled(
     client: httpx.AsyncClient,
 ) -> None:

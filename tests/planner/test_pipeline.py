@@ -176,7 +176,7 @@ def test_seconds_come_from_the_callers_clock() -> None:
     assert make_plan(read_scenario(small())).metrics.planning_time_s == {}
     ticks = iter(range(100))
     seconds = make_plan(read_scenario(small()), clock=lambda: float(next(ticks))).metrics.planning_time_s
-    assert set(seconds) == {"routing", "transit", "publish", "bound", "check"}
+    assert set(seconds) == {"routing", "transit", "publish", "check"}
 
 
 def test_a_plan_of_nothing_is_refused_by_the_paper_s_methods_too() -> None:

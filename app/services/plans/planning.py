@@ -18,6 +18,7 @@ from app.services.errors import ConflictError, NotFoundError, OverloadedError, R
 from app.services.hub import Hub
 from app.services.metrics import PLANNING_SECONDS, PLANS_ENDED, PLANS_RUNNING
 from app.services.plans import work
+from app.services.plans.bounder import Bounder
 from app.services.plans.pool import Pool, WorkerDiedError
 from app.services.plans.progress_pipe import progress_pipe
 from app.services.records import PlanRecord
@@ -30,6 +31,7 @@ from planner.geojson import scenario_hash
 log = structlog.get_logger(__name__)
 
 Task = Callable[..., work.WorkResult]
+BoundTask = Callable[..., work.WorkResult | None]
 
 
 def failure(kind: str, title: str, detail: str) -> dict[str, Any]:
@@ -55,6 +57,9 @@ class PlanningService:
     task
         The function run in a worker: scenario text and progress pipe in, WorkResult out. For a scenario
         that names a terrain the folder of the rasters is a third argument, and the judge's second.
+    bound_task
+        The same for the bound of a done plan: scenario text, plan text and the path of a file that is there
+        while the bound is wanted.
     terrain_folder
         Where uploaded rasters are.
     """
@@ -68,6 +73,7 @@ class PlanningService:
         time_limit_s: float,
         max_queued: int,
         task: Task = work.plan_scenario,
+        bound_task: BoundTask = work.bound_plan,
         judge_scenario: Callable[..., Verdict] = judge,
         terrain_folder: Path | None = None,
     ) -> None:
@@ -77,6 +83,7 @@ class PlanningService:
         self._time_limit_s = time_limit_s
         self._max_queued = max_queued
         self._task = task
+        self._bound_task = bound_task
         self._judge = judge_scenario
         self._terrain_folder = terrain_folder
         self._queue: asyncio.Queue[str] = asyncio.Queue()
@@ -84,6 +91,7 @@ class PlanningService:
         self._live: dict[str, tuple[str | None, float]] = {}
         self._consumers: list[asyncio.Task[None]] = []
         self._hub: Hub[PlanRecord] = Hub()
+        self._bounder = Bounder(self._bound, self._bounded, self._room)
         self._stopping = False
 
     async def start(self) -> None:
@@ -96,6 +104,7 @@ class PlanningService:
         for plan_id in await self._store.recover(reason):
             self._queue.put_nowait(plan_id)
         self._consumers = [asyncio.create_task(self._consume()) for _ in range(self._workers)]
+        self._consumers.append(asyncio.create_task(self._bounder.serve()))
 
     async def stop(self) -> None:
         """Stop planning; plans being made go back into the queue of the next service."""
@@ -158,6 +167,7 @@ class PlanningService:
             name_of(document), text, digest, warnings, key, scenario_id, scenario_hash(document)
         )
         self._queue.put_nowait(record.id)
+        self._bounder.look()
         return record
 
     async def get(self, plan_id: str) -> PlanRecord:
@@ -185,38 +195,48 @@ class PlanningService:
             raise ConflictError(f"plan {plan_id} is {record.state}, it has no plan{reason}")
         return plan
 
-    async def events(self, plan_id: str) -> AsyncGenerator[PlanRecord, None]:
-        """The plan as it is now, then at every change, to its end."""
+    async def events(self, plan_id: str) -> AsyncGenerator[tuple[str, PlanRecord], None]:
+        """The plan as it is now, then at every change, to its end and, of a done one, its bound.
+
+        Each with its name: ``progress``, the end state, ``bound``.
+        """
         async with self._hub.listen(plan_id) as queue:
             record = await self.get(plan_id)
-            yield record
+            yield _event_of(record), record
             while not record.ended:
                 record = await queue.get()
-                yield record
+                yield _event_of(record), record
+            while plan_id in self._bounder:
+                record = await queue.get()
+                if record.bounded:
+                    yield "bound", record
 
     async def wait(self, plan_id: str, timeout_s: float) -> PlanRecord:
         """The plan when it has ended, or as it is when the time is over."""
         with contextlib.suppress(TimeoutError):
             async with asyncio.timeout(timeout_s):
                 async with contextlib.aclosing(self.events(plan_id)) as records:
-                    async for record in records:
+                    async for _, record in records:
                         if record.ended:
                             return record
         return await self.get(plan_id)
 
     async def remove(self, plan_id: str) -> PlanRecord | None:
         """Cancel a queued or running plan and answer with it; delete an ended one and answer None."""
+        record = await self._store.get(plan_id)
         if await self._store.delete(plan_id):
+            self._bounder.drop(plan_id)
+            # Who waits for its bound waits for nothing.
+            self._hub.publish(plan_id, record)
             return None
         if await self._store.cancel(plan_id):
             if (task := self._running.get(plan_id)) is not None:
                 task.cancel()
             PLANS_ENDED.labels(state="cancelled").inc()
-            record = await self._announce(plan_id)
+            cancelled = await self._announce(plan_id)
             log.info("plan cancelled", plan_id=plan_id)
-            return record
-        # It ended between the two looks, or never was.
-        await self._store.get(plan_id)
+            return cancelled
+        # It ended between the two looks.
         return await self.remove(plan_id)
 
     def _with_progress(self, record: PlanRecord) -> PlanRecord:
@@ -244,6 +264,7 @@ class PlanningService:
                     log.error("plan could not be run", plan_id=plan_id, exc_info=error)
             finally:
                 self._running.pop(plan_id, None)
+                self._bounder.look()
 
     async def _run(self, plan_id: str) -> None:
         if not await self._store.start(plan_id):
@@ -297,6 +318,8 @@ class PlanningService:
         if result.plan is not None:
             moved = await self._store.done(plan_id, result.plan, result.summary or {})
             state = "done"
+            if moved:
+                self._bounder.add(plan_id)
         else:
             stage, progress = self._live[plan_id]
             moved = await self._store.fail(plan_id, result.error or {}, stage, progress)
@@ -305,3 +328,25 @@ class PlanningService:
             PLANS_ENDED.labels(state=state).inc()
             log.info("plan ended", plan_id=plan_id, state=state, reason=(result.error or {}).get("detail"))
             await self._announce(plan_id)
+
+    def _room(self) -> bool:
+        """Whether a worker is free that no plan waits for."""
+        return not self._stopping and len(self._running) + self._queue.qsize() < self._workers
+
+    async def _bound(self, plan_id: str, wanted_path: str) -> None:
+        try:
+            scenario, plan = await self._store.documents(plan_id)
+        except NotFoundError:
+            return
+        document = json.loads(scenario) if '"terrain"' in scenario else {}
+        arguments = (scenario, plan, wanted_path, *self._terrain_of(document))
+        result = await self._pool.run(self._bound_task, arguments, self._time_limit_s)
+        if result is not None:
+            await self._store.bounded(plan_id, result.plan, result.summary)
+
+    async def _bounded(self, plan_id: str) -> None:
+        await self._announce(plan_id)
+
+
+def _event_of(record: PlanRecord) -> str:
+    return record.state if record.ended else "progress"

@@ -8,10 +8,12 @@ from __future__ import annotations
 import contextlib
 import errno
 import json
+import math
 import os
 import time
 from dataclasses import dataclass
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 #: Reports closer together than this are dropped unless the stage changes.
@@ -86,7 +88,6 @@ def finding_json(finding: Any) -> dict[str, str]:
 
 def plan_scenario(scenario_text: str, progress_path: str, terrain_folder: str | None = None) -> WorkResult:
     """Plan one scenario, reporting into the pipe at ``progress_path``; rasters are in ``terrain_folder``."""
-    from app.services.plans.summary import summary_of
     from app.services.terrain.rasters import stored_terrain
     from planner import errors
     from planner.geojson import read_scenario, write_plan
@@ -100,9 +101,7 @@ def plan_scenario(scenario_text: str, progress_path: str, terrain_folder: str | 
         scenario = read_scenario(json.loads(scenario_text), terrains)
         frame = scenario.frame
         plan = make_plan(scenario, progress=progress, clock=time.perf_counter)
-        document = write_plan(plan)
-        text = json.dumps(document, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
-        return WorkResult(plan=text, summary=summary_of(document))
+        return _written(write_plan(plan))
     except errors.ScenarioError as error:
         return WorkResult(
             error={
@@ -144,3 +143,36 @@ def plan_scenario(scenario_text: str, progress_path: str, terrain_folder: str | 
         )
     finally:
         progress.close()
+
+
+def bound_plan(
+    scenario_text: str, plan_text: str, wanted_path: str, terrain_folder: str | None = None
+) -> WorkResult | None:
+    """A plan made of a scenario once more, now with what no plan is shorter than.
+
+    The search ends after its share of the time the plan took, or of what the scenario's budget leaves, and
+    once there is no file any more at ``wanted_path``; it says what it has then, None where it has no time.
+    """
+    began_s = time.perf_counter()
+    from app.services.terrain.rasters import stored_terrain
+    from planner.geojson import read_plan, read_scenario, write_plan
+    from planner.pipeline import time_for_bound_s, with_bound
+
+    terrains = None if terrain_folder is None else partial(stored_terrain, terrain_folder)
+    plan = read_plan(json.loads(plan_text))
+    scenario = read_scenario(json.loads(scenario_text), terrains)
+    limit_s = time_for_bound_s(math.fsum(plan.metrics.planning_time_s.values()), scenario.time_budget_s)
+
+    def enough() -> bool:
+        return time.perf_counter() - began_s > limit_s or not Path(wanted_path).exists()
+
+    if enough():
+        return None
+    return _written(write_plan(with_bound(scenario, plan, enough=enough, clock=time.perf_counter)))
+
+
+def _written(document: dict[str, Any]) -> WorkResult:
+    from app.services.plans.summary import summary_of
+
+    text = json.dumps(document, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
+    return WorkResult(plan=text, summary=summary_of(document))

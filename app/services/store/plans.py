@@ -149,6 +149,22 @@ class PlanStore:
             )
             return True
 
+    async def bounded(self, plan_id: str, plan: str, summary: dict[str, Any]) -> bool:
+        """A done plan once more, with its bound; False when it was deleted meanwhile."""
+        async with self._database.session() as session:
+            result = await session.execute(
+                update(PlanRow)
+                .where(PlanRow.id == plan_id, PlanRow.state == "done")
+                .values(summary=summary)
+                .returning(PlanRow.id)
+            )
+            if result.first() is None:
+                return False
+            await session.execute(
+                update(PlanDocumentRow).where(PlanDocumentRow.plan_id == plan_id).values(plan=plan)
+            )
+            return True
+
     async def fail(self, plan_id: str, error: dict[str, Any], stage: str | None, progress: float) -> bool:
         """Running to failed, with the reason."""
         return await self._move(

@@ -21,7 +21,7 @@ from planner.coverage.segments import Neighbourhood
 from planner.coverage.sweeps import sweeps
 from planner.dubins.kernels import dubins_length
 from planner.geojson import read_plan, read_scenario, write_plan
-from planner.pipeline import make_plan
+from planner.pipeline import make_plan, with_bound
 from planner.route import Pose
 from planner.routing.joint import kernels as joint_kernels
 from planner.routing.joint.options import Surroundings, collect_passes, make_options
@@ -134,7 +134,7 @@ def test_no_sweep_of_one_region_is_shorter(
 def test_the_shared_cases_are_proved_within_five_percent(number: int) -> None:
     """No plan of a shared case is more than 5 % shorter than ours; plans keep their gap when written."""
     scenario = read_scenario(case(number))
-    plan = make_plan(scenario)
+    plan = with_bound(scenario, make_plan(scenario))
     assert plan.metrics.lower_bound_m is not None
     assert plan.metrics.gap == pytest.approx(1.0 - plan.metrics.lower_bound_m / plan.metrics.length_m)
     assert 0.0 <= plan.metrics.gap < 0.05
@@ -178,6 +178,7 @@ def test_squint_spotlight_and_crab_have_a_bound(sensor: dict[str, Any], members:
     """Passes that are not abeam, too: the plan says how far it is from the best, and that is not far."""
     document = small(**members)
     document["sensors"][0] |= sensor
-    plan = make_plan(read_scenario(document))
+    scenario = read_scenario(document)
+    plan = with_bound(scenario, make_plan(scenario))
     assert plan.metrics.gap is not None
     assert 0.0 <= plan.metrics.gap < (0.2 if "method" in members else 0.05)

@@ -11,7 +11,7 @@ import pytest
 from planner.bounds.ways import plan_bound_m
 from planner.errors import InfeasibleError
 from planner.geojson import read_scenario
-from planner.pipeline import make_plan
+from planner.pipeline import make_plan, with_bound
 from planner.tasks.wind import in_wind
 from tests.planner.scenarios import feature, small, square
 
@@ -57,14 +57,14 @@ def test_no_methods_plan_is_below_any_methods_bound(
         document["sensors"][0] |= sensor
         scenario = read_scenario(document)
         try:
-            plan = make_plan(scenario)
+            plan = with_bound(scenario, make_plan(scenario))
         except InfeasibleError:
             continue
         lengths.append(plan.metrics.length_m)
         assert plan.metrics.lower_bound_m is not None
         bounds.append(plan.metrics.lower_bound_m)
     flown = in_wind(scenario)
-    bounds.append(plan_bound_m(flown, flown.aircraft[0], None, 1.3 * min(lengths)))
+    bounds.append(plan_bound_m(flown, flown.aircraft[0], 1.3 * min(lengths)))
     assert 0.6 * min(lengths) < max(bounds) <= min(lengths) + 1e-6
 
 
@@ -75,7 +75,8 @@ def test_where_more_are_divided_than_are_told_apart_a_place_of_each_counts() -> 
         for name, east, north in (("a", 0.0, 0.0), ("b", 0.0045, 0.0007)):
             ring = square(-0.03 + 0.015 * k + east, 0.03 - 0.02 * (k % 2) + north, 0.003)
             document["features"].append(feature(f"T{k}{name}", "roi", "Polygon", ring))
-    plan = make_plan(read_scenario(document))
+    scenario = read_scenario(document)
+    plan = with_bound(scenario, make_plan(scenario))
     assert plan.metrics.lower_bound_m is not None
     assert 0.3 * plan.metrics.length_m < plan.metrics.lower_bound_m <= plan.metrics.length_m
 
@@ -83,8 +84,8 @@ def test_where_more_are_divided_than_are_told_apart_a_place_of_each_counts() -> 
 def test_regions_that_a_plan_leaves_out_do_not_count() -> None:
     """A wide region that is not required and two passes cannot see: left out of plan and bound."""
     wide = feature("W", "roi", "Polygon", square(0.045, -0.02, 0.015), required=False)
-    known = make_plan(read_scenario(small(method={"routing": "li2018"})))
-    plan = make_plan(read_scenario(small(wide, method={"routing": "li2018"})))
+    without, scenario = (read_scenario(small(*more, method={"routing": "li2018"})) for more in ((), (wide,)))
+    known, plan = (with_bound(asked, make_plan(asked)) for asked in (without, scenario))
     assert plan.metrics.length_m == pytest.approx(known.metrics.length_m)
     assert plan.metrics.lower_bound_m == pytest.approx(known.metrics.lower_bound_m)
     assert all("W" not in collect.regions for collect in plan.collects)
@@ -95,7 +96,7 @@ def test_with_nothing_known_of_its_regions_a_plan_is_as_long_as_straight_on() ->
     end = feature("end", "end", "Point", [0.03, 0.0])
     scenario = read_scenario(small(end))
     names = [region.name for region in scenario.regions]
-    bound = plan_bound_m(scenario, scenario.aircraft[0], None, 50_000.0, names)
+    bound = plan_bound_m(scenario, scenario.aircraft[0], 50_000.0, names)
     assert bound == pytest.approx(np.hypot(*np.subtract(scenario.start.position, scenario.end.position)))
     apart = replace(scenario, start=scenario.end)
-    assert plan_bound_m(apart, scenario.aircraft[0], None, 50_000.0, names) == 0.0
+    assert plan_bound_m(apart, scenario.aircraft[0], 50_000.0, names) == 0.0
