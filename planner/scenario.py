@@ -73,7 +73,7 @@ class Scenario:
 
     @property
     def altitude_amsl_m(self) -> float:
-        """Flight altitude over mean sea level; home counts as sea level where its height is unknown."""
+        """Flight altitude over mean sea level, where the height of home is known."""
         return self.level.amsl_m
 
     def sensor_for(self, region: Region) -> SarSensor:

@@ -55,7 +55,11 @@ class Airspace:
     home_amsl_m: float | None = None
 
     def level(self, altitude_m: float, reference: AltitudeReference) -> Level:
-        """The level of an altitude; home counts as sea level where its height is unknown."""
+        """The level of an altitude.
+
+        Where the height of home is unknown it counts as sea level; a scenario read from GeoJSON has nothing
+        then whose meaning depends on it (``planner.geojson.home``).
+        """
         home_m = self.home_amsl_m or 0.0
         if reference == "amsl":
             return Level(altitude_m - home_m, altitude_m)

@@ -14,7 +14,8 @@ from planner.airspace.terrain import Terrains, find_terrain
 from planner.errors import ScenarioError
 from planner.geojson import equipment, features
 from planner.geojson.extent import frame_of, within
-from planner.geojson.fields import Fields, Findings, is_finite
+from planner.geojson.fields import Fields, Findings
+from planner.geojson.home import home_amsl_m, kept_clear
 from planner.geojson.relief import set_on_terrain
 from planner.geojson.rules import check_together
 from planner.route import Terminal
@@ -166,10 +167,12 @@ def _read(document: Any, findings: Findings, terrains: Terrains | None) -> Scena
         seed=seed,
         time_budget_s=budget_s,
         scenario_hash=scenario_hash(document),
-        home_amsl_m=None if terrain is not None else _home_amsl_m(raws, reference, findings),
+        home_amsl_m=None if terrain is not None else home_amsl_m(raws, start.name),
     )
     if terrain is not None:
         scenario = set_on_terrain(scenario, terrain, "clearance_m" in top, findings)
+    else:
+        scenario = kept_clear(scenario, findings)
     check_together(scenario, findings)
     return replace(scenario, warnings=findings.warnings)
 
@@ -222,21 +225,4 @@ def _start(
         return bases[0]
     if not any(raw.role == "start" for raw in raws):
         findings.error("scenario", "no-start", "has no start", "Add a Point of role start.")
-    return None
-
-
-def _home_amsl_m(raws: list[features.RawFeature], reference: str | None, findings: Findings) -> float | None:
-    """Height of home: the third coordinate of the start, where given."""
-    for raw in raws:
-        coordinates = raw.geometry.get("coordinates")
-        if raw.role == "start" and isinstance(coordinates, list) and len(coordinates) > 2:
-            height = coordinates[2]
-            if is_finite(height):
-                return float(height)
-    if reference == "amsl":
-        findings.warning(
-            "scenario", "home-height-unknown",
-            "altitude_reference amsl without the height of home: the ground is taken to be at sea level",
-            "Give the start a third coordinate, its height above mean sea level in metres.",
-        )  # fmt: skip
     return None
