@@ -318,24 +318,31 @@ def _leg(
     notes: list[str],
     names: list[str],
 ) -> tuple[Path, str]:
-    """One connection; where SSAS finds none, the tangent connector does, and the plan says so."""
+    """One connection; where SSAS finds none, or one through threats that cost more than the tangent
+    connector's line, that is taken, and the plan says so.
+    """
     radius_m = aircraft.planned_turn_radius_m
-    if methods["transit"] == "ssas":
-        try:
-            path, _ = ssas_connector.connect(
-                start,
-                goal,
-                scenario=scenario,
-                keep_out=zones,
-                radius_m=radius_m,
-                smoothing="shortcut" if methods["smoothing"] == "shortcut" else "fillet",
-                stop=stop,
-            )
-        except InfeasibleError as error:
-            notes.append(f"SSAS connects {names[0]} and {names[1]} in no way ({error.message}): tangent used")
-        else:
-            return path, "ssas"
-    return connect_by_cost(start, goal, zones, radius_m, risk, stop), "tangent"
+    if methods["transit"] != "ssas":
+        return connect_by_cost(start, goal, zones, radius_m, risk, stop), "tangent"
+    try:
+        path, _ = ssas_connector.connect(
+            start,
+            goal,
+            scenario=scenario,
+            keep_out=zones,
+            radius_m=radius_m,
+            smoothing="shortcut" if methods["smoothing"] == "shortcut" else "fillet",
+            stop=stop,
+        )
+    except InfeasibleError as error:
+        notes.append(f"SSAS connects {names[0]} and {names[1]} in no way ({error.message}): tangent used")
+        return connect_by_cost(start, goal, zones, radius_m, risk, stop), "tangent"
+    if not ssas_connector.avoidable(start, goal, scenario, zones).clear(path):
+        other = connect_by_cost(start, goal, zones, radius_m, risk, stop)
+        if risk.cost_m(other) < risk.cost_m(path):
+            notes.append(f"SSAS connects {names[0]} and {names[1]} through threats only: tangent used")
+            return other, "tangent"
+    return path, "ssas"
 
 
 def _extended(path: Path, collect: CollectPass) -> Path:

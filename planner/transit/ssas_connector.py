@@ -73,7 +73,8 @@ class Attempt:
     lead: bool = True
 
 
-#: The paper's setting first; then threats closed and shorter legs, from either end; then any way at all.
+#: The paper's setting first; then threats closed and shorter legs, from either end, at last without room to
+#: spare; then any way at all.
 ATTEMPTS = (
     Attempt(8.0, 0.0, PLACES_ALONE_RAD, threats="costly", margins=0.0),
     Attempt(32.0, tight=True),
@@ -84,6 +85,8 @@ ATTEMPTS = (
     Attempt(32.0),
     Attempt(math.inf, tight=True, heuristic_length=2.0),
     Attempt(math.inf, tight=True, heuristic_length=2.0, from_goal=True),
+    Attempt(math.inf, margins=0.0, tight=True, from_goal=True, lead=False),
+    Attempt(math.inf, heuristic_length=2.0, margins=0.0, tight=True, lead=False),
     Attempt(32.0, threats="ignored", margins=0.0),
     Attempt(32.0, threats="ignored", margins=0.0, tight=True, lead=False),
 )
@@ -171,6 +174,11 @@ def connect(
     raise job.worst(failures)
 
 
+def avoidable(start: Anchor, goal: Anchor, scenario: Scenario, keep_out: KeepOut) -> KeepOut:
+    """What a line between two anchors can keep out of: all but threats of no weight or that hold one."""
+    return _Job(start, goal, scenario, keep_out, math.inf).keep_out_wanted()
+
+
 @dataclass(frozen=True, slots=True)
 class _Job:
     start: Anchor
@@ -184,9 +192,9 @@ class _Job:
         return self.scenario.threats
 
     @property
-    def altitude_m(self) -> float | None:
-        """Altitude over ground, the datum of threat heights; None where the scenario's is another."""
-        return None if self.scenario.altitude_reference == "amsl" else self.scenario.altitude_m
+    def altitude_m(self) -> float:
+        """Height over the ground, the datum of threat heights."""
+        return self.scenario.height_m
 
     def parameters(self, attempt: Attempt) -> SsasParameters:
         paper = SsasParameters()
