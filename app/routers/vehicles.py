@@ -192,7 +192,7 @@ async def list_logs(vehicle_id: str, fleet: FleetDep) -> LogList:
         for f in files
     ]
     known = {vehicle.id: vehicle for vehicle in fleet.all()}
-    failure = known[vehicle_id].recording_failure if vehicle_id in known else None
+    failure = known[vehicle_id].tape.failure if vehicle_id in known else None
     return LogList(vehicle_id=vehicle_id, failure=failure, logs=logs)
 
 

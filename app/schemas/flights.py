@@ -11,6 +11,18 @@ from pydantic import BaseModel, Field
 from app.services.records import FlightRecord
 
 
+class SensorActionOut(BaseModel):
+    """A sensor that was left on, and that the service switched off by itself."""
+
+    at: datetime
+    time_s: float | None = Field(description="The vehicle's time since boot.")
+    action: Literal["sensor_off"]
+    reason: str = Field(examples=["mode RTL instead of the mission's"])
+    outcome: str = Field(description="What the vehicle answered.", examples=["DO_SET_RELAY: accepted"])
+    lon_deg: float | None
+    lat_deg: float | None
+
+
 class FlightOut(BaseModel):
     """One flight."""
 
@@ -25,6 +37,7 @@ class FlightOut(BaseModel):
     points: int
     payload: str | None = Field(description="How the sensor was switched; null for the default.")
     photos: int = Field(description="Reported by cameras.")
+    actions: list[SensorActionOut] = Field(description="What the service did by itself meanwhile.")
     links: dict[str, str]
 
     @classmethod

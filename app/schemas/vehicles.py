@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from datetime import datetime
 from typing import Any, Literal, Self
 
 from pydantic import BaseModel, Field
 
 from app.schemas.base import Strict
+from app.schemas.flights import SensorActionOut
 from app.schemas.forwards import ForwardIn, ForwardOut, ForwardsOut
 from app.schemas.missions import SentOut, UploadOut
 from app.services.vehicles.forwarding import MOST_FORWARDS
@@ -45,6 +47,27 @@ class VehicleIn(Strict):
     )
 
 
+class SensorOut(BaseModel):
+    """The sensor, by its own report or by the output that switches it."""
+
+    on: bool | None = Field(description="null: nothing shows it, or the vehicle is silent.")
+    since_s: float | None = Field(description="For how long it has been so, seconds.", examples=[12.5])
+    last_action: SensorActionOut | None = Field(
+        description="When the service last switched it off by itself: left on outside the passes."
+    )
+
+
+class LinkOut(BaseModel):
+    """How the vehicle is heard."""
+
+    quality: float | None = Field(
+        description="Share of its frames that came in the last ten seconds, 0 to 1; null: too few to tell.",
+        examples=[0.98],
+    )
+    lost: bool = Field(description="It was heard, and is silent now.")
+    lost_since: datetime | None = Field(description="When it was last heard, while the link is lost.")
+
+
 class VehicleOut(BaseModel):
     """A vehicle and how it is."""
 
@@ -57,6 +80,11 @@ class VehicleOut(BaseModel):
         description="Another autopilot that answers in its place while it is silent: a swapped aircraft. It "
         "is not talked to until it is acknowledged, or let go and connected as another vehicle."
     )
+    position_age_s: float | None = Field(
+        description="How old the position in `state` is, seconds; null: it never told one.", examples=[0.2]
+    )
+    sensor: SensorOut
+    link: LinkOut
     link_failure: str | None = Field(description="Why its link is not open; it is tried again and again.")
     simulated: bool
     replay: bool = Field(description="It is a recording: it takes no transfers and no commands.")
@@ -74,6 +102,7 @@ class VehicleOut(BaseModel):
     @classmethod
     def of(cls, vehicle: Vehicle) -> Self:
         """The answer for a vehicle."""
+        state, last = vehicle.state, vehicle.safety.last
         return cls(
             id=vehicle.id,
             name=vehicle.name,
@@ -81,6 +110,17 @@ class VehicleOut(BaseModel):
             connected=vehicle.state.connected,
             system_id=vehicle.state.system_id or vehicle.system_id or None,
             other_system=vehicle.state.other_system,
+            position_age_s=vehicle.age_s(state.position_heard_s),
+            sensor=SensorOut(
+                on=state.sensor_shown,
+                since_s=vehicle.age_s(state.sensor_since_s),
+                last_action=None if last is None else SensorActionOut(**asdict(last)),
+            ),
+            link=LinkOut(
+                quality=vehicle.link_quality,
+                lost=vehicle.lost_since is not None,
+                lost_since=vehicle.lost_since,
+            ),
             link_failure=vehicle.link_failure,
             simulated=vehicle.simulated is not None,
             replay=vehicle.replay,

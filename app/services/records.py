@@ -49,6 +49,27 @@ class FlightEvent:
 
 
 @dataclass(frozen=True, slots=True)
+class SensorAction:
+    """Something the service did by itself to a sensor; ``time_s`` is the vehicle's time since boot.
+
+    Parameters
+    ----------
+    reason
+        Why, in words.
+    outcome
+        What the vehicle answered, in words.
+    """
+
+    at: datetime
+    time_s: float | None
+    action: Literal["sensor_off"]
+    reason: str
+    outcome: str
+    lon_deg: float | None
+    lat_deg: float | None
+
+
+@dataclass(frozen=True, slots=True)
 class TerrainRecord:
     """One uploaded elevation raster; ``bounds_deg`` is west, south, east, north."""
 
@@ -80,6 +101,8 @@ class FlightRecord:
         How the sensor was switched, as the upload said it; None for the default, or when no plan was held.
     photos
         Reported by cameras.
+    actions
+        What the service did by itself meanwhile.
     """
 
     id: str
@@ -93,6 +116,7 @@ class FlightRecord:
     points: int
     payload: str | None = None
     photos: int = 0
+    actions: tuple[SensorAction, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -158,3 +158,20 @@ def mode_parameters(autopilot: Autopilot, vehicle_type: VehicleType, name: str) 
             if main_name == "AUTO" and known == sub_name != "-":
                 return custom_mode_enabled, float(_PX4_AUTO), float(sub)
     raise ValueError(f"{autopilot} ({vehicle_type}) has no mode {name!r}")
+
+
+#: Modes in which an aircraft follows its mission, comes back, comes down.
+MISSION_MODES: Final = frozenset({"AUTO", "AUTO.MISSION"})
+RETURN_MODES: Final = frozenset({"RTL", "QRTL", "SMART_RTL", "AUTO_RTL", "AUTO.RTL"})
+LANDING_MODES: Final = frozenset({"LAND", "QLAND", "AUTOLAND", "AUTO.LAND", "AUTO.PRECLAND"})
+#: Modes in which it waits where it is.
+WAITING_MODES: Final = frozenset({"LOITER", "QLOITER", "CIRCLE", "BRAKE", "POSHOLD", "AUTO.LOITER"})
+#: Modes in which arming is the last thing that keeps it from leaving the ground.
+_TAKING_OFF: Final = MISSION_MODES | frozenset(
+    {"TAKEOFF", "THROW", "AUTO_RTL", "AUTO.TAKEOFF", "AUTO.VTOL_TAKEOFF", "AUTO.FOLLOW", "OFFBOARD"}
+)
+
+
+def takes_off_when_armed(mode: str) -> bool:
+    """Whether an aircraft armed in a mode may leave the ground by itself; so with one not known here."""
+    return not mode or mode in _TAKING_OFF or mode.startswith("MODE ") or mode.rpartition(".")[2].isdigit()

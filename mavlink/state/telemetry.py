@@ -57,6 +57,8 @@ class VehicleState:
         System id of another autopilot that answers while the vehicle is silent: a swapped aircraft.
     heard_s
         When it last told something of itself, in the client's clock.
+    position_heard_s
+        When it last told where it is, in the same clock.
     time_s
         The vehicle's own time since boot.
     mode
@@ -81,6 +83,10 @@ class VehicleState:
         The vehicle's own ids of the lists it holds; None where it holds or gives none.
     sensor_on
         The payload's switch as reported: NAMED_VALUE_INT ``SAR_ON``.
+    output_on
+        What the output shows that the payload in use switches; None where it is not known or not told.
+    sensor_since_s
+        Since when ``sensor_shown`` is what it is, in the client's clock.
     relays_on
         Bit mask of RELAY_STATUS.
     """
@@ -90,6 +96,7 @@ class VehicleState:
     connected: bool = False
     other_system: int | None = None
     heard_s: float | None = None
+    position_heard_s: float | None = None
     time_s: float | None = None
     autopilot: Autopilot = "generic"
     type: VehicleType = "other"
@@ -125,8 +132,15 @@ class VehicleState:
     fence_id: int | None = None
     rally_points_id: int | None = None
     sensor_on: bool | None = None
+    output_on: bool | None = None
+    sensor_since_s: float | None = None
     relays_on: int | None = None
     texts: tuple[StatusText, ...] = ()
+
+    @property
+    def sensor_shown(self) -> bool | None:
+        """Whether the sensor is on: by its own report, else by the output; None where nothing tells."""
+        return self.output_on if self.sensor_on is None else self.sensor_on
 
 
 def updated(state: VehicleState, message: Message, now_s: float) -> VehicleState:
@@ -160,6 +174,7 @@ def _global_position(state: VehicleState, message: Message) -> VehicleState:
     moving = math.hypot(north, east) >= 0.5
     return replace(
         state,
+        position_heard_s=state.heard_s,
         time_s=message.number("time_boot_ms") / 1000.0,
         lat_deg=message.integer("lat") / 1e7,
         lon_deg=message.integer("lon") / 1e7,

@@ -118,6 +118,21 @@ class VehicleClient(MissionTransfers, FlightCommands):
         """Why the client has ended: its link failed, its recording is over, it was closed; None before."""
         return self._driver.failure
 
+    @property
+    def now_s(self) -> float:
+        """The clock that times of the state are told in."""
+        return self._clock()
+
+    @property
+    def silent_s(self) -> float:
+        """How long nothing was heard of the vehicle; infinite before its first word."""
+        return self._driver.silent_s
+
+    @property
+    def link_quality(self) -> float | None:
+        """The share of the vehicle's frames that arrived in the last ten seconds; None where too few did."""
+        return self._driver.quality.share(self._clock())
+
     async def connect(self, timeout_s: float = 10.0) -> VehicleState:
         """Send heartbeats, and wait for an autopilot's; may be called again after a failure.
 
@@ -181,12 +196,21 @@ class VehicleClient(MissionTransfers, FlightCommands):
         """
         recorder = TrackRecorder(output)
         self._driver.record(recorder)
-        if output is not None:
-            wanted_hz = INTERVALS_HZ[type(output)]
-            self._watched_hz |= wanted_hz
-            if self.state.connected:
-                self._ask_for(wanted_hz)
+        self._report(output)
         return recorder
+
+    def show_sensor(self, output: SensorOutput | None) -> None:
+        """Let the state tell from this output whether the sensor is on; the vehicle is asked to report it."""
+        self._driver.show_sensor(output)
+        self._report(output)
+
+    def _report(self, output: SensorOutput | None) -> None:
+        if output is None:
+            return
+        wanted_hz = INTERVALS_HZ[type(output)]
+        self._watched_hz |= wanted_hz
+        if self.state.connected:
+            self._ask_for(wanted_hz)
 
     def stop_recording(self, recorder: TrackRecorder) -> None:
         """Stop feeding a recorder; its track stays."""

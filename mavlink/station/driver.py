@@ -16,7 +16,10 @@ from typing import Any, Final
 from mavlink.errors import BusyError, CodecError, LinkError, NotConnectedError, ReadOnlyError
 from mavlink.links.link import DirectLink, Link, ReplayLink
 from mavlink.state.events import EVENT_MESSAGES, EventOrder
+from mavlink.state.link_quality import LinkQuality
 from mavlink.state.modes import GROUND_STATION_TYPE, NO_AUTOPILOT
+from mavlink.state.outputs import SensorOutput
+from mavlink.state.sensor import SensorWatch
 from mavlink.state.telemetry import VehicleState, updated
 from mavlink.state.track import CAMERA_MESSAGES, TrackRecorder
 from mavlink.station.forward.hub import Forwards
@@ -82,6 +85,8 @@ class Driver:
         self._recorders: set[TrackRecorder] = set()
         self.events = EventOrder()
         self.list_ids = ListIds()
+        self.sensor = SensorWatch()
+        self.quality = LinkQuality()
 
     def start(self) -> None:
         """Begin to read and to send heartbeats; again is harmless."""
@@ -176,7 +181,8 @@ class Driver:
         if self.state.connected or self.state.other_system != system_id:
             raise NotConnectedError(f"no autopilot of system {system_id} is heard in the vehicle's place")
         self._under_way.abandon()
-        self.events, self.list_ids = EventOrder(), ListIds()
+        self.events, self.list_ids, self.quality = EventOrder(), ListIds(), LinkQuality()
+        self.sensor = SensorWatch()
         self._identity.adopt(system_id)
         self._set_state(VehicleState())
 
@@ -291,9 +297,11 @@ class Driver:
             self._change(self._identity.watched(self.state, message, now_s))
             return
         self._heard_s = now_s
+        self.quality.heard(message.sequence, now_s)
         if message.name in EVENT_MESSAGES and not self._event_is_new(message):
             return
         state = self.list_ids.watched(updated(self.state, message, now_s), message, now_s)
+        state = self.sensor.watched(state, message, now_s)
         if not self.state.connected:
             self._set_state(replace(state, connected=True, other_system=None))
             self._on_connect()
@@ -317,8 +325,21 @@ class Driver:
 
     def _lose(self) -> None:
         """The vehicle has vanished: nobody can tell what it still took in."""
-        self._set_state(replace(self.state, connected=False))
+        self.quality.forget()
+        self._set_state(self.sensor.unknown(replace(self.state, connected=False)))
         self._under_way.abandon()
+
+    def show_sensor(self, output: SensorOutput | None) -> None:
+        """Read from this output whether the sensor is on; what another one showed no longer counts."""
+        if output != self.sensor.output:
+            shown_by_itself = self.state.sensor_on
+            self.sensor.output = output
+            self._set_state(replace(self.sensor.unknown(self.state), sensor_on=shown_by_itself))
+
+    @property
+    def silent_s(self) -> float:
+        """How long nothing was heard of the vehicle; infinite before its first word."""
+        return self._clock() - self._heard_s
 
     def _fail(self, reason: str) -> None:
         if self._failure is not None:
@@ -326,7 +347,7 @@ class Driver:
         if self._forwards is not None:
             self._forwards.leave(self)
         self._failure = reason
-        self._set_state(replace(self.state, connected=False))
+        self._set_state(self.sensor.unknown(replace(self.state, connected=False)))
         self._under_way.abandon()
 
     def _change(self, state: VehicleState) -> None:

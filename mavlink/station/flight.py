@@ -1,7 +1,8 @@
 """Explicit flight commands, each in the way the autopilot at hand understands it.
 
 Source: MAVLink ``common.xml`` (MAV_CMD). ArduPlane has no pause: it loiters, and AUTO resumes at the current
-item. ArduCopter pauses within AUTO (DO_PAUSE_CONTINUE). PX4 holds, and its mission mode resumes.
+item. ArduCopter pauses within AUTO (DO_PAUSE_CONTINUE). PX4 holds, and its mission mode resumes. ArduCopter's
+LOITER follows the throttle stick, so that without a stick it sinks: BRAKE keeps place and height by itself.
 """
 
 from __future__ import annotations
@@ -9,7 +10,9 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 
+from mavlink.encoding.payload import Payload, switch_items
 from mavlink.state.modes import mode_parameters
+from mavlink.state.outputs import switched_by
 from mavlink.state.telemetry import VehicleState
 from mavlink.transfer.command import CommandOutcome
 from mavlink.transfer.outcome import Outcome
@@ -68,6 +71,31 @@ class FlightCommands(ABC):
         if self.state.autopilot == "ardupilot" and self.state.type != "multirotor":
             return await self.set_mode("AUTO")
         return await self.command(Command.DO_PAUSE_CONTINUE, (1.0,))
+
+    async def hold(self) -> CommandOutcome:
+        """Wait where it is; one that is disarmed goes into a mode that keeps it on the ground when armed."""
+        if self.state.autopilot == "px4":
+            return await self.set_mode("AUTO.LOITER")
+        if self.state.autopilot == "ardupilot":
+            hovers = self.state.type == "multirotor"
+            if self.state.armed:
+                return await self.set_mode("BRAKE" if hovers else "LOITER")
+            return await self.set_mode("GUIDED" if hovers else "MANUAL")
+        return await self.command(Command.DO_PAUSE_CONTINUE, (0.0,))
+
+    async def land_here(self) -> CommandOutcome:
+        """Come down where it is: for those that hover. A fixed wing lands by its mission."""
+        if self.state.autopilot == "px4":
+            return await self.set_mode("AUTO.LAND")
+        if self.state.autopilot == "ardupilot":
+            return await self.set_mode("LAND" if self.state.type == "multirotor" else "QLAND")
+        return await self.command(Command.NAV_LAND)
+
+    async def switch_off(self, payload: Payload) -> CommandOutcome:
+        """Switch a payload off at once, whatever the mode. Raises PayloadError where it has no such."""
+        _, off = switch_items(switched_by(payload, self.state.autopilot))
+        parameters = (off.param1, off.param2, off.param3, off.param4, float(off.x), float(off.y), off.z)
+        return await self.command(off.command, parameters)
 
     async def return_to_launch(self) -> CommandOutcome:
         """Break off and come back."""

@@ -230,12 +230,14 @@ class Codec:
         """Decode the frame at ``start``; False when it is none."""
         signature = 0
         if buffer[start] == _MAGIC_V2:
-            _, length, flags, _, _, system_id, component_id, low, high = _HEADER_V2.unpack_from(buffer, start)
+            _, length, flags, _, sequence, system_id, component_id, low, high = _HEADER_V2.unpack_from(
+                buffer, start
+            )
             message_id = low | high << 16
             body = start + _HEADER_V2.size
             signature = _SIGNATURE_BYTES if flags & _SIGNED else 0
         else:
-            _, length, _, system_id, component_id, message_id = _HEADER_V1.unpack_from(buffer, start)
+            _, length, sequence, system_id, component_id, message_id = _HEADER_V1.unpack_from(buffer, start)
             body = start + _HEADER_V1.size
         layout = _BY_ID.get(message_id)
         if layout is None:
@@ -253,7 +255,7 @@ class Codec:
             fields: dict[str, Value] = dict(zip(layout.names, flat, strict=True))
         else:
             fields = {field.name: _value(flat, field) for field in layout.fields}
-        messages.append(Message(layout.name, fields, system_id, component_id))
+        messages.append(Message(layout.name, fields, system_id, component_id, sequence))
         return True
 
 

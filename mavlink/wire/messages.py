@@ -23,12 +23,16 @@ class Message:
         Field names and values in wire units.
     system_id, component_id
         The sender; 0 on messages that have not been sent yet.
+    sequence
+        The sender's count of its frames, 0 to 255; None on messages that did not come in a frame. Messages
+        that say the same are equal, whichever frame each came in.
     """
 
     name: str
     fields: Mapping[str, Value] = field(default_factory=dict)
     system_id: int = 0
     component_id: int = 0
+    sequence: int | None = field(default=None, compare=False)
 
     def integer(self, name: str) -> int:
         """A field as an int."""

@@ -146,7 +146,7 @@ def track_geojson(
 
     Beside the line stand the vehicle's times in seconds since boot, the height above home, heading, roll and
     ground speed, one of each for every vertex. The member ``switches`` tells when the sensor, or the output
-    that switches it, was reported on and off.
+    that switches it, was reported on and off; ``actions`` what the service did by itself.
     """
     features = []
     if len(samples) > 1:
@@ -179,6 +179,7 @@ def track_geojson(
             for event in events
             if event.kind != "photo"
         ],
+        "actions": [asdict(action) | {"at": action.at.isoformat()} for action in record.actions],
         "features": features,
     }
 

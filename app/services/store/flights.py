@@ -5,12 +5,13 @@ from __future__ import annotations
 import uuid
 from collections.abc import Sequence
 from dataclasses import asdict
+from datetime import datetime
 from typing import Any, cast
 
 from sqlalchemy import ColumnElement, Select, func, insert, select, update
 
 from app.services.errors import NotFoundError
-from app.services.records import FlightEvent, FlightRecord, FlightState, TrackSample
+from app.services.records import FlightEvent, FlightRecord, FlightState, SensorAction, TrackSample
 from app.services.store.database import Database
 from app.services.store.plans import now
 from app.services.store.tables import FlightEventRow, FlightRow, TrackPointRow
@@ -41,6 +42,9 @@ def _record(row: FlightRow, points: int, photos: int) -> FlightRecord:
         points=points,
         payload=row.payload,
         photos=photos,
+        actions=tuple(
+            SensorAction(**(kept | {"at": datetime.fromisoformat(kept["at"])})) for kept in row.actions or ()
+        ),
     )
 
 
@@ -90,6 +94,13 @@ class FlightStore:
         rows: list[dict[str, Any]] = [{"flight_id": flight_id} | asdict(event) for event in events]
         async with self._database.session() as session:
             await session.execute(insert(FlightEventRow), rows)
+
+    async def act(self, flight_id: str, action: SensorAction) -> None:
+        """Append what the service did by itself; a flight that has just ended takes it too."""
+        async with self._database.session() as session:
+            row = await session.scalar(select(FlightRow).where(FlightRow.id == flight_id))
+            if row is not None:
+                row.actions = [*(row.actions or ()), asdict(action) | {"at": action.at.isoformat()}]
 
     async def end(self, flight_id: str, state: FlightState) -> None:
         """Close a flight."""

@@ -132,6 +132,7 @@ class FlightRow(Base):
     state: Mapped[str] = mapped_column(String(12))
     started_at: Mapped[datetime] = mapped_column(UtcTime)
     ended_at: Mapped[datetime | None] = mapped_column(UtcTime)
+    actions: Mapped[list[dict[str, Any]] | None] = mapped_column(JSON)
 
 
 class TrackPointRow(Base):

@@ -228,7 +228,7 @@ class Fleet:
         """Recordings of a vehicle's link, also of one let go; raises NotFoundError when there is neither."""
         vehicle = self._vehicles.get(vehicle_id)
         if vehicle is not None:
-            vehicle.show_recording()
+            vehicle.tape.flush()
         files = () if self._recordings is None else self._recordings.files(vehicle_id)
         if vehicle is None and not files:
             raise NotFoundError("vehicle", vehicle_id)

@@ -51,6 +51,7 @@ def difference_json(difference: Difference) -> dict[str, Any]:
 def state_json(state: VehicleState) -> dict[str, Any]:
     """A vehicle's state; null where it has not said."""
     body = asdict(state)
-    body.pop("heard_s")
+    for clock in ("heard_s", "position_heard_s", "sensor_since_s"):
+        del body[clock]
     body["texts"] = [{"severity": text.severity, "text": text.text} for text in state.texts]
     return {name: _number(value) if isinstance(value, float) else value for name, value in body.items()}

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import structlog
 
-from app.services.records import FlightEvent, FlightState, TrackSample
+from app.services.records import FlightEvent, FlightState, SensorAction, TrackSample
 from app.services.store.flights import FlightStore
 from mavlink.state.outputs import SensorOutput
 from mavlink.state.telemetry import VehicleState
@@ -73,6 +73,7 @@ class FlightRecorder:
         self._landed_looks = 0
         self._thinner = Thinner(interval_s)
         self.flight_id: str | None = None
+        self._latest_id: str | None = None
         # A link that is lost ends the flight while a look at it may be waiting for the database.
         self._turn = asyncio.Lock()
 
@@ -145,6 +146,7 @@ class FlightRecorder:
         except BaseException:
             self._stop_listening()
             raise
+        self._latest_id = self.flight_id
         self._thinner = Thinner(self._interval_s)
         self._landed_looks = self._events_saved = 0
         log.info("flight begun", vehicle=self._vehicle_name, flight_id=self.flight_id)
@@ -157,6 +159,11 @@ class FlightRecorder:
         events = track.events[self._events_saved :]
         self._events_saved = len(track.events)
         await self._store.add_events(self.flight_id, [flight_event(event) for event in events])
+
+    async def act(self, action: SensorAction) -> None:
+        """Note what the service did by itself, in the flight under way or the one that has just ended."""
+        if self._latest_id is not None:
+            await self._store.act(self._latest_id, action)
 
     async def end(self, state: FlightState) -> None:
         """Close the flight, if there is one."""

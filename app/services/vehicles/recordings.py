@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
@@ -55,3 +56,37 @@ class Recordings:
         if not _FOLDER.fullmatch(vehicle_id) or not _FILE.fullmatch(name) or not path.is_file():
             raise NotFoundError("recording", name)
         return path
+
+
+class Tape:
+    """The recording of one vehicle's link, anew each time the link is opened; none where nothing records."""
+
+    def __init__(self, recordings: Recordings | None, vehicle_id: str) -> None:
+        self._recordings = recordings
+        self._vehicle_id = vehicle_id
+        self._writer: TlogWriter | None = None
+
+    def begin(self) -> None:
+        """Record from now on."""
+        if self._recordings is not None:
+            self._writer = self._recordings.writer(self._vehicle_id)
+
+    @property
+    def write(self) -> Callable[[bytes], None] | None:
+        """Takes every frame of the link; None where it is not recorded."""
+        return None if self._writer is None else self._writer.write
+
+    @property
+    def failure(self) -> str | None:
+        """Why the link is no longer recorded; None while it is, or was never to be."""
+        return None if self._writer is None else self._writer.failure
+
+    def flush(self) -> None:
+        """Put everything recorded so far where readers see it."""
+        if self._writer is not None:
+            self._writer.flush()
+
+    def end(self) -> None:
+        """Close the file."""
+        if self._writer is not None:
+            self._writer.close()

@@ -137,7 +137,7 @@ class Transfers:
         if mission is not None:
             held = HeldMission(report.plan_id, report.plan_vehicle, report.payload, report.gimbal)
             if mission.verified:
-                await vehicle.hold(held)
+                await vehicle.hold(held, report.mission.items_of(PARTS["mission"]))
             vehicle.found(None if mission.differences is None else not mission.differences)
             vehicle.sent = SentMission(report.plan_id, vehicle.sent_id if mission.verified else None)
             await self._kept.send(vehicle.id, vehicle.sent)
@@ -149,7 +149,10 @@ class Transfers:
         vehicle.tell()
 
     async def still_holds(self, vehicle: Vehicle, held: HeldMission) -> bool | None:
-        """Read back whether a vehicle holds the plan it held before; None when that plan is deleted."""
+        """Read back whether a vehicle holds the plan it held before, and take it that it does if so.
+
+        None when that plan is deleted: nobody can tell.
+        """
         try:
             plan = plan_of(await self._planning.plan_text(held.plan_id))
         except (NotFoundError, ConflictError):
@@ -161,6 +164,7 @@ class Transfers:
         same = not comparing(mission.dialect)(meant, found)
         if same:
             vehicle.client.recognise(PARTS["mission"])
+            await vehicle.hold(held, meant)
         else:
             await self._kept.hold(vehicle.id, None)
         return same

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-from collections.abc import Awaitable, Callable
-from datetime import UTC, datetime
-from typing import Literal
+import math
+import time
+from collections.abc import Awaitable, Callable, Sequence
+from datetime import UTC, datetime, timedelta
 
 import structlog
 
@@ -16,21 +17,23 @@ from app.services.store.flights import FlightStore
 from app.services.vehicles.connection import Connection, Home, connect, is_replay, simulated_of
 from app.services.vehicles.forwarding import changes_mission, tell_order
 from app.services.vehicles.recorder import FlightRecorder, HeldPlan
-from app.services.vehicles.recordings import Recordings
+from app.services.vehicles.recordings import Recordings, Tape
+from app.services.vehicles.safety import SensorSafety
 from app.services.vehicles.simulated import SimulatedAircraft
+from app.services.vehicles.standing import Shown, Standing, standing_of
 from app.services.vehicles.times import DEFAULT_TIMES, LinkTimes
 from app.services.vehicles.turns import Turns
 from app.services.vehicles.uploads import UploadReport, read_back
 from mavlink import errors as mavlink_errors
 from mavlink.encoding.options import DEFAULT_PAYLOAD
-from mavlink.encoding.payload import parse_payload
-from mavlink.links.recording import TlogWriter
+from mavlink.encoding.payload import CameraPayload, parse_payload
+from mavlink.state.passes import passes_of
 from mavlink.state.telemetry import VehicleState
 from mavlink.station.client import VehicleClient
 from mavlink.station.forward.address import ForwardAddress
 from mavlink.station.forward.hub import Forwards
 from mavlink.station.forward.outlet import Outlet
-from mavlink.wire.items import MissionType
+from mavlink.wire.items import MissionItem, MissionType
 from mavlink.wire.messages import Message
 
 log = structlog.get_logger(__name__)
@@ -38,7 +41,8 @@ log = structlog.get_logger(__name__)
 #: An upload's unknown outcome is read back so often each time the vehicle comes back.
 RESOLVE_TRIES = 3
 
-Standing = Literal["held", "differs", "unknown"]
+#: Whoever watches a vehicle that says nothing is told so at least this often.
+TELL_S = 1.0
 
 
 class Vehicle:
@@ -88,11 +92,13 @@ class Vehicle:
         self.forwards = Forwards(self._station_said)
         self.turns = Turns(record.name, self.replay, self.forwards)
         self._forward = record.forward
-        self._recordings = None if self.replay else recordings
-        self._writer: TlogWriter | None = None
+        self.tape = Tape(None if self.replay else recordings, record.id)
         self._times = times
         self._look_now = asyncio.Event()
         self._recorder = FlightRecorder(flights, record.id, record.name, track_interval_s)
+        self.safety = SensorSafety(record.name, self._recorder, self.tell)
+        self.lost_since: datetime | None = None
+        self._told_s = -math.inf
         # A simulated aircraft is a new one, and holds nothing.
         self._believed = None if self.simulated is not None else record.held
         self.sent = None if self.simulated is not None else record.sent
@@ -121,6 +127,17 @@ class Vehicle:
         """Whether it is an aircraft of its own: simulated ones and recordings are whatever answers."""
         return self.simulated is None and not self.replay
 
+    def age_s(self, moment_s: float | None) -> float | None:
+        """How long ago a moment in the link's clock was; None for none."""
+        if moment_s is None or self._connection is None:
+            return None
+        return max(0.0, self._connection.client.now_s - moment_s)
+
+    @property
+    def link_quality(self) -> float | None:
+        """The share of its frames that arrive; None where too little was heard to tell."""
+        return None if self._connection is None else self._connection.client.link_quality
+
     @property
     def pending(self) -> bool:
         """Whether an upload's outcome is unknown and waits for the vehicle to come back."""
@@ -133,6 +150,7 @@ class Vehicle:
 
     def tell(self) -> None:
         """Show everybody who watches how it stands now."""
+        self._told_s = time.monotonic()
         self._publish(self)
 
     async def open(self, home: Home | None, timeout_s: float) -> None:
@@ -149,8 +167,7 @@ class Vehicle:
         ConflictError
             An address to forward to cannot be opened.
         """
-        if self._recordings is not None:
-            self._writer = self._recordings.writer(self.id)
+        self.tape.begin()
         await self.forward_to(self._forward)
         connection = await self._connect(home, timeout_s)
         if self._gone:
@@ -162,8 +179,7 @@ class Vehicle:
     def resume(self, home: Home | None, timeout_s: float) -> None:
         """Open the link in the background, again and again until it opens; so with its forwards."""
         self.forwards.begin(self._forward)
-        if self._recordings is not None:
-            self._writer = self._recordings.writer(self.id)
+        self.tape.begin()
         self._tasks = [
             asyncio.create_task(self._resume(home, timeout_s)),
             asyncio.create_task(self._record()),
@@ -182,14 +198,14 @@ class Vehicle:
                 if self.link_failure != str(error):
                     log.warning("link not open", vehicle=self.name, url=self.url, reason=str(error))
                 self.link_failure = str(error)
-                self._publish(self)
+                self.tell()
                 await asyncio.sleep(self._times.reopen_s)
         self.link_failure = None
-        self._publish(self)
+        self.tell()
 
     async def _connect(self, home: Home | None, timeout_s: float) -> Connection:
         connection = await connect(
-            self.url, home, timeout_s, self._tap, self.forwards, self.system_id, self._times
+            self.url, home, timeout_s, self.tape.write, self.forwards, self.system_id, self._times
         )
         if self._is_itself:
             self.system_id = connection.client.state.system_id or self.system_id
@@ -207,22 +223,7 @@ class Vehicle:
         await asyncio.gather(*self._tasks, return_exceptions=True)
         self._tasks = []
         await self._drop()
-        if self._writer is not None:
-            self._writer.close()
-
-    @property
-    def _tap(self) -> Callable[[bytes], None] | None:
-        return None if self._writer is None else self._writer.write
-
-    @property
-    def recording_failure(self) -> str | None:
-        """Why the link is no longer recorded; None while it is, or was never to be."""
-        return None if self._writer is None else self._writer.failure
-
-    def show_recording(self) -> None:
-        """Put everything recorded so far where readers see it."""
-        if self._writer is not None:
-            self._writer.flush()
+        self.tape.end()
 
     async def forward_to(self, addresses: tuple[ForwardAddress, ...]) -> None:
         """Forward the link to these addresses and no others.
@@ -259,6 +260,7 @@ class Vehicle:
     def holds_unknown(self) -> None:
         """Believe nothing about the mission it holds: it is being changed."""
         self.held = self._believed = None
+        self.safety.release()
         self.found(None)
 
     async def begin_anew(self) -> None:
@@ -277,22 +279,11 @@ class Vehicle:
         """The id it gave the mission sent to it in this life of the service."""
         return None if self._connection is None else self._connection.client.sent_id(MissionType.MISSION)
 
-    def standing(self) -> tuple[Standing, Literal["read_back", "id"] | None]:
-        """Whether it holds the mission last sent to it, and what shows it.
-
-        A read-back tells, until the vehicle reports another id or falls silent; where there was none, its id
-        is a first sign. Of one that is silent, or gives no ids and was not read, nothing is known.
-        """
+    def standing(self) -> tuple[Standing, Shown | None]:
+        """Whether it holds the mission last sent to it, and what shows it; unknown of one that is silent."""
         if self.sent is None or not self.state.connected or self.turns.changing:
             return "unknown", None
-        expected, reported = self.sent.list_id, self.state.mission_id
-        if MissionType.MISSION in self.client.replaced:
-            return "differs", "id"
-        if self._found is not None:
-            return ("held" if self._found else "differs"), "read_back"
-        if expected is None or reported is None:
-            return "unknown", None
-        return ("held" if reported == expected else "differs"), "id"
+        return standing_of(self.sent, self.client, self._found)
 
     async def _drop(self) -> None:
         connection, self._connection = self._connection, None
@@ -309,8 +300,11 @@ class Vehicle:
         """Follow the vehicle; open the link anew when it fails, as a TCP peer that restarts makes it do."""
         while True:
             client = self.client
-            await self._follow(client)
-            self._publish(self)
+            async with asyncio.TaskGroup() as both:
+                both.create_task(self._follow(client))
+                if not self.replay:
+                    both.create_task(self.safety.watch(client))
+            self.tell()
             if self.simulated is not None or self.replay:
                 return
             log.warning("link lost", vehicle=self.name, url=self.url)
@@ -323,7 +317,11 @@ class Vehicle:
         tries = RESOLVE_TRIES
         async with contextlib.aclosing(client.states()) as states:
             async for state in states:
-                self._publish(self)
+                if state.connected:
+                    self.lost_since = None
+                elif self.lost_since is None and math.isfinite(client.silent_s):
+                    self.lost_since = datetime.now(UTC) - timedelta(seconds=client.silent_s)
+                self.tell()
                 if not state.connected:
                     tries = RESOLVE_TRIES
                     # What comes back may be another aircraft, or this one with another mission.
@@ -345,20 +343,17 @@ class Vehicle:
         """Read back whether it holds what it held before; a vehicle that does not answer is not believed."""
         try:
             async with self.turns.busy("reading back the mission held before the restart"):
-                same = await self._still_holds(self, held)
-                if same:
-                    await self.hold(held)
-                self.found(same)
+                self.found(await self._still_holds(self, held))
         except (ServiceError, mavlink_errors.TransferFailedError) as error:
             log.warning("mission not read back", vehicle=self.name, reason=str(error))
             if not last:
                 return
         log.info("mission read back", vehicle=self.name, plan_id=self.held and self.held.plan_id)
         self._believed = None
-        self._publish(self)
+        self.tell()
 
-    async def hold(self, held: HeldMission) -> None:
-        """Take it that the vehicle holds a plan, and find out where it shows its payload."""
+    async def hold(self, held: HeldMission, items: Sequence[MissionItem]) -> None:
+        """Take it that the vehicle holds a plan as these items, and find out where it shows its payload."""
         payload = DEFAULT_PAYLOAD if held.payload is None else parse_payload(held.payload)
         output = None
         try:
@@ -366,6 +361,9 @@ class Vehicle:
         except (mavlink_errors.BusyError, mavlink_errors.NotConnectedError) as error:
             log.warning("output of the payload not known", vehicle=self.name, reason=str(error))
         self.held = HeldPlan(held.plan_id, held.plan_vehicle, held.payload, output, held.gimbal)
+        self.safety.hold(payload, passes_of(items, payload, self.state.autopilot), len(items))
+        # A shutter released by distance shows in its photos alone, and not when it rests.
+        self.client.show_sensor(None if isinstance(payload, CameraPayload) else output)
         # It may fly at once: what shows its payload must be listened to by then.
         self._look_now.set()
 
@@ -386,6 +384,8 @@ class Vehicle:
                 # A flight that begins is filed under the plan held, so that has to be known first.
                 if self._connection is not None and self._believed is None:
                     await self._recorder.look(self._connection.client, self.held)
+                if time.monotonic() - self._told_s >= TELL_S:
+                    self.tell()
             except Exception as error:
                 # A track with a gap is better than none.
                 log.error("track not recorded", vehicle=self.name, exc_info=error)

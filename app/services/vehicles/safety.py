@@ -1,0 +1,91 @@
+"""The one thing the service does to an aircraft unasked: it switches a sensor off that was left on."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Callable, Sequence
+from datetime import UTC, datetime
+
+import structlog
+
+from app.services.records import SensorAction
+from app.services.vehicles.recorder import FlightRecorder
+from mavlink.encoding.payload import Payload
+from mavlink.errors import CodecError, LinkError, NotConnectedError, ReadOnlyError
+from mavlink.station.client import VehicleClient
+from mavlink.station.sensor_guard import SensorGuard
+from mavlink.wire.items import MissionType
+
+log = structlog.get_logger(__name__)
+
+
+class SensorSafety:
+    """Watches one vehicle's sensor over all of its links, and has it switched off outside the passes.
+
+    Parameters
+    ----------
+    recorder
+        Keeps what was done in the record of the flight.
+    tell
+        Called when something was done.
+
+    Attributes
+    ----------
+    last
+        What was done last; None while nothing was.
+    """
+
+    def __init__(self, vehicle: str, recorder: FlightRecorder, tell: Callable[[], None]) -> None:
+        self._vehicle = vehicle
+        self._recorder = recorder
+        self._tell = tell
+        self._guard = SensorGuard()
+        self.last: SensorAction | None = None
+
+    @property
+    def payload(self) -> Payload | None:
+        """How the sensor is switched, as the last mission from here said it; None where none did."""
+        return self._guard.payload
+
+    def hold(self, payload: Payload, passes: Sequence[range], items: int) -> None:
+        """The vehicle holds a mission from here."""
+        self._guard.hold(payload, passes, items)
+
+    def release(self) -> None:
+        """Its mission is being replaced or cleared."""
+        self._guard.release()
+
+    async def watch(self, client: VehicleClient) -> None:
+        """Follow a link to its end."""
+        async with contextlib.aclosing(client.states()) as states:
+            async for state in states:
+                replaced = MissionType.MISSION in client.replaced
+                reason = self._guard.look(state, client.now_s, replaced=replaced)
+                if reason is not None:
+                    await self._switch_off(client, reason)
+
+    async def _switch_off(self, client: VehicleClient, reason: str) -> None:
+        payload, state = self._guard.payload, client.state
+        assert payload is not None
+        log.warning("sensor left on, switching it off", vehicle=self._vehicle, reason=reason)
+        try:
+            outcome = str(await client.switch_off(payload))
+        except (NotConnectedError, ReadOnlyError, LinkError, CodecError) as error:
+            outcome = f"not sent: {error}"
+        self.last = SensorAction(
+            at=datetime.now(UTC),
+            time_s=state.time_s,
+            action="sensor_off",
+            reason=reason,
+            outcome=outcome,
+            lon_deg=state.lon_deg,
+            lat_deg=state.lat_deg,
+        )
+        tell = log.error if self._guard.given_up else log.warning
+        tell("sensor ordered off", vehicle=self._vehicle, outcome=outcome, given_up=self._guard.given_up)
+        try:
+            await self._recorder.act(self.last)
+        except Exception as error:
+            # The watch goes on: the sensor matters more than its record, which the log has too.
+            log.error("not kept in the flight's record", vehicle=self._vehicle, exc_info=error)
+        self._tell()
