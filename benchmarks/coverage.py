@@ -8,11 +8,13 @@ from dataclasses import replace
 import numpy as np
 from shapely.geometry import LineString, Polygon, box
 
+from planner.airspace.surroundings import Surroundings
 from planner.coverage.merge import split_region
-from planner.coverage.sweeps import Side, sweeps
-from planner.routing.joint import kernels as joint_kernels
-from planner.routing.joint.options import Surroundings, make_options
-from planner.routing.joint.targets import targets
+from planner.coverage.strips.options import make_options
+from planner.coverage.strips.sweeps import Side, sweeps
+from planner.coverage.strips.targets import targets
+from planner.dubins.estimate_kernels import transit_costs
+from planner.orders_kernels import best_orders
 from planner.sensors.sar import SarSensor
 from planner.wishes import Region
 
@@ -34,8 +36,8 @@ def tour_m(stops: list[tuple[Side, ...]], radius_m: float, headings_rad: np.ndar
         np.concatenate([getattr(each, name) for each in options]) for name in ("entries", "exits", "inner_m")
     )
     offsets = np.cumsum([0, *(len(each.inner_m) for each in options)]).astype(np.int64)
-    between = joint_kernels.transit_costs(exits, entries, radius_m, np.empty((0, 3))) + inner_m
-    costs, _ = joint_kernels.best_orders(inner_m, between, np.zeros(len(inner_m)), offsets)
+    between = transit_costs(exits, entries, radius_m, np.empty((0, 3))) + inner_m
+    costs, _ = best_orders(inner_m, between, np.zeros(len(inner_m)), offsets)
     return float(costs.min())
 
 

@@ -16,15 +16,19 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from planner.airspace.zones import keep_out
+from planner.airspace.zones import TRANSIT_MARGIN_M, keep_out
 from planner.check import judge
-from planner.coverage.zigzag import zigzag
+from planner.coverage.strips.zigzag import zigzag
 from planner.geojson import read_scenario
-from planner.pipeline import TRANSIT_MARGIN_M, make_plan, with_bound
+from planner.pipeline import make_plan, with_bound
 from planner.plan import Plan
+from planner.progress import never, silent
 from planner.route import Anchor
-from planner.routing.greedy.route import greedy
+from planner.routing.greedy.route import li2018_route
 from planner.scenario import Scenario
+from planner.sensors.sar import SarSensor
+from planner.tasks.collect import paper_choices
+from planner.tasks.setting import Setting, seeing
 from planner.transit import ssas_connector
 from planner.transit.tangent import forget_searches
 from planner.warm import warm_up
@@ -129,7 +133,10 @@ def _metres_in_threats(plan: Plan) -> float:
 
 
 def _zigzag_row(case: int, direction: Any, scenario: Scenario) -> dict[str, Any]:
-    found = zigzag(scenario, direction)
+    areas = [region.area for region in scenario.regions]
+    (sensor,) = scenario.sensors
+    assert isinstance(sensor, SarSensor)
+    found = zigzag(areas, sensor, scenario.height_m, (scenario.start, scenario.end), direction)
     rl_m, cl_m, dc = PAPER_TABLE_5[direction][case]
     return {
         "bench": "sar",
@@ -147,18 +154,24 @@ def _zigzag_row(case: int, direction: Any, scenario: Scenario) -> dict[str, Any]
 
 def _subroutes(repeats: int) -> Iterator[dict[str, Any]]:
     scenario = read_scenario(scenario_document(1))
-    passes = greedy(scenario).route.passes
+    setting = Setting.of(scenario)
+    choices = paper_choices(seeing(scenario, setting), silent, never, threat_aware=False).choices
+    where = (scenario.threats, scenario.objective, setting.ends, scenario.seed)
+    passes = li2018_route(choices, *where)[0].passes
     starts = [Anchor(*scenario.start.position), *(Anchor(*p.end, p.angle_rad) for p in passes)]
     goals = [*(Anchor(*p.start, p.angle_rad) for p in passes), Anchor(*scenario.end.position)]
-    radius_m = scenario.aircraft[0].planned_turn_radius_m
-    zones = keep_out(scenario.airspace, scenario.level, TRANSIT_MARGIN_M)
+    asked: dict[str, Any] = {
+        "threats": scenario.threats,
+        "objective": scenario.objective,
+        "height_m": scenario.height_m,
+        "keep_out": keep_out(scenario.airspace, scenario.level, TRANSIT_MARGIN_M),
+        "radius_m": setting.model.turn_radius_m,
+    }
     for number, (start, goal) in enumerate(zip(starts, goals, strict=True), start=1):
         seconds = []
         for _ in range(repeats):
             began = time.perf_counter()
-            path, found = ssas_connector.connect(
-                start, goal, scenario=scenario, keep_out=zones, radius_m=radius_m
-            )
+            path, found = ssas_connector.connect(start, goal, **asked)
             seconds.append(time.perf_counter() - began)
         paper = PAPER_TABLE_7.get(number)
         yield {

@@ -16,7 +16,8 @@ from planner.airspace.values import STILL_AIR, AltitudeReference, NoFlyZone, Obs
 from planner.errors import Finding
 from planner.frames import LocalFrame
 from planner.route import Terminal
-from planner.sensors.sar import SarSensor
+from planner.sensors.base import Sensor
+from planner.sensors.suite import Suite
 from planner.vehicle.aircraft import Aircraft
 from planner.wishes import Method, Objective, Region
 
@@ -33,7 +34,7 @@ class Scenario:
     frame: LocalFrame
     regions: tuple[Region, ...]
     aircraft: tuple[Aircraft, ...]
-    sensors: tuple[SarSensor, ...]
+    sensors: tuple[Sensor, ...]
     start: Terminal
     end: Terminal
     altitude_m: float
@@ -46,6 +47,7 @@ class Scenario:
     clearance_m: float = 0.0
     objective: Objective = field(default_factory=Objective)
     method: Method = field(default_factory=Method)
+    task: str = "collect"
     seed: int = 0
     time_budget_s: float | None = None
     scenario_hash: str = ""
@@ -76,8 +78,11 @@ class Scenario:
         """Flight altitude over mean sea level, where the height of home is known."""
         return self.level.amsl_m
 
-    def sensor_for(self, region: Region) -> SarSensor:
+    @property
+    def suite(self) -> Suite:
+        """The sensors on board."""
+        return Suite(self.sensors)
+
+    def sensor_for(self, region: Region) -> Sensor:
         """The sensor asked for by a region, else the first."""
-        if region.sensor is None:
-            return self.sensors[0]
-        return next(sensor for sensor in self.sensors if sensor.name == region.sensor)
+        return self.suite.of(region)

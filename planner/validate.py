@@ -5,22 +5,19 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import numpy as np
-
 from planner.airspace.terrain import Terrains
-from planner.coverage.classify import angles_around, hull_points, spans_at
-from planner.coverage.neighbourhood import can_be_seen
-from planner.coverage.sweeps import MOST_LANES
+from planner.coverage.registry import family_of
 from planner.errors import Finding, InfeasibleError, ScenarioError
 from planner.geojson import read_scenario
-from planner.routing.joint.visible import sides_of
 from planner.scenario import Scenario
-from planner.sensors.strip import swaths_m
-from planner.sensors.view import sensing
-from planner.tasks.wind import in_wind
+from planner.sensors.base import Sensor
+from planner.tasks.setting import Setting, seeing
+from planner.wishes import Region
 
 #: From so many passes on planning takes tens of seconds, then minutes.
 MANY_PASSES = 120
+#: More passes over one region are not planned.
+MOST_PASSES = 1000
 
 
 def findings(document: Any, terrains: Terrains | None = None) -> tuple[Finding, ...]:
@@ -62,16 +59,16 @@ def unseeable(scenario: Scenario) -> tuple[Finding, ...]:
     settle_m = scenario.aircraft[0].in_wind(scenario.wind.speed_m_s).settle_m
     for region in scenario.regions:
         try:
-            sensor, height_m = sensing(scenario, scenario.sensor_for(region), region.area)
-            can_be_seen(region, sensor, height_m, scenario.area, wide=wide, settle_m=settle_m)
+            sensor, height_m = _over(scenario, region)
+            family_of(sensor).check_seen(region, sensor, height_m, scenario.area, settle_m, wide=wide)
         except InfeasibleError as error:
             found.append(_finding(error, region.name in required))
     # Passes without number are not held against an area or zones.
     said = (*found, *laborious(scenario))
     if wide and not any(finding.severity == "error" for finding in said):
         try:
-            flown = in_wind(scenario)
-            sides_of(flown, flown.aircraft[0])
+            asked = seeing(scenario, Setting.of(scenario))
+            asked.visible(asked.surroundings())
         except InfeasibleError as error:
             found.append(_finding(error, True))
     return tuple(found)
@@ -82,22 +79,23 @@ def laborious(scenario: Scenario) -> tuple[Finding, ...]:
     found, passes, narrowest_m = [], 0, math.inf
     for region in scenario.regions:
         try:
-            sensor, height_m = sensing(scenario, scenario.sensor_for(region), region.area)
+            sensor, height_m = _over(scenario, region)
         except InfeasibleError:
             continue
-        angles_rad = angles_around(math.radians(10.0))
-        swath_m = swaths_m(sensor, height_m, angles_rad)
-        lanes = spans_at(hull_points(region.area), angles_rad).across_m / np.maximum(swath_m, 1e-9)
-        fewest = math.ceil(float(lanes.min()))
+        fewest, widest_m = family_of(sensor).fewest_passes(region, sensor, height_m)
         passes += fewest * region.revisits
-        narrowest_m = min(narrowest_m, float(swath_m.max()))
-        if fewest > MOST_LANES:
-            said = f"{height_m:g} m up a pass sees {float(swath_m.max()):.3g} m of ground: {fewest} passes"
+        narrowest_m = min(narrowest_m, widest_m)
+        if fewest > MOST_PASSES:
+            said = f"{height_m:g} m up a pass sees {widest_m:.3g} m of ground: {fewest} passes"
             found.append(Finding(region.name, "too-many-passes", said, _HIGHER, "error"))
     if passes > MANY_PASSES and not found:
         said = f"takes at least {passes} passes, the narrowest {narrowest_m:.3g} m wide: planning takes long"
         found.append(Finding("scenario", "many-passes", said, _HIGHER, "warning"))
     return tuple(found)
+
+
+def _over(scenario: Scenario, region: Region) -> tuple[Sensor, float]:
+    return scenario.suite.over(region.sensor, region.area, scenario.airspace, scenario.level)
 
 
 _HIGHER = "Fly higher (altitude_m), widen the beam, or cut the regions"

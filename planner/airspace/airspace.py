@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from shapely.geometry import Polygon
 
@@ -20,10 +20,25 @@ class Level:
         Over the ground, which is flat at the height of home.
     amsl_m
         Over mean sea level.
+    reference
+        What its altitude is told over.
     """
 
     height_m: float
     amsl_m: float
+    reference: AltitudeReference = "terrain"
+
+    @property
+    def altitude_m(self) -> float:
+        """Over the reference."""
+        return self.amsl_m if self.reference == "amsl" else self.height_m
+
+    def at(self, altitude_m: float) -> Level:
+        """The level of another altitude over the same reference."""
+        change_m = altitude_m - self.altitude_m
+        if self.reference == "amsl":
+            return replace(self, height_m=self.height_m + change_m, amsl_m=altitude_m)
+        return replace(self, height_m=altitude_m, amsl_m=self.amsl_m + change_m)
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,5 +77,5 @@ class Airspace:
         """
         home_m = self.home_amsl_m or 0.0
         if reference == "amsl":
-            return Level(altitude_m - home_m, altitude_m)
-        return Level(altitude_m, altitude_m + home_m)
+            return Level(altitude_m - home_m, altitude_m, reference)
+        return Level(altitude_m, altitude_m + home_m, reference)

@@ -24,6 +24,9 @@ from planner.route import Line, Point
 #: A line no deeper than this in a zone touches it and is clear.
 TOUCH_M = 1e-3
 
+#: Transits keep this far from zones and the area's edge, more than the chords of arcs can cut.
+TRANSIT_MARGIN_M = 2.0
+
 #: Name of the operating area in conflicts.
 AREA = "area"
 

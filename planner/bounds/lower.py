@@ -29,10 +29,10 @@ from planner.bounds.nodes import nodes, terminal
 from planner.bounds.search import exact_bound_m
 from planner.bounds.sweeps import MOST_ORDERED, sweeps_bound_m
 from planner.bounds.trees import trees_bound_m
-from planner.coverage.sweeps import Side
+from planner.coverage.strips.sweeps import Side
 from planner.progress import Stop, never
-from planner.scenario import Scenario
-from planner.vehicle.aircraft import Aircraft
+from planner.route import Terminal
+from planner.vehicle.model import FlightModel
 
 #: Passes up to which the order is searched exactly.
 EXACT_UP_TO = 13
@@ -49,8 +49,8 @@ POOR_GAP = 0.15
 
 
 def lower_bound_m(
-    scenario: Scenario,
-    aircraft: Aircraft,
+    ends: tuple[Terminal, Terminal],
+    model: FlightModel,
     sides: Sequence[Sequence[Side]],
     known_m: float,
     effort: int | None = None,
@@ -73,23 +73,23 @@ def lower_bound_m(
     stop, enough
         The one cancels; the other ends the search for a better bound.
     """
-    by_strips = [nodes(each, aircraft.settle_m, index, MOST_STRIPS) for index, each in enumerate(sides)]
+    by_strips = [nodes(each, model.settle_m, index, MOST_STRIPS) for index, each in enumerate(sides)]
     passes = [node for of_region in by_strips for node in of_region]
-    ends = (terminal(scenario.start), terminal(scenario.end))
-    radius_m = aircraft.planned_turn_radius_m
+    between = (terminal(ends[0]), terminal(ends[1]))
+    radius_m = model.turn_radius_m
     best_m, most_strips = 0.0, max(len(of_region) for of_region in by_strips)
     by_sweeps = most_strips > FEW_STRIPS and len(by_strips) <= MOST_ORDERED
     if most_strips > FEW_STRIPS or (most_strips > 1 and len(passes) > EXACT_UP_TO):
         whole = [of_region[0] for of_region in by_strips]
-        best_m = sweeps_bound_m(whole, *ends, radius_m, known_m * (1.0 - GAPS[0]), stop, enough)
+        best_m = sweeps_bound_m(whole, *between, radius_m, known_m * (1.0 - GAPS[0]), stop, enough)
     if len(passes) <= EXACT_UP_TO and best_m < known_m * (1.0 - GAPS[0]):
         targets_m = tuple(known_m * (1.0 - gap) for gap in GAPS)
         most = exact_effort(len(passes))
         work = effort or int(part * (most if most_strips <= FEW_STRIPS else EFFORT_BESIDES))
-        best_m = max(best_m, exact_bound_m(passes, *ends, radius_m, targets_m, work, stop, enough))
+        best_m = max(best_m, exact_bound_m(passes, *between, radius_m, targets_m, work, stop, enough))
     if len(passes) > 1 and best_m < known_m * (1.0 - POOR_GAP) and not by_sweeps:
         work = effort or int(part * EFFORT_TREES * len(passes))
-        best_m = max(best_m, trees_bound_m(passes, *ends, radius_m, known_m, work, stop, enough))
+        best_m = max(best_m, trees_bound_m(passes, *between, radius_m, known_m, work, stop, enough))
     return min(best_m, known_m)
 
 

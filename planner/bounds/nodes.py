@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 from shapely.geometry.base import BaseGeometry
 
 from planner.bounds import cells_kernels as kernels
-from planner.coverage.classify import ROUNDING_M, spans_at
-from planner.coverage.segments import Neighbourhood
-from planner.coverage.sweeps import Side, Sweep
+from planner.coverage.strips.classify import ROUNDING_M, spans_at
+from planner.coverage.strips.segments import Neighbourhood
+from planner.coverage.strips.sweeps import Side, Sweep
 from planner.route import Look, Terminal
 from planner.sensors.sar import SarSensor
 from planner.sensors.strip import Strip, strip_on

@@ -30,6 +30,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from planner.bounds import sets_kernels
 from planner.bounds import sweeps_kernels as kernels
 from planner.bounds.nodes import Node
 from planner.progress import Stop, never, raise_if
@@ -145,7 +146,7 @@ class _Ways:
         last_m = np.minimum(last_m, _through(into_m, to_end_m[:, None])[:, 0])
         between_m = np.minimum(between_m, _through(into_m, onward_m))
         if len(counts) <= MOST_ORDERED:
-            return float(kernels.least_tour(first_m, between_m, last_m, costs_m, offsets))
+            return float(sets_kernels.least_tour(first_m, between_m, last_m, costs_m, offsets))
         least_m = np.minimum.reduceat(np.minimum.reduceat(between_m, regions, axis=0), regions, axis=1)
         total_m = np.minimum.reduceat(costs_m.min(axis=(1, 2)), offsets[:-1]).sum()
         return float(total_m + first_m.min() + last_m.min() + _least_tree_m(np.minimum(least_m, least_m.T)))
@@ -184,9 +185,9 @@ def sweeps_bound_m(
     thetas = np.concatenate([stays.thetas for stays in found])
     ways = _Ways(
         tuple(found),
-        kernels.from_place(start[:2], sets, thetas, 0),
-        kernels.distances(sets, thetas, np.repeat(np.arange(len(found)), [s.cells for s in found])),
-        kernels.from_place(end[:2], sets, thetas, 1),
+        sets_kernels.from_place(start[:2], sets, thetas, 0),
+        sets_kernels.distances(sets, thetas, np.repeat(np.arange(len(found)), [s.cells for s in found])),
+        sets_kernels.from_place(end[:2], sets, thetas, 1),
     )
     every = tuple(np.arange(stays.cells) for stays in found)
     count = itertools.count()
@@ -250,7 +251,7 @@ def _stays(node: Node, radius_m: float, per_cell: int) -> _Stays:
 def _padded(sets: Floats, looks: int) -> Floats:
     """Sets of one region with so many looks, those that are not there empty."""
     out = np.full((*sets.shape[:2], looks, *sets.shape[3:]), np.inf)
-    out[..., [kernels.MOST_X, kernels.MOST_Y]] = -np.inf
+    out[..., [sets_kernels.MOST_X, sets_kernels.MOST_Y]] = -np.inf
     out[:, :, : sets.shape[2]] = sets
     return out
 
@@ -258,8 +259,8 @@ def _padded(sets: Floats, looks: int) -> Floats:
 def _anywhere(node: Node) -> _Stays:
     """Stays of many strips: nothing is counted but how much ground they see, and how many they are."""
     sets = np.empty((1, 4, 1, 2, 4))
-    (sets[..., kernels.LEAST_X], sets[..., kernels.LEAST_Y]) = node.seen.extent[0]
-    (sets[..., kernels.MOST_X], sets[..., kernels.MOST_Y]) = node.seen.extent[1]
+    (sets[..., sets_kernels.LEAST_X], sets[..., sets_kernels.LEAST_Y]) = node.seen.extent[0]
+    (sets[..., sets_kernels.MOST_X], sets[..., sets_kernels.MOST_Y]) = node.seen.extent[1]
     passes_m = np.full((1, 1, 1), node.seen.by_area_m + node.seen.fewest * node.seen.around_m)
     return _Stays(passes_m, np.zeros((1, 1, 1)), np.zeros((1, 1, 1, 4, 4)), np.zeros(1), sets, np.zeros(1))
 

@@ -20,10 +20,10 @@ from shapely.geometry import Point, Polygon
 from shapely.ops import substring
 
 from planner.bounds.nodes import HEADINGS_RAD, PLACE_M
-from planner.coverage.classify import fits, hull_points, spans_at
 from planner.coverage.merge import MergedRegion, split_region
-from planner.coverage.segments import Neighbourhood
-from planner.coverage.sweeps import Side, sweeps
+from planner.coverage.strips.classify import fits, hull_points, spans_at
+from planner.coverage.strips.segments import Neighbourhood
+from planner.coverage.strips.sweeps import Side, sweeps
 from planner.sensors.sar import SarSensor
 from planner.sensors.strip import strip_on, swaths_m
 from planner.wishes import Region

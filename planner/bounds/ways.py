@@ -27,14 +27,12 @@ from planner.bounds.search import exact_bound_m
 from planner.bounds.units import Sides, Unit, apart, groups, hull_of, near, seen_at_once, spread, units
 from planner.coverage import decompose
 from planner.coverage.merge import MergedRegion
+from planner.coverage.strips.targets import targets
+from planner.coverage.visible import Seeing
 from planner.errors import InfeasibleError
 from planner.progress import Stop, never
-from planner.routing.joint.targets import targets
-from planner.routing.joint.visible import surroundings
-from planner.scenario import Scenario
+from planner.route import Terminal
 from planner.sensors.sar import SarSensor
-from planner.sensors.view import sensing
-from planner.vehicle.aircraft import Aircraft
 
 Flags = NDArray[np.bool_]
 
@@ -47,8 +45,8 @@ EFFORT_PLACES = 1_500_000
 
 
 def plan_bound_m(
-    scenario: Scenario,
-    aircraft: Aircraft,
+    seeing: Seeing,
+    ends: tuple[Terminal, Terminal],
     length_m: float,
     left_out: Collection[str] = (),
     stop: Stop = never,
@@ -58,6 +56,8 @@ def plan_bound_m(
 
     Parameters
     ----------
+    seeing, ends
+        What is to be seen by whom, from where to where.
     length_m
         Of a plan.
     left_out
@@ -65,25 +65,28 @@ def plan_bound_m(
     stop, enough
         The one cancels; the other ends the search for a better bound.
     """
-    best_m = math.dist(scenario.start.position, scenario.end.position)
+    best_m = math.dist(ends[0].position, ends[1].position)
+    if not all(isinstance(seeing.suite.of(region), SarSensor) for region in seeing.regions):
+        # Nothing is known of how other sensors' passes may lie.
+        return min(best_m, length_m)
 
     def sensing_of(region: MergedRegion) -> tuple[SarSensor, float]:
-        return _sensing(scenario, region)
+        return _sensing(seeing, region)
 
-    found = units(scenario.regions, sensing_of, left_out)
+    found = units(seeing.regions, sensing_of, left_out)
     if found:
-        linked = near(found, aircraft.settle_m)
+        linked = near(found, seeing.model.settle_m)
         # Where nothing is shared the first says most, as a rule, else the second.
         ways = (_of_shared_m, _of_apart_m) if linked.any() else (_of_apart_m, _of_shared_m)
         for bound in ways:
             if best_m < length_m * (1.0 - GAPS[0]) and not enough():
-                best_m = max(best_m, bound(scenario, aircraft, found, linked, length_m, stop, enough))
+                best_m = max(best_m, bound(seeing, ends, found, linked, length_m, stop, enough))
     return min(best_m, length_m)
 
 
 def _of_shared_m(
-    scenario: Scenario,
-    aircraft: Aircraft,
+    seeing: Seeing,
+    ends: tuple[Terminal, Terminal],
     found: Sequence[Unit],
     linked: Flags,
     length_m: float,
@@ -94,16 +97,16 @@ def _of_shared_m(
     if not linked.any() and all(unit.whole for unit in found):
         return 0.0
     asked = _pieces(found, _in_parts(found, linked))
-    passes = [node for k, (_, sides) in enumerate(asked) for node in nodes(sides, aircraft.settle_m, k)]
+    passes = [node for k, (_, sides) in enumerate(asked) for node in nodes(sides, seeing.model.settle_m, k)]
     of = [k for k, _ in asked]
     # Of one unit two places may be seen by one pass; two visits are two passes.
     shared = np.array([[a != b or not found[a].whole for b in of] for a in of])
     np.fill_diagonal(shared, False)
-    ends = (terminal(scenario.start), terminal(scenario.end))
+    between = (terminal(ends[0]), terminal(ends[1]))
     targets_m = tuple(length_m * (1.0 - gap) for gap in GAPS)
-    radius_m = aircraft.planned_turn_radius_m
+    radius_m = seeing.model.turn_radius_m
     work = exact_effort(len(passes)) if all(unit.whole for unit in found) else EFFORT_PLACES
-    return exact_bound_m(passes, *ends, radius_m, targets_m, work, stop, enough, shared)
+    return exact_bound_m(passes, *between, radius_m, targets_m, work, stop, enough, shared)
 
 
 def _pieces(found: Sequence[Unit], parts: Collection[int]) -> list[tuple[int, Sides]]:
@@ -138,8 +141,8 @@ def _in_parts(found: Sequence[Unit], linked: Flags) -> set[int]:
 
 
 def _of_apart_m(
-    scenario: Scenario,
-    aircraft: Aircraft,
+    seeing: Seeing,
+    ends: tuple[Terminal, Terminal],
     found: Sequence[Unit],
     linked: Flags,
     length_m: float,
@@ -160,7 +163,7 @@ def _of_apart_m(
         elif unit.region.axis is not None or divided == MOST_APART:
             ways.append([[unit.place] * unit.visits])
         else:
-            ways.append([[unit.swept] * unit.visits, *_divided(scenario, aircraft, unit)])
+            ways.append([[unit.swept] * unit.visits, *_divided(seeing, unit)])
             divided += len(ways[-1]) > 1
     every = list(itertools.product(*ways))
     least_m = length_m
@@ -171,14 +174,14 @@ def _of_apart_m(
         # Of the next way no more is worth proving than of the worst so far.
         worth_m = min(least_m / (1.0 - GAPS[0]), length_m)
         part = 1.0 / len(every)
-        proved_m = lower_bound_m(scenario, aircraft, together, worth_m, part=part, stop=stop, enough=enough)
+        proved_m = lower_bound_m(ends, seeing.model, together, worth_m, part=part, stop=stop, enough=enough)
         least_m = min(least_m, proved_m)
     return least_m
 
 
-def _divided(scenario: Scenario, aircraft: Aircraft, unit: Unit) -> list[list[Sides]]:
+def _divided(seeing: Seeing, unit: Unit) -> list[list[Sides]]:
     """The unit as ``auto`` divides it, where it does."""
-    around = surroundings(scenario, aircraft)
+    around = seeing.surroundings()
     try:
         found = targets(unit.region, unit.sensor, unit.height_m, around)
     except InfeasibleError:
@@ -186,6 +189,7 @@ def _divided(scenario: Scenario, aircraft: Aircraft, unit: Unit) -> list[list[Si
     return [[target.sides for target in found]] if len(found) > unit.visits else []
 
 
-def _sensing(scenario: Scenario, region: MergedRegion) -> tuple[SarSensor, float]:
-    asked = next((s for s in scenario.sensors if s.name == region.sensor), scenario.sensors[0])
-    return sensing(scenario, asked, region.area)
+def _sensing(seeing: Seeing, region: MergedRegion) -> tuple[SarSensor, float]:
+    sensor, height_m = seeing.suite.over(region.sensor, region.area, seeing.airspace, seeing.level)
+    assert isinstance(sensor, SarSensor)
+    return sensor, height_m

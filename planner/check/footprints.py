@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import math
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 from shapely.geometry import MultiPolygon, Polygon
 
+from planner.airspace.airspace import Airspace, Level
+from planner.airspace.values import Wind
 from planner.plan import Collect
+from planner.route import Look
 from planner.scenario import Scenario
 from planner.sensors.sar import SarSensor
 from planner.sensors.view import seen_on_flat, seen_on_terrain
@@ -19,29 +23,58 @@ Floats = NDArray[np.float64]
 RAYS = 129
 
 
+class Footprint(Protocol):
+    """Ground that a sensor of one kind sees; the judge's own, drawn from the published line."""
+
+    def __call__(
+        self,
+        sensor: Any,
+        line_m: Floats,
+        look: Look,
+        altitude_m: float,
+        airspeed_m_s: float,
+        airspace: Airspace,
+        level: Level,
+    ) -> Polygon | MultiPolygon:
+        """Seen at full resolution with the sensor on all along a line (2, 2); without what terrain hides."""
+
+
 def footprint(scenario: Scenario, collect: Collect) -> Polygon | MultiPolygon:
-    """Ground seen at full resolution during a collect, in the local frame; on terrain without what is hidden.
+    """Ground seen at full resolution during a collect, in the local frame; without what terrain hides."""
+    sensor = scenario.suite.named(collect.sensor)
+    line_m = scenario.frame.to_local([place[:2] for place in collect.line])
+    airspeed_m_s = next(a.airspeed_m_s for a in scenario.aircraft if a.name == collect.vehicle)
+    where = (scenario.airspace, scenario.level)
+    return FOOTPRINTS[sensor.kind](sensor, line_m, collect.look, collect.line[0][2], airspeed_m_s, *where)
+
+
+def sar_footprint(
+    sensor: SarSensor,
+    line_m: Floats,
+    look: Look,
+    altitude_m: float,
+    airspeed_m_s: float,
+    airspace: Airspace,
+    level: Level,
+) -> Polygon | MultiPolygon:
+    """What a SAR sees.
 
     Between half an aperture after sensor on and half an aperture before sensor off every point between the
     near and the far edge of the beam is lit over a whole aperture.
     """
-    sensor = next(s for s in scenario.sensors if s.name == collect.sensor)
-    line_m = scenario.frame.to_local([place[:2] for place in collect.line])
-    airspeed_m_s = next(a.airspeed_m_s for a in scenario.aircraft if a.name == collect.vehicle)
-    if scenario.terrain is not None:
-        wind = scenario.wind
+    wind = airspace.wind
+    if airspace.terrain is not None:
         sensor = sensor.in_wind(wind.speed_m_s / airspeed_m_s, wind.toward_rad)
-        level_m = collect.line[0][2]
-        return seen_on_terrain(sensor, line_m, collect.look, level_m, scenario.terrain).area
+        return seen_on_terrain(sensor, line_m, look, altitude_m, airspace.terrain).area
     (east0, north0), (east1, north1) = line_m
     length_m = math.hypot(east1 - east0, north1 - north0)
     along = np.array([east1 - east0, north1 - north0]) / length_m
-    side = np.array([along[1], -along[0]]) * (1.0 if collect.look == "right" else -1.0)
-    height_m = scenario.height_m
-    if scenario.wind.speed_m_s > 0.0 and not sensor.stabilised and sensor.mode != "spotlight":
-        return _crabbing(scenario, sensor, airspeed_m_s, line_m, along, side)
+    side = np.array([along[1], -along[0]]) * (1.0 if look == "right" else -1.0)
+    height_m = level.height_m
+    if wind.speed_m_s > 0.0 and not sensor.stabilised and sensor.mode != "spotlight":
+        return _crabbing(sensor, wind, height_m, airspeed_m_s, line_m, along, side)
     if sensor.squint_rad != 0.0 or sensor.mode == "spotlight":
-        return seen_on_flat(sensor, line_m, collect.look, height_m)
+        return seen_on_flat(sensor, line_m, look, height_m)
     half_beam_rad = sensor.elevation_beamwidth_rad / 2.0
     near_m = height_m * math.tan(sensor.incidence_rad - half_beam_rad)
     far_m = height_m * math.tan(sensor.incidence_rad + half_beam_rad)
@@ -54,16 +87,20 @@ def footprint(scenario: Scenario, collect: Collect) -> Polygon | MultiPolygon:
 
 
 def _crabbing(
-    scenario: Scenario, sensor: SarSensor, airspeed_m_s: float, line_m: Floats, along: Floats, side: Floats
+    sensor: SarSensor,
+    wind: Wind,
+    height_m: float,
+    airspeed_m_s: float,
+    line_m: Floats,
+    along: Floats,
+    side: Floats,
 ) -> Polygon:
     """The same with an antenna fixed to an aircraft that crabs: where its rays meet the ground, swept along.
 
     The nose points along the velocity through the air, which is that over the ground less the wind. Rays lie
     on the antenna's cone of squint, from the near to the far edge of the beam.
     """
-    wind_m_s = scenario.wind.speed_m_s * np.array(
-        [math.cos(scenario.wind.toward_rad), math.sin(scenario.wind.toward_rad)]
-    )
+    wind_m_s = wind.speed_m_s * np.array([math.cos(wind.toward_rad), math.sin(wind.toward_rad)])
     # |v·along − wind| = airspeed, for the ground speed v.
     tail_m_s = float(along @ wind_m_s)
     ground_m_s = tail_m_s + math.sqrt(tail_m_s**2 + airspeed_m_s**2 - float(wind_m_s @ wind_m_s))
@@ -71,7 +108,7 @@ def _crabbing(
     out = np.array([nose[1], -nose[0]]) * math.copysign(1.0, float(side @ [along[1], -along[0]]))
     half_rad = sensor.elevation_beamwidth_rad / 2.0
     look_rad = np.linspace(sensor.incidence_rad - half_rad, sensor.incidence_rad + half_rad, RAYS)[:, None]
-    height_m, squint_tan = scenario.height_m, math.tan(sensor.squint_rad)
+    squint_tan = math.tan(sensor.squint_rad)
     rays_m = height_m * (np.tan(look_rad) * out + squint_tan / np.cos(look_rad) * nose)
     # The antenna passes the ray's place at the rate of the angle between its axis and the way to the place.
     middle = np.array([*(rays_m[RAYS // 2]), -height_m])
@@ -85,3 +122,12 @@ def _crabbing(
         return Polygon()
     first, last = line_m[0] + half_m * along + rays_m, line_m[1] - half_m * along + rays_m
     return Polygon([*first, *last[::-1]])
+
+
+#: By kind of sensor.
+FOOTPRINTS: dict[str, Footprint] = {"sar": sar_footprint}
+
+
+def register(kind: str, of_kind: Footprint) -> None:
+    """Have collects with sensors of a kind judged by a footprint."""
+    FOOTPRINTS[kind] = of_kind

@@ -12,9 +12,14 @@ from shapely import difference, intersection, union_all
 from shapely.geometry import LineString, MultiPoint, Polygon
 from shapely.geometry.base import BaseGeometry
 
+from planner.airspace.airspace import Airspace
 from planner.coverage.flown_ground import Flown, ground_seen
+from planner.frames import LocalFrame
 from planner.plan import Collect, Plan
-from planner.scenario import Scenario
+from planner.sensors.sar import SarSensor
+from planner.sensors.suite import Suite
+from planner.vehicle.aircraft import Aircraft
+from planner.wishes import Region
 
 #: Overlays are done on a grid: without one, outlines equal but for rounding can be taken for disjoint.
 GRID_M = 1e-6
@@ -38,6 +43,17 @@ class TrackSample:
 
 
 @dataclass(frozen=True, slots=True)
+class Asked:
+    """What was to be seen, with what, where."""
+
+    frame: LocalFrame
+    regions: tuple[Region, ...]
+    suite: Suite
+    aircraft: tuple[Aircraft, ...]
+    airspace: Airspace
+
+
+@dataclass(frozen=True, slots=True)
 class FlownPass:
     """How well one collect was flown: distance from its line while the sensor was on."""
 
@@ -50,7 +66,7 @@ class FlownPass:
 
 @dataclass(frozen=True, slots=True)
 class FlownCoverage:
-    """What was seen at full resolution, in the scenario's local frame."""
+    """What was seen at full resolution, in the local frame."""
 
     fraction: dict[str, float]
     seen: dict[str, BaseGeometry]
@@ -58,7 +74,7 @@ class FlownCoverage:
     passes: tuple[FlownPass, ...]
 
 
-def flown_coverage(scenario: Scenario, plan: Plan, track: Sequence[TrackSample]) -> FlownCoverage:
+def flown_coverage(asked: Asked, plan: Plan, track: Sequence[TrackSample]) -> FlownCoverage:
     """Ground seen along a track.
 
     A point is seen at full resolution when the beam lay on it over a whole synthetic aperture (eqs 4 and 5 of
@@ -69,16 +85,20 @@ def flown_coverage(scenario: Scenario, plan: Plan, track: Sequence[TrackSample])
     strips: dict[str, list[Polygon]] = {}
     passes: list[FlownPass] = []
     for interval in _intervals(track):
-        places = scenario.frame.to_local([(s.lon_deg, s.lat_deg) for s in interval])
-        collect = _nearest_collect(scenario, plan, places)
+        places = asked.frame.to_local([(s.lon_deg, s.lat_deg) for s in interval])
+        collect = _nearest_collect(asked, plan, places)
         if collect is None:
             continue
-        strips.setdefault(collect.sensor, []).extend(ground_seen(_flown(scenario, collect, places, interval)))
-        passes.append(_pass(scenario, collect, places))
+        sensor = asked.suite.named(collect.sensor)
+        if isinstance(sensor, SarSensor):
+            # What other sensors saw as flown is not known, so it is not seen.
+            flown = _flown(asked, sensor, collect, places, interval)
+            strips.setdefault(collect.sensor, []).extend(ground_seen(flown))
+        passes.append(_pass(asked, collect, places))
     seen_by = {name: union_all(parts, grid_size=GRID_M) for name, parts in strips.items()}
     fraction, seen, unseen = {}, {}, {}
-    for region in scenario.regions:
-        ground = seen_by.get(scenario.sensor_for(region).name, Polygon())
+    for region in asked.regions:
+        ground = seen_by.get(asked.suite.of(region).name, Polygon())
         seen[region.name] = intersection(region.area, ground, grid_size=GRID_M)
         unseen[region.name] = difference(region.area, ground, grid_size=GRID_M)
         fraction[region.name] = float(seen[region.name].area / region.area.area)
@@ -100,12 +120,12 @@ def _intervals(track: Sequence[TrackSample]) -> Iterable[list[TrackSample]]:
         yield run
 
 
-def _nearest_collect(scenario: Scenario, plan: Plan, places: NDArray[np.float64]) -> Collect | None:
+def _nearest_collect(asked: Asked, plan: Plan, places: NDArray[np.float64]) -> Collect | None:
     """The collect that an interval flew: the nearest line in the nearest direction."""
     flown_rad = math.atan2(*(places[-1] - places[0])[::-1])
     best: tuple[float, Collect] | None = None
     for collect in plan.collects:
-        first, last = scenario.frame.to_local([p[:2] for p in collect.line])
+        first, last = asked.frame.to_local([p[:2] for p in collect.line])
         off_rad = abs(math.remainder(math.atan2(*(last - first)[::-1]) - flown_rad, math.tau))
         if off_rad > math.radians(45.0):
             continue
@@ -117,31 +137,34 @@ def _nearest_collect(scenario: Scenario, plan: Plan, places: NDArray[np.float64]
 
 
 def _flown(
-    scenario: Scenario, collect: Collect, places: NDArray[np.float64], samples: Sequence[TrackSample]
+    asked: Asked,
+    sensor: SarSensor,
+    collect: Collect,
+    places: NDArray[np.float64],
+    samples: Sequence[TrackSample],
 ) -> Flown:
     """One interval in the local frame, matched to its collect."""
-    sensor = next(s for s in scenario.sensors if s.name == collect.sensor)
-    airspeed_m_s = next(a.airspeed_m_s for a in scenario.aircraft if a.name == collect.vehicle)
-    wind = scenario.wind
+    airspeed_m_s = next(a.airspeed_m_s for a in asked.aircraft if a.name == collect.vehicle)
+    wind = asked.airspace.wind
     middle = places[len(places) // 2]
     # Where north is on the interval's map; it changes little along one pass.
-    north_rad = scenario.frame.angle_rad(float(middle[0]), float(middle[1]), 0.0)
+    north_rad = asked.frame.angle_rad(float(middle[0]), float(middle[1]), 0.0)
     headings_deg = [math.nan if s.heading_deg is None else s.heading_deg for s in samples]
     return Flown(
         sensor.in_wind(wind.speed_m_s / airspeed_m_s, wind.toward_rad),
         collect.look,
-        scenario.frame.to_local([place[:2] for place in collect.line]),
+        asked.frame.to_local([place[:2] for place in collect.line]),
         places,
         np.array([s.height_m for s in samples]),
         np.radians([s.roll_deg for s in samples]),
         north_rad - np.radians(headings_deg),
-        scenario.terrain,
-        scenario.home_amsl_m or 0.0,
+        asked.airspace.terrain,
+        asked.airspace.home_amsl_m or 0.0,
     )
 
 
-def _pass(scenario: Scenario, collect: Collect, places: NDArray[np.float64]) -> FlownPass:
-    first, last = scenario.frame.to_local([p[:2] for p in collect.line])
+def _pass(asked: Asked, collect: Collect, places: NDArray[np.float64]) -> FlownPass:
+    first, last = asked.frame.to_local([p[:2] for p in collect.line])
     direction = (last - first) / np.hypot(*(last - first))
     offset = places - first
     across_m = np.abs(offset[:, 0] * direction[1] - offset[:, 1] * direction[0])

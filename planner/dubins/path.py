@@ -15,6 +15,9 @@ from planner.route import Pose
 
 SegmentKind = Literal["straight", "left", "right"]
 
+#: Arcs that turn less than this are no turns.
+MIN_TURN_RAD = math.radians(1.0)
+
 
 @dataclass(frozen=True, slots=True)
 class Segment:

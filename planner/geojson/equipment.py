@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from typing import Any
 
 from planner.airspace.values import Wind
 from planner.angles import angle_from_heading
 from planner.geojson.fields import Fields, Findings
-from planner.route import Look
-from planner.sensors.sar import SarSensor
-from planner.sensors.sar_modes import scansar_resolution_m, turned_for_rad
+from planner.sensors.base import Sensor
+from planner.sensors.registry import KINDS
 from planner.vehicle.aircraft import (
     DEFAULT_RESERVE,
     Aircraft,
@@ -20,14 +18,8 @@ from planner.vehicle.aircraft import (
 )
 from planner.wishes import Method, Objective
 
-SPEED_OF_LIGHT_M_S = 299_792_458.0
-
-#: Beyond this the beam runs along the track rather than beside it.
-MAX_SQUINT_DEG = 60.0
-#: Beyond this there is nothing to call a pointing.
-MAX_POINTING_DEG = 15.0
-#: A spotlight pass turns no further than this round its place.
-MAX_TURNED_DEG = 60.0
+#: Sensors that scenarios may name and this version does not plan.
+NOT_YET = ("camera",)
 #: A multirotor without a stated turn limit rounds its corners with this bank.
 MULTIROTOR_BANK_DEG = 25.0
 
@@ -110,128 +102,24 @@ def _given(fields: Fields) -> list[str]:
     return [n for n in ("min_turn_radius_m", "max_bank_deg", "max_load_factor") if n in fields]
 
 
-def read_sensor(raw: Any, index: int, findings: Findings) -> SarSensor | None:
+def read_sensor(raw: Any, index: int, findings: Findings) -> Sensor | None:
     """One entry of ``sensors``."""
     if not isinstance(raw, dict):
         findings.error("scenario", "bad-value", f"sensors[{index}] is not an object", "Give an object.")
         return None
     name = raw.get("name")
     fields = Fields(f"sensor {name if name else index}", raw, findings)
-    name = fields.text("name")
-    kind = fields.choice("type", ("sar", "camera"))
-    if kind == "camera":
-        findings.error(
-            fields.owner, "not-supported", "is a camera, which this version does not plan", "Use a SAR."
-        )
+    kind = fields.choice("type", (*KINDS, *(NOT_YET if raw.get("type") in NOT_YET else ())))
+    if kind in NOT_YET:
+        said = f"is a {kind}, which this version does not plan"
+        findings.error(fields.owner, "not-supported", said, f"Use one of: {', '.join(sorted(KINDS))}.")
         return None
-    incidence_deg = fields.number("incidence_deg", above=0.0, below=90.0)
-    elevation_deg = fields.number("elevation_beamwidth_deg", above=0.0, below=180.0)
-    azimuth_rad = _azimuth_beamwidth_rad(fields)
-    resolution_m = fields.number("resolution_m", None, above=0.0)
-    look = fields.choice("look", ("left", "right", "both"), "right")
-    squint_deg = fields.number("squint_deg", 0.0, minimum=-MAX_SQUINT_DEG, maximum=MAX_SQUINT_DEG)
-    mode: Any = fields.choice("mode", ("stripmap", "spotlight", "scansar"), "stripmap")
-    sub_swaths = fields.integer("sub_swaths", 3 if mode == "scansar" else 1, minimum=1)
-    pointing_deg = fields.number("pointing_margin_deg", 0.0, minimum=0.0, maximum=MAX_POINTING_DEG)
-    position_m = fields.number("position_margin_m", 0.0, minimum=0.0)
-    stabilised = fields.flag("stabilised", False)
-    wavelength_m = _wavelength_m(fields)
-    fields.refuse_unknown(
-        also_known=("azimuth_beamwidth_deg", "aperture_length_m", "wavelength_m", "frequency_hz")
-    )
-    if name is None or incidence_deg is None or elevation_deg is None or azimuth_rad is None or look is None:
+    if kind is None:
+        fields.text("name")
         return None
-    if squint_deg is None or mode is None or pointing_deg is None or position_m is None:
-        return None
-    if sub_swaths > 1 and mode != "scansar":
-        fields.wrong("sub_swaths", "goes with mode scansar", "Leave sub_swaths out, or set mode to scansar.")
-        return None
-    # Sub-swaths lie side by side, each one elevation beam wide.
-    elevation_deg *= sub_swaths
-    if incidence_deg - elevation_deg / 2.0 < 0.0 or incidence_deg + elevation_deg / 2.0 >= 90.0:
-        fields.wrong(
-            "elevation_beamwidth_deg",
-            f"is {elevation_deg:g} round an incidence of {incidence_deg:g}: the beam passes the nadir or the "
-            "horizon, so the swath is not a positive width on one side",
-            "Keep incidence_deg ± elevation_beamwidth_deg / 2 within 0 and 90.",
-            rule="swath-not-positive",
-        )
-        return None
-    if 2.0 * pointing_deg >= elevation_deg:
-        fields.wrong(
-            "pointing_margin_deg",
-            f"is {pointing_deg:g} at either edge of a beam of {elevation_deg:g}: nothing is left",
-            "Keep it below half the elevation beam.",
-            rule="swath-not-positive",
-        )
-        return None
-    looks: tuple[Look, ...] = (
-        ("left", "right") if look == "both" else ("left",) if look == "left" else ("right",)
-    )
-    turned_rad = None
-    if mode == "spotlight":
-        turned_rad = _turned_rad(fields, wavelength_m, resolution_m, math.radians(squint_deg))
-        if turned_rad is None:
-            return None
-    if mode == "scansar" and resolution_m is not None:
-        resolution_m = scansar_resolution_m(resolution_m, sub_swaths)
-    return SarSensor(
-        name, math.radians(incidence_deg), math.radians(elevation_deg), azimuth_rad, looks, resolution_m,
-        math.radians(squint_deg), mode, sub_swaths, turned_rad,
-        pointing_margin_rad=math.radians(pointing_deg), position_margin_m=position_m, stabilised=stabilised,
-    )  # fmt: skip
-
-
-def _wavelength_m(fields: Fields) -> float | None:
-    """λ, given, or from the frequency."""
-    wavelength_m = fields.number("wavelength_m", None, above=0.0)
-    frequency_hz = fields.number("frequency_hz", None, above=0.0)
-    if wavelength_m is None and frequency_hz is not None:
-        return SPEED_OF_LIGHT_M_S / frequency_hz
-    return wavelength_m
-
-
-def _turned_rad(
-    fields: Fields, wavelength_m: float | None, resolution_m: float | None, squint_rad: float
-) -> float | None:
-    """The angle a spotlight pass turns round its place, for the resolution asked of the sensor."""
-    if wavelength_m is None or resolution_m is None:
-        fields.wrong(
-            "mode",
-            "spotlight needs resolution_m, which its passes are to give, and the wavelength",
-            "Add resolution_m, and wavelength_m or frequency_hz.",
-            rule="missing-property",
-        )
-        return None
-    turned_rad = turned_for_rad(wavelength_m, resolution_m, squint_rad)
-    if math.isnan(turned_rad) or turned_rad > math.radians(MAX_TURNED_DEG):
-        fields.wrong(
-            "resolution_m",
-            f"of {resolution_m:g} m asks for a turn of more than {MAX_TURNED_DEG:g}° round the place",
-            f"Give {wavelength_m / 2.0:.3g} m or more.",
-            rule="out-of-range",
-        )
-        return None
-    return turned_rad
-
-
-def _azimuth_beamwidth_rad(fields: Fields) -> float | None:
-    """θ_A, given, or from the real aperture's length by θ_A = λ / D."""
-    beamwidth_deg = fields.number("azimuth_beamwidth_deg", None, above=0.0, below=180.0)
-    length_m = fields.number("aperture_length_m", None, above=0.0)
-    wavelength_m = fields.number("wavelength_m", None, above=0.0)
-    if beamwidth_deg is not None:
-        return math.radians(beamwidth_deg)
-    if length_m is not None and wavelength_m is not None and wavelength_m < length_m * math.pi:
-        return wavelength_m / length_m
-    if "azimuth_beamwidth_deg" not in fields:
-        fields.wrong(
-            "azimuth_beamwidth_deg",
-            "is missing",
-            "Add azimuth_beamwidth_deg, or aperture_length_m with wavelength_m.",
-            rule="missing-property",
-        )
-    return None
+    sensor = KINDS[kind].read(fields)
+    fields.refuse_unknown()
+    return sensor
 
 
 _WRITTEN = {

@@ -20,6 +20,10 @@ from planner.geojson.relief import set_on_terrain
 from planner.geojson.rules import check_together
 from planner.route import Terminal
 from planner.scenario import Scenario
+from planner.tasks.registry import TASKS
+
+#: Tasks that scenarios may name and this version does not plan.
+NOT_YET = ("search",)
 
 MEMBERS = (
     "type", "features", "name", "description", "bbox", "crs", "vehicles", "sensors", "altitude_m",
@@ -122,10 +126,12 @@ def _read(document: Any, findings: Findings, terrains: Terrains | None) -> Scena
         )  # fmt: skip
     altitude_m = top.number("altitude_m", above=0.0, maximum=30_000.0)
     reference: Any = top.choice("altitude_reference", ("amsl", "home", "terrain"), "terrain")
-    if top.choice("task", ("collect", "search"), "collect") == "search":
+    task = top.choice("task", (*TASKS, *(name for name in NOT_YET if name not in TASKS)), "collect")
+    if task is not None and task not in TASKS:
         findings.error(
-            "scenario", "not-supported", "task search is not planned by this version", "Use collect."
-        )
+            "scenario", "not-supported", f"task {task} is not planned by this version",
+            f"Use one of: {', '.join(TASKS)}.",
+        )  # fmt: skip
     terrain_name = top.text("terrain", None)
     terrain = None if terrain_name is None else find_terrain(terrains, terrain_name)
     if terrain_name is not None and terrain is None:
@@ -164,6 +170,7 @@ def _read(document: Any, findings: Findings, terrains: Terrains | None) -> Scena
         clearance_m=clearance_m,
         objective=objective,
         method=method,
+        task=task or "collect",
         seed=seed,
         time_budget_s=budget_s,
         scenario_hash=scenario_hash(document),

@@ -4,45 +4,52 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
-from planner.airspace.zones import keep_out
+from planner.airspace.airspace import Airspace, Level
+from planner.airspace.prices import risk_m, soft_prices, way_weight
+from planner.airspace.zones import TRANSIT_MARGIN_M, keep_out
+from planner.dubins.path import MIN_TURN_RAD, Path
 from planner.errors import InfeasibleError
 from planner.progress import Stop
 from planner.route import Anchor, CollectPass, Terminal
-from planner.routing.joint.prices import risk_m, soft_prices, turns_m
-from planner.scenario import Scenario
 from planner.transit import tangent
 from planner.transit.refine import Risk, connect_by_cost
-from planner.vehicle.aircraft import Aircraft
-from planner.vehicle.wind import duration_s, still_air_factor
+from planner.vehicle.model import FlightModel
+from planner.wishes import Objective
 
 Floats = NDArray[np.float64]
 
-#: Transits keep this far from zones and the area's edge, more than the chords of arcs can cut.
-TRANSIT_MARGIN_M = 2.0
 #: Lines are looked at every so many metres for what of them lies in soft threats.
 SAMPLE_M = 20.0
+#: A turn costs as much as this many metres of way, where the weights are equal.
+TURN_M = 100.0
 
 
 class Legs:
-    """True costs of transits in one scenario, metres: the flyable length, through the air in a wind, and more
-    inside soft threats and for turns, by the objective's weights. What was asked for once is kept.
+    """True costs of transits among given zones, metres: the flyable length, through the air in a wind, and
+    more inside soft threats and for turns, by the objective's weights. What was asked for once is kept.
     """
 
-    def __init__(self, scenario: Scenario, aircraft: Aircraft, stop: Stop) -> None:
-        self._zones = keep_out(scenario.airspace, scenario.level, TRANSIT_MARGIN_M)
-        self._radius_m = aircraft.planned_turn_radius_m
-        self._settle_m = aircraft.settle_m
-        self._start, self._end = anchor(scenario.start), anchor(scenario.end)
+    def __init__(
+        self,
+        airspace: Airspace,
+        level: Level,
+        model: FlightModel,
+        objective: Objective,
+        ends: tuple[Terminal, Terminal],
+        stop: Stop,
+    ) -> None:
+        self._zones = keep_out(airspace, level, TRANSIT_MARGIN_M)
+        self._model = model
+        self._start, self._end = anchor(ends[0]), anchor(ends[1])
         self._stop = stop
-        self._airspeed_m_s, self._wind = aircraft.airspeed_m_s, scenario.wind
-        self._soft = soft_prices(scenario)
-        self._objective = scenario.objective
-        self._risk = Risk.of(scenario.threats, scenario.objective, scenario.height_m)
+        self._soft = soft_prices(airspace, level, objective)
+        self._objective = objective
+        self._risk = Risk.of(airspace.threats, objective, level.height_m)
         self._known: dict[tuple[Anchor, Anchor], float] = {}
 
     def cost_m(self, start: Anchor, goal: Anchor) -> float:
@@ -53,7 +60,7 @@ class Legs:
         return self._known[key]
 
     def between_m(self, leaving: Floats | None, arriving: Floats | None) -> float:
-        """The same between poses (3,); None is the start, or the end, of the scenario."""
+        """The same between poses (3,); None is the start, or the end, of the tour."""
         start = self._start if leaving is None else _pose(leaving)
         return self.cost_m(start, self._end if arriving is None else _pose(arriving))
 
@@ -66,11 +73,11 @@ class Legs:
 
     def pass_m(self, collect: CollectPass) -> float:
         """One pass and the settling before it."""
-        cost_m = collect.length_m + self._settle_m
-        if self._wind.speed_m_s > 0.0:
-            cost_m *= float(still_air_factor(collect.angle_rad, self._airspeed_m_s, self._wind))
+        cost_m = collect.length_m + self._model.settle_m
+        if self._model.wind.speed_m_s > 0.0:
+            cost_m *= float(self._model.air_factor(collect.angle_rad))
         if len(self._soft):
-            line = np.array([collect.settling(self._settle_m).position, collect.end])
+            line = np.array([collect.settling(self._model.settle_m).position, collect.end])
             cost_m += risk_m(line, self._soft)
         return cost_m
 
@@ -86,23 +93,33 @@ class Legs:
 
     def arrives(self, collect: CollectPass) -> Anchor:
         """Where a transit to a pass ends: before its settling run."""
-        pose = collect.settling(self._settle_m)
+        pose = collect.settling(self._model.settle_m)
         return Anchor(*pose.position, pose.angle_rad)
 
     def _find(self, start: Anchor, goal: Anchor) -> float:
         try:
             if self._risk.yielding:
-                path = connect_by_cost(start, goal, self._zones, self._radius_m, self._risk, self._stop)
+                path = connect_by_cost(
+                    start, goal, self._zones, self._model.turn_radius_m, self._risk, self._stop
+                )
             else:
-                path = tangent.connect(start, goal, self._zones, self._radius_m, self._stop)
+                path = tangent.connect(start, goal, self._zones, self._model.turn_radius_m, self._stop)
         except InfeasibleError:
             return math.inf
         cost_m = path.length_m
-        if self._wind.speed_m_s > 0.0:
-            cost_m = self._airspeed_m_s * duration_s(path, self._airspeed_m_s, self._wind)
+        if self._model.wind.speed_m_s > 0.0:
+            cost_m = self._model.airspeed_m_s * self._model.duration_s(path)
         if len(self._soft) and not self._zones.clear(path):
             cost_m += risk_m(path.sample(SAMPLE_M)[:, :2].copy(), self._soft)
         return cost_m + turns_m([path], self._objective)
+
+
+def turns_m(paths: Iterable[Path], objective: Objective) -> float:
+    """What the turns along lines cost."""
+    if objective.turns == 0.0:
+        return 0.0
+    turns = sum(abs(segment.turn_rad) > MIN_TURN_RAD for path in paths for segment in path.segments)
+    return TURN_M * objective.turns / way_weight(objective) * turns
 
 
 def leaves(collect: CollectPass) -> Anchor:

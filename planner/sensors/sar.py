@@ -77,6 +77,11 @@ class SarSensor:
     drift: float = 0.0
     toward_rad: float = 0.0
 
+    @property
+    def kind(self) -> str:
+        """``sar``."""
+        return "sar"
+
     def in_wind(self, drift: float, toward_rad: float) -> Self:
         """The same sensor on an aircraft in a steady wind."""
         return replace(self, drift=drift, toward_rad=toward_rad)

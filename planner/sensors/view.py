@@ -21,14 +21,12 @@ from shapely.geometry.base import BaseGeometry
 
 from planner.airspace.terrain import Ground
 from planner.route import Look
-from planner.scenario import Scenario
 from planner.sensors import sar_modes, strip, view_kernels, visibility_kernels
+from planner.sensors.base import SeenGround
 from planner.sensors.sar import SarSensor
 
 Floats = NDArray[np.float64]
 
-#: Heights between the posts of a plan are known to this.
-RELIEF_MARGIN_M = 0.5
 #: Points on each edge of a squinted footprint.
 EDGE_POINTS = 17
 #: Cells along and across a strip.
@@ -37,36 +35,6 @@ MOST_CELLS = 300
 HIDDEN_M = 100_000.0
 #: Any hidden ground at all costs this: such a pass does not cover its region.
 SOME_HIDDEN_M = 5_000.0
-
-
-@dataclass(frozen=True, slots=True)
-class SeenGround:
-    """What one pass sees of the ground, in the local frame.
-
-    Parameters
-    ----------
-    area
-        Seen at full resolution.
-    shadow_m2, layover_m2
-        Ground in the beam over a whole aperture, but hidden, on a map.
-    """
-
-    area: Polygon | MultiPolygon
-    shadow_m2: float
-    layover_m2: float
-
-
-def sensing(scenario: Scenario, sensor: SarSensor, area: Polygon | MultiPolygon) -> tuple[SarSensor, float]:
-    """The sensor and the flight height over the ground of an area, for the stages that plan its passes.
-
-    On terrain the height is that over the middle between the area's lowest and highest ground, and the sensor
-    allows for the relief between. Without it both are the scenario's.
-    """
-    if scenario.terrain is None:
-        return sensor, scenario.height_m
-    low_m, high_m = scenario.terrain.range_over(area)
-    relief_m = (high_m - low_m) / 2.0 + RELIEF_MARGIN_M
-    return sensor.over_relief(relief_m), scenario.altitude_amsl_m - (low_m + high_m) / 2.0
 
 
 def seen_on_flat(sensor: SarSensor, line_m: ArrayLike, look: Look, height_m: float) -> Polygon:

@@ -23,9 +23,9 @@ from planner.dubins.words import candidates
 from planner.errors import InfeasibleError, OutOfBudgetError
 from planner.progress import Stop, never, raise_if
 from planner.route import Anchor, Pose
-from planner.scenario import Scenario
 from planner.transit.ssas import MIN_CLOSING_PART, SsasParameters, SsasResult, search
 from planner.transit.ssas_kernels import Space
+from planner.wishes import Objective
 
 Array = NDArray[np.float64]
 
@@ -103,7 +103,9 @@ def connect(
     start: Anchor,
     goal: Anchor,
     *,
-    scenario: Scenario,
+    threats: tuple[Threat, ...],
+    objective: Objective,
+    height_m: float,
     keep_out: KeepOut,
     radius_m: float,
     smoothing: SmoothingMethod = "fillet",
@@ -115,8 +117,10 @@ def connect(
     ----------
     start, goal
         Places, and directions where not None; met exactly.
-    scenario
-        For its threats and the weights of length, missile and radar (eq 25).
+    threats, objective
+        Threats, and the weights of length, missile and radar (eq 25).
+    height_m
+        Flown over the ground, the datum of threat heights.
     keep_out
         Zones and area. Hard ones are never entered; soft threats of positive weight only where one holds an
         anchor, or where no attempt finds a way round.
@@ -139,7 +143,7 @@ def connect(
         Where no attempt gives a line free of hard zones inside the area; constraint ``search`` where every
         attempt ended for want of nodes, so that a way may exist.
     """
-    job = _Job(start, goal, scenario, keep_out, radius_m)
+    job = _Job(start, goal, threats, objective, height_m, keep_out, radius_m)
     failures: list[tuple[bool, InfeasibleError]] = []
     clear: list[tuple[Path, SsasResult]] = []
     unclear: list[tuple[float, Path, SsasResult]] = []
@@ -163,7 +167,7 @@ def connect(
                 return path, found
             clear.append((path, found))
         elif hard.clear(path):
-            inside_m = metres_inside(path.sample(SAMPLE_M)[:, :2], job.threats, job.altitude_m)
+            inside_m = metres_inside(path.sample(SAMPLE_M)[:, :2], job.threats, job.height_m)
             unclear.append((inside_m, path, found))
         else:
             failures.append((attempt.threats == "closed", job.not_clear(hard, path)))
@@ -174,27 +178,27 @@ def connect(
     raise job.worst(failures)
 
 
-def avoidable(start: Anchor, goal: Anchor, scenario: Scenario, keep_out: KeepOut) -> KeepOut:
+def avoidable(
+    start: Anchor,
+    goal: Anchor,
+    threats: tuple[Threat, ...],
+    objective: Objective,
+    height_m: float,
+    keep_out: KeepOut,
+) -> KeepOut:
     """What a line between two anchors can keep out of: all but threats of no weight or that hold one."""
-    return _Job(start, goal, scenario, keep_out, math.inf).keep_out_wanted()
+    return _Job(start, goal, threats, objective, height_m, keep_out, math.inf).keep_out_wanted()
 
 
 @dataclass(frozen=True, slots=True)
 class _Job:
     start: Anchor
     goal: Anchor
-    scenario: Scenario
+    threats: tuple[Threat, ...]
+    objective: Objective
+    height_m: float
     keep_out: KeepOut
     radius_m: float
-
-    @property
-    def threats(self) -> tuple[Threat, ...]:
-        return self.scenario.threats
-
-    @property
-    def altitude_m(self) -> float:
-        """Height over the ground, the datum of threat heights."""
-        return self.scenario.height_m
 
     def parameters(self, attempt: Attempt) -> SsasParameters:
         paper = SsasParameters()
@@ -247,7 +251,7 @@ class _Job:
         lead_m = self.lead_m if attempt.lead else 0.0
         begin, end = _moved(self.start, lead_m), _moved(self.goal, -lead_m)
         space = self._space(attempt, (self.start, begin, end, self.goal))
-        objective = self.scenario.objective
+        objective = self.objective
         weights = (objective.length, objective.missile, objective.radar)
         if attempt.threats == "ignored":
             weights = (objective.length, 0.0, 0.0)
@@ -280,7 +284,7 @@ class _Job:
                 grown_m = disc.radius_m + min(margin_m, 0.9 * max(0.0, room_m))
                 discs.append((disc.east_m, disc.north_m, grown_m))
         zones = self.keep_out if margin_m == 0.0 else self._grown(margin_m, places)
-        missiles, radars = threat_arrays(self.threats, self.altitude_m)
+        missiles, radars = threat_arrays(self.threats, self.height_m)
         edges, offsets = zones.edge_arrays()
         return Space(
             missiles=missiles,
@@ -307,7 +311,7 @@ class _Job:
 
     def _ignored(self) -> frozenset[str]:
         """Soft threats of no weight."""
-        weight = {"missile": self.scenario.objective.missile, "radar": self.scenario.objective.radar}
+        weight = {"missile": self.objective.missile, "radar": self.objective.radar}
         return frozenset(t.name for t in self.threats if not t.hard and weight[t.model] <= 0.0)
 
     def keep_out_hard(self) -> KeepOut:

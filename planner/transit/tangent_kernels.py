@@ -17,6 +17,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from planner.dubins.kernels import dubins_length
+from planner.transit.growing_kernels import longer, longer_indices, more
 from planner.transit.kernels import pop, push
 
 TWO_PI = 2.0 * math.pi
@@ -167,28 +168,6 @@ def _least_to_place(east_m: float, north_m: float, angle_rad: float, goal: Array
 
 
 @njit(cache=True)
-def _more(rows: Array, fill: float) -> Array:
-    """Twice the room, the new half filled."""
-    more = np.full((2 * rows.shape[0], rows.shape[1]), fill)
-    more[: rows.shape[0]] = rows
-    return more
-
-
-@njit(cache=True)
-def _longer(values: Array) -> Array:
-    more = np.empty(2 * len(values))
-    more[: len(values)] = values
-    return more
-
-
-@njit(cache=True)
-def _longer_indices(values: Index) -> Index:
-    more = np.empty(2 * len(values), dtype=np.int64)
-    more[: len(values)] = values
-    return more
-
-
-@njit(cache=True)
 def _passed_before(
     signed_m: float, newest: int, arriving_rad: float, flown_m: float, passed: Array, older: Index
 ) -> bool:
@@ -275,7 +254,7 @@ def search(
             left_m = least_to_go(at_e, at_n, starts[k, 1], goal, radius_m)
         if starts[k, 2] + left_m < least_m:
             if size == len(keys):
-                keys, items = _longer(keys), _longer_indices(items)
+                keys, items = longer(keys), longer_indices(items)
             size = push(keys, items, size, starts[k, 2] + left_m, k)
     while size > 0:
         item, size = pop(keys, items, size)
@@ -306,7 +285,7 @@ def search(
                 continue
         free = _free_turn(wheel, arriving, discs, edges)
         if kept == len(older):
-            passed, older = _more(passed, 0.0), _longer_indices(older)
+            passed, older = more(passed, 0.0), longer_indices(older)
         passed[kept, 0], passed[kept, 1], passed[kept, 2] = arriving, flown_m, free
         older[kept] = newest[j]
         newest[j] = kept
@@ -320,14 +299,14 @@ def search(
                     goal_parent[k] = item
                     least_m = min(least_m, length)
                     if size == len(keys):
-                        keys, items = _longer(keys), _longer_indices(items)
+                        keys, items = longer(keys), longer_indices(items)
                     size = push(keys, items, size, length, -1 - k)
         if row_of[j] < 0:
             if rows == most_wheels:
                 return np.nan, np.empty((0, 3))
             if rows == phis.shape[0]:
-                phis, lengths, to_go = _more(phis, 0.0), _more(lengths, 0.0), _more(to_go, 0.0)
-                best, parent = _more(best, 0.0), _more(parent, 0.0)
+                phis, lengths, to_go = more(phis, 0.0), more(lengths, 0.0), more(to_go, 0.0)
+                best, parent = more(best, 0.0), more(parent, 0.0)
             for k in range(count):
                 phi, p = tangent(wheels, j, k) if k != j else (0.0, -1.0)
                 phis[rows, k] = phi
@@ -361,7 +340,7 @@ def search(
             best[row, k] = length
             parent[row, k] = item
             if size == len(keys):
-                keys, items = _longer(keys), _longer_indices(items)
+                keys, items = longer(keys), longer_indices(items)
             size = push(keys, items, size, length + to_go[row, k], first + row * count + k)
     return np.inf, np.empty((0, 3))
 

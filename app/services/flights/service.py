@@ -25,6 +25,7 @@ from planner.geojson.geometry import written
 from planner.geojson.sheet import continued
 from planner.plan import Plan
 from planner.scenario import Scenario
+from planner.tasks.flown import flown_coverage
 
 
 class FlightService:
@@ -208,7 +209,7 @@ def seen_by(scenario: Scenario, plan: Plan, samples: tuple[TrackSample, ...]) ->
         )
         for sample in samples
     ]
-    return flown.flown_coverage(scenario, plan, track)
+    return flown_coverage(scenario, plan, track)
 
 
 def _coverage(flight: _Flown) -> dict[str, Any]:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from planner.coverage.strips.choices import Choices
 from planner.route import Anchor
-from planner.routing.greedy.choices import Choices
 
 Floats = NDArray[np.float64]
 

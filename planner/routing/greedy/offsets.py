@@ -8,8 +8,8 @@ import numpy as np
 
 from planner.airspace.threats import line_risk
 from planner.airspace.values import Threat
+from planner.coverage.strips.choices import Choices, Side
 from planner.route import Anchor, CollectPass
-from planner.routing.greedy.choices import Choices, Side
 from planner.routing.greedy.costs import weighted_cost
 from planner.wishes import Objective
 

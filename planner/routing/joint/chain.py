@@ -15,14 +15,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from planner.coverage.sweeps import Side
+from planner.airspace.surroundings import Surroundings
+from planner.coverage.lines import NO_ROOM_M
+from planner.coverage.ways import Options, Target
+from planner.dubins.estimate_kernels import point_costs, transit_costs
 from planner.progress import Stop, raise_if
 from planner.route import CollectPass, Terminal
-from planner.routing.joint import kernels
-from planner.routing.joint.options import NO_ROOM_M, Options, Surroundings, collect_passes
 from planner.routing.large.kernels import discs_between
 from planner.routing.legs import Legs
-from planner.scenario import Scenario
 from planner.vehicle.wind import still_air_costs
 
 Floats = NDArray[np.float64]
@@ -77,27 +77,28 @@ class Layers:
         return float(whole_m[option]), chosen[::-1]
 
 
-def layers_of(scenario: Scenario, around: Surroundings, options: list[Options], discs: Floats) -> Layers:
+def layers_of(
+    ends: tuple[Terminal, Terminal], around: Surroundings, options: list[Options], discs: Floats
+) -> Layers:
     """Estimated costs along a chain of regions."""
     between = []
     for here, there in itertools.pairwise(options):
         minded = discs_between(here.exits, there.entries, discs, 0.0)
-        costs = kernels.transit_costs(here.exits, there.entries, around.radius_m, minded)
+        costs = transit_costs(here.exits, there.entries, around.radius_m, minded)
         costs = _in_wind(costs, here.exits[:, None], there.entries[None], around)
         between.append(costs + there.inner_m[None, :])
-    first = from_start(scenario, around, options[0].entries, discs) + options[0].inner_m
-    return Layers(tuple(options), first, tuple(between), to_end(scenario, around, options[-1].exits, discs))
+    first = from_start(ends[0], around, options[0].entries, discs) + options[0].inner_m
+    return Layers(tuple(options), first, tuple(between), to_end(ends[1], around, options[-1].exits, discs))
 
 
-def from_start(scenario: Scenario, around: Surroundings, entries: Floats, discs: Floats) -> Floats:
+def from_start(start: Terminal, around: Surroundings, entries: Floats, discs: Floats) -> Floats:
     """Estimated costs from the start to poses, (N,)."""
-    costs = _terminal_costs(scenario.start, entries, around, discs)
-    return _in_wind(costs, np.array(scenario.start.position), entries, around)
+    costs = _terminal_costs(start, entries, around, discs)
+    return _in_wind(costs, np.array(start.position), entries, around)
 
 
-def to_end(scenario: Scenario, around: Surroundings, exits: Floats, discs: Floats) -> Floats:
+def to_end(end: Terminal, around: Surroundings, exits: Floats, discs: Floats) -> Floats:
     """Estimated costs from poses to the end, (N,): those of the line flown backwards."""
-    end = scenario.end
     angle_rad = None if end.angle_rad is None else end.angle_rad + math.pi
     turned = exits + np.array([0.0, 0.0, math.pi])
     costs = _terminal_costs(Terminal(end.name, end.position, angle_rad), turned, around, discs)
@@ -112,16 +113,16 @@ def _in_wind(costs_m: Floats, begins: Floats, ends: Floats, around: Surroundings
 def _terminal_costs(terminal: Terminal, entries: Floats, around: Surroundings, discs: Floats) -> Floats:
     east_m, north_m = terminal.position
     if terminal.angle_rad is None:
-        costs: Floats = kernels.point_costs(east_m, north_m, entries, around.radius_m, discs)
+        costs: Floats = point_costs(east_m, north_m, entries, around.radius_m, discs)
         return costs
     pose = np.array([[east_m, north_m, terminal.angle_rad]])
-    from_pose: Floats = kernels.transit_costs(pose, entries, around.radius_m, discs)[0]
+    from_pose: Floats = transit_costs(pose, entries, around.radius_m, discs)[0]
     return from_pose
 
 
 def true_choice(
     layers: Layers,
-    sides: list[tuple[Side, ...]],
+    targets: Sequence[Target],
     legs: Legs,
     solves: int,
     stop: Stop,
@@ -131,6 +132,8 @@ def true_choice(
 
     Parameters
     ----------
+    targets
+        Of each place in the order.
     besides
         What the passes at a place cost besides their flight.
 
@@ -152,7 +155,7 @@ def true_choice(
         true_m = 0.0
         for place, option in enumerate(chosen):
             options = layers.options[place]
-            passes = collect_passes(sides[place], options, option)
+            passes = targets[place].passes(options, option)
             inner_m = legs.inner_m(passes) + besides(place, passes)
             if (place, option) not in done_inner:
                 done_inner.add((place, option))

@@ -10,7 +10,7 @@ the tour takes one of each at the least whole length, exactly over the order for
 3. Costs between options are estimates where discs or zones are in the way: the legs of the tours found are
    flown in earnest, their true costs fed back (``chain``), and the tours compared by true cost.
 4. Passes of one region are parted where others fit between (``split``), and passes added for ground that
-   terrain hides from all of them (``hidden``).
+   stays unseen (``complete``).
 5. A coarse grid of many families may hide the better order, and regions are divided by an estimate that knows
    nothing of the tour: tours with pairs of passes alone instead of sweeps, and with a divided region whole,
    are found as well and kept where they cost less.
@@ -19,31 +19,27 @@ the tour takes one of each at the least whole length, exactly over the order for
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
-from planner.coverage.segments import Neighbourhood
-from planner.coverage.sweeps import Side
-from planner.errors import Finding, InfeasibleError
+from planner.airspace.surroundings import Surroundings
+from planner.coverage.visible import Visible
+from planner.coverage.ways import Options, Target
+from planner.dubins.estimate_kernels import transit_costs
+from planner.errors import InfeasibleError
+from planner.orders_kernels import best_orders
 from planner.progress import Progress, Stop, never, raise_if, silent
-from planner.route import CollectPass, Route
+from planner.route import CollectPass, Route, Terminal
 from planner.routing import tour
-from planner.routing.joint import kernels
 from planner.routing.joint.chain import from_start, layers_of, to_end, true_choice
-from planner.routing.joint.hidden import see_hidden
-from planner.routing.joint.options import Options, Surroundings, hidden_m
 from planner.routing.joint.split import split_passes
-from planner.routing.joint.targets import coarse_options
 from planner.routing.joint.tours import Choice, Tours
-from planner.routing.joint.visible import Visible, surroundings, visible
 from planner.routing.large.order import large_order
 from planner.routing.legs import Legs
-from planner.scenario import Scenario
-from planner.vehicle.aircraft import Aircraft
 from planner.vehicle.wind import still_air_costs
 
 COARSE_STEP_RAD = math.radians(10.0)
@@ -63,177 +59,161 @@ FALSE_M = 5.0
 TRUE_STEPS = ((math.radians(5.0), 0.125), (math.radians(1.25), 0.03))
 
 
+#: The targets with divided regions whole, some merged regions (by index) not divided.
+Whole = Callable[[Collection[int]], Visible]
+#: A tour's passes with others besides, for ground it leaves unseen; the same where nothing is to be added.
+Complete = Callable[[tuple[CollectPass, ...], Legs], tuple[CollectPass, ...]]
+
+
 @dataclass(frozen=True, slots=True)
 class JointRoute:
-    """The chosen route; regions that are not required and cannot be seen; the true cost in metres.
-
-    ``sides`` are the ways to see each region, part of one or visit to one that were chosen from.
-    """
+    """The chosen route, the true cost in metres, and the targets it was chosen among."""
 
     route: Route
-    dropped: tuple[Finding, ...]
     cost_m: float
-    sides: tuple[tuple[Side, ...], ...]
+    seen: Visible
 
 
-def joint_route(
-    scenario: Scenario,
-    aircraft: Aircraft,
-    progress: Progress = silent,
-    stop: Stop = never,
-    enough: Stop = never,
-) -> JointRoute:
-    """Choose the passes of all regions and their order together.
+@dataclass(frozen=True, slots=True)
+class Search:
+    """What one search for a tour goes by.
 
     Parameters
     ----------
+    ends
+        Where the tour starts and ends.
+    complete
+        Adds passes to the tours found.
     stop, enough
         The one cancels; the other ends the search for anything better.
+    """
+
+    ends: tuple[Terminal, Terminal]
+    around: Surroundings
+    legs: Legs
+    seed: int
+    complete: Complete
+    progress: Progress = silent
+    stop: Stop = never
+    enough: Stop = never
+
+
+def joint_route(search: Search, seen: Visible, whole: Whole) -> JointRoute:
+    """Choose the passes of all targets and their order together.
 
     Raises
     ------
     InfeasibleError
-        Where a required region has no pass that keeps the hard constraints.
+        Where a target has no option that keeps the hard constraints.
     CancelledError
         Once ``stop`` says so.
     """
-    around = surroundings(scenario, aircraft)
-    legs = Legs(scenario, aircraft, stop)
-    seen = visible(scenario, around)
-    if not seen.regions:
+    if not seen.targets:
         raise InfeasibleError("swath", "scenario", "no region can be seen", "see the findings", None)
-    progress("routing", 0.0)
-    cost_m, passes = _route(seen, scenario, around, legs, progress, stop, enough)
-    fewer = _fewer(seen)
-    if fewer is not seen and not enough():
-        cost_m, passes = min(
-            (cost_m, passes),
-            _route(fewer, scenario, around, legs, silent, stop, enough),
-            key=lambda found: found[0],
-        )
-    whole: frozenset[int] = frozenset()
+    search.progress("routing", 0.0)
+    cost_m, passes = _route(seen, search)
+    again = replace(search, progress=silent)
+    plain = tuple(target.plain() for target in seen.targets)
+    if any(one is not other for one, other in zip(plain, seen.targets, strict=True)) and not search.enough():
+        fewer = _route(replace(seen, targets=plain), again)
+        cost_m, passes = min((cost_m, passes), fewer, key=lambda found: found[0])
+    kept: frozenset[int] = frozenset()
     for index in seen.divided[:MOST_WHOLE]:
-        trial = visible(scenario, around, whole | {index})
-        if enough() or index in trial.divided:
+        trial = whole(kept | {index})
+        if search.enough() or index in trial.divided:
             continue
-        trial_m, trial_passes = _route(trial, scenario, around, legs, silent, stop, enough)
+        trial_m, trial_passes = _route(trial, again)
         if trial_m < cost_m - 1e-6:
-            cost_m, passes, seen, whole = trial_m, trial_passes, trial, whole | {index}
-    return JointRoute(Route(passes), seen.dropped, cost_m, seen.sides)
+            cost_m, passes, seen, kept = trial_m, trial_passes, trial, kept | {index}
+    return JointRoute(Route(passes), cost_m, seen)
 
 
-def _fewer(seen: Visible) -> Visible:
-    """The same with pairs of passes alone where there are sweeps too; ``seen`` where there are none."""
-    sides = tuple(
-        tuple(side for side in of_region if isinstance(side, Neighbourhood)) or of_region
-        for of_region in seen.sides
-    )
-    return seen if sides == seen.sides else replace(seen, sides=sides)
-
-
-def _route(
-    seen: Visible,
-    scenario: Scenario,
-    around: Surroundings,
-    legs: Legs,
-    progress: Progress,
-    stop: Stop,
-    enough: Stop,
-) -> tuple[float, tuple[CollectPass, ...]]:
-    """The passes of all regions, so divided, and what they cost in truth."""
-    exact = len(seen.regions) <= EXACT_ORDER_UP_TO
+def _route(seen: Visible, search: Search) -> tuple[float, tuple[CollectPass, ...]]:
+    """The passes of all targets, and what they cost in truth."""
+    exact = len(seen.targets) <= EXACT_ORDER_UP_TO
     step_rad, etas = (COARSE_STEP_RAD, COARSE_ETAS) if exact else (LARGE_STEP_RAD, LARGE_ETAS)
     angles_rad = np.arange(-math.pi, math.pi - 1e-9, step_rad, dtype=np.float64)
     coarse = []
-    for region, of_region in zip(seen.regions, seen.sides, strict=True):
-        raise_if(stop)
-        coarse.append(coarse_options(region, of_region, angles_rad, etas, around))
-    tours = Tours(scenario, around, seen.regions, seen.sides)
-    candidates = _orders(tours, coarse, progress, stop, enough)
+    for target in seen.targets:
+        raise_if(search.stop)
+        coarse.append(target.coarse(angles_rad, etas))
+    tours = Tours(search.ends, search.around, seen.targets)
+    candidates = _orders(tours, coarse, search)
     refined = []
     for index, choice in enumerate(candidates):
-        raise_if(stop)
-        progress("routing", 0.4 + 0.3 * index / len(candidates))
+        raise_if(search.stop)
+        search.progress("routing", 0.4 + 0.3 * index / len(candidates))
         refined.append(tours.refined(choice))
-    cost_m, passes = _truest(tours, refined, legs, progress, stop, enough)
-    cost_m, passes = split_passes(cost_m, passes, legs, stop)
-    if scenario.terrain is not None and scenario.method.coverage != "li2018":
-        more = see_hidden(scenario, around, passes, legs, stop)
-        if more is not passes:
-            passes, cost_m = more, legs.tour_m(more)
-    return cost_m, passes
+    cost_m, passes = _truest(tours, refined, search)
+    cost_m, passes = split_passes(cost_m, passes, search.legs, search.stop)
+    more = search.complete(passes, search.legs)
+    return (cost_m, passes) if more is passes else (search.legs.tour_m(more), more)
 
 
-def _truest(
-    tours: Tours, choices: list[Choice], legs: Legs, progress: Progress, stop: Stop, enough: Stop
-) -> tuple[float, tuple[CollectPass, ...]]:
+def _truest(tours: Tours, choices: list[Choice], search: Search) -> tuple[float, tuple[CollectPass, ...]]:
     """The tour that truly costs least, and its passes.
 
     Where flying a tour costs more than was thought, options round its own are tried with true costs. Ground
     left in shadow counts as in the options, but not in the cost given back.
     """
+    legs, stop = search.legs, search.stop
     best_m, best = math.inf, tours.passes(choices[0])
     choices = sorted(choices, key=lambda choice: choice.cost_m)[:TRUE_TOURS]
     for index, choice in enumerate(choices):
         raise_if(stop)
-        progress("routing", 0.7 + 0.3 * index / len(choices))
+        search.progress("routing", 0.7 + 0.3 * index / len(choices))
         passes = tours.passes(choice)
         true_m = legs.tour_m(passes) + tours.shadow_m(choice)
         if true_m < best_m:
             best_m, best = true_m, passes
-        if true_m - choice.cost_m <= FALSE_M or choice.cost_m >= best_m or enough():
+        if true_m - choice.cost_m <= FALSE_M or choice.cost_m >= best_m or search.enough():
             continue
         for step_rad, step_eta in TRUE_STEPS:
-            layers, of_places = tours.layers(choice, step_rad, step_eta)
-            besides = partial(_besides, of_places, tours.around)
-            found_m, picked = true_choice(layers, of_places, legs, TRUE_SOLVES, stop, besides)
+            layers, targets = tours.layers(choice, step_rad, step_eta), tours.visited(choice)
+            besides = partial(_besides, targets)
+            found_m, picked = true_choice(layers, targets, legs, TRUE_SOLVES, stop, besides)
             if not found_m < true_m - 1e-6:
                 continue
             true_m = found_m
-            choice = choice.picked(layers.options, picked, found_m)
+            choice = Choice.of(choice.order, layers.options, picked, found_m)
             passes = tours.passes(choice)
             if true_m < best_m:
                 best_m, best = true_m, passes
     return legs.tour_m(best), best
 
 
-def _besides(
-    of_places: list[tuple[Side, ...]], around: Surroundings, place: int, passes: Sequence[CollectPass]
-) -> float:
-    return hidden_m(of_places[place][0], passes, around)
+def _besides(targets: Sequence[Target], place: int, passes: Sequence[CollectPass]) -> float:
+    return targets[place].hidden_m(passes)
 
 
-def _orders(
-    tours: Tours, options: list[Options], progress: Progress, stop: Stop, enough: Stop
-) -> list[Choice]:
+def _orders(tours: Tours, options: list[Options], search: Search) -> list[Choice]:
     """Candidate tours over the coarse options, cheapest first."""
-    scenario, around = tours.scenario, tours.around
+    (start, end), around = tours.ends, tours.around
     offsets = np.concatenate([[0], np.cumsum([len(o.inner_m) for o in options])]).astype(np.int64)
     entries, exits, inner_m = (
         np.concatenate([getattr(o, name) for o in options]) for name in ("entries", "exits", "inner_m")
     )
-    first = from_start(scenario, around, entries, around.discs) + inner_m
-    last = to_end(scenario, around, exits, around.discs)
+    first = from_start(start, around, entries, around.discs) + inner_m
+    last = to_end(end, around, exits, around.discs)
     if len(options) <= EXACT_ORDER_UP_TO:
-        costs = kernels.transit_costs(exits, entries, around.radius_m, around.discs)
+        costs = transit_costs(exits, entries, around.radius_m, around.discs)
         wind = (around.airspeed_m_s, around.wind)
         between = still_air_costs(costs, exits[:, None], entries[None], *wind) + inner_m[None, :]
-        totals, orders = kernels.best_orders(first, between, last, offsets)
+        totals, orders = best_orders(first, between, last, offsets)
         return [
             _choice(options, offsets, chosen, cost)
             for cost, chosen in sorted(zip(totals.tolist(), orders.tolist(), strict=True))
             if math.isfinite(cost)
         ]
-    centroids = np.array([region.centroid for region in tours.regions])
+    centroids = np.array([target.region.centroid for target in tours.targets])
     order = np.array(
-        tour.order(centroids, scenario.start.position, scenario.end.position, "exact", scenario.seed),
+        tour.order(centroids, start.position, end.position, "exact", search.seed),
         dtype=np.int64,
     )
     ends = (first, last, around, around.discs)
-    cost, better = large_order(
-        [order, order[::-1].copy()], centroids, options, *ends, scenario.seed, progress, stop, enough
-    )
-    layers = layers_of(scenario, around, [options[c] for c in better], around.discs)
+    controls = (search.seed, search.progress, search.stop, search.enough)
+    _, better = large_order([order, order[::-1].copy()], centroids, options, *ends, *controls)
+    layers = layers_of(tours.ends, around, [options[c] for c in better], around.discs)
     cost, picked = layers.best()
     chosen = [int(offsets[c]) + option for c, option in zip(better, picked, strict=True)]
     return [_choice(options, offsets, chosen, cost)]

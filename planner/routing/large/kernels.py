@@ -17,7 +17,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from planner.routing.joint.kernels import transit_costs
+from planner.dubins.estimate_kernels import transit_costs
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]

@@ -7,8 +7,9 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from planner.airspace.surroundings import Surroundings
+from planner.coverage.ways import Options
 from planner.progress import Progress, Stop, raise_if
-from planner.routing.joint.options import Options, Surroundings
 from planner.routing.large import kernels
 from planner.vehicle.wind import CIRCLE_RAD, still_air_factor
 

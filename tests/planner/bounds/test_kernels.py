@@ -17,8 +17,8 @@ from planner.bounds import cells_kernels as cells_of
 from planner.bounds import lines_kernels as lines
 from planner.bounds import tours_kernels as tours
 from planner.bounds.nodes import divided, nodes, slopes_m
-from planner.coverage.classify import spans_at
-from planner.coverage.segments import Neighbourhood, segment
+from planner.coverage.strips.classify import spans_at
+from planner.coverage.strips.segments import Neighbourhood, segment
 from planner.dubins.kernels import dubins_length
 from planner.errors import InfeasibleError
 from planner.sensors.sar import SarSensor

@@ -13,23 +13,23 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely.geometry import Polygon
 
-from planner.bounds import lower as bounds
+from planner.airspace.surroundings import Surroundings
 from planner.bounds.nodes import nodes, terminal
 from planner.bounds.search import exact_bound_m
 from planner.bounds.trees import trees_bound_m
-from planner.coverage.segments import Neighbourhood
-from planner.coverage.sweeps import sweeps
+from planner.coverage.strips.options import collect_passes, make_options
+from planner.coverage.strips.segments import Neighbourhood
+from planner.coverage.strips.sweeps import sweeps
+from planner.dubins.estimate_kernels import point_costs, transit_costs
 from planner.dubins.kernels import dubins_length
 from planner.geojson import read_plan, read_scenario, write_plan
 from planner.pipeline import make_plan, with_bound
 from planner.route import Pose
-from planner.routing.joint import kernels as joint_kernels
-from planner.routing.joint.options import Surroundings, collect_passes, make_options
-from planner.routing.joint.visible import sides_of, surroundings
 from planner.sensors.sar import SarSensor
 from tests.planner.coverage.shapes import HEIGHT_M, as_merged, paper_sensor
-from tests.planner.coverage.test_sweeps import stars
+from tests.planner.coverage.strips.test_sweeps import stars
 from tests.planner.scenarios import case, feature, small, square
+from tests.planner.stages import lower_bound_m, sides_of, surroundings
 
 RADIUS_M = 100.0
 NO_DISCS = np.empty((0, 3))
@@ -59,9 +59,8 @@ def test_the_bound_is_below_brute_force(seed: int) -> None:
     document = small()
     document["features"] = [f for f in document["features"] if f["properties"]["role"] != "roi"] + more
     scenario = read_scenario(document)
-    aircraft = scenario.aircraft[0]
-    sides = sides_of(scenario, aircraft)
-    around = surroundings(scenario, aircraft)
+    sides = sides_of(scenario)
+    around = surroundings(scenario)
     angles = np.arange(8) * math.pi / 4.0
     options = [make_options(of_region, angles, np.array([0.0, 0.5, 1.0]), around) for of_region in sides]
     best = math.inf
@@ -73,17 +72,17 @@ def test_the_bound_is_below_brute_force(seed: int) -> None:
             assert previous is not None
             length = np.hypot(*(o.exits - o.entries)[:, :2].T)
             if costs is None:
-                legs = joint_kernels.point_costs(east_m, north_m, o.entries, around.radius_m, NO_DISCS)
+                legs = point_costs(east_m, north_m, o.entries, around.radius_m, NO_DISCS)
             else:
-                table = joint_kernels.transit_costs(previous.exits, o.entries, around.radius_m, NO_DISCS)
+                table = transit_costs(previous.exits, o.entries, around.radius_m, NO_DISCS)
                 legs = (costs[:, None] + table).min(axis=0)
             costs, previous = legs + length, o
         assert previous is not None
         turned = previous.exits + np.array([0.0, 0.0, math.pi])
-        back = joint_kernels.point_costs(east_m, north_m, turned, around.radius_m, NO_DISCS)
+        back = point_costs(east_m, north_m, turned, around.radius_m, NO_DISCS)
         best = min(best, float((costs + back).min()))
     assert all(isinstance(side, Neighbourhood) and side.turns == 0 for of in sides for side in of)
-    exact = bounds.lower_bound_m(scenario, aircraft, sides, 1.5 * best, effort=100_000)
+    exact = lower_bound_m(scenario, sides, 1.5 * best, effort=100_000)
     assert 0.85 * best < exact <= best + 1e-6
     passes = [node for k, of in enumerate(sides) for node in nodes(of, 0.0, k)]
     ends = terminal(scenario.start), terminal(scenario.end)
@@ -148,9 +147,9 @@ def test_a_bound_that_aims_above_plans_stays_below_them(number: int) -> None:
     scenario = read_scenario(case(number))
     plan = make_plan(scenario)
     aircraft = scenario.aircraft[0]
-    sides = sides_of(scenario, aircraft)
+    sides = sides_of(scenario)
     far_m = 2.0 * plan.metrics.length_m
-    exact = bounds.lower_bound_m(scenario, aircraft, sides, far_m, effort=300_000)
+    exact = lower_bound_m(scenario, sides, far_m, effort=300_000)
     assert 0.7 * plan.metrics.length_m < exact < plan.metrics.length_m
     passes = [node for k, of in enumerate(sides) for node in nodes(of, aircraft.settle_m, k)]
     ends = terminal(scenario.start), terminal(scenario.end)

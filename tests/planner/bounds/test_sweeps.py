@@ -17,11 +17,11 @@ from shapely.geometry import Polygon
 from planner.bounds import sweeps_kernels as kernels
 from planner.bounds.nodes import nodes
 from planner.bounds.sweeps import MOST_ORDERED, sweeps_bound_m
-from planner.coverage.sweeps import Sweep, lanes_at, sweeps
+from planner.coverage.strips.sweeps import Sweep, lanes_at, sweeps
 from planner.dubins.kernels import dubins_length
 from planner.route import Look
 from tests.planner.coverage.shapes import HEIGHT_M, as_merged, box, paper_sensor
-from tests.planner.coverage.test_sweeps import stars
+from tests.planner.coverage.strips.test_sweeps import stars
 
 Floats = NDArray[np.float64]
 

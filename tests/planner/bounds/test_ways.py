@@ -8,12 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from planner.bounds.ways import plan_bound_m
 from planner.errors import InfeasibleError
 from planner.geojson import read_scenario
 from planner.pipeline import make_plan, with_bound
-from planner.tasks.wind import in_wind
 from tests.planner.scenarios import feature, small, square
+from tests.planner.stages import plan_bound_m
 
 METHODS: list[dict[str, str]] = [
     {},
@@ -63,8 +62,7 @@ def test_no_methods_plan_is_below_any_methods_bound(
         lengths.append(plan.metrics.length_m)
         assert plan.metrics.lower_bound_m is not None
         bounds.append(plan.metrics.lower_bound_m)
-    flown = in_wind(scenario)
-    bounds.append(plan_bound_m(flown, flown.aircraft[0], 1.3 * min(lengths)))
+    bounds.append(plan_bound_m(scenario, 1.3 * min(lengths)))
     assert 0.6 * min(lengths) < max(bounds) <= min(lengths) + 1e-6
 
 
@@ -96,7 +94,7 @@ def test_with_nothing_known_of_its_regions_a_plan_is_as_long_as_straight_on() ->
     end = feature("end", "end", "Point", [0.03, 0.0])
     scenario = read_scenario(small(end))
     names = [region.name for region in scenario.regions]
-    bound = plan_bound_m(scenario, scenario.aircraft[0], 50_000.0, names)
+    bound = plan_bound_m(scenario, 50_000.0, names)
     assert bound == pytest.approx(np.hypot(*np.subtract(scenario.start.position, scenario.end.position)))
     apart = replace(scenario, start=scenario.end)
-    assert plan_bound_m(apart, scenario.aircraft[0], 50_000.0, names) == 0.0
+    assert plan_bound_m(apart, 50_000.0, names) == 0.0

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from shapely.geometry import LineString, Polygon
 
 from planner.coverage.decompose import OVERLAP_M, cuts, divide, is_plain, legs, merged
-from tests.planner.coverage.test_sweeps import stars
+from tests.planner.coverage.strips.test_sweeps import stars
 
 L_SHAPE = Polygon([(0, 0), (3000, 0), (3000, 600), (600, 600), (600, 2500), (0, 2500)])
 

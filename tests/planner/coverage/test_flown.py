@@ -10,11 +10,12 @@ import numpy as np
 import pytest
 from shapely.geometry import Polygon
 
-from planner.coverage.flown import FlownCoverage, TrackSample, flown_coverage
+from planner.coverage.flown import FlownCoverage, TrackSample
 from planner.geojson import read_scenario
 from planner.pipeline import make_plan
 from planner.plan import Plan
 from planner.scenario import Scenario
+from planner.tasks.flown import flown_coverage
 from tests.planner.scenarios import case
 
 

@@ -11,6 +11,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely.geometry import LineString, Point
 
+from planner.airspace.prices import INSIDE_FACTOR
+from planner.airspace.zones import TRANSIT_MARGIN_M
 from planner.check import flown_s
 from planner.dubins.words import shortest_between
 from planner.errors import InfeasibleError
@@ -18,11 +20,11 @@ from planner.geojson import read_scenario
 from planner.progress import never
 from planner.route import Anchor, CollectPass
 from planner.routing import legs as module
-from planner.routing.joint.options import INSIDE_FACTOR
-from planner.routing.legs import TRANSIT_MARGIN_M, Legs, anchor, leaves
+from planner.routing.legs import Legs, anchor, leaves
 from planner.scenario import Scenario
 from planner.transit.tangent import connect
 from tests.planner.scenarios import feature, small
+from tests.planner.stages import legs_of as legs_in
 
 metre = st.floats(-1500.0, 1500.0)
 anchors = st.builds(Anchor, metre, metre, st.none() | st.floats(-3.0, 3.0))
@@ -56,7 +58,7 @@ SETTLED = open_ground(
 
 def legs_of(scenario: Scenario) -> Legs:
     """Legs of the scenario's first aircraft."""
-    return Legs(scenario, scenario.aircraft[0], never)
+    return legs_in(scenario, never)
 
 
 def radius_of(scenario: Scenario) -> float:
@@ -189,7 +191,7 @@ def test_in_a_wind_time_counts(start: Anchor, goal: Anchor, from_deg: float) -> 
         return
     scenario = open_ground(wind={"speed_m_s": 8.0, "from_deg": from_deg})
     aircraft = scenario.aircraft[0].in_wind(8.0)
-    legs = Legs(scenario, aircraft, never)
+    legs = legs_in(scenario, never)
     zones = module.keep_out(scenario.airspace, scenario.level, TRANSIT_MARGIN_M)
     path = connect(start, goal, zones, aircraft.planned_turn_radius_m, never)
     seconds = flown_s(path.sample(0.5)[:, :2], aircraft.airspeed_m_s, scenario.wind)
@@ -199,7 +201,7 @@ def test_in_a_wind_time_counts(start: Anchor, goal: Anchor, from_deg: float) -> 
 def test_a_pass_along_the_wind_costs_less_than_one_against_it() -> None:
     """Downwind at V + W, upwind at V - W: metres through the air for the same line."""
     scenario = open_ground(wind={"speed_m_s": 5.0, "from_deg": 270.0})
-    legs = Legs(scenario, scenario.aircraft[0].in_wind(5.0), never)
+    legs = legs_in(scenario, never)
     east, west = flown((0.0, 0.0), 0.0, 600.0), flown((600.0, 0.0), math.pi, 600.0)
     assert legs.pass_m(east) == pytest.approx(600.0 * 20.0 / 25.0, rel=1e-3)
     assert legs.pass_m(west) == pytest.approx(600.0 * 20.0 / 15.0, rel=1e-3)

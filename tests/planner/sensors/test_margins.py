@@ -11,14 +11,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from planner.check import footprint
-from planner.coverage.flown import TrackSample, flown_coverage
-from planner.coverage.neighbourhood import check_sensor
+from planner.coverage.flown import TrackSample
+from planner.coverage.strips.neighbourhood import check_sensor
 from planner.errors import InfeasibleError, ScenarioError
 from planner.geojson import read_scenario
 from planner.pipeline import make_plan
 from planner.plan import Collect, Plan
 from planner.scenario import Scenario
 from planner.sensors.sar import SarSensor
+from planner.tasks.flown import flown_coverage
 from tests.planner.scenarios import case, feature, small, square
 
 PLAIN = SarSensor("sar", math.radians(45.0), math.radians(30.0), math.radians(10.0))

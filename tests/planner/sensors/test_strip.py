@@ -25,7 +25,7 @@ from planner.sensors import view_kernels
 from planner.sensors.sar import SarSensor
 from planner.sensors.strip import aperture_m, lead_m, strip_on
 from planner.sensors.view import seen_on_flat, seen_on_terrain
-from planner.tasks.wind import in_wind
+from planner.tasks.setting import Setting
 from planner.vehicle.wind import crab_rad
 from tests.planner.scenarios import case, feature, small, square
 from tests.planner.terrains import grid, raster
@@ -223,9 +223,9 @@ def test_stabilised_and_spotlight_antennas_do_not_crab() -> None:
 
 def test_sensors_take_on_the_wind() -> None:
     """The beam of a fixed antenna turns by the crab: forward on one side, backward on the other."""
-    scenario = in_wind(in_crosswind(20.0))
+    scenario = in_crosswind(20.0)
     assert scenario.wind != Wind()
-    (sensor,) = scenario.sensors
+    (sensor,) = Setting.of(scenario).suite.sensors
     course = np.linspace(-3.0, 3.0, 7)
     crab = crab_rad(course, scenario.aircraft[0].airspeed_m_s, scenario.wind)
     assert sensor.yaw_rad(course, "right") == pytest.approx(crab)

@@ -8,6 +8,7 @@ import random
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path as FilePath
+from typing import Any
 
 import numpy as np
 import pytest
@@ -32,6 +33,11 @@ EXAMPLES = FilePath(__file__).parents[3] / "examples"
 @pytest.fixture(scope="module")
 def case():
     return read_scenario(json.loads((EXAMPLES / "sar-case-1.geojson").read_text()))
+
+
+def asked_of(scenario: Scenario) -> dict[str, Any]:
+    """What is told of a scenario."""
+    return {"threats": scenario.threats, "objective": scenario.objective, "height_m": scenario.height_m}
 
 
 def empty(**changes):
@@ -73,7 +79,7 @@ def test_random_poses_among_threats(case, near):
     for _ in range(100):
         start = random_pose(rng, case)
         goal = random_pose(rng, case, start.position if near else None)
-        path, found = connect(start, goal, scenario=case, keep_out=zones, radius_m=RADIUS_M)
+        path, found = connect(start, goal, **asked_of(case), keep_out=zones, radius_m=RADIUS_M)
         assert_flyable(start, goal, path)
         line = path.sample(5.0)[:, :2]
         assert metres_inside(line, case.threats) == 0.0
@@ -90,7 +96,7 @@ def test_ends_without_direction(case, free_end):
         start, goal = random_pose(rng, case), random_pose(rng, case)
         start = Anchor(*start.position) if free_end != "goal" else start
         goal = Anchor(*goal.position) if free_end != "start" else goal
-        path, _ = connect(start, goal, scenario=case, keep_out=zones, radius_m=RADIUS_M)
+        path, _ = connect(start, goal, **asked_of(case), keep_out=zones, radius_m=RADIUS_M)
         assert_flyable(start, goal, path)
         assert metres_inside(path.sample(5.0)[:, :2], case.threats) == 0.0
 
@@ -101,7 +107,7 @@ def test_ends_without_direction(case, free_end):
 def test_short_and_turning_back(aside_m, ahead_m, turned_rad):
     """Antiparallel passes, ends abreast of each other and poses nearer than a leg are joined."""
     start, goal = Anchor(0.0, 0.0, 0.0), Anchor(ahead_m, aside_m, turned_rad)
-    path, _ = connect(start, goal, scenario=empty(), keep_out=KeepOut(), radius_m=RADIUS_M)
+    path, _ = connect(start, goal, **asked_of(empty()), keep_out=KeepOut(), radius_m=RADIUS_M)
     assert_flyable(start, goal, path)
     # a turn at 24° per 100 m leg has a radius of 236 m: two full circles and the way are room enough
     assert path.length_m < 2.0 * 2.0 * math.pi * 236.0 + 2.0 * math.dist(start.position, goal.position)
@@ -113,7 +119,7 @@ def test_straight_ahead_stays_straight():
         path, _ = connect(
             Anchor(0.0, 0.0, 0.0),
             Anchor(apart_m, 0.0, 0.0),
-            scenario=empty(),
+            **asked_of(empty()),
             keep_out=KeepOut(),
             radius_m=RADIUS_M,
         )
@@ -124,7 +130,7 @@ def test_straight_ahead_stays_straight():
 def test_legs_grow_with_the_turn_radius(radius_m):
     """Wide turns get longer legs, so that their arcs fit between the corners."""
     start, goal = Anchor(0.0, 0.0, 0.5), Anchor(9000.0, 4000.0, 2.5)
-    path, found = connect(start, goal, scenario=empty(), keep_out=KeepOut(), radius_m=radius_m)
+    path, found = connect(start, goal, **asked_of(empty()), keep_out=KeepOut(), radius_m=radius_m)
     assert_flyable(start, goal, path, radius_m)
     assert path.length_m == pytest.approx(found.length_m, rel=0.03)
 
@@ -139,7 +145,7 @@ def test_hard_zones_are_never_entered():
     for _ in range(40):
         start = Anchor(rng.uniform(-900.0, 1300.0), rng.uniform(-2300.0, 1500.0), rng.uniform(-3.0, 3.0))
         goal = Anchor(rng.uniform(2800.0, 5300.0), rng.uniform(-2300.0, 1000.0), rng.uniform(-3.0, 3.0))
-        path, _ = connect(start, goal, scenario=empty(area=area), keep_out=zones, radius_m=RADIUS_M)
+        path, _ = connect(start, goal, **asked_of(empty(area=area)), keep_out=zones, radius_m=RADIUS_M)
         assert_flyable(start, goal, path)
         line = LineString(path.sample(2.0)[:, :2])
         assert not line.intersects(forbidden)
@@ -155,7 +161,7 @@ def test_a_soft_threat_without_a_way_round_is_crossed():
     path, _ = connect(
         start,
         goal,
-        scenario=scenario,
+        **asked_of(scenario),
         keep_out=keep_out(scenario.airspace, scenario.level),
         radius_m=RADIUS_M,
     )
@@ -163,7 +169,9 @@ def test_a_soft_threat_without_a_way_round_is_crossed():
     assert metres_inside(path.sample(5.0)[:, :2], belt) > 1000.0
     hard = empty(area=area, threats=tuple(replace(t, hard=True) for t in belt))
     with pytest.raises(InfeasibleError) as caught:
-        connect(start, goal, scenario=hard, keep_out=keep_out(hard.airspace, hard.level), radius_m=RADIUS_M)
+        connect(
+            start, goal, **asked_of(hard), keep_out=keep_out(hard.airspace, hard.level), radius_m=RADIUS_M
+        )
     assert caught.value.constraint in ("hard-zone", "area")
 
 
@@ -175,7 +183,7 @@ def test_threats_of_no_weight_do_not_bend_the_line():
     path, _ = connect(
         start,
         goal,
-        scenario=scenario,
+        **asked_of(scenario),
         keep_out=keep_out(scenario.airspace, scenario.level),
         radius_m=RADIUS_M,
     )
@@ -191,7 +199,7 @@ def test_a_collect_ending_inside_a_threat_leaves_it():
     path, _ = connect(
         start,
         goal,
-        scenario=scenario,
+        **asked_of(scenario),
         keep_out=keep_out(scenario.airspace, scenario.level),
         radius_m=RADIUS_M,
     )
@@ -205,9 +213,9 @@ def test_the_same_request_gives_the_same_line(case):
     rng = random.Random(8)
     start, goal = random_pose(rng, case), random_pose(rng, case)
     lines = [
-        connect(start, goal, scenario=case, keep_out=keep_out(case.airspace, case.level), radius_m=RADIUS_M)[
-            0
-        ].sample(5.0)
+        connect(
+            start, goal, **asked_of(case), keep_out=keep_out(case.airspace, case.level), radius_m=RADIUS_M
+        )[0].sample(5.0)
         for _ in range(2)
     ]
     assert np.array_equal(lines[0], lines[1])
@@ -219,7 +227,7 @@ def test_stop_is_obeyed(case):
         connect(
             Anchor(0.0, 0.0, 0.0),
             Anchor(900.0, 900.0, 1.0),
-            scenario=case,
+            **asked_of(case),
             keep_out=keep_out(case.airspace, case.level),
             radius_m=RADIUS_M,
             stop=lambda: True,

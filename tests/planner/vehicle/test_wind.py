@@ -23,7 +23,7 @@ from planner.pipeline import make_plan
 from planner.plan import Plan
 from planner.route import Pose
 from planner.scenario import Scenario
-from planner.tasks.wind import in_wind
+from planner.tasks.setting import Setting
 from planner.vehicle.aircraft import Aircraft
 from planner.vehicle.wind import crab_rad, duration_s, ground_speed_m_s, still_air_costs
 from tests.planner.scenarios import case, small
@@ -168,9 +168,11 @@ def test_wind_as_fast_as_the_aircraft_is_infeasible() -> None:
 
 
 def test_still_air_changes_nothing() -> None:
-    """Without wind the scenario, the lengths and the times are what they were."""
+    """Without wind the aircraft, the sensors, the lengths and the times are what they were."""
     scenario = read_scenario(small())
-    assert in_wind(scenario) is scenario
+    setting = Setting.of(scenario)
+    assert setting.model.aircraft == scenario.aircraft[0]
+    assert setting.suite.sensors == scenario.sensors
     lengths_m = np.array([[120.0]])
     places = np.zeros((1, 1, 3))
     assert still_air_costs(lengths_m, places, places + 100.0, 20.0, Wind()) is lengths_m

@@ -8,10 +8,10 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from planner.coverage.strips.choices import choices
+from planner.coverage.strips.room import Room
 from planner.route import Anchor
 from planner.routing.greedy.approach import best_approach, turning_rad
-from planner.routing.greedy.choices import choices
-from planner.routing.greedy.room import Room
 from tests.planner.coverage.shapes import HEIGHT_M, as_merged, box, paper_sensor
 
 OPEN = Room(None, shapely.MultiPolygon(), shapely.MultiPolygon(), 100.0, 0.0)

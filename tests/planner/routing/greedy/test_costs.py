@@ -7,14 +7,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from planner.routing.greedy.costs import (
+from planner.coverage.intervals import (
     collection_length_m,
     duty_cycle,
     operating_function,
     operating_intervals,
-    path_length_ratio,
-    weighted_cost,
 )
+from planner.routing.greedy.costs import path_length_ratio, weighted_cost
 from planner.wishes import Objective
 
 INTERVALS = st.lists(

@@ -13,14 +13,13 @@ from shapely.geometry import LineString, Point
 
 from planner.airspace.threats import metres_inside
 from planner.airspace.values import NoFlyZone, Threat
-from planner.coverage.zigzag import zigzag
 from planner.errors import CancelledError, InfeasibleError
 from planner.route import CollectPass
-from planner.routing.greedy.route import greedy, li2018_route
 from planner.routing.tour import order, tour_length_m
 from planner.scenario import Scenario
 from planner.wishes import Region
 from tests.planner.coverage.shapes import box, paper_sensor, polygons, sample, unseen_m2
+from tests.planner.stages import greedy, li2018_route, zigzag
 
 
 def flown_m(scenario: Scenario, passes: tuple[CollectPass, ...]) -> float:

@@ -8,10 +8,10 @@ import shapely
 
 from planner.airspace.threats import line_risk
 from planner.airspace.values import Threat
+from planner.coverage.strips.choices import Choices, choices
+from planner.coverage.strips.room import Room
 from planner.route import Anchor, CollectPass
-from planner.routing.greedy.choices import Choices, choices
 from planner.routing.greedy.offsets import best_passes
-from planner.routing.greedy.room import Room
 from planner.wishes import Objective
 from tests.planner.coverage.shapes import HEIGHT_M, as_merged, box, paper_sensor, unseen_m2
 

@@ -11,6 +11,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from planner.coverage.strips.options import Options, collect_passes, make_options
+from planner.coverage.strips.targets import StripTarget
 from planner.dubins.words import shortest_between
 from planner.errors import CancelledError
 from planner.geojson import read_scenario
@@ -25,18 +27,18 @@ from planner.routing.joint.chain import (
     to_end,
     true_choice,
 )
-from planner.routing.joint.options import Options, collect_passes, make_options
-from planner.routing.joint.visible import sides_of, surroundings
 from planner.routing.legs import Legs
 from tests.planner.scenarios import feature, small, square
+from tests.planner.stages import ends_of, sides_of, surroundings
+from tests.planner.stages import legs_of as legs_in
 
 HEADINGS_RAD = np.arange(-math.pi, math.pi - 1e-9, math.radians(45.0))
 ETAS = np.array([0.0, 0.5, 1.0])
 
 C = feature("C", "roi", "Polygon", square(0.012, 0.03, 0.003))
 SCENARIO = read_scenario(small(C))
-AROUND = surroundings(SCENARIO, SCENARIO.aircraft[0])
-SIDES = sides_of(SCENARIO, SCENARIO.aircraft[0])
+AROUND = surroundings(SCENARIO)
+SIDES = sides_of(SCENARIO)
 OPTIONS = [options for of in SIDES if (options := make_options(of, HEADINGS_RAD, ETAS, AROUND)) is not None]
 
 
@@ -88,12 +90,19 @@ class Table(Legs):
         return float(self._truth.options[place].inner_m[option])
 
 
-@pytest.fixture
-def without_passes(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Options at random see nothing: in the place of passes their place and number, the sides being that."""
-    monkeypatch.setattr(
-        "planner.routing.joint.chain.collect_passes", lambda place, _, option: (place, option)
-    )
+class Numbered:
+    """A target at a place of options at random, which see nothing: for passes, its place and their number."""
+
+    def __init__(self, place: int) -> None:
+        self._place = place
+
+    def passes(self, _: object, option: int) -> tuple[int, int]:
+        """Place and number."""
+        return self._place, option
+
+
+def numbered(count: int) -> list[Numbered]:
+    return [Numbered(place) for place in range(count)]
 
 
 def bare(entries: np.ndarray, inner_m: np.ndarray | None = None) -> Options:
@@ -119,7 +128,7 @@ def test_best_is_what_trying_every_way_finds(seed: int, sizes: list[int], blocke
 def test_best_of_three_regions_with_eight_headings_and_three_offsets() -> None:
     """On real options, with plain Dubins lengths, no other choice in this order is cheaper."""
     assert [len(options.inner_m) for options in OPTIONS] == [24, 24, 24]
-    layers = layers_of(SCENARIO, AROUND, OPTIONS, AROUND.discs)
+    layers = layers_of(ends_of(SCENARIO), AROUND, OPTIONS, AROUND.discs)
     between = [lengths(a.exits, b.entries) + b.inner_m for a, b in itertools.pairwise(OPTIONS)]
     first = lengths(None, OPTIONS[0].entries)[0] + OPTIONS[0].inner_m
     every = all_ways(first, between, lengths(OPTIONS[-1].exits, None)[:, 0])
@@ -152,11 +161,10 @@ def test_ends_with_a_direction_are_flown_backwards_to() -> None:
     assert end.angle_rad is not None
     out = [shortest_between(start, Anchor(*row), radius_m).length_m for row in poses.tolist()]
     home = [shortest_between(Anchor(*row), end, radius_m).length_m for row in poses.tolist()]
-    np.testing.assert_allclose(from_start(scenario, AROUND, poses, none), out, atol=1e-6)
-    np.testing.assert_allclose(to_end(scenario, AROUND, poses, none), home, atol=1e-6)
+    np.testing.assert_allclose(from_start(scenario.start, AROUND, poses, none), out, atol=1e-6)
+    np.testing.assert_allclose(to_end(scenario.end, AROUND, poses, none), home, atol=1e-6)
 
 
-@pytest.mark.usefixtures("without_passes")
 @pytest.mark.parametrize("seed", range(12))
 def test_true_costs_lead_to_the_true_best(seed: int) -> None:
     """Where estimates are too low, never too high, the choice is the brute-force best by true costs.
@@ -176,7 +184,7 @@ def test_true_costs_lead_to_the_true_best(seed: int) -> None:
     layers = Layers(truth.options, low[0], (low[1], low[2]), low[3])
     kept = [leg.copy() for leg in low]
     every = all_ways(truth.first, list(truth.between), truth.last)
-    found_m, chosen = true_choice(layers, range(3), Table(truth.options, truth), 5000, never)
+    found_m, chosen = true_choice(layers, numbered(3), Table(truth.options, truth), 5000, never)
     assert every.min() - 1e-9 <= found_m <= every.min() + TRUE_WITHIN_M
     assert every[tuple(chosen)] == pytest.approx(found_m)
     for before, after in zip(kept, low, strict=True):
@@ -188,7 +196,6 @@ def all_of(layers: Layers) -> list[np.ndarray]:
     return [layers.first, *layers.between, layers.last]
 
 
-@pytest.mark.usefixtures("without_passes")
 @pytest.mark.parametrize("solves", [1, 2, 5, 40])
 def test_more_solves_are_never_worse(solves: int) -> None:
     """What is returned is the true cost of what is chosen, and no more than one solve alone finds."""
@@ -198,14 +205,13 @@ def test_more_solves_are_never_worse(solves: int) -> None:
     layers = Layers(truth.options, low[0], (low[1], low[2]), low[3])
     every = all_ways(truth.first, list(truth.between), truth.last)
     legs = Table(truth.options, truth)
-    one_m, _ = true_choice(layers, range(3), Table(truth.options, truth), 1, never)
-    found_m, chosen = true_choice(layers, range(3), legs, solves, never)
+    one_m, _ = true_choice(layers, numbered(3), Table(truth.options, truth), 1, never)
+    found_m, chosen = true_choice(layers, numbered(3), legs, solves, never)
     assert every[tuple(chosen)] == pytest.approx(found_m)
     assert found_m <= one_m
     assert legs.asked <= 4 * solves
 
 
-@pytest.mark.usefixtures("without_passes")
 def test_an_error_is_put_on_legs_close_by() -> None:
     """A wall between two places is met once: the other options behind it are thought as dear, and avoided."""
     near = np.array([[10.0 * k, 0.0, 0.0] for k in range(10)] + [[0.0, 9000.0, 0.0]])
@@ -214,12 +220,11 @@ def test_an_error_is_put_on_legs_close_by() -> None:
     thought[-1] = true[-1] = 350.0
     layers = Layers((options,), thought, (), zeros)
     legs = Table((options,), Layers((options,), true, (), zeros))
-    found_m, chosen = true_choice(layers, range(1), legs, 4, never)
+    found_m, chosen = true_choice(layers, numbered(1), legs, 4, never)
     assert (found_m, chosen) == (350.0, [count - 1])
     assert 10.0 * count < FADE_M
 
 
-@pytest.mark.usefixtures("without_passes")
 def test_what_is_known_is_not_overwritten_by_an_error_close_by() -> None:
     """Of two options at one place the first keeps its true cost when the second turns out dearer."""
     here = bare(np.array([[0.0, 0.0, 0.0], [0.0, 1.0, 0.0]]))
@@ -232,10 +237,9 @@ def test_what_is_known_is_not_overwritten_by_an_error_close_by() -> None:
         (here, there), np.array([300.0, 600.0]), (np.array([[500.0, 350.0], [500.0, 200.0]]),), nothing
     )
     # First 0 and 0, for 800 in truth; then 1 and 1, also 800, and an error put on all that begins nearby.
-    assert true_choice(layers, range(2), Table((here, there), truth), 9, never) == (650.0, [0, 1])
+    assert true_choice(layers, numbered(2), Table((here, there), truth), 9, never) == (650.0, [0, 1])
 
 
-@pytest.mark.usefixtures("without_passes")
 def test_what_an_option_costs_by_itself_holds_from_wherever_it_is_flown_to() -> None:
     """An option dearer inside than thought is tried once, not once from each option before it."""
     rows = bare(np.array([[9000.0 * k, 0.0, 0.0] for k in range(10)]))
@@ -245,15 +249,14 @@ def test_what_an_option_costs_by_itself_holds_from_wherever_it_is_flown_to() -> 
     legs_m = np.tile([100.0, 300.0], (10, 1))
     layers = Layers((rows, thought), first, (legs_m + 10.0,), last)
     legs = Table((rows, thought), Layers((rows, true), first, (legs_m,), last))
-    assert true_choice(layers, range(2), legs, 2, never) == (310.0, [0, 1])
+    assert true_choice(layers, numbered(2), legs, 2, never) == (310.0, [0, 1])
 
 
-@pytest.mark.usefixtures("without_passes")
 def test_stops_when_told() -> None:
     """The stop is asked before each solve."""
     truth = at_random(np.random.default_rng(0), [2, 2])
     with pytest.raises(CancelledError):
-        true_choice(truth, range(2), Table(truth.options, truth), 3, lambda: True)
+        true_choice(truth, numbered(2), Table(truth.options, truth), 3, lambda: True)
 
 
 def test_a_threat_in_the_way_is_flown_in_earnest() -> None:
@@ -261,14 +264,15 @@ def test_a_threat_in_the_way_is_flown_in_earnest() -> None:
     threat = feature("M", "threat", "Point", [0.017, 0.009], model="missile", radius_m=900.0)
     wall = feature("Z", "no_fly", "Polygon", square(0.016, 0.021, 0.006))
     scenario = read_scenario(small(C, threat, wall))
-    around = surroundings(scenario, scenario.aircraft[0])
-    sides = list(sides_of(scenario, scenario.aircraft[0]))
+    around = surroundings(scenario)
+    sides = list(sides_of(scenario))
+    targets = [StripTarget(of[0].region, of, around) for of in sides]
     options = []
     for of in sides:
         found = make_options(of, HEADINGS_RAD, ETAS, around)
         assert found is not None
         options.append(found)
-    legs = Legs(scenario, scenario.aircraft[0], never)
+    legs = legs_in(scenario, never)
 
     def inner(place: int) -> np.ndarray:
         passes: list[tuple[CollectPass, ...]] = [
@@ -284,14 +288,13 @@ def test_a_threat_in_the_way_is_flown_in_earnest() -> None:
     ]
     last = np.array([legs.between_m(row, None) for row in options[2].exits])
     every = all_ways(first, between, last)
-    layers = layers_of(scenario, around, options, around.discs)
-    found_m, chosen = true_choice(layers, sides, legs, 12, never)
+    layers = layers_of(ends_of(scenario), around, options, around.discs)
+    found_m, chosen = true_choice(layers, targets, legs, 12, never)
     assert every[tuple(chosen)] == pytest.approx(found_m)
     assert every.min() - 1e-6 <= found_m <= 1.01 * every.min()
     assert layers.best()[0] < found_m
 
 
-@pytest.mark.usefixtures("without_passes")
 def test_ground_in_shadow_still_costs_once_flown() -> None:
     """Of two options the shorter leaves ground in shadow: flown in earnest, it is still the dearer one."""
     poses, zeros = np.array([[0.0, 0.0, 0.0], [5000.0, 0.0, 0.0]]), np.zeros(2)
@@ -303,6 +306,6 @@ def test_ground_in_shadow_still_costs_once_flown() -> None:
     def shadow_m(place: int, passes: Sequence[CollectPass]) -> float:
         return 5000.0 if passes[1] == 0 else 0.0
 
-    assert true_choice(layers, range(1), legs, 9, never, shadow_m) == (400.0, [1])
+    assert true_choice(layers, numbered(1), legs, 9, never, shadow_m) == (400.0, [1])
     dearer = Layers((options,), np.array([5100.0, 6000.0]), (), zeros)
-    assert true_choice(dearer, range(1), legs, 1, never, shadow_m) == (5100.0, [0])
+    assert true_choice(dearer, numbered(1), legs, 1, never, shadow_m) == (5100.0, [0])

@@ -12,15 +12,16 @@ from hypothesis import strategies as st
 from shapely.geometry import LineString, Point
 from shapely.ops import unary_union
 
+from planner.dubins.estimate_kernels import detour_m, point_to_pose_m
 from planner.dubins.words import shortest, shortest_between
 from planner.errors import InfeasibleError
 from planner.geojson import read_scenario
+from planner.orders_kernels import best_options, best_orders, improve_order
 from planner.route import Anchor, Pose
-from planner.routing.greedy.route import greedy
 from planner.routing.joint import route as joint
-from planner.routing.joint.route import joint_route, kernels
 from planner.scenario import Scenario
 from tests.planner.scenarios import case, feature, small, square
+from tests.planner.stages import greedy, joint_route
 
 angle = st.floats(-math.pi, math.pi)
 metre = st.floats(-3000.0, 3000.0)
@@ -46,14 +47,14 @@ def test_best_orders_is_the_brute_force_optimum(seed: int, sizes: list[int]) -> 
     count = int(offsets[-1])
     first, last = rng.uniform(0, 100, count), rng.uniform(0, 100, count)
     between = rng.uniform(0, 100, (count, count))
-    costs, tours = kernels.best_orders(first, between, last, offsets)
+    costs, tours = best_orders(first, between, last, offsets)
     found = int(np.argmin(costs))
     assert costs[found] == pytest.approx(brute_force(first, between, last, offsets))
     tour = tours[found]
     again = first[tour[0]] + last[tour[-1]] + sum(between[a, b] for a, b in itertools.pairwise(tour))
     assert again == pytest.approx(costs[found])
     order = np.searchsorted(offsets, tour, side="right") - 1
-    fixed, chosen = kernels.best_options(first, between, last, offsets, order.astype(np.int64))
+    fixed, chosen = best_options(first, between, last, offsets, order.astype(np.int64))
     assert fixed == pytest.approx(costs[found])
     assert sorted(order) == list(range(len(sizes)))
     assert len(chosen) == len(sizes)
@@ -68,9 +69,9 @@ def test_improve_order_never_gets_worse(seed: int) -> None:
     first, last = rng.uniform(0, 100, 12), rng.uniform(0, 100, 12)
     between = rng.uniform(0, 100, (12, 12))
     start = rng.permutation(6).astype(np.int64)
-    before, _ = kernels.best_options(first, between, last, offsets, start)
-    order = kernels.improve_order(first, between, last, offsets, start.copy(), 5000)
-    after, _ = kernels.best_options(first, between, last, offsets, order)
+    before, _ = best_options(first, between, last, offsets, start)
+    order = improve_order(first, between, last, offsets, start.copy(), 5000)
+    after, _ = best_options(first, between, last, offsets, order)
     assert sorted(order) == list(range(6))
     assert after <= before
     assert after >= brute_force(first, between, last, offsets) - 1e-9
@@ -82,7 +83,7 @@ def test_point_to_pose_is_the_shortest_with_free_start(e: float, n: float, a: fl
     """The closed form is the plain one's length, and no fixed start direction gives less."""
     if math.hypot(e, n) < 250.0:
         return
-    length_m = kernels.point_to_pose_m(0.0, 0.0, e, n, a, 100.0)
+    length_m = point_to_pose_m(0.0, 0.0, e, n, a, 100.0)
     assert length_m == pytest.approx(
         shortest_between(Anchor(0, 0), Anchor(e, n, a), 100.0).length_m, abs=1e-6
     )
@@ -97,7 +98,7 @@ def test_detour_round_one_disc_is_the_shortest(x: float, y: float, r: float) -> 
     end = 2200.0
     discs = np.array([[x, y, r]])
     disc = Point(x, y).buffer(r, quad_segs=256)
-    extra_m = kernels.detour_m(0.0, 0.0, end, 0.0, discs)
+    extra_m = detour_m(0.0, 0.0, end, 0.0, discs)
     hull = unary_union([disc, Point(0, 0), Point(end, 0)]).convex_hull
     if min(math.hypot(x, y), math.hypot(end - x, y)) <= r:
         assert extra_m == 0.0
@@ -120,7 +121,7 @@ def seen_whole(scenario: Scenario, footprints: list[object]) -> bool:
 def test_joint_routes_see_all_and_enter_nothing(number: int) -> None:
     """On the shared cases the passes see every region, stay inside the area and out of every threat."""
     scenario = read_scenario(case(number))
-    route = joint_route(scenario, scenario.aircraft[0]).route
+    route = joint_route(scenario).route
     assert seen_whole(scenario, [p.footprint for p in route.passes])
     for collect in route.passes:
         line = LineString([collect.start, collect.end])
@@ -143,15 +144,15 @@ def test_joint_routes_are_shorter_than_greedy_ones(number: int) -> None:
         anchors.append(Anchor(*scenario.end.position))
         return sum(shortest_between(a, b, radius_m).length_m for a, b in itertools.pairwise(anchors))
 
-    ours = length_m(joint_route(scenario, scenario.aircraft[0]).route.passes)
+    ours = length_m(joint_route(scenario).route.passes)
     assert ours < 0.96 * length_m(greedy(scenario).route.passes)
 
 
 def test_same_scenario_same_route() -> None:
     """Planning twice gives the same passes to the last bit."""
     scenario = read_scenario(case(1))
-    first = joint_route(scenario, scenario.aircraft[0])
-    assert first.route == joint_route(scenario, scenario.aircraft[0]).route
+    first = joint_route(scenario)
+    assert first.route == joint_route(scenario).route
 
 
 def test_more_regions_than_the_exact_order_takes() -> None:
@@ -161,7 +162,7 @@ def test_more_regions_than_the_exact_order_takes() -> None:
         for k in range(10)
     ]
     scenario = read_scenario(small(*more))
-    route = joint_route(scenario, scenario.aircraft[0]).route
+    route = joint_route(scenario).route
     assert seen_whole(scenario, [p.footprint for p in route.passes])
 
 
@@ -170,11 +171,11 @@ def test_what_cannot_be_seen_is_refused_or_dropped_by_name() -> None:
     wall = feature("Z", "no_fly", "Polygon", square(-0.013, -0.013, 0.029))
     scenario = read_scenario(small(wall))
     with pytest.raises(InfeasibleError, match="A"):
-        joint_route(scenario, scenario.aircraft[0])
+        joint_route(scenario)
     document = small(wall)
     document["features"][0]["properties"]["required"] = False
     scenario = read_scenario(document)
-    found = joint_route(scenario, scenario.aircraft[0])
+    found = joint_route(scenario)
     assert [f.feature for f in found.dropped] == ["A"]
     assert {p.regions for p in found.route.passes} == {("B",)}
 
@@ -184,7 +185,7 @@ def test_allowed_approach_headings_are_kept() -> None:
     document = small()
     document["features"][0]["properties"]["approach_deg"] = [90.0]
     scenario = read_scenario(document)
-    route = joint_route(scenario, scenario.aircraft[0]).route
+    route = joint_route(scenario).route
     chosen = next(p for p in route.passes if p.regions == ("A",))
     assert chosen.angle_rad == pytest.approx(0.0, abs=1e-4)
 
@@ -232,7 +233,7 @@ def test_more_families_do_not_hide_the_shorter_tour() -> None:
     costs = []
     for method in ({}, {"coverage": "li2018", "routing": "joint"}):
         scenario = read_scenario(document | {"method": method})
-        costs.append(joint_route(scenario, scenario.aircraft[0]).cost_m)
+        costs.append(joint_route(scenario).cost_m)
     assert costs[0] <= costs[1] + 1e-6
 
 
@@ -255,8 +256,8 @@ def test_a_divided_region_is_flown_whole_where_the_tour_is_shorter(monkeypatch: 
     ]
     document["sensors"][0] |= {"incidence_deg": 50.0, "elevation_beamwidth_deg": 30.0, "look": "both"}
     scenario = read_scenario(document)
-    tried = joint_route(scenario, scenario.aircraft[0])
+    tried = joint_route(scenario)
     monkeypatch.setattr(joint, "MOST_WHOLE", 0)
-    divided = joint_route(scenario, scenario.aircraft[0])
+    divided = joint_route(scenario)
     assert tried.cost_m < 0.99 * divided.cost_m
     assert len(tried.sides) == len(divided.sides) - 1

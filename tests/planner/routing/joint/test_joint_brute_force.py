@@ -9,17 +9,18 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from planner.coverage.strips.options import Options, make_options
+from planner.dubins.estimate_kernels import transit_costs
 from planner.dubins.words import shortest_between
 from planner.geojson import read_scenario
+from planner.orders_kernels import best_orders
 from planner.progress import never
 from planner.route import Anchor
 from planner.routing.joint.chain import from_start, to_end
-from planner.routing.joint.options import Options, make_options
-from planner.routing.joint.route import joint_route, kernels
-from planner.routing.joint.visible import sides_of, surroundings
-from planner.routing.legs import Legs
 from planner.scenario import Scenario
 from tests.planner.scenarios import case, feature, small, square
+from tests.planner.stages import joint_route, sides_of, surroundings
+from tests.planner.stages import legs_of as legs_in
 
 HEADINGS_RAD = np.arange(-math.pi, math.pi - 1e-9, math.radians(45.0))
 ETAS = np.array([0.0, 0.5, 1.0])
@@ -33,10 +34,9 @@ WIDER = read_scenario(small(WIDE))
 
 def options_of(scenario: Scenario) -> list[Options]:
     """Eight headings and three offsets for each region, on every side it has."""
-    aircraft = scenario.aircraft[0]
     found = []
-    for sides in sides_of(scenario, aircraft):
-        options = make_options(sides, HEADINGS_RAD, ETAS, surroundings(scenario, aircraft))
+    for sides in sides_of(scenario):
+        options = make_options(sides, HEADINGS_RAD, ETAS, surroundings(scenario))
         assert options is not None
         found.append(options)
     return found
@@ -70,14 +70,14 @@ def cheapest(
 
 def best_of(scenario: Scenario, options: list[Options]) -> tuple[float, tuple[int, ...]]:
     """What the compiled search finds: the cost and the order of regions."""
-    around = surroundings(scenario, scenario.aircraft[0])
+    around = surroundings(scenario)
     entries, exits, inner_m = (
         np.concatenate([getattr(o, name) for o in options]) for name in ("entries", "exits", "inner_m")
     )
     offsets = np.concatenate([[0], np.cumsum([len(o.inner_m) for o in options])]).astype(np.int64)
-    between = kernels.transit_costs(exits, entries, around.radius_m, around.discs) + inner_m
-    first = from_start(scenario, around, entries, around.discs) + inner_m
-    costs, tours = kernels.best_orders(first, between, to_end(scenario, around, exits, around.discs), offsets)
+    between = transit_costs(exits, entries, around.radius_m, around.discs) + inner_m
+    first = from_start(scenario.start, around, entries, around.discs) + inner_m
+    costs, tours = best_orders(first, between, to_end(scenario.end, around, exits, around.discs), offsets)
     order = np.searchsorted(offsets, tours[int(np.argmin(costs))], side="right") - 1
     return float(costs.min()), tuple(order)
 
@@ -93,7 +93,7 @@ def best_of(scenario: Scenario, options: list[Options]) -> tuple[float, tuple[in
 )
 def test_the_chosen_order_and_options_are_the_best_of_all(scenario: Scenario) -> None:
     """On open ground the exact order over real options is what trying all by plain Dubins words finds."""
-    around = surroundings(scenario, scenario.aircraft[0])
+    around = surroundings(scenario)
     options = options_of(scenario)
     assert all(len(o.inner_m) >= 24 for o in options)
     assert np.isnan(options[-1].eta_second).all() == (scenario is not WIDER)
@@ -119,9 +119,9 @@ def test_the_chosen_order_and_options_are_the_best_of_all(scenario: Scenario) ->
 )
 def test_the_route_is_no_dearer_than_the_best_of_the_grid(scenario: Scenario) -> None:
     """By true costs, threats and all, the joint route costs no more than the best of the whole grid."""
-    legs = Legs(scenario, scenario.aircraft[0], never)
+    legs = legs_in(scenario, never)
     brute_m, _ = cheapest(scenario, options_of(scenario), legs.cost_m)
-    found = joint_route(scenario, scenario.aircraft[0])
+    found = joint_route(scenario)
     assert found.cost_m == pytest.approx(legs.tour_m(found.route.passes))
     assert found.cost_m <= brute_m + 1e-6
     assert found.cost_m >= 0.8 * brute_m
@@ -130,12 +130,12 @@ def test_the_route_is_no_dearer_than_the_best_of_the_grid(scenario: Scenario) ->
 def test_finer_headings_and_offsets_pay() -> None:
     """Refined, the route is shorter than the best of every tenth degree and every half offset."""
     scenario = read_scenario(case(1))
-    around = surroundings(scenario, scenario.aircraft[0])
+    around = surroundings(scenario)
     tens = np.arange(-math.pi, math.pi - 1e-9, math.radians(10.0))
     options = [
         found
-        for sides in sides_of(scenario, scenario.aircraft[0])
+        for sides in sides_of(scenario)
         if (found := make_options(sides, tens, ETAS, around)) is not None
     ]
     coarse_m = best_of(scenario, options)[0]
-    assert joint_route(scenario, scenario.aircraft[0]).cost_m < coarse_m - 5.0
+    assert joint_route(scenario).cost_m < coarse_m - 5.0

@@ -18,6 +18,7 @@ from planner.route import CollectPass
 from planner.routing.joint.split import LEAST_GAIN_M, split_passes
 from planner.routing.legs import Legs
 from tests.planner.scenarios import small
+from tests.planner.stages import legs_of as legs_in
 
 Passes = tuple[CollectPass, ...]
 
@@ -111,7 +112,7 @@ def test_two_passes_are_parted_by_what_lies_between() -> None:
         (east_m + 4000.0, north_m + 200.0, -math.pi / 2.0, "B"),
     ]
     passes = made(rows)
-    legs = Legs(scenario, scenario.aircraft[0], never)
+    legs = legs_in(scenario, never)
     cost_m, found = split_passes(legs.tour_m(passes), passes, legs, never)
     assert [p.regions[0] for p in found] == ["A", "B", "A"]
     assert cost_m == min(legs.tour_m(order) for order in itertools.permutations(passes))

@@ -11,10 +11,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely.geometry import LineString, Point
 
+from planner.airspace.surroundings import Surroundings
 from planner.airspace.values import Wind
+from planner.coverage.strips.options import Options
+from planner.dubins.estimate_kernels import point_costs, transit_costs
+from planner.orders_kernels import best_options, best_orders
 from planner.progress import never, silent
-from planner.routing.joint import kernels as joint_kernels
-from planner.routing.joint.options import Options, Surroundings
 from planner.routing.large.order import kernels as large_kernels
 from planner.routing.large.order import large_order
 from planner.vehicle.wind import CIRCLE_RAD, still_air_costs, still_air_factor
@@ -55,8 +57,8 @@ def costs_of(options: list[Options]) -> tuple[np.ndarray, np.ndarray, np.ndarray
     entries = np.concatenate([o.entries for o in options])
     exits = np.concatenate([o.exits for o in options])
     inner = np.concatenate([o.inner_m for o in options])
-    between = joint_kernels.transit_costs(exits, entries, RADIUS_M, NO_DISCS) + inner[None]
-    first = joint_kernels.point_costs(0.0, -3000.0, entries, RADIUS_M, NO_DISCS) + inner
+    between = transit_costs(exits, entries, RADIUS_M, NO_DISCS) + inner[None]
+    first = point_costs(0.0, -3000.0, entries, RADIUS_M, NO_DISCS) + inner
     last = np.hypot(exits[:, 0], exits[:, 1] + 3000.0)
     offsets = np.concatenate([[0], np.cumsum([len(o.inner_m) for o in options])]).astype(np.int64)
     return first, between, last, offsets
@@ -68,13 +70,13 @@ def test_the_search_finds_the_exact_order_of_few_regions(seed: int) -> None:
     rng = np.random.default_rng(seed)
     centres, options = random_options(rng, 8)
     first, between, last, offsets = costs_of(options)
-    exact, _ = joint_kernels.best_orders(first, between, last, offsets)
+    exact, _ = best_orders(first, between, last, offsets)
     start = rng.permutation(8).astype(np.int64)
     ends = (first, last, surroundings(), NO_DISCS)
     cost, order = large_order([start], centres, options, *ends, seed, silent, never, never)
     assert sorted(order) == list(range(8))
     assert cost == pytest.approx(float(exact.min()), abs=0.05)
-    again, _ = joint_kernels.best_options(first, between, last, offsets, order)
+    again, _ = best_options(first, between, last, offsets, order)
     assert again == pytest.approx(cost, abs=0.05)
 
 

@@ -1,0 +1,185 @@
+"""What one region becomes on its way to the tour: parts, each with its families of passes, and visits."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from planner.coverage import decompose
+from planner.coverage.merge import MergedRegion, polygons_of
+from planner.coverage.strips.neighbourhood import neighbourhoods
+from planner.coverage.strips.sweeps import Side, Sweep, sweeps
+from planner.errors import InfeasibleError
+from planner.sensors.sar import SarSensor
+
+Floats = NDArray[np.float64]
+
+#: A division has to save this much of the estimated cost.
+LEAST_SAVING = 0.01
+#: Beyond this many parts a region is not divided further.
+MOST_PARTS = 6
+#: Corridors with more legs than this are flown leg by leg without trying to join them.
+MOST_LEGS_TO_JOIN = 12
+#: Of the circle's share that each visit has to itself, this part is used: headings of two visits differ.
+SHARE_USED = 0.8
+
+
+#: What seeing all of these parts costs, turns between them included; inf where it cannot be.
+Estimate = Callable[[tuple[MergedRegion, ...]], float]
+
+
+def families(
+    region: MergedRegion, sensor: SarSensor, height_m: float, *, wide: bool = True
+) -> Iterator[tuple[Side, ...]]:
+    """Families of passes that see a region, those with the fewest passes first.
+
+    Parameters
+    ----------
+    wide
+        Whether more than two swaths, and sweeps for two, are allowed; without, the paper's neighbourhoods.
+
+    Raises
+    ------
+    InfeasibleError
+        Where there is none.
+    """
+    # A spot is no strip: nothing longer than it is seen lane by lane.
+    wide = wide and sensor.mode != "spotlight"
+    try:
+        least = neighbourhoods(region, sensor, height_m)
+    except InfeasibleError:
+        if not wide:
+            raise
+    else:
+        yield (*least, *sweeps(region, sensor, height_m)) if wide and least[0].turns == 1 else least
+        if least[0].turns == 0:
+            try:
+                two = neighbourhoods(region, sensor, height_m, turns=1)
+            except InfeasibleError:
+                two = ()
+            more = sweeps(region, sensor, height_m) if wide else ()
+            if two or more:
+                yield (*two, *more)
+    if wide:
+        yield sweeps(region, sensor, height_m)
+        yield sweeps(region, sensor, height_m, extra=1)
+
+
+def parts_of(region: MergedRegion, estimate: Estimate) -> tuple[MergedRegion, ...]:
+    """The region whole, or the division of it that costs less.
+
+    A corridor is cut at its bends and its legs joined again where one sweep of both is cheaper; merged
+    regions are tried apart; other shapes are cut at reflex corners and beside holes, one cut after the other,
+    as long as that saves.
+    """
+    best: tuple[MergedRegion, ...] = (region,)
+    cost_m = estimate(best)
+    starts: list[tuple[MergedRegion, ...]] = []
+    if len(region.originals) > 1:
+        starts.append(region.split())
+    if region.axis is not None and len(region.originals) == 1:
+        pieces = decompose.legs(region.originals[0], region.axis)
+        if pieces is not None:
+            starts.append(_joined(tuple(_part(region, piece) for piece in pieces), estimate))
+    for start in starts:
+        trial_m = estimate(start)
+        if _saves(trial_m, cost_m):
+            best, cost_m = start, trial_m
+    while len(best) < MOST_PARTS:
+        trials = [
+            (*best[:index], *(_part(part, piece) for piece in pieces), *best[index + 1 :])
+            for index, part in enumerate(best)
+            if not decompose.is_plain(_ground(part))
+            for pieces in decompose.cuts(_ground(part))
+        ]
+        costs = [estimate(trial) for trial in trials]
+        if not costs or not _saves(min(costs), cost_m):
+            return best
+        cost_m = min(costs)
+        best = trials[costs.index(cost_m)]
+    return best
+
+
+def visits(region: MergedRegion) -> tuple[MergedRegion, ...]:
+    """The region once for each visit asked for, each to be made from directions of its own."""
+    if region.revisits == 1:
+        return (region,)
+    return tuple(replace(region, visit=(k, region.revisits)) for k in range(region.revisits))
+
+
+def of_visit(region: MergedRegion, angles_rad: Floats, etas: Floats) -> tuple[Floats, Floats]:
+    """Of headings and offsets, those meant for this visit.
+
+    Each visit has its share of the circle, the first centred on the region's long axis; where fewer headings
+    are allowed than visits asked for, each has its share of the offsets instead, so that no line is flown
+    twice the same way.
+    """
+    if region.visit is None:
+        return angles_rad, etas
+    k, count = region.visit
+    if region.approach_rad is None:
+        share_rad = math.tau / count
+        off_rad = np.mod(angles_rad - _long_axis_rad(region) - k * share_rad + math.pi, math.tau) - math.pi
+        return angles_rad[np.abs(off_rad) <= SHARE_USED * share_rad / 2.0], etas
+    allowed = np.unique(np.round(np.mod(np.asarray(region.approach_rad), math.tau), 9))
+    if len(allowed) >= count:
+        apart = np.abs(np.mod(angles_rad[:, None] - allowed[k::count] + math.pi, math.tau) - math.pi)
+        return angles_rad[(apart < 1e-6).any(axis=1)], etas
+    last = 1.0 + 1e-9 if k == count - 1 else (k + 1) / count - 1e-9
+    return angles_rad, etas[(etas >= k / count) & (etas < last)]
+
+
+def least_lanes(region: MergedRegion, sensor: SarSensor, height_m: float) -> int:
+    """How many passes the region takes at its best heading."""
+    sweep = Sweep(region, sensor, height_m)
+    return int(sweep.lanes(sweep.angles_rad).min())
+
+
+def _joined(parts: tuple[MergedRegion, ...], estimate: Estimate) -> tuple[MergedRegion, ...]:
+    """Neighbouring legs of a corridor as one where that costs less."""
+    cost_m = estimate(parts)
+    while 1 < len(parts) <= MOST_LEGS_TO_JOIN:
+        trials = []
+        for k in range(len(parts) - 1):
+            both = decompose.merged((parts[k].area, parts[k + 1].area))
+            if both is not None:
+                trials.append((*parts[:k], _part(parts[k], both), *parts[k + 2 :]))
+        costs = [estimate(trial) for trial in trials]
+        if not costs or min(costs) >= cost_m:
+            return parts
+        cost_m = min(costs)
+        parts = trials[costs.index(cost_m)]
+    return parts
+
+
+def _saves(trial_m: float, cost_m: float) -> bool:
+    return trial_m < (1.0 - LEAST_SAVING) * cost_m if math.isfinite(cost_m) else math.isfinite(trial_m)
+
+
+def _ground(region: MergedRegion) -> shapely.Polygon:
+    """What really has to be seen where that is one piece: the closing of outlines is the paper's."""
+    pieces = polygons_of(shapely.union_all(list(region.originals), grid_size=1e-6))
+    return pieces[0] if len(pieces) == 1 else region.area
+
+
+def _part(region: MergedRegion, piece: shapely.Polygon) -> MergedRegion:
+    """One piece of a region, under the names of those it holds ground of."""
+    owners = [
+        owner
+        for owner, original in zip(region.owners, region.originals, strict=True)
+        if original.intersection(piece).area > 0.0
+    ]
+    names = tuple(name for name in region.names if name in owners) or region.names
+    return replace(region, names=names, area=piece, originals=(piece,) * len(names), owners=names, axis=None)
+
+
+def _long_axis_rad(region: MergedRegion) -> float:
+    corners = shapely.get_coordinates(shapely.minimum_rotated_rectangle(region.area))[:3]
+    edges = np.diff(corners, axis=0)
+    longest = edges[int(np.argmax(np.hypot(*edges.T)))]
+    return math.atan2(longest[1], longest[0])

@@ -1,0 +1,116 @@
+"""What is asked to be seen, as targets of a tour: regions merged, parts and visits told apart."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass
+
+from planner.airspace.airspace import Airspace, Level
+from planner.airspace.surroundings import Surroundings, surroundings
+from planner.coverage.merge import MergedRegion, merge_regions
+from planner.coverage.registry import family_of
+from planner.coverage.relaxation import explained
+from planner.coverage.ways import Target
+from planner.errors import Finding, InfeasibleError
+from planner.sensors.suite import Suite
+from planner.vehicle.model import FlightModel
+from planner.wishes import Objective, Region
+
+
+@dataclass(frozen=True, slots=True)
+class Seeing:
+    """What is to be seen, with which sensors, from which level, by whom.
+
+    Parameters
+    ----------
+    wide
+        Whether any number of passes, and divisions, are allowed; the paper's coverage, asked for by name, has
+        two passes at most and divides nothing.
+    """
+
+    regions: tuple[Region, ...]
+    suite: Suite
+    airspace: Airspace
+    level: Level
+    model: FlightModel
+    objective: Objective
+    wide: bool = True
+
+    def surroundings(self) -> Surroundings:
+        """Area, zones and prices at the level, with the margin transits keep."""
+        return surroundings(self.airspace, self.level, self.model, self.objective)
+
+    def visible(self, around: Surroundings, whole: Collection[int] = ()) -> Visible:
+        """Targets that see the regions.
+
+        Regions that are not required and not to be seen are named and left out.
+
+        Parameters
+        ----------
+        whole
+            Merged regions not to divide.
+
+        Raises
+        ------
+        InfeasibleError
+            Where a required region cannot be seen.
+        """
+        targets: list[Target] = []
+        divided: list[int] = []
+        dropped: list[Finding] = []
+        by_name = {region.name: region for region in self.regions}
+        for index, region in enumerate(merge_regions(self.regions, default_sensor=self.suite.first)):
+            sensor_name = by_name[region.names[0]].sensor
+            try:
+                sensor, height_m = self.suite.over(sensor_name, region.area, self.airspace, self.level)
+                family = family_of(sensor)
+                for name in region.names:
+                    family.check(by_name[name], sensor, height_m)
+                found = family.targets(region, sensor, height_m, around, wide=self.wide, whole=index in whole)
+            except InfeasibleError as refused:
+                error = refused
+                if error.constraint == "area":
+                    error = explained(
+                        self.airspace,
+                        self.level,
+                        region,
+                        refused,
+                        lambda airspace, level, region=region: self._some_pass(region, airspace, level),  # type: ignore[misc]
+                    )
+                if region.required:
+                    raise error from refused
+                rule = f"not-seen-{error.constraint}"
+                dropped.append(Finding(error.feature, rule, error.message, error.relaxation, "warning"))
+                continue
+            targets.extend(found)
+            if len(found) > region.revisits:
+                divided.append(index)
+        return Visible(tuple(targets), tuple(divided), tuple(dropped))
+
+    def _some_pass(self, region: MergedRegion, airspace: Airspace, level: Level) -> bool:
+        """Whether a region can be seen among other zones or from another level."""
+        around = surroundings(airspace, level, self.model, self.objective)
+        try:
+            sensor, height_m = self.suite.over(region.sensor, region.area, airspace, level)
+            return family_of(sensor).can_be_flown(region, sensor, height_m, around, wide=self.wide)
+        except InfeasibleError:
+            return False
+
+
+@dataclass(frozen=True, slots=True)
+class Visible:
+    """What can be seen, and how.
+
+    Parameters
+    ----------
+    targets
+        Each region, part of one or visit to one.
+    divided
+        Which of the merged regions are divided.
+    dropped
+        Those that cannot be seen and need not be.
+    """
+
+    targets: tuple[Target, ...]
+    divided: tuple[int, ...]
+    dropped: tuple[Finding, ...]

@@ -1,0 +1,189 @@
+"""The task ``collect``: see every region, as short as can be."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import partial
+
+from planner.airspace.threats import acting
+from planner.bounds.ways import plan_bound_m
+from planner.coverage.strips.located import Located, located
+from planner.coverage.strips.room import Room
+from planner.coverage.visible import Seeing
+from planner.errors import Finding, InfeasibleError
+from planner.metrics import used
+from planner.plan import LeftOut, Plan
+from planner.progress import Progress, Stop, silent
+from planner.publish import Leg, whole_path
+from planner.route import CollectPass
+from planner.routing.greedy.route import li2018_route
+from planner.routing.joint.route import Search, joint_route
+from planner.routing.legs import Legs
+from planner.scenario import Scenario
+from planner.tasks.hidden import Sight, hidden_findings, see_hidden
+from planner.tasks.limits import Dropped, within_limits
+from planner.tasks.methods import chosen_methods
+from planner.tasks.setting import Setting, seeing
+from planner.tasks.task import NOT_SEEN, Answer, Controls, Task
+from planner.tasks.transits import Transits
+from planner.vehicle.limits import Use
+
+Passes = tuple[CollectPass, ...]
+#: Passes, and what is left out.
+Found = tuple[Passes, tuple[Finding, ...]]
+
+
+@dataclass(frozen=True, slots=True)
+class _Flight:
+    """Passes with the legs that join them, and what the whole uses."""
+
+    passes: Passes
+    dropped: tuple[Finding, ...]
+    legs: tuple[Leg, ...]
+    notes: tuple[str, ...]
+    use: Use
+
+
+def collect(scenario: Scenario, controls: Controls) -> Answer:
+    """Passes that see every region, and the legs that join them."""
+    setting = Setting.of(scenario)
+    methods = chosen_methods(scenario.method)
+    asked = seeing(scenario, setting)
+    transits = Transits.of(setting, asked.objective, methods)
+
+    def fly(names: frozenset[str], progress: Progress) -> _Flight:
+        """The flight without some regions."""
+        regions = tuple(region for region in asked.regions if region.name not in names)
+        with controls.stage("routing"):
+            found = _found(
+                replace(asked, regions=regions),
+                setting,
+                methods,
+                scenario.seed,
+                replace(controls, progress=part_of(progress, 0.0, 0.5)),
+            )
+        with controls.stage("transit"):
+            legs, notes = transits.through(found[0], part_of(progress, 0.5, 0.9), controls.stop)
+        return _Flight(*found, legs, notes, used(whole_path(legs, found[0]), setting.model))
+
+    flight, left = within_limits(
+        fly(frozenset(), controls.progress),
+        lambda names: fly(names, silent),
+        {region.name: region.priority for region in asked.regions if not region.required},
+        setting.model.aircraft,
+        (scenario.start.position, scenario.end.position),
+    )
+    dropped = flight.dropped + tuple(_over(each) for each in left)
+    sight = Sight.of(asked.regions, setting.suite, setting.airspace, setting.level)
+    if sight is not None:
+        dropped += hidden_findings(sight, flight.passes, by_paper=methods["coverage"] == "li2018")
+    return Answer(
+        setting,
+        flight.legs,
+        flight.passes,
+        methods,
+        dropped,
+        flight.notes,
+        _left_out(dropped, left),
+    )
+
+
+def bound_m(scenario: Scenario, plan: Plan, stop: Stop, enough: Stop) -> float:
+    """No plan over the regions that a plan sees is shorter."""
+    setting = Setting.of(scenario)
+    seen = {name for collect in plan.collects for name in collect.regions}
+    left_out = {region.name for region in scenario.regions} - seen
+    asked, length_m = seeing(scenario, setting), plan.metrics.length_m
+    return plan_bound_m(asked, setting.ends, length_m, left_out, stop, enough)
+
+
+def _found(asked: Seeing, setting: Setting, methods: dict[str, str], seed: int, controls: Controls) -> Found:
+    """Passes by the routing asked for."""
+    if methods["routing"] != "joint":
+        aware = methods["routing"] == "li2018-threat-aware"
+        choices = paper_choices(asked, controls.progress, controls.stop, threat_aware=aware)
+        return _greedy(choices, asked, setting, seed, controls.progress, controls.stop)
+    by_paper = methods["coverage"] == "li2018"
+    sight = Sight.of(asked.regions, setting.suite, setting.airspace, setting.level)
+    return _joint(asked, setting, seed, None if by_paper else sight, controls)
+
+
+def _joint(asked: Seeing, setting: Setting, seed: int, sight: Sight | None, controls: Controls) -> Found:
+    around = asked.surroundings()
+    legs = Legs(setting.airspace, setting.level, setting.model, asked.objective, setting.ends, controls.stop)
+
+    def complete(passes: Passes, legs: Legs) -> Passes:
+        if sight is None:
+            return passes
+        return see_hidden(sight, around, setting.ends, passes, legs, controls.stop)
+
+    watched = (controls.progress, controls.stop, controls.enough)
+    search = Search(setting.ends, around, legs, seed, complete, *watched)
+    found = joint_route(search, asked.visible(around), partial(asked.visible, around))
+    return found.route.passes, found.seen.dropped
+
+
+def paper_choices(asked: Seeing, progress: Progress, stop: Stop, *, threat_aware: bool) -> Located:
+    """What the paper's choices are among.
+
+    Parameters
+    ----------
+    threat_aware
+        Also leave out, wherever there is another, choices whose line enters a soft threat or that leave no
+        room to turn outside of one. The paper leaves threats out here (its section 6, relaxation 4).
+    """
+    where = (asked.airspace, asked.level)
+    room = Room.of(*where, asked.model, asked.objective, threat_aware=threat_aware)
+    return located(asked.regions, asked.suite, *where, room, part_of(progress, 0.0, 0.8), stop)
+
+
+def _greedy(
+    found: Located, asked: Seeing, setting: Setting, seed: int, progress: Progress, stop: Stop
+) -> Found:
+    threats = acting(asked.airspace.threats, asked.level.height_m)
+    ends, routing = setting.ends, part_of(progress, 0.8, 1.0)
+    route, _ = li2018_route(found.choices, threats, asked.objective, ends, seed, routing, stop)
+    if not route.passes:
+        why = "; ".join(error.message for error in found.dropped)
+        raise InfeasibleError("swath", "scenario", f"no region can be seen: {why}", "see the findings")
+    return route.passes, tuple(_dropped(error) for error in found.dropped)
+
+
+def _dropped(error: InfeasibleError) -> Finding:
+    rule = f"{NOT_SEEN}{error.constraint}"
+    return Finding(error.feature, rule, error.message, error.relaxation, "warning")
+
+
+def _over(dropped: Dropped) -> Finding:
+    excess = dropped.excess
+    return Finding(
+        dropped.name,
+        f"{NOT_SEEN}{excess.constraint}",
+        f"is left out: with it the flight takes {excess.used:.0f} {excess.unit}, there are "
+        f"{excess.limit:.0f} {excess.unit}",
+        "Raise the limit, its priority, or plan it as a flight of its own.",
+        "warning",
+    )
+
+
+def _left_out(dropped: tuple[Finding, ...], left: tuple[Dropped, ...]) -> tuple[LeftOut, ...]:
+    """What is not seen at all, and why, for the metrics."""
+    margins = {each.name: each.excess.margin for each in left}
+    return tuple(
+        LeftOut(name, finding.rule.removeprefix(NOT_SEEN), margins.get(name))
+        for finding in dropped
+        if finding.rule.startswith(NOT_SEEN)
+        for name in finding.feature.split("+")
+    )
+
+
+def part_of(progress: Progress, low: float, high: float) -> Progress:
+    """Progress of one stage as a part of the whole."""
+
+    def report(stage: str, fraction: float) -> None:
+        progress(stage, low + (high - low) * min(max(fraction, 0.0), 1.0))
+
+    return report
+
+
+COLLECT = Task(collect, bound_m)

@@ -1,0 +1,43 @@
+"""A task that flies over the middle of every region, sensors off."""
+
+from __future__ import annotations
+
+import math
+
+from planner.dubins.path import join
+from planner.publish import Leg
+from planner.route import Anchor
+from planner.routing.legs import anchor
+from planner.routing.tour import order
+from planner.scenario import Scenario
+from planner.tasks.methods import chosen_methods
+from planner.tasks.setting import Setting
+from planner.tasks.task import Answer, Controls, Task
+from planner.tasks.transits import Transits
+
+
+def fly(scenario: Scenario, controls: Controls) -> Answer:
+    """From middle to middle, in the shortest order."""
+    setting, methods = Setting.of(scenario), chosen_methods(scenario.method)
+    start, end = setting.ends
+    middles = [region.area.centroid.coords[0] for region in scenario.regions]
+    with controls.stage("routing"):
+        visiting = order(middles, start.position, end.position, "exact")
+    stops = [anchor(start), *(Anchor(*middles[k]) for k in visiting), anchor(end)]
+    transits, paths = Transits.of(setting, scenario.objective, methods), []
+    with controls.stage("transit"):
+        here = stops[0]
+        for there in stops[1:]:
+            path, _ = transits.leg(here, there, controls.stop, [], ["", ""])
+            paths.append(path)
+            here = Anchor(*path.end.position, path.end.angle_rad)
+    leg = Leg(start.name, end.name, join(*paths), "tangent")
+    return Answer(setting, (leg,), (), methods, (), ())
+
+
+def straight_m(scenario: Scenario, *_: object) -> float:
+    """No line is shorter than the straight one."""
+    return math.dist(scenario.start.position, scenario.end.position)
+
+
+TOUR = Task(fly, straight_m)
