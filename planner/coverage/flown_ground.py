@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import pairwise, product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +13,8 @@ from shapely.geometry import MultiPoint, Polygon
 
 from planner.airspace.terrain import Ground
 from planner.route import Look
-from planner.sensors import sar_modes, strip
+from planner.sensors import spot, strip
+from planner.sensors.aim import aim_drop_m, spot_ahead_m, spot_half_m
 from planner.sensors.sar import SarSensor
 from planner.sensors.view import seen_beside
 
@@ -177,8 +178,8 @@ def _spot(flown: Flown) -> Iterator[Polygon]:
     """The spot of a spotlight pass, where the beam dwelt on it long enough.
 
     The beam is kept on the place the line was laid for. It holds it while the place's look angle, bank
-    included, is between the beam's edges; the longest such stretch counts, and turns by the angle between its
-    first and its last line of sight. Ground is seen at full resolution where the edges held it all that way.
+    included, is between the beam's edges; the longest such stretch counts, if the corners of the spot are
+    resolved from its first place to its last. Ground is seen where the edges held it all the way.
     """
     sensor = flown.sensor
     assert sensor.turned_rad is not None
@@ -186,26 +187,34 @@ def _spot(flown: Flown) -> Iterator[Polygon]:
     length_m = math.dist(first, last)
     ahead = (last - first) / length_m
     side = np.array([ahead[1], -ahead[0]]) * (1.0 if flown.look == "right" else -1.0)
-    mean_m = _drop_m(flown, first + 0.5 * length_m * ahead)
+    mean_m = float(flown.height_m.mean())
+    if flown.ground is not None:
+
+        def places(along_m: Floats, out_m: Floats) -> Floats:
+            found: Floats = first + along_m[:, None] * ahead + out_m[:, None] * side
+            return found
+
+        level_m = mean_m + flown.home_amsl_m
+        mean_m = aim_drop_m(sensor, places, length_m, level_m, flown.ground)
     near_m, far_m = (mean_m * math.tan(edge) for edge in (sensor.steepest_rad, sensor.flattest_rad))
-    leads_m = strip.lead_m(sensor.squint_rad, 0.0, [near_m, far_m], mean_m)
-    middle_m = 0.5 * length_m + float(leads_m.mean())
+    middle_m, half_m = 0.5 * length_m + spot_ahead_m(sensor, mean_m), spot_half_m(sensor, mean_m)
     place = first + middle_m * ahead + mean_m * math.tan(sensor.incidence_rad) * side
     drop_m = (
         flown.height_m if flown.ground is None else flown.height_m + flown.home_amsl_m - _height(flown, place)
     )
-    sight = np.column_stack([place - flown.places, -drop_m])
     look_rad = np.arctan2((place - flown.places) @ side, drop_m) + flown.banked_rad
     half_rad = sensor.elevation_beamwidth_rad / 2.0
     run = _longest(np.abs(look_rad - sensor.incidence_rad) <= half_rad)
     if run is None:
         return
-    one, other = sight[run.start], sight[run.stop - 1]
-    turned_rad = math.acos(min(1.0, float(one @ other) / math.hypot(*one) / math.hypot(*other)))
-    if turned_rad < sensor.turned_rad * TURNED_PART:
-        return
+    ends = [run.start, run.stop - 1]
+    at_m, out_m = ((flown.places[ends] - first) @ axis for axis in (ahead, side))
+    wanted = spot.sine_wanted(sensor.turned_rad, sensor.squint_rad) * TURNED_PART
+    for along_m, away_m in product((middle_m - half_m, middle_m + half_m), (near_m, far_m)):
+        sines = (at_m - along_m) / np.sqrt((at_m - along_m) ** 2 + (away_m - out_m) ** 2 + drop_m[ends] ** 2)
+        if sines[1] - sines[0] < wanted:
+            return
     tangents = np.array([_tangents(sensor, half_rad, float(bank)) for bank in flown.banked_rad[run]])
-    half_m = sar_modes.spot_m(math.hypot(near_m, mean_m), sensor.azimuth_beamwidth_rad) / 2.0
     beside_m = (flown.places[run] - first) @ side
     if flown.ground is None:
         low_m = float((beside_m + tangents[:, 0] * drop_m[run]).max())
@@ -221,7 +230,8 @@ def _spot(flown: Flown) -> Iterator[Polygon]:
     level_m = float(flown.height_m[run].mean()) + flown.home_amsl_m
     edges = (float(tangents[:, 0].max()), float(tangents[:, 1].min()))
     if edges[0] < edges[1]:
-        yield from seen_beside(pose, half_m, level_m, edges, math.tan(sensor.squint_rad), flown.ground)
+        squint, ahead_m = math.tan(sensor.squint_rad), middle_m - 0.5 * length_m
+        yield from seen_beside(pose, half_m, level_m, edges, squint, flown.ground, ahead_m=ahead_m)
 
 
 def _longest(held: NDArray[np.bool_]) -> slice | None:
@@ -229,12 +239,6 @@ def _longest(held: NDArray[np.bool_]) -> slice | None:
     turns = np.flatnonzero(np.diff(np.concatenate([[0], held.astype(np.int8), [0]])))
     runs = [slice(int(a), int(b)) for a, b in zip(turns[::2], turns[1::2], strict=True) if b - a > 1]
     return max(runs, key=lambda run: run.stop - run.start) if runs else None
-
-
-def _drop_m(flown: Flown, place: Floats) -> float:
-    """How far the mean flight is above the ground at a place."""
-    mean_m = float(flown.height_m.mean())
-    return mean_m if flown.ground is None else mean_m + flown.home_amsl_m - _height(flown, place)
 
 
 def _height(flown: Flown, place: Floats) -> float:

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from planner.route import Look
-from planner.sensors import sar_modes
+from planner.sensors import sar_modes, spot
 from planner.sensors.sar_modes import Mode
 
 Floats = NDArray[np.float64]
@@ -134,11 +134,26 @@ class SarSensor:
         return self.far_m(height_m) - self.near_m(height_m)
 
     def aperture_m(self, height_m: float) -> float:
-        """Synthetic aperture length l_s, eq 5; with squint or in spotlight that of ``sar_modes``."""
-        range_m = (height_m + self.relief_m) / math.cos(self.incidence_rad)
+        """Synthetic aperture length l_s, eq 5; with squint by ``sar_modes``, in spotlight by ``spot``."""
         if self.turned_rad is not None:
-            return sar_modes.spotlight_aperture_m(range_m, self.turned_rad, self.squint_rad)
+            return self._spot_line_m(height_m, self.turned_rad)
+        range_m = (height_m + self.relief_m) / math.cos(self.incidence_rad)
         return sar_modes.stripmap_aperture_m(range_m, self.azimuth_beamwidth_rad, self.squint_rad)
+
+    def _spot_line_m(self, height_m: float, turned_rad: float) -> float:
+        """The line from which all of the spot is resolved as at the beam's centre, margins or none."""
+        half_rad = self.elevation_beamwidth_rad / 2.0
+        near, far = (1.0 / math.cos(self.incidence_rad + off) for off in (-half_rad, half_rad))
+        high_m, low_m = height_m - self.relief_m, height_m + self.relief_m
+        ahead = math.tan(self.squint_rad) * (near + far) / 2.0
+        reach_m = sar_modes.spot_m(near * low_m, self.azimuth_beamwidth_rad) / 2.0
+        return spot.line_for_m(
+            spot.sine_wanted(turned_rad, self.squint_rad),
+            near * high_m,
+            far * low_m,
+            min(ahead * high_m, ahead * low_m) - reach_m,
+            max(ahead * high_m, ahead * low_m) + reach_m,
+        )
 
     def leads_m(self, height_m: float) -> tuple[float, float]:
         """How far ahead of the aircraft the swath's ground is seen, R·tan θ_sq: least and most, with margin.
@@ -166,9 +181,12 @@ class SarSensor:
         """Length along track of what one pass can see: of the spot in spotlight, else without limit."""
         if self.turned_rad is None:
             return math.inf
-        range_m = (height_m - self.relief_m) / math.cos(self.steepest_rad)
-        spot_m = sar_modes.spot_m(range_m, self.azimuth_beamwidth_rad, self.squint_rad)
-        return spot_m - 2.0 * self.position_margin_m
+        whole_rad = self.incidence_rad - self.elevation_beamwidth_rad / 2.0
+        near, far = (1.0 / math.cos(angle) for angle in (whole_rad, 2.0 * self.incidence_rad - whole_rad))
+        spot_m = sar_modes.spot_m((height_m - self.relief_m) * near, self.azimuth_beamwidth_rad)
+        # Squinted, the spot of higher or lower ground lies nearer or farther ahead.
+        moved_m = self.relief_m * abs(math.tan(self.squint_rad)) * (near + far) / 2.0
+        return spot_m - 2.0 * moved_m - 2.0 * self.position_margin_m
 
     def collection_m(self, height_m: float, span_m: float) -> float:
         """Length of a collection segment over an along-track span, eq 6."""

@@ -52,21 +52,12 @@ def crabbed_aperture_m(
     return np.asarray(range_m * beamwidth_rad / (cos * turned), dtype=np.float64)
 
 
-def spotlight_aperture_m(range_m: float, turned_rad: float, squint_rad: float = 0.0) -> float:
-    """The straight line that turns by Δθ, half to either side of the squint, round a place at range R abeam.
-
-    L = R (tan(θ_sq + Δθ/2) − tan(θ_sq − Δθ/2)), which is 2R tan(Δθ/2) without squint.
-    """
-    half = turned_rad / 2.0
-    return range_m * (math.tan(squint_rad + half) - math.tan(squint_rad - half))
-
-
-def spot_m(range_m: float, beamwidth_rad: float, squint_rad: float = 0.0) -> float:
+def spot_m(range_m: float, beamwidth_rad: float) -> float:
     """Length along track of the ground that a turning beam holds all the time: R θ_A, as it is abeam.
 
-    Towards both ends of the line the place is farther and the beam on it wider.
+    Away from abeam the place is farther and the beam on it wider.
     """
-    return range_m * beamwidth_rad / math.cos(squint_rad)
+    return range_m * beamwidth_rad
 
 
 def scansar_resolution_m(stripmap_m: float, sub_swaths: int) -> float:

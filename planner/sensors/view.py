@@ -21,7 +21,8 @@ from shapely.geometry.base import BaseGeometry
 
 from planner.airspace.terrain import Ground
 from planner.route import Look
-from planner.sensors import sar_modes, strip, view_kernels, visibility_kernels
+from planner.sensors import spot, strip, view_kernels, visibility_kernels
+from planner.sensors.aim import aim_drop_m, spot_ahead_m, spot_half_m
 from planner.sensors.base import SeenGround
 from planner.sensors.sar import SarSensor
 
@@ -45,7 +46,8 @@ def seen_on_flat(sensor: SarSensor, line_m: ArrayLike, look: Look, height_m: flo
     near_tan, far_tan = _edges_tan(sensor, yaw_rad)
     squinted = sensor.squint_rad != 0.0
     out_m = np.linspace(height_m * near_tan, height_m * far_tan, EDGE_POINTS if squinted else 2)
-    first_m, last_m = _dwell(sensor, frame.length_m, out_m, np.full(len(out_m), height_m), yaw_rad)
+    drops_m = np.full(len(out_m), height_m)
+    first_m, last_m = _dwell(sensor, frame.length_m, out_m, drops_m, yaw_rad, height_m)
     if (first_m >= last_m).any():
         return Polygon()
     ring = np.concatenate([np.stack([first_m, out_m], axis=1), np.stack([last_m, out_m], axis=1)[::-1]])
@@ -102,6 +104,7 @@ def seen_beside(
     squint: float,
     ground: Ground,
     yaw_rad: float = 0.0,
+    ahead_m: float | None = None,
 ) -> list[Polygon]:
     """Ground seen at one moment of a flight, as wide along the track as half to either side.
 
@@ -115,6 +118,8 @@ def seen_beside(
         Tangent of the squint angle.
     yaw_rad
         How far the antenna is turned forward off abeam, about the vertical.
+    ahead_m
+        Where the middle of it lies along the track; None for where the squint has it.
     """
     frame = _Axes(np.asarray(pose, dtype=np.float64), 2.0 * half_along_m)
     near_tan, far_tan = (
@@ -126,7 +131,7 @@ def seen_beside(
     out_edges = _edges(0.0, (level_m - lowest_m) * far_tan, ground.step_m)
     out_m = (out_edges[:-1] + out_edges[1:]) / 2.0
     leads_m = strip.lead_m(math.atan(squint), yaw_rad, out_m, level_m - lowest_m)
-    middle_m = float(leads_m[len(leads_m) // 2])
+    middle_m = float(leads_m[len(leads_m) // 2]) if ahead_m is None else ahead_m
     flags, heights = view_kernels.strip_flags(
         ground.heights_m, ground.west_m, ground.south_m, ground.step_m, frame.pose,
         np.array([middle_m]), out_m, level_m, near_tan, far_tan, squint, yaw_rad,
@@ -245,17 +250,26 @@ def _edges_tan(sensor: SarSensor, yaw_rad: float) -> tuple[float, float]:
 
 
 def _dwell(
-    sensor: SarSensor, length_m: float, out_m: Floats, drop_m: Floats, yaw_rad: float
+    sensor: SarSensor, length_m: float, out_m: Floats, drop_m: Floats, yaw_rad: float, aim_m: float
 ) -> tuple[Floats, Floats]:
-    """From where to where along the line ground is seen at full resolution, at distances and drops (N,)."""
-    lead_m = strip.lead_m(sensor.squint_rad, yaw_rad, out_m, drop_m)
+    """From where to where along the line ground is seen at full resolution, at distances and drops (N,).
+
+    ``aim_m`` is the drop to where a spotlight's beam is kept.
+    """
     if sensor.turned_rad is not None:
         # The beam stays on the middle of the spot, the one seen squinted from the middle of the line.
-        middle_m = length_m / 2.0 + float(lead_m[0] + lead_m[-1]) / 2.0
-        spot_m = sar_modes.spot_m(float(np.hypot(out_m, drop_m).min()), sensor.azimuth_beamwidth_rad)
-        enough = length_m >= sensor.aperture_m(float(np.median(drop_m)) - sensor.relief_m) * (1.0 - 1e-9)
-        half_m = spot_m / 2.0 if enough else -1.0
-        return np.full(len(out_m), middle_m - half_m), np.full(len(out_m), middle_m + half_m)
+        middle_m = length_m / 2.0 + spot_ahead_m(sensor, aim_m)
+        half_m = spot_half_m(sensor, aim_m)
+        wanted = spot.sine_wanted(sensor.turned_rad, sensor.squint_rad) * (1.0 - 1e-9)
+        range_m, resolved = np.hypot(out_m, drop_m), np.ones(len(out_m), dtype=bool)
+        for at_m in (middle_m - half_m, middle_m + half_m):
+            resolved &= spot.sine_turned(-at_m, length_m - at_m, range_m) >= wanted
+        # Outside the beam it does not matter: that is not seen.
+        near, far = math.tan(sensor.steepest_rad), math.tan(sensor.flattest_rad)
+        resolved |= (out_m < drop_m * near - 1e-6) | (out_m > drop_m * far + 1e-6)
+        halves_m = np.where(resolved, half_m, -1.0)
+        return middle_m - halves_m, middle_m + halves_m
+    lead_m = strip.lead_m(sensor.squint_rad, yaw_rad, out_m, drop_m)
     aperture_m = strip.aperture_m(sensor, drop_m, yaw_rad)
     return aperture_m / 2.0 + lead_m, length_m - aperture_m / 2.0 + lead_m
 
@@ -264,6 +278,7 @@ def _dwell_area(
     sensor: SarSensor, frame: _Axes, ground: Ground, level_m: float, out_edges: Floats, yaw_rad: float
 ) -> Polygon | MultiPolygon:
     """Ground lit over a whole aperture, in the line's axes, the beam's edges aside."""
+    aim_m = aim_drop_m(sensor, frame.places, frame.length_m, level_m, ground)
     ends = []
     for which in (0, 1):
         at_m = np.full(len(out_edges), 0.0 if which == 0 else frame.length_m)
@@ -271,7 +286,7 @@ def _dwell_area(
         for _ in range(4):
             heights = ground.at(frame.places(at_m, out_edges))
             drop_m = level_m - np.where(np.isnan(heights), np.nanmean(ground.heights_m), heights)
-            at_m = _dwell(sensor, frame.length_m, out_edges, drop_m, yaw_rad)[which]
+            at_m = _dwell(sensor, frame.length_m, out_edges, drop_m, yaw_rad, aim_m)[which]
         ends.append(at_m)
     first_m, last_m = ends
     if (first_m >= last_m).all():
