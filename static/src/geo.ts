@@ -1,5 +1,6 @@
 /** Geometry on the screen's scale: circles, bounds, distances on a sphere. Nothing here plans. */
 import type { Geometry, Position as GeoPosition } from "geojson";
+import { nearTo, unwrapLine, unwrapRings } from "./antimeridian";
 import type { Position } from "./types";
 
 const EARTH_RADIUS_M = 6371008.8;
@@ -37,7 +38,7 @@ export function circleRing(centre: Position, radius_m: number, points = 96): Pos
 
 /** Closed ring round a line at half a width to either side, with flat ends; corners are mitred up to twice the half. */
 export function corridorRing(line: GeoPosition[], width_m: number): Position[] {
-  const points = line.filter((p, i) => i === 0 || p[0] !== line[i - 1]?.[0] || p[1] !== line[i - 1]?.[1]) as Position[];
+  const points = unwrapLine(line).filter((p, i, all) => i === 0 || p[0] !== all[i - 1]?.[0] || p[1] !== all[i - 1]?.[1]) as Position[];
   if (points.length < 2) return [];
   const heading = (a: Position, b: Position): number =>
     Math.atan2((b[0] - a[0]) * Math.cos(((a[1] + b[1]) / 2) * RAD), b[1] - a[1]) / RAD;
@@ -55,8 +56,10 @@ export function corridorRing(line: GeoPosition[], width_m: number): Position[] {
 
 export type Bounds = [number, number, number, number];
 
-function grow(bounds: Bounds, [lon, lat]: GeoPosition): void {
-  if (lon === undefined || lat === undefined || !Number.isFinite(lon) || !Number.isFinite(lat)) return;
+function grow(bounds: Bounds, [given, lat]: GeoPosition): void {
+  if (given === undefined || lat === undefined || !Number.isFinite(given) || !Number.isFinite(lat)) return;
+  // What lies across ±180° is near what is here already, not round the world.
+  const lon = Number.isFinite(bounds[0]) ? nearTo(given, (bounds[0] + bounds[2]) / 2) : given;
   bounds[0] = Math.min(bounds[0], lon);
   bounds[1] = Math.min(bounds[1], lat);
   bounds[2] = Math.max(bounds[2], lon);
@@ -105,8 +108,8 @@ export function circleOf(ring: GeoPosition[]): { centre: Position; radius_m: num
 export function labelPoint(geometry: Geometry): Position | null {
   if (geometry.type === "Point") return geometry.coordinates as Position;
   if (geometry.type === "LineString") return (geometry.coordinates[geometry.coordinates.length >> 1] ?? null) as Position | null;
-  const ring =
-    geometry.type === "Polygon" ? geometry.coordinates[0] : geometry.type === "MultiPolygon" ? geometry.coordinates[0]?.[0] : undefined;
+  const rings = geometry.type === "Polygon" ? geometry.coordinates : geometry.type === "MultiPolygon" ? (geometry.coordinates[0] ?? []) : [];
+  const ring = unwrapRings(rings)[0];
   if (!ring || ring.length < 2) return null;
   const corners = ring.slice(0, -1);
   const sum = corners.reduce<[number, number]>((s, c) => [s[0] + (c[0] ?? 0), s[1] + (c[1] ?? 0)], [0, 0]);
@@ -121,7 +124,7 @@ export function offLine_m(point: Position, line: GeoPosition[]): number | null {
   for (let i = 1; i < line.length; i += 1) {
     const a = line[i - 1] as Position;
     const b = line[i] as Position;
-    const ax = (a[0] - point[0]) * kx;
+    const ax = (nearTo(a[0], point[0]) - point[0]) * kx;
     const ay = (a[1] - point[1]) * ky;
     const dx = (b[0] - a[0]) * kx;
     const dy = (b[1] - a[1]) * ky;

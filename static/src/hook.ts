@@ -1,8 +1,9 @@
-/** What browser tests ask the page: `window.swathplan`. It only tells; it changes nothing. */
+/** What browser tests ask the page: `window.swathplan`. It tells, and looks elsewhere; it changes nothing else. */
 import type { Map as MapLibreMap } from "maplibre-gl";
 import { track } from "./aircraft";
 import { watched } from "./fleet";
 import { flown } from "./flights";
+import { keeping } from "./keeping";
 import { open, running } from "./plans";
 import { scenarios } from "./scenario";
 
@@ -11,12 +12,20 @@ export interface Hook {
   rendered(): Record<string, number>;
   zoom(): number;
   centre(): [number, number];
+  /** Look at another part of the map; resolves once it is drawn. */
+  look(lon_deg: number, lat_deg: number, zoom: number): Promise<void>;
+  /** The layers drawn at a place in the view. */
+  at(lon_deg: number, lat_deg: number): string[];
   /** Place of a longitude and latitude on the map, in pixels from its corner. */
   project(lon_deg: number, lat_deg: number): [number, number];
   scenario(): unknown;
+  /** How many scenarios took the place of another. */
+  replaced(): number;
   selected(): string | null;
   plan(): { id: string; features: number; waypoints: number } | null;
   planState(): string | null;
+  /** Where the scenario is kept: the service's id of it, and whether all is written. */
+  kept(): { id: string | null; state: string };
   /** The watched vehicle: where it is, whether it flies, how many places its live track has. */
   vehicle(): { lon_deg: number | null; lat_deg: number | null; armed: boolean; sensor_on: boolean; flight: string | null; track: number } | null;
   /** The flight whose seen ground is on the map. */
@@ -38,14 +47,23 @@ export function installHook(map: MapLibreMap): void {
     },
     zoom: () => map.getZoom(),
     centre: () => map.getCenter().toArray() as [number, number],
+    look: async (lon_deg, lat_deg, zoom) => {
+      const drawn = new Promise<void>((resolve) => map.once("idle", () => resolve()));
+      map.jumpTo({ center: [lon_deg, lat_deg], zoom });
+      map.triggerRepaint();
+      await drawn;
+    },
+    at: (lon_deg, lat_deg) => map.queryRenderedFeatures(map.project([lon_deg, lat_deg])).map(({ layer }) => layer.id),
     project: (lon_deg, lat_deg) => {
       const { x, y } = map.project([lon_deg, lat_deg]);
       return [x, y];
     },
     scenario: () => structuredClone(scenarios.document.value),
+    replaced: () => scenarios.replaced.value,
     selected: () => scenarios.selection.value,
-    plan: () => (open.value ? { id: open.value.record.id, features: open.value.plan.features.length, waypoints: open.value.waypoints.length } : null),
+    plan: () => (open.value ? { id: open.value.record.id, features: open.value.plan.features.length, waypoints: open.value.items.filter(({ at }) => at !== null).length } : null),
     planState: () => running.value?.state ?? null,
+    kept: () => ({ id: keeping.value.id, state: keeping.value.state }),
     vehicle: () => {
       const vehicle = watched.value;
       if (!vehicle) return null;

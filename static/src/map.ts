@@ -4,13 +4,12 @@ import type { LayerSpecification } from "maplibre-gl";
 import workerUrl from "maplibre-gl/dist/maplibre-gl-worker.mjs?worker&url";
 import "maplibre-gl/dist/maplibre-gl.css";
 import type { FeatureCollection } from "geojson";
-import { feature } from "topojson-client";
-import type { Topology } from "topojson-specification";
-import landUrl from "world-atlas/land-10m.json?url";
+import { unwrap } from "./antimeridian";
 import { graticule } from "./graticule";
 import type { Bounds } from "./geo";
 import { report } from "./notices";
 import { onThemeChange, palette, type Palette } from "./theme";
+import { loadWorld } from "./world";
 
 setWorkerUrl(workerUrl);
 
@@ -24,7 +23,7 @@ function baseLayers(colours: Palette): LayerSpecification[] {
   return [
     { id: "water", type: "background", paint: { "background-color": colours.water } },
     { id: "land", type: "fill", source: "land", paint: { "fill-color": colours.land } },
-    { id: "coast", type: "line", source: "land", paint: { "line-color": colours.coast, "line-width": 1 } },
+    { id: "coast", type: "line", source: "coast", paint: { "line-color": colours.coast, "line-width": 1 } },
     { id: "grid", type: "line", source: "grid", paint: { "line-color": colours.grid, "line-width": 0.6 } },
     {
       id: "grid-label",
@@ -46,9 +45,14 @@ export function repaint(map: MapLibreMap, layers: LayerSpecification[]): void {
   }
 }
 
-export function setData(map: MapLibreMap, source: string, features: FeatureCollection["features"]): void {
+function setAsIs(map: MapLibreMap, source: string, features: FeatureCollection["features"]): void {
   const found = map.getSource(source);
   if (found && "setData" in found) (found as { setData(data: FeatureCollection): unknown }).setData({ type: "FeatureCollection", features });
+}
+
+/** Show features, each in one piece also where it crosses ±180°. */
+export function setData(map: MapLibreMap, source: string, features: FeatureCollection["features"]): void {
+  setAsIs(map, source, features.map((feature) => ({ ...feature, geometry: unwrap(feature.geometry) })));
 }
 
 export function fit(map: MapLibreMap, bounds: Bounds | null): void {
@@ -58,12 +62,10 @@ export function fit(map: MapLibreMap, bounds: Bounds | null): void {
   map.fitBounds(bounds, { padding, maxZoom: 16, duration: 0 });
 }
 
-async function loadLand(map: MapLibreMap): Promise<void> {
-  const answer = await fetch(landUrl);
-  if (!answer.ok) throw new Error(`the coastlines answered ${answer.status}`);
-  const topology = (await answer.json()) as Topology;
-  const land = topology.objects["land"];
-  if (land) setData(map, "land", (feature(topology, land) as FeatureCollection).features);
+async function showWorld(map: MapLibreMap): Promise<void> {
+  const { land, coast } = await loadWorld();
+  setAsIs(map, "land", land);
+  setAsIs(map, "coast", coast);
 }
 
 export function rasterTemplate(): string {
@@ -89,6 +91,7 @@ export async function createMap(container: HTMLElement): Promise<MapLibreMap> {
       version: 8,
       sources: {
         land: { type: "geojson", data: NOTHING, attribution: "Coastlines: Natural Earth, for orientation only" },
+        coast: { type: "geojson", data: NOTHING },
         grid: { type: "geojson", data: NOTHING },
       },
       layers: baseLayers(palette()),
@@ -112,7 +115,7 @@ export async function createMap(container: HTMLElement): Promise<MapLibreMap> {
   drawGrid();
   onThemeChange(() => repaint(map, baseLayers(palette())));
   map.on("error", (event) => report("The map could not draw something", event.error));
-  loadLand(map).catch((error: unknown) => report("The coastlines could not be loaded", error));
+  showWorld(map).catch((error: unknown) => report("The coastlines could not be loaded", error));
   try {
     setRaster(map, rasterTemplate());
   } catch (error) {
