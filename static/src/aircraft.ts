@@ -3,9 +3,11 @@ import { Marker, type Map as MapLibreMap } from "maplibre-gl";
 import { h } from "./dom";
 import { vehicles, watched } from "./fleet";
 import { flown } from "./flights";
+import { ageWords, hearing, OLD_S } from "./hearing";
 import { setData } from "./map";
 import { Track } from "./track";
-import type { Position } from "./types";
+import { scenarios } from "./scenario";
+import type { Position, Vehicle } from "./types";
 
 const SVG = "http://www.w3.org/2000/svg";
 const SHAPE = "M17 1.500 19.500 12 33 20v3.500L19.500 20l-.8 8 4.300 3v2L17 31.500 11 33v-2l4.300-3-.8-8L1 23.500V20l13.500-8z";
@@ -23,6 +25,16 @@ function symbol(other?: string): HTMLElement {
   return element;
 }
 
+const TICK_MS = 1000;
+
+/** A place that is old is drawn as such, and says how old it is. */
+function tellAge(element: HTMLElement, vehicle: Vehicle): void {
+  const heard = hearing(vehicle);
+  const old = heard.lost || (heard.age_s !== null && heard.age_s > OLD_S);
+  element.classList.toggle("old", old);
+  element.dataset["age"] = old ? `${vehicle.name}: ${heard.lost ? "link lost, " : ""}here ${ageWords(heard)} ago` : "";
+}
+
 /** The other vehicles, fainter and by name, as the list last told. */
 function showOthers(map: MapLibreMap): void {
   const markers = new Map<string, Marker>();
@@ -33,10 +45,13 @@ function showOthers(map: MapLibreMap): void {
       marker.remove();
       markers.delete(id);
     }
-    for (const { id, name, state } of others) {
+    for (const vehicle of others) {
+      const { id, name, state } = vehicle;
       const known = markers.get(id);
       const marker = known ?? new Marker({ element: symbol(name), rotationAlignment: "map" });
-      marker.setLngLat([state.lon_deg as number, state.lat_deg as number]).setRotation(state.heading_deg ?? 0);
+      marker.setLngLat([state.lon_deg as number, state.lat_deg as number]);
+      turn(marker, state.heading_deg);
+      tellAge(marker.getElement(), vehicle);
       if (known) continue;
       markers.set(id, marker);
       marker.addTo(map);
@@ -49,6 +64,12 @@ function showOthers(map: MapLibreMap): void {
     shown = vehicle?.id ?? null;
     draw();
   });
+}
+
+/** The symbol alone turns; the words beside it stay upright. */
+function turn(marker: Marker, heading_deg: number | null): void {
+  const svg = marker.getElement().querySelector("svg");
+  if (svg) svg.style.transform = `rotate(${heading_deg ?? 0}deg)`;
 }
 
 /** The live track of the flight going on; a flight shown afterwards brings its own. */
@@ -67,7 +88,9 @@ export function showAircraft(map: MapLibreMap): void {
       return;
     }
     const at: Position = [state.lon_deg, state.lat_deg];
-    marker.setLngLat(at).setRotation(state.heading_deg ?? 0);
+    marker.setLngLat(at);
+    turn(marker, state.heading_deg);
+    tellAge(marker.getElement(), vehicle);
     if (shownId === null) marker.addTo(map);
     const another = shownId !== null && shownId !== vehicle.id;
     shownId = vehicle.id;
@@ -77,6 +100,15 @@ export function showAircraft(map: MapLibreMap): void {
     }
     flightId = vehicle.flight_id;
     if (flightId !== null && track.add({ at, sensor_on: state.sensor_on === true })) setData(map, "track", track.features());
+  });
+  setInterval(() => {
+    if (watched.value) tellAge(marker.getElement(), watched.value);
+  }, TICK_MS);
+  // A track of a flight that is over belongs to the scenario that was on the page.
+  scenarios.replaced.watch(() => {
+    if (flightId !== null) return;
+    track.clear();
+    setData(map, "track", []);
   });
   flown.watch((shown) => {
     setData(map, "seen", shown?.seen.features ?? []);

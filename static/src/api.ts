@@ -74,8 +74,8 @@ async function send(url: string, init: RequestInit): Promise<Response> {
   return response;
 }
 
-async function call<T>(method: string, path: string, body?: unknown): Promise<T> {
-  const init: RequestInit = { method, headers: { accept: "application/json, application/problem+json" } };
+async function call<T>(method: string, path: string, body?: unknown, headers: Record<string, string> = {}): Promise<T> {
+  const init: RequestInit = { method, headers: { accept: "application/json, application/problem+json", ...headers } };
   if (body !== undefined) {
     init.body = JSON.stringify(body);
     init.headers = { ...init.headers, "content-type": "application/json" };
@@ -87,6 +87,8 @@ async function call<T>(method: string, path: string, body?: unknown): Promise<T>
 
 export const get = <T>(path: string): Promise<T> => call<T>("GET", path);
 export const post = <T>(path: string, body: unknown): Promise<T> => call<T>("POST", path, body);
+/** Write over what is there, unless it is no longer what `tag` says: then 412. */
+export const put = <T>(path: string, body: unknown, tag: string): Promise<T> => call<T>("PUT", path, body, { "if-match": tag });
 export const remove = (path: string): Promise<unknown> => call<unknown>("DELETE", path);
 
 /** Send a file as it is, and read the JSON answered. */

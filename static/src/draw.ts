@@ -4,6 +4,7 @@ import { TerraDraw, TerraDrawCircleMode, TerraDrawLineStringMode, TerraDrawPoint
 import type { GeoJSONStoreFeatures } from "terra-draw";
 import { TerraDrawMapLibreGLAdapter } from "terra-draw-maplibre-gl-adapter";
 import type { Geometry, Polygon } from "geojson";
+import { within180 } from "./antimeridian";
 import { ahead, circleOf, circleRing, distance_m, labelPoint, round7 } from "./geo";
 import { hideWhileEdited, SELECTABLE } from "./layers";
 import { warn } from "./notices";
@@ -48,11 +49,13 @@ const CLOSE_PX = 16;
 // Small, so that a small shape can still be taken by its middle.
 const GRAB_PX = 11;
 
+/** As the scenario has it: seven digits, longitudes from −180 to 180. */
 function rounded(geometry: Geometry): Geometry {
-  if (geometry.type === "Point") return { type: "Point", coordinates: geometry.coordinates.slice(0, 2).map(round7) };
-  if (geometry.type === "LineString") return { type: "LineString", coordinates: geometry.coordinates.map((p) => p.slice(0, 2).map(round7)) };
+  const place = ([lon, lat]: number[]): number[] => [round7(within180(lon as number)), round7(lat as number)];
+  if (geometry.type === "Point") return { type: "Point", coordinates: place(geometry.coordinates) };
+  if (geometry.type === "LineString") return { type: "LineString", coordinates: geometry.coordinates.map(place) };
   if (geometry.type !== "Polygon") return geometry;
-  return { type: "Polygon", coordinates: geometry.coordinates.map((ring) => ring.map((p) => p.slice(0, 2).map(round7))) };
+  return { type: "Polygon", coordinates: geometry.coordinates.map((ring) => ring.map(place)) };
 }
 
 /** How terra-draw can edit a feature; null for shapes with holes or several parts. */
@@ -81,6 +84,8 @@ function editable(feature: ScenarioFeature): GeoJSONStoreFeatures | null {
 
 export class Drawing {
   readonly tool = new Signal<Tool | null>(null);
+  /** Whether geometry stands fast: no tool, no handles, no key changes it. */
+  readonly locked = new Signal<boolean>(true);
   readonly #map: MapLibreMap;
   readonly #draw: TerraDraw;
   #editing: { name: string; id: string | number } | null = null;
@@ -122,16 +127,27 @@ export class Drawing {
     });
     map.on("click", (event) => this.#click(event.point));
     for (const layer of SELECTABLE) {
-      map.on("mouseenter", layer, () => this.tool.value === null && (map.getCanvas().style.cursor = "pointer"));
+      map.on("mouseenter", layer, () => !this.locked.value && this.tool.value === null && (map.getCanvas().style.cursor = "pointer"));
       map.on("mouseleave", layer, () => this.tool.value === null && (map.getCanvas().style.cursor = ""));
     }
+    this.locked.watch((locked) => {
+      if (locked) this.#letGo();
+    });
     scenarios.selection.watch(() => this.#follow());
     scenarios.document.watch(() => this.#follow());
     addEventListener("keydown", (event) => this.#key(event));
   }
 
+  /** Give up what is being drawn and let go of what is selected; nothing of it changes the scenario. */
+  #letGo(): void {
+    this.use(null);
+    if (scenarios.selection.value !== null) scenarios.selection.set(null);
+    this.#map.getCanvas().style.cursor = "";
+  }
+
   /** Begin to draw; null stops. */
   use(tool: Tool | null): void {
+    if (tool && this.locked.value) return;
     if (tool) scenarios.selection.set(null);
     this.tool.set(tool);
     this.#draw.setMode(tool ? tool.mode : IDLE);
@@ -146,27 +162,27 @@ export class Drawing {
     const side_m = half_deg * 111_000;
     this.use(null);
     if (tool.mode === "point") {
-      scenarios.add(tool.role, { type: "Point", coordinates: centre }, tool.properties);
+      scenarios.add(tool.role, rounded({ type: "Point", coordinates: centre }), tool.properties);
     } else if (tool.mode === "circle") {
       this.#addCircle(tool, centre, Math.max(1, Math.round(side_m)));
     } else if (tool.mode === "linestring") {
       const line = [270, 90].map((heading) => ahead(centre, heading, side_m));
-      scenarios.add(tool.role, { type: "LineString", coordinates: line }, tool.properties);
+      scenarios.add(tool.role, rounded({ type: "LineString", coordinates: line }), tool.properties);
     } else {
       const ring = [225, 135, 45, 315, 225].map((heading) => ahead(centre, heading, side_m * Math.SQRT2));
-      scenarios.add(tool.role, { type: "Polygon", coordinates: [ring] }, tool.properties);
+      scenarios.add(tool.role, rounded({ type: "Polygon", coordinates: [ring] }), tool.properties);
     }
   }
 
   #addCircle(tool: Tool, centre: Position, radius_m: number): void {
     const extra = tool.properties["model"] === "radar" ? { intensity_m: radius_m } : {};
-    scenarios.add(tool.role, { type: "Point", coordinates: centre }, { ...tool.properties, radius_m, ...extra });
+    scenarios.add(tool.role, rounded({ type: "Point", coordinates: centre }), { ...tool.properties, radius_m, ...extra });
   }
 
   #take(id: string | number): void {
     const tool = this.tool.value;
     const drawn = this.#draw.getSnapshotFeature(id);
-    if (!tool || !drawn) return;
+    if (!tool || !drawn || this.locked.value) return;
     this.#draw.removeFeatures([id]);
     this.use(null);
     if (tool.mode === "circle") {
@@ -182,10 +198,10 @@ export class Drawing {
     const editing = this.#editing;
     const drawn = editing && this.#draw.getSnapshotFeature(editing.id);
     const feature = editing && scenarios.find(editing.name);
-    if (!editing || !drawn || !feature) return;
+    if (!editing || !drawn || !feature || this.locked.value) return;
     if (radiusOf(feature) > 0) {
       const { centre, radius_m } = circleOf((drawn.geometry as Polygon).coordinates[0] ?? []);
-      scenarios.reshape(editing.name, { type: "Point", coordinates: centre }, { radius_m });
+      scenarios.reshape(editing.name, rounded({ type: "Point", coordinates: centre }), { radius_m });
     } else {
       scenarios.reshape(editing.name, rounded(drawn.geometry as Geometry));
     }
@@ -198,7 +214,7 @@ export class Drawing {
   /** Give the selected feature handles; take them from the one before. */
   #follow(): void {
     const name = scenarios.selection.value;
-    const feature = scenarios.find(name);
+    const feature = this.locked.value ? undefined : scenarios.find(name);
     if (this.#editing && (this.#editing.name !== name || !this.#same(feature))) {
       const { id } = this.#editing;
       this.#editing = null;
@@ -229,7 +245,7 @@ export class Drawing {
   }
 
   #click(point: { x: number; y: number }): void {
-    if (this.tool.value !== null) return;
+    if (this.tool.value !== null || this.locked.value) return;
     const box: [[number, number], [number, number]] = [[point.x - NEAR_PX, point.y - NEAR_PX], [point.x + NEAR_PX, point.y + NEAR_PX]];
     const place = this.#map.unproject([point.x, point.y]).toArray() as Position;
     const away = (name: unknown): number => {
@@ -247,6 +263,7 @@ export class Drawing {
 
   #key(event: KeyboardEvent): void {
     const typing = event.target instanceof HTMLElement && event.target.matches("input, textarea, select");
+    if (this.locked.value) return;
     if (event.key === "Escape" && this.tool.value) this.use(null);
     else if (typing) return;
     else if (event.key === "Escape") scenarios.selection.set(null);

@@ -1,5 +1,6 @@
 /** Take a file from a drop on the page or from the file dialog: a scenario, or regions of another program. */
 import { byId } from "./dom";
+import { mayLeave } from "./leaving";
 import { news, report } from "./notices";
 import { importRegions, isRegionFile } from "./regions";
 import { parseScenario, scenarios } from "./scenario";
@@ -16,6 +17,7 @@ async function openScenario(file: File): Promise<boolean> {
     if (file.size > LIMIT_BYTES) throw new Error(`The file has ${(file.size / 1e6).toFixed(1)} MB, more than a scenario can have.`);
     const scenario = parseScenario(await file.text());
     scenario.name ??= file.name.replace(/\.(geo)?json$/i, "");
+    if (!(await mayLeave(`Open ${file.name}?`, "Open"))) return false;
     scenarios.load(scenario, true);
     news(`Opened ${file.name}: ${scenario.features.length} features.`);
     return true;

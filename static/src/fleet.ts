@@ -1,14 +1,17 @@
 /** Vehicles: which there are, the one being watched, what is sent to it. */
 import { connection, follow, get, list, post, remove } from "./api";
+import { bodyOf, type Encoding } from "./encoding";
+import { hear } from "./hearing";
 import { attempt, report } from "./notices";
 import { Signal } from "./signal";
 import type { HeldItem, Part, Preflight, Recording, Upload, Vehicle } from "./types";
 
-export type Command = "arm" | "disarm" | "start" | "pause" | "resume" | "rtl" | "goto_item";
+export type Command = "arm" | "disarm" | "start" | "pause" | "resume" | "hold" | "rtl" | "land" | "sensor_off" | "goto_item";
 
 export interface CommandAnswer {
-  outcome: "accepted" | "unknown";
-  detail: string;
+  outcome: "done" | "accepted" | "pending" | "unknown";
+  reason?: string | null;
+  detail?: string;
 }
 
 export interface Override {
@@ -35,7 +38,9 @@ export function watchVehicle(id: string | null): void {
     path(id, "/telemetry"),
     ({ data }) => {
       const vehicle = data as Vehicle | null;
-      if (vehicle?.id === id) watched.set(vehicle);
+      if (vehicle?.id !== id) return;
+      hear(vehicle);
+      watched.set(vehicle);
     },
     (state) => {
       if (stream.value !== state) stream.set(state);
@@ -52,7 +57,9 @@ export function watchVehicle(id: string | null): void {
 
 /** List the vehicles; the first one is watched when none is. */
 export async function refreshVehicles(): Promise<void> {
-  vehicles.set(await list<Vehicle>("/vehicles", "vehicles"));
+  const found = await list<Vehicle>("/vehicles", "vehicles");
+  found.forEach((vehicle) => hear(vehicle));
+  vehicles.set(found);
   const known = vehicles.value.some((vehicle) => vehicle.id === watched.value?.id);
   if (!known) watchVehicle(vehicles.value[0]?.id ?? null);
 }
@@ -70,20 +77,14 @@ export async function letGo(id: string): Promise<void> {
   await refreshVehicles();
 }
 
-/** What the plan leaves open: how the sensor is switched, and what points it; null for the default. */
-export interface Encoding {
-  payload: string | null;
-  gimbal: string | null;
-}
-
-export function upload(id: string, planId: string, parts: Part[], how: Encoding, override: Override | null): Promise<Upload> {
+export function upload(id: string, planId: string, vehicle: string | null, parts: Part[], how: Encoding, override: Override | null): Promise<Upload> {
   const excuse = override ? { override: true, reason: override.reason } : {};
-  return post<Upload>(path(id, "/mission"), { plan_id: planId, parts, ...how, ...excuse });
+  return post<Upload>(path(id, "/mission"), { plan_id: planId, ...(vehicle ? { vehicle } : {}), parts, ...bodyOf(how), ...excuse });
 }
 
 /** Ask the vehicle whether it is ready to fly a plan; nothing in it is changed. */
-export function preflight(id: string, planId: string, how: Encoding): Promise<Preflight> {
-  return post<Preflight>(path(id, "/preflight"), { plan_id: planId, ...how });
+export function preflight(id: string, planId: string, vehicle: string | null, how: Encoding): Promise<Preflight> {
+  return post<Preflight>(path(id, "/preflight"), { plan_id: planId, ...(vehicle ? { vehicle } : {}), ...bodyOf(how) });
 }
 
 /** Take the aircraft that answers in the vehicle's place for the vehicle. */
@@ -91,8 +92,8 @@ export function acknowledge(id: string, systemId: number): Promise<Vehicle> {
   return post<Vehicle>(path(id, "/identity"), { system_id: systemId });
 }
 
-export function command(id: string, name: Command, seq: number | null = null): Promise<CommandAnswer> {
-  return post<CommandAnswer>(path(id, "/commands"), { command: name, seq });
+export function command(id: string, name: Command, more: { seq?: number; arm_first?: true } = {}): Promise<CommandAnswer> {
+  return post<CommandAnswer>(path(id, "/commands"), { command: name, ...more });
 }
 
 const PARTS: Part[] = ["mission", "fence", "rally"];
@@ -114,7 +115,7 @@ export const readVehicle = (id: string): Promise<Vehicle> => get<Vehicle>(path(i
 
 /** Keep the list fresh while the page is open: others may connect vehicles too. */
 export function keepVehicles(): void {
-  const every_ms = 5000;
+  const every_ms = 2000;
   const beat = async (): Promise<void> => {
     if (connection.value === "up" && !document.hidden) {
       try {

@@ -2,7 +2,9 @@
 import type { Feature, FeatureCollection, LineString } from "geojson";
 import { apiUrl, get, list, post } from "./api";
 import { watched } from "./fleet";
-import { attempt } from "./notices";
+import { attempt, news } from "./notices";
+import { open } from "./plans";
+import { scenarios } from "./scenario";
 import { Signal } from "./signal";
 import type { Flight, PlanRecord, SeenCollection } from "./types";
 
@@ -41,6 +43,7 @@ export function refly(id: string): Promise<PlanRecord> {
 
 /** When the watched vehicle's flight ends, show what it saw. */
 export function keepFlights(): void {
+  scenarios.replaced.watch(() => flown.set(null));
   let flying: string | null = null;
   watched.watch((vehicle) => {
     const now = vehicle?.flight_id ?? null;
@@ -52,7 +55,10 @@ export function keepFlights(): void {
     void attempt("The flights were not listed", async () => {
       await refreshFlights();
       const flight = flights.value.find((candidate) => candidate.id === ended);
-      if (flight?.plan_id) await showFlight(flight);
+      if (!flight?.plan_id) return;
+      // What another plan's flight saw belongs to another scenario than the one on the map.
+      if (flight.plan_id === open.value?.record.id) await showFlight(flight);
+      else news(`${flight.vehicle_name} has ended a flight of another plan than the one on the map; what it saw stands under Flights.`);
     });
   });
 }

@@ -26,10 +26,11 @@ export const GROUPS: Group[] = [
   { id: "footprint", label: "Ground to be seen", swatch: "area", colour: "footprint", layers: ["footprint-fill", "footprint-line"] },
   { id: "uncovered", label: "Not covered", swatch: "area", colour: "uncovered", layers: ["uncovered-fill", "uncovered-line"] },
   { id: "path", label: "Path", swatch: "line", colour: "path", layers: ["path-line", "path-arrow"] },
+  { id: "phases", label: "Take-off, climb, return, landing", swatch: "dashed", colour: "phase", layers: ["phase-line", "phase-label"] },
   { id: "compared", label: "Path compared with", swatch: "line", colour: "area", layers: ["compared-line"] },
   { id: "held", label: "Mission read from the vehicle", swatch: "dashed", colour: "held", layers: ["held-line"] },
   { id: "collect", label: "Collect (sensor on)", swatch: "thick", colour: "collect", layers: ["collect-line", "collect-label"] },
-  { id: "waypoints", label: "Waypoints", swatch: "dot", colour: "path", layers: ["waypoint"] },
+  { id: "waypoints", label: "Mission items: number, height", swatch: "dot", colour: "path", layers: ["waypoint", "waypoint-label"] },
   { id: "track", label: "Flown track", swatch: "line", colour: "track", layers: ["track-off"] },
   { id: "trackOn", label: "Flown, sensor on", swatch: "thick", colour: "trackOn", layers: ["track-on"] },
   { id: "seen", label: "Ground really seen", swatch: "area", colour: "seen", layers: ["seen-fill", "seen-line"] },
@@ -93,8 +94,17 @@ function layers(c: Palette): LayerSpecification[] {
       paint: { "icon-color": c.path, "icon-halo-color": c.halo, "icon-halo-width": 1 },
     },
     {
+      id: "phase-line", type: "line", source: "plan", filter: roleIs("phase"),
+      layout: { "line-join": "round" },
+      paint: { "line-color": c.phase, "line-width": 3, "line-dasharray": [1.6, 1] },
+    },
+    {
       id: "waypoint", type: "circle", source: "waypoints", minzoom: 11,
-      paint: { "circle-radius": 2.4, "circle-color": c.halo, "circle-stroke-color": c.path, "circle-stroke-width": 1.2 },
+      paint: {
+        "circle-radius": ["case", ["get", "current"], 6, 2.8],
+        "circle-color": ["case", ["get", "current"], c.trackOn, c.halo],
+        "circle-stroke-color": c.path, "circle-stroke-width": 1.2,
+      },
     },
     {
       id: "terminal", type: "circle", source: "scenario", filter: kindIs("terminal"),
@@ -119,6 +129,19 @@ function layers(c: Palette): LayerSpecification[] {
       id: "collect-label", type: "symbol", source: "plan", filter: roleIs("collect"),
       layout: { "symbol-placement": "line-center", "text-field": ["get", "label"], "text-font": FONT, "text-size": 14, "text-rotation-alignment": "viewport", "text-offset": [0, -1] },
       paint: { "text-color": c.collect, "text-halo-color": c.halo, "text-halo-width": 2 },
+    },
+    {
+      id: "phase-label", type: "symbol", source: "plan", filter: roleIs("phase"), minzoom: 11,
+      layout: { "symbol-placement": "line-center", "text-field": ["get", "label"], "text-font": FONT, "text-size": 12, "text-offset": [0, 0.9] },
+      paint: { "text-color": c.phase, "text-halo-color": c.halo, "text-halo-width": 1.8 },
+    },
+    {
+      id: "waypoint-label", type: "symbol", source: "waypoints", minzoom: 11.5,
+      layout: {
+        "text-field": ["step", ["zoom"], ["get", "label"], 13.5, ["case", ["==", ["get", "height"], ""], ["get", "label"], ["concat", ["get", "label"], " · ", ["get", "height"]]]],
+        "text-font": FONT, "text-size": 11, "text-anchor": "top-left", "text-offset": [0.35, 0.2], "symbol-sort-key": ["case", ["get", "current"], 0, 1],
+      },
+      paint: { "text-color": c.path, "text-halo-color": c.halo, "text-halo-width": 1.6 },
     },
     {
       id: "scenario-label", type: "symbol", source: "scenario", filter: ["get", "label"],

@@ -4,7 +4,7 @@ import { byId, fill, h } from "./dom";
 import { GROUPS, showGroup } from "./layers";
 import { onThemeChange, palette } from "./theme";
 
-const NARROW_PX = 1366;
+const NARROW_PX = 1500;
 
 export function buildLegend(map: MapLibreMap): void {
   const hidden = new Set<string>();

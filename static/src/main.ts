@@ -5,23 +5,31 @@ import { connection, heartbeat } from "./api";
 import { byId } from "./dom";
 import { Drawing } from "./draw";
 import { acceptDrops } from "./drop";
-import { keepVehicles } from "./fleet";
+import { encoding } from "./encoding";
+import { keepVehicles, watched } from "./fleet";
 import { keepFlights, refreshFlights } from "./flights";
+import { freshness, keepFresh } from "./freshness";
 import { boundsOf } from "./geo";
 import { held, heldFeatures } from "./held";
 import { buildHeader } from "./header";
 import { installHook } from "./hook";
+import { keepScenarios } from "./keeping";
 import { addLayers } from "./layers";
 import { buildLegend } from "./legend";
 import { createMap, fit, setData } from "./map";
-import { attempt, report } from "./notices";
+import { itemFeatures } from "./mission";
+import { attempt, clearNotices, report } from "./notices";
+import { openNewest } from "./newest";
 import { planPanel } from "./panel/plan_panel";
 import { scenarioPanel } from "./panel/scenario_panel";
+import { buildStatusStrip } from "./panel/status_strip";
 import { tabs } from "./panel/tabs";
 import { vehiclePanel } from "./panel/vehicle_panel";
-import { compared, open, openPlan, planFeatures, recent, refresh } from "./plans";
+import { phaseFeatures } from "./phases";
+import { compared, keepOpenFresh, keepToTheScenario, open, openPlan, planFeatures, refresh, rereadItems } from "./plans";
 import { scenarios } from "./scenario";
 import { scenarioFeatures } from "./scenario_view";
+import { keepSession, restore } from "./session";
 import { keepRasters } from "./terrain";
 import { buildToolbar } from "./toolbar";
 import type { Position } from "./types";
@@ -38,35 +46,40 @@ async function start(): Promise<void> {
     zoomToAll: () => fit(map, scenarios.bounds() ?? boundsOf(open.value?.plan.features ?? [])),
     zoomToPlace: (place: Position) => void map.jumpTo({ center: place, zoom: Math.max(PLACE_ZOOM, map.getZoom()) }),
   };
-  buildHeader(map);
-  buildToolbar(drawing);
-  buildLegend(map);
   const panel = tabs([
     { id: "scenario", label: "Scenario", content: scenarioPanel(view) },
     { id: "plan", label: "Plan", content: planPanel(view) },
-    { id: "fly", label: "Fly", content: vehiclePanel(() => panel.show("plan")) },
+    { id: "fly", label: "Fly", content: vehiclePanel(view, () => panel.show("plan"), () => panel.show("scenario")) },
   ]);
+  buildHeader(map);
+  buildStatusStrip();
+  buildToolbar(drawing, () => panel.show("scenario"));
+  buildLegend(map);
   byId("panel").append(panel.element, ...panel.panels);
+  // Geometry is changed where the scenario is, and nowhere else.
+  panel.shown.watch((id) => drawing.locked.set(id !== "scenario"));
   judgement.watch(({ state, findings }) => panel.mark("scenario", state === "refused" ? `${findings.filter(({ severity }) => severity !== "warning").length} refused` : ""));
+  freshness.watch(({ state }) => panel.mark("plan", state === "stale" ? "out of date" : ""));
   acceptDrops(() => {
     panel.show("scenario");
     view.zoomToAll();
   });
-  scenarios.document.watch((scenario) => setData(map, "scenario", scenarioFeatures(scenario)));
-  open.watch((shown) => {
-    setData(map, "plan", shown ? planFeatures(shown.plan) : []);
-    const points = shown?.waypoints ?? [];
-    setData(map, "waypoints", points.map((coordinates) => ({ type: "Feature", properties: {}, geometry: { type: "Point", coordinates } })));
-  });
-  held.watch((found) => setData(map, "held", found ? heldFeatures(found.items) : []));
-  compared.watch((other) => setData(map, "compared", (other?.plan.features ?? []).filter((feature) => feature.properties?.["role"] === "path")));
+  draw(map);
+  keepToTheScenario();
+  keepScenarios();
+  keepFresh();
+  keepOpenFresh();
+  scenarios.replaced.watch(clearNotices);
+  encoding.watch(() => void rereadItems());
   showAircraft(map);
   keepFlights();
   keepRasters();
   keepVehicles();
   heartbeat();
   keepJudging();
-  keepListing(scenarios.restore(), () => {
+  const before = restore();
+  keepSession();
+  keepListing(before, () => {
     panel.suggest("plan");
     view.zoomToAll();
   });
@@ -74,20 +87,45 @@ async function start(): Promise<void> {
   installHook(map);
 }
 
-/** List the plans whenever the service comes up; show the newest one first unless there are edits to keep. */
-function keepListing(hasEdits: boolean, shown: () => void): void {
-  let settled = hasEdits;
-  let before = connection.value;
+function draw(map: Awaited<ReturnType<typeof createMap>>): void {
+  scenarios.document.watch((scenario) => setData(map, "scenario", scenarioFeatures(scenario)));
+  const drawItems = (): void => {
+    const current = watched.value?.flight_id && watched.value.plan_id === open.value?.record.id ? watched.value.state.mission_current : null;
+    setData(map, "waypoints", itemFeatures(open.value?.items ?? [], current));
+  };
+  open.watch((shown) => {
+    setData(map, "plan", shown ? [...planFeatures(shown.plan), ...phaseFeatures(shown.plan, shown.items)] : []);
+    drawItems();
+  });
+  let current: number | null | undefined;
+  watched.watch((vehicle) => {
+    const now = vehicle?.flight_id ? vehicle.state.mission_current : null;
+    if (now === current) return;
+    current = now;
+    drawItems();
+  });
+  held.watch((found) => setData(map, "held", found ? heldFeatures(found.items) : []));
+  scenarios.replaced.watch(() => held.set(null));
+  compared.watch((other) => setData(map, "compared", (other?.plan.features ?? []).filter((feature) => feature.properties?.["role"] === "path")));
+}
+
+/** List what there is whenever the service comes up; then show what the tab had, or the newest there is. */
+function keepListing(before: ReturnType<typeof restore>, shown: () => void): void {
+  let settled = false;
+  let last = connection.value;
   connection.watch((state) => {
-    const cameUp = state === "up" && before !== "up";
-    before = state;
+    const cameUp = state === "up" && last !== "up";
+    last = state;
     if (!cameUp) return;
     void attempt("The plans and flights were not listed", async () => {
       await Promise.all([refresh(), refreshFlights()]);
-      const newest = recent.value.find(({ state }) => state === "done") ?? recent.value.find(({ state }) => state === "queued" || state === "running");
-      if (settled || scenarios.edited.value || !newest) return;
+      if (settled) return;
       settled = true;
-      if (await openPlan(newest.id, null, () => !scenarios.edited.value)) shown();
+      if (before === null) {
+        if (await openNewest()) shown();
+      } else if (before.plan !== null) {
+        await openPlan(before.plan, true);
+      }
     });
   });
 }

@@ -30,6 +30,11 @@ function show(kind: "error" | "news", title: string, lines: string[]): void {
   if (kind === "news") setTimeout(() => notice.remove(), NEWS_MS);
 }
 
+/** What was said of a scenario that is no longer there says nothing of this one. */
+export function clearNotices(): void {
+  byId("notices").replaceChildren();
+}
+
 export function news(text: string): void {
   show("news", text, []);
 }

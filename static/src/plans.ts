@@ -1,17 +1,21 @@
-/** Plans: asking for one, following its progress, opening one that was made before. */
 import type { Feature } from "geojson";
-import { ApiError, apiUrl, follow, get, list, post, remove } from "./api";
-import { attempt, report } from "./notices";
+import { ApiError, apiUrl, connection, follow, get, list, post, remove } from "./api";
+import { canonical } from "./canonical";
+import { encoding, queryOf } from "./encoding";
+import { adoptIfSame, keeping, keepNow } from "./keeping";
+import { itemsOf, type MissionItem } from "./mission";
+import { attempt, news, report } from "./notices";
 import { scenarios } from "./scenario";
 import { Signal } from "./signal";
-import type { PlanCollection, PlanRecord, PlanState, Position, Problem, Scenario } from "./types";
+import type { PlanCollection, PlanRecord, PlanState, Problem, Scenario } from "./types";
 
 export interface OpenPlan {
   record: PlanRecord;
   plan: PlanCollection;
-  waypoints: Position[];
-  /** The scenario's text when the plan was asked for or opened; null when it is not the one on the page. */
-  madeFrom: string | null;
+  /** Empty when the plan cannot be said as a mission. */
+  items: MissionItem[];
+  /** The scenario it was made of, as documents are compared. */
+  madeFrom: string;
 }
 
 /** The plan being made, if any; the plan on the map, if any; those the service knows, newest first. */
@@ -22,7 +26,6 @@ export const recent = new Signal<PlanRecord[]>([]);
 export const compared = new Signal<{ record: PlanRecord; plan: PlanCollection } | null>(null);
 
 const ENDED: ReadonlySet<PlanState> = new Set(["done", "failed", "cancelled"]);
-const NAV_WAYPOINT = 16;
 
 export const planUrl = (id: string, file: string): string => apiUrl(`/plans/${encodeURIComponent(id)}/${file}`);
 
@@ -37,39 +40,50 @@ export function problemOf(record: PlanRecord): Problem | null {
   return typeof record.error === "string" ? { title: "Planning failed", detail: record.error } : record.error;
 }
 
-interface QgcItem {
-  command?: number;
-  params?: (number | null)[];
-}
-
-/** The waypoints of a QGroundControl plan, as longitude and latitude. */
-export function waypointsOf(document: unknown): Position[] {
-  const items = (document as { mission?: { items?: QgcItem[] } } | null)?.mission?.items ?? [];
-  return items
-    .filter((item) => item.command === NAV_WAYPOINT && (item.params?.length ?? 0) >= 6)
-    .map((item) => [Number(item.params?.[5]), Number(item.params?.[4])] as Position)
-    .filter(([lon, lat]) => Number.isFinite(lon) && Number.isFinite(lat) && (lon !== 0 || lat !== 0));
+async function readItems(id: string): Promise<MissionItem[]> {
+  const document = await attempt("The mission's waypoints cannot be shown", () => get<unknown>(`/plans/${encodeURIComponent(id)}/mission.plan${queryOf(encoding.value)}`));
+  return itemsOf(document);
 }
 
 /**
- * Bring a plan onto the map; its scenario too, unless `madeFrom` tells that of the page. False when `wanted`
+ * Bring a plan onto the map; its scenario too, unless that of the page stays (`beside`). False when `wanted`
  * says, once the answers are there, that the operator has gone on with something else.
  */
-export async function openPlan(id: string, madeFrom: string | null = null, wanted = (): boolean => true): Promise<boolean> {
+export async function openPlan(id: string, beside = false, wanted = (): boolean => true): Promise<boolean> {
   const path = `/plans/${encodeURIComponent(id)}`;
+  const before = scenarios.replaced.value;
   const record = await get<PlanRecord>(path);
   const done = record.state === "done";
-  const scenario = madeFrom === null ? await get<Scenario>(`${path}/scenario`) : null;
+  const scenario = await get<Scenario>(`${path}/scenario`);
   const plan = done ? await get<PlanCollection>(`${path}/plan.geojson`) : null;
-  const mission = done ? await attempt("The mission's waypoints cannot be shown", () => get<unknown>(`${path}/mission.plan`)) : null;
-  if (!wanted()) return false;
-  if (scenario) scenarios.load(scenario, false);
-  const text = madeFrom ?? scenarios.text();
+  const items = done ? await readItems(id) : [];
+  // Another scenario was opened meanwhile: this plan is no longer asked for.
+  if (!wanted() || scenarios.replaced.value !== before) return false;
+  const madeFrom = canonical(scenario);
+  if (!beside && madeFrom !== scenarios.canonical()) scenarios.load(scenario, false);
   running.set(done ? null : record);
   if (compared.value?.record.id === id) compared.set(null);
-  open.set(plan ? { record, plan, waypoints: waypointsOf(mission), madeFrom: text } : null);
-  if (!ENDED.has(record.state)) watchPlan(record, text);
+  open.set(plan ? { record, plan, items, madeFrom } : null);
+  if (!ENDED.has(record.state)) watchPlan(record);
+  if (record.stale !== true) await attempt("Whether the plan's scenario is kept could not be read", () => adoptIfSame(record.scenario_id));
   return true;
+}
+
+/** Read the items anew where how the mission is written was changed. */
+export async function rereadItems(): Promise<void> {
+  const shown = open.value;
+  if (!shown) return;
+  const items = await readItems(shown.record.id);
+  if (open.value?.record.id === shown.record.id) open.set({ ...open.value, items });
+}
+
+/** Ask whether the plan on the map still is of its kept scenario as that one is now. */
+export async function refreshOpen(): Promise<void> {
+  const shown = open.value;
+  if (!shown || shown.record.stale === undefined) return;
+  const record = await get<PlanRecord>(`/plans/${encodeURIComponent(shown.record.id)}`);
+  const still = open.value;
+  if (still?.record.id === record.id && (still.record.stale !== record.stale || still.record.stale_reason !== record.stale_reason)) open.set({ ...still, record });
 }
 
 /** Choose the plan to compare with; null for none. */
@@ -82,19 +96,21 @@ export async function compareWith(id: string | null): Promise<void> {
 
 let unwatch: (() => void) | null = null;
 
-function ended(id: string, madeFrom: string): void {
+function ended(id: string): void {
   unwatch?.();
   unwatch = null;
+  const before = scenarios.replaced.value;
   void attempt("The plan's outcome could not be read", async () => {
     const record = await get<PlanRecord>(`/plans/${encodeURIComponent(id)}`);
-    running.set(record);
-    if (record.state === "done") {
-      await openPlan(id, madeFrom);
-      if (record.metrics?.lower_bound_m == null) watchBound(id);
-      if (scenarios.text() === madeFrom) scenarios.handedOver();
-    } else if (record.state === "failed") {
-      const problem = problemOf(record) ?? { title: "Planning failed" };
-      report("Planning failed", new ApiError(problem.status ?? 0, problem));
+    if (scenarios.replaced.value === before) {
+      running.set(record);
+      if (record.state === "done") {
+        await openPlan(id, true);
+        if (record.metrics?.lower_bound_m == null) watchBound(id);
+      } else if (record.state === "failed") {
+        const problem = problemOf(record) ?? { title: "Planning failed" };
+        report("Planning failed", new ApiError(problem.status ?? 0, problem));
+      }
     }
     await refresh();
   });
@@ -119,7 +135,7 @@ function watchBound(id: string): void {
   );
 }
 
-function watchPlan(record: PlanRecord, madeFrom: string): void {
+function watchPlan(record: PlanRecord): void {
   unwatch?.();
   let over = false;
   unwatch = follow(
@@ -132,7 +148,7 @@ function watchPlan(record: PlanRecord, madeFrom: string): void {
       running.set(merged);
       if (ENDED.has(merged.state)) {
         over = true;
-        ended(record.id, madeFrom);
+        ended(record.id);
       }
     },
     () => undefined,
@@ -141,11 +157,45 @@ function watchPlan(record: PlanRecord, madeFrom: string): void {
 }
 
 export async function startPlan(): Promise<void> {
-  const madeFrom = scenarios.text();
-  const record = await post<PlanRecord>("/plans", scenarios.document.value);
-  running.set(record);
-  watchPlan(record, madeFrom);
+  const before = scenarios.replaced.value;
+  const document = scenarios.document.value;
+  await keepNow();
+  const { id } = keeping.value;
+  const record = await post<PlanRecord>(`/plans${id === null ? "" : `?scenario_id=${encodeURIComponent(id)}`}`, document);
+  if (scenarios.replaced.value === before) {
+    running.set(record);
+    watchPlan(record);
+  } else {
+    news("The plan of the scenario before goes on; it will stand under Recent plans.");
+  }
   await refresh();
+}
+
+const CHECK_MS = 5000;
+
+/** Ask again every while, and whenever an edit of this tab has been kept. */
+export function keepOpenFresh(): void {
+  const look = async (): Promise<void> => {
+    try {
+      await refreshOpen();
+    } catch {
+      // The loss of the service shows by itself; a plan deleted elsewhere goes with the next listing.
+      return;
+    }
+  };
+  keeping.watch(({ state }) => state === "kept" && void look());
+  setInterval(() => connection.value === "up" && !document.hidden && void look(), CHECK_MS);
+}
+
+/** Nothing of another scenario stays on the page: its plan, the one being made, the one beside it. */
+export function keepToTheScenario(): void {
+  scenarios.replaced.watch(() => {
+    unwatch?.();
+    unwatch = null;
+    running.set(null);
+    open.set(null);
+    compared.set(null);
+  });
 }
 
 export async function cancelPlan(): Promise<void> {

@@ -1,10 +1,10 @@
-/** The scenario being edited: one GeoJSON document, its selection, its history, kept over a reload. */
+/** The scenario being edited: one GeoJSON document, its selection, its history. */
 import type { Geometry } from "geojson";
+import { canonical } from "./canonical";
 import { boundsOf, type Bounds } from "./geo";
 import { Signal } from "./signal";
 import type { Role, Scenario, ScenarioFeature } from "./types";
 
-const STORAGE_KEY = "swathplan.scenario";
 const HISTORY_DEPTH = 60;
 const SINGLE: ReadonlySet<Role> = new Set(["area", "start", "end"]);
 
@@ -68,37 +68,32 @@ export class ScenarioStore {
   readonly selection = new Signal<string | null>(null);
   /** Where the document comes from: edited here, or shown with a plan. */
   readonly edited = new Signal<boolean>(false);
+  /** Counts the documents shown; one more with each that takes the place of another. */
+  readonly replaced = new Signal<number>(0);
+  #count = 0;
   readonly #past: string[] = [];
   readonly #future: string[] = [];
 
-  /** Bring back what was edited before the page was left; false when there is nothing. */
-  restore(): boolean {
-    const saved = localStorage.getItem(STORAGE_KEY);
-    if (!saved) return false;
-    try {
-      this.document.set(parseScenario(saved));
-    } catch {
-      localStorage.removeItem(STORAGE_KEY);
-      return false;
-    }
-    this.edited.set(true);
-    return true;
-  }
-
-  /** Show another document; with `edited` false it is the service's and need not be kept. */
+  /**
+   * Show another document; with `edited` false it is the service's and need not be kept. Nothing of the one
+   * before is left: not its history, and whoever watches `replaced` clears what belongs to it.
+   */
   load(scenario: Scenario, edited: boolean): void {
-    this.#remember();
+    this.#past.length = 0;
+    this.#future.length = 0;
     this.selection.set(null);
+    this.#count += 1;
+    this.replaced.set(this.#count);
+    this.edited.set(edited);
     this.document.set(scenario);
-    this.#keep(edited);
   }
 
   change(alter: (draft: Scenario) => void): void {
     this.#remember();
     const draft = structuredClone(this.document.value);
     alter(draft);
+    this.edited.set(true);
     this.document.set(draft);
-    this.#keep(true);
   }
 
   undo(): void {
@@ -189,11 +184,16 @@ export class ScenarioStore {
 
   /** The service has the document as it is now: there is nothing left to keep here. */
   handedOver(): void {
-    this.#keep(false);
+    this.edited.set(false);
   }
 
   text(): string {
     return `${JSON.stringify(this.document.value, null, 1)}\n`;
+  }
+
+  /** The document as it is compared with others. */
+  canonical(): string {
+    return canonical(this.document.value);
   }
 
   #remember(): void {
@@ -207,19 +207,8 @@ export class ScenarioStore {
     if (text === undefined) return;
     to.push(JSON.stringify(this.document.value));
     this.selection.set(null);
+    this.edited.set(true);
     this.document.set(JSON.parse(text) as Scenario);
-    this.#keep(true);
-  }
-
-  #keep(edited: boolean): void {
-    this.edited.set(edited);
-    try {
-      if (edited) localStorage.setItem(STORAGE_KEY, JSON.stringify(this.document.value));
-      else localStorage.removeItem(STORAGE_KEY);
-    } catch {
-      // A full or forbidden storage loses only the copy kept over a reload; the document itself is here.
-      this.edited.set(edited);
-    }
   }
 }
 

@@ -16,6 +16,7 @@ export interface Palette {
   terminal: string;
   importance: string;
   path: string;
+  phase: string;
   collect: string;
   held: string;
   footprint: string;
@@ -41,6 +42,7 @@ const LIGHT: Palette = {
   terminal: "#1f7a3a",
   importance: "#7a6a00",
   path: "#26323a",
+  phase: "#8a4b00",
   collect: "#008f7a",
   held: "#d08a00",
   footprint: "#00a892",
@@ -66,6 +68,7 @@ const DARK: Palette = {
   terminal: "#6fdc8c",
   importance: "#e0cf4e",
   path: "#dfe8ec",
+  phase: "#ffb46b",
   collect: "#2fe0c4",
   held: "#ffd166",
   footprint: "#2fe0c4",

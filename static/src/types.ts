@@ -68,6 +68,9 @@ export interface Metrics {
   turns: number;
   duration_s: number;
   energy_wh: number | null;
+  /** Of the whole flight, take-off to landing; absent in plans of the mission alone. */
+  flight_length_m?: number | null;
+  flight_duration_s?: number | null;
   coverage: Record<string, number>;
   planning_time_s: Record<string, number>;
   lower_bound_m?: number | null;
@@ -84,6 +87,33 @@ export interface PlanRecord {
   error?: Problem | string | null;
   created_at?: string;
   started_at?: string | null;
+  /** The kept scenario it was made of, and whether that one is another by now; null: not known. */
+  scenario_id?: string | null;
+  stale?: boolean | null;
+  stale_reason?: string | null;
+}
+
+export type PhaseKind = "take_off" | "climb" | "mission" | "return" | "landing";
+
+export interface Phase {
+  kind: PhaseKind;
+  start_m: number;
+  end_m: number;
+  start_s: number;
+  end_s: number;
+}
+
+/** A scenario the service keeps. */
+export interface KeptRecord {
+  id: string;
+  name: string | null;
+  revision: number;
+  scenario_hash: string;
+  changed_at: string;
+}
+
+export interface KeptText extends KeptRecord {
+  scenario: Scenario;
 }
 
 export interface Violation {
@@ -109,6 +139,8 @@ export interface PlanCollection extends FeatureCollection<Geometry, Record<strin
 
 export interface VehicleState {
   connected: boolean;
+  /** The vehicle's own time since boot. */
+  time_s: number | null;
   armed: boolean;
   mode: string;
   autopilot: string;
@@ -147,6 +179,7 @@ export type UploadOutcome = "accepted" | "different" | "refused" | "unknown" | "
 export interface Upload {
   number: number;
   plan_id: string;
+  plan_vehicle?: string;
   outcome: UploadOutcome;
   verified: boolean;
   parts: Record<
@@ -205,6 +238,10 @@ export interface Vehicle {
   flight_id: string | null;
   upload: Upload | null;
   state: VehicleState;
+  /** How old the position is, how good the link, whether the payload is on: null where nobody can tell. */
+  position_age_s?: number | null;
+  link?: { quality: number | null; lost: boolean; lost_since: string | null };
+  sensor?: { on: boolean | null; since_s: number | null };
 }
 
 export interface Flight {

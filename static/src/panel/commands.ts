@@ -1,51 +1,70 @@
-/** Explicit flight commands: each asks back, and says what the vehicle answered. */
+/** Explicit flight commands: each says what will move, asks back, and tells what the vehicle answered. */
+import { ApiError } from "../api";
 import { ask } from "../dialog";
 import { button, h } from "../dom";
-import { command, watched, type Command } from "../fleet";
-import { attempt, news, warn } from "../notices";
-import { open } from "../plans";
+import { command, watched, type CommandAnswer } from "../fleet";
+import { hearing } from "../hearing";
+import { news, report, warn } from "../notices";
 import type { Vehicle } from "../types";
+import { ORDERS, saying, type Order } from "./orders";
 
-interface Order {
-  name: Command;
-  label: string;
-  says: string;
+const MOST_ITEMS = 65_535;
+const UNKNOWN = 504;
+
+function tell(vehicle: Vehicle, order: Order, answer: CommandAnswer): void {
+  const why = answer.reason ?? answer.detail ?? "";
+  if (answer.outcome === "unknown") warn(`${order.label}: ${vehicle.name} did not confirm it`, why, "Look at what it does before it is told again.");
+  else if (answer.outcome === "pending") news(`${order.label}: ${vehicle.name} took it and is at it. ${why}`);
+  else news(`${order.label}: ${vehicle.name} confirmed it.`);
 }
 
-const ORDERS: Order[] = [
-  { name: "arm", label: "Arm", says: "The motors may start." },
-  { name: "start", label: "Start mission", says: "The aircraft takes off and flies the mission it holds." },
-  { name: "pause", label: "Pause", says: "The aircraft leaves its line and waits: in a circle, or hovering." },
-  { name: "resume", label: "Resume", says: "The aircraft goes on with the mission." },
-  { name: "rtl", label: "Return (RTL)", says: "The aircraft gives up the mission and returns to launch." },
-  { name: "disarm", label: "Disarm", says: "The motors stop; an aircraft in flight refuses it." },
-];
-const MOST_ITEMS = 65_535;
-
 async function give(vehicle: Vehicle, order: Order, seq: number | null = null): Promise<void> {
-  const lines = [order.says];
-  if (order.name === "start" && open.value && open.value.record.id !== vehicle.plan_id) lines.push("That is not known to be the plan on the map.");
-  const sure = await ask({ title: `${order.label}: ${vehicle.name}?`, lines, go: order.label });
-  if (sure === null) return;
-  const answer = await attempt(`${order.label}: the command was not carried out`, () => command(vehicle.id, order.name, seq));
-  if (answer?.outcome === "unknown") warn(`${order.label}: ${vehicle.name} did not confirm it`, answer.detail);
-  else if (answer) news(`${order.label}: ${vehicle.name} confirmed it.`);
+  if ((await ask(saying(vehicle, order, seq))) === null) return;
+  const armFirst = order.name === "start" && !vehicle.state.armed ? { arm_first: true as const } : {};
+  try {
+    tell(vehicle, order, await command(vehicle.id, order.name, { ...(seq === null ? {} : { seq }), ...armFirst }));
+  } catch (error) {
+    const unknown = error instanceof ApiError && error.status === UNKNOWN;
+    report(unknown ? `${order.label}: whether ${vehicle.name} does it is not known` : `${order.label}: the command was not carried out`, error);
+  }
+}
+
+/** Why no command can be given; empty when one can. */
+function shut(vehicle: Vehicle | null): string {
+  if (!vehicle) return "No vehicle is chosen.";
+  if (vehicle.replay) return "A recording takes no commands.";
+  if (!vehicle.connected) return hearing(vehicle).lost ? "Its link is lost: no command reaches it." : "It is not heard: no command reaches it.";
+  return "";
 }
 
 export function commands(): HTMLElement {
-  const buttons = ORDERS.map((order) => button(order.label, () => watched.value && void give(watched.value, order), { "data-command": order.name, title: order.says }));
+  const made = ORDERS.map((order) => ({
+    order,
+    control: button(order.label, () => watched.value && void give(watched.value, order), { "data-command": order.name, class: order.urgent ? "urgent" : "" }),
+  }));
   const item = h("input", { id: "goto-item", type: "number", min: 0, max: MOST_ITEMS, step: 1, required: true, "aria-label": "Number of the mission item to go to", placeholder: "no." });
-  const goTo = h("button", { type: "submit", "data-command": "goto_item", title: "Goes on with the mission from the item of this number" }, "Go to item");
+  const goTo = h("button", { type: "submit", "data-command": "goto_item" }, "Go to item");
   const form = h("form", { class: "joined narrow" }, goTo, item);
   form.addEventListener("submit", (event) => {
     event.preventDefault();
     const seq = item.valueAsNumber;
-    const order: Order = { name: "goto_item", label: `Go to item ${seq}`, says: `The aircraft leaves what it does and goes on with the mission from item ${seq}.` };
+    const order: Order = { name: "goto_item", label: `Go to item ${seq}`, title: "" };
     if (watched.value) void give(watched.value, order, seq);
   });
   watched.watch((vehicle) => {
-    const possible = vehicle !== null && vehicle.connected && !vehicle.replay;
-    for (const made of [...buttons, goTo, item]) made.disabled = !possible;
+    const why = shut(vehicle);
+    for (const { order, control } of made) {
+      control.disabled = why !== "";
+      control.title = why || order.title;
+    }
+    goTo.disabled = item.disabled = why !== "";
+    goTo.title = why || "Goes on with the mission from the item of this number";
   });
-  return h("div", { class: "row", role: "group", "aria-label": "Flight commands" }, ...buttons, form);
+  const of = (urgent: boolean): HTMLElement[] => made.filter(({ order }) => (order.urgent ?? false) === urgent).map(({ control }) => control);
+  return h(
+    "div",
+    { role: "group", "aria-label": "Flight commands" },
+    h("div", { class: "row" }, ...of(false), form),
+    h("div", { class: "row", role: "group", "aria-label": "In flight, at once" }, ...of(true)),
+  );
 }

@@ -2,8 +2,9 @@
 import { ask } from "../dialog";
 import { button, fill, h, section } from "../dom";
 import { flights, flightUrl, flown, refly, refreshFlights, showFlight, type Flown } from "../flights";
+import { wouldBeLost } from "../leaving";
 import { attempt } from "../notices";
-import { openPlan } from "../plans";
+import { open, openPlan } from "../plans";
 import { moreOf } from "./more";
 import { number, percent, percentDown } from "../units";
 
@@ -11,7 +12,11 @@ function flownTable({ flight, seen }: Flown, planned: () => void): HTMLElement {
   const short = new Set(seen.regions.filter((region) => !region.seen).map(({ roi }) => roi));
   const least = percent(seen.seen_fraction, 1);
   const again = async (): Promise<void> => {
-    const lines = ["A new scenario is made of what was not seen, and planned. It takes the place of the one on the page; Undo brings that back."];
+    const lines = [
+      "A new scenario is made of what was not seen, and planned. It takes the place of the one on the page.",
+      wouldBeLost() ? "The one on the page is kept nowhere else: download it first if it is still needed." : "The one on the page is kept by the service.",
+      `What ${flight.vehicle_name} holds stays as it is until the new plan is uploaded.`,
+    ];
     if ((await ask({ title: "Plan the gaps?", lines, go: "Plan the gaps" })) === null) return;
     const record = await attempt("The gaps were not planned", () => refly(flight.id));
     if (record && (await attempt("The plan of the gaps was not opened", () => openPlan(record.id)))) planned();
@@ -20,6 +25,7 @@ function flownTable({ flight, seen }: Flown, planned: () => void): HTMLElement {
     "div",
     { class: "card", id: "flown" },
     h("p", {}, `Ground really seen by ${flight.vehicle_name}`),
+    flight.plan_id !== open.value?.record.id ? h("p", { class: "warning" }, "It flew another plan than the one on the map: its regions are those of that plan's scenario.") : null,
     h("p", { class: short.size > 0 ? "error" : "good" }, short.size > 0 ? `Less than ${least} seen of ${[...short].join(", ")}.` : `At least ${least} of every region was seen.`),
     h(
       "table",
@@ -62,6 +68,13 @@ export function flightsBox(planned: () => void): HTMLElement {
       ),
     [flown],
   );
-  flown.watch((result) => fill(shown, result ? flownTable(result, planned) : null));
+  const draw = (): void => fill(shown, flown.value ? flownTable(flown.value, planned) : null);
+  flown.watch(draw);
+  let plan: string | undefined;
+  open.watch((now) => {
+    if (now?.record.id === plan) return;
+    plan = now?.record.id;
+    draw();
+  });
   return section("Flights", true, shown, items, button("Refresh", () => void attempt("The flights were not listed", refreshFlights)));
 }

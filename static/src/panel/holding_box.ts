@@ -3,6 +3,7 @@ import { ask } from "../dialog";
 import { button, fill, h, section } from "../dom";
 import { clear, download, recordings, watched } from "../fleet";
 import { held } from "../held";
+import { planName } from "../holding";
 import { attempt, news, warn } from "../notices";
 import { open, recent } from "../plans";
 import type { HeldItem, Part, Sent } from "../types";
@@ -10,12 +11,6 @@ import { metres } from "../units";
 
 const ITEMS_SHOWN = 400;
 const MEGABYTE = 1e6;
-
-function planName(id: string): string {
-  if (open.value?.record.id === id) return "the plan on the map";
-  const known = recent.value.find((record) => record.id === id);
-  return known?.name ? `plan “${known.name}” (${id.slice(0, 8)})` : `plan ${id.slice(0, 8)}`;
-}
 
 function standing(sent: Sent | null): [words: string, tone: string] {
   if (!sent) return ["Nothing was sent to it from here, or it was cleared.", "quiet"];

@@ -3,14 +3,17 @@ import { ask } from "../dialog";
 import { button, fill, h, section } from "../dom";
 import { attempt, findingText } from "../notices";
 import { cancelPlan, deletePlan, open, openPlan, planUrl, problemOf, recent, refresh, running, startPlan, type OpenPlan } from "../plans";
-import { scenarios } from "../scenario";
+import { freshness } from "../freshness";
+import { mayLeave } from "../leaving";
 import { readFindings } from "../api";
 import type { PlanRecord, Position, Problem, Violation } from "../types";
 import { metres, number, percent, percentDown, seconds } from "../units";
 import { judgement } from "../validation";
 import { comparison } from "./compare";
 import { moreOf } from "./more";
+import { phaseTable } from "./phase_table";
 import { operatingStrip } from "./strip";
+import { waypointList } from "./waypoint_list";
 
 export interface PlanView {
   zoomToPlace(place: Position): void;
@@ -119,7 +122,9 @@ function result({ record, plan }: OpenPlan, view: PlanView): HTMLElement {
         ["Duty cycle", percent(m.duty_cycle)],
         ["Path length ratio", number(m.path_length_ratio, 3)],
         ...(typeof m.gap === "number" ? [["At most from the best", percent(m.gap)] as [string, string]] : []),
-        ["Flight time", seconds(m.duration_s)],
+        ...(m.flight_length_m == null ? [] : [["Whole flight", metres(m.flight_length_m)] as [string, string]]),
+        ...(m.flight_duration_s == null ? [] : [["Flight time, take-off to landing", seconds(m.flight_duration_s)] as [string, string]]),
+        [m.flight_duration_s == null ? "Time of the mission alone" : "Of it the mission", seconds(m.duration_s)],
         ["Turns", number(m.turns, 0)],
         ["Risk, missile", number(m.risk_missile, 2)],
         ["Risk, radar", number(m.risk_radar, 2)],
@@ -127,6 +132,7 @@ function result({ record, plan }: OpenPlan, view: PlanView): HTMLElement {
       ],
       "metrics",
     ),
+    phaseTable(plan),
     operatingStrip(plan),
     section("Coverage", true, coverage(m.coverage ?? {})),
     planning.length > 0 ? section("Planning time", false, table(planning.map(([stage, s]) => [stage, seconds(s)]))) : null,
@@ -144,9 +150,7 @@ function line(record: PlanRecord): HTMLElement {
   const time = record.created_at ? new Date(record.created_at).toLocaleString() : "";
   const length = record.metrics ? ` · ${metres(record.metrics.length_m)}` : "";
   const show = async (): Promise<void> => {
-    const edits = scenarios.edited.value && scenarios.document.value.features.length > 0;
-    const lines = ["The scenario on the page is replaced; Undo brings it back."];
-    if (edits && (await ask({ title: "Show this plan with its own scenario?", lines, go: "Show" })) === null) return;
+    if (!(await mayLeave("Show this plan with its own scenario?", "Show"))) return;
     await attempt("The plan was not opened", () => openPlan(record.id));
   };
   const label = `${record.name ?? record.id} · ${record.state}${length}`;
@@ -188,15 +192,15 @@ export function planPanel(view: PlanView): HTMLElement {
   judgement.watch(update);
   const box = h("div", {});
   const beside = section("Compare", false, comparison());
-  const stale = h("p", { class: "warning", hidden: true }, "The scenario was changed after this plan was made.");
-  const compare = (): void => {
-    stale.hidden = !open.value || open.value.madeFrom === scenarios.text();
-  };
+  const stale = h("p", { class: "error banner", id: "stale", hidden: true });
+  freshness.watch(({ state, reason }) => {
+    stale.hidden = state !== "stale";
+    fill(stale, h("strong", {}, "OUT OF DATE. "), reason);
+    box.classList.toggle("stale", state === "stale");
+  });
   open.watch((plan) => {
-    compare();
     fill(box, plan ? result(plan, view) : null);
     beside.hidden = plan === null;
   });
-  scenarios.document.watch(compare);
-  return h("div", {}, h("div", { class: "row" }, go), progress(view), stale, box, beside, earlier());
+  return h("div", {}, h("div", { class: "row" }, go), progress(view), stale, box, waypointList(view.zoomToPlace), beside, earlier());
 }

@@ -1,14 +1,17 @@
 /** The scenario side of the panel: files, findings, features and settings. */
-import { ask } from "../dialog";
 import { button, fill, h, section } from "../dom";
 import { download } from "../download";
 import { openFile } from "../drop";
+import { mayLeave } from "../leaving";
+import { attempt } from "../notices";
 import { REGION_FILES } from "../regions";
 import { emptyScenario, nameOf, scenarios } from "../scenario";
 import type { Finding } from "../types";
+import { keeping, keepBeside, takeTheirs, type KeepState } from "../keeping";
 import { judge, judgement, type Judgement } from "../validation";
 import { featureForm, formKey, ROLE_WORDS } from "./feature_form";
 import { textField, type Field } from "./fields";
+import { keptBox } from "./kept_box";
 import { settingsForm, settingsKey } from "./settings_form";
 
 /** What the panel asks of the map. */
@@ -25,6 +28,15 @@ const STATE_WORDS: Record<Judgement["state"], string> = {
   unknown: "Not checked: the service gave no answer.",
 };
 
+const KEPT_WORDS: Record<KeepState, string> = {
+  shown: "As the service has it; an edit is kept by the service.",
+  waiting: "Being kept …",
+  kept: "Kept by the service.",
+  tab: "Kept in this tab alone, over a reload; download it before the tab is closed.",
+  changed: "Another tab changed this scenario meanwhile. Nothing is written over; what is edited here is not kept until you choose:",
+  failed: "NOT kept: the service did not take it. It is tried again.",
+};
+
 function files(view: View): HTMLElement {
   const input = h("input", { type: "file", id: "file", accept: `.geojson,.json,application/geo+json,application/json,${REGION_FILES}`, class: "sr-only", tabindex: "-1", "aria-label": "File to open" });
   input.addEventListener("change", () => {
@@ -33,9 +45,7 @@ function files(view: View): HTMLElement {
     if (file) void openFile(file).then((opened) => opened && view.zoomToAll());
   });
   const start = async (): Promise<void> => {
-    const edits = scenarios.edited.value && scenarios.document.value.features.length > 0;
-    const lines = ["The scenario on the page is replaced; Undo brings it back."];
-    if (edits && (await ask({ title: "Begin a new scenario?", lines, go: "New scenario" })) === null) return;
+    if (!(await mayLeave("Begin a new scenario?", "New scenario"))) return;
     scenarios.load(emptyScenario(), true);
   };
   const save = (): void => download(`${scenarios.document.value.name ?? "scenario"}.geojson`, scenarios.text(), "application/geo+json");
@@ -153,8 +163,15 @@ export function scenarioPanel(view: View): HTMLElement {
     get: () => scenarios.document.value.name,
     set: (name) => scenarios.change((draft) => (name === undefined ? delete draft.name : (draft.name = name))),
   });
-  const origin = h("span", { class: "quiet" });
-  scenarios.edited.watch((edited) => fill(origin, edited ? "kept in this browser" : "as planned by the service"));
+  const origin = h("div", { id: "kept", role: "status" });
+  keeping.watch(({ state }) => {
+    origin.className = state === "changed" || state === "failed" ? "error banner" : "quiet";
+    fill(
+      origin,
+      KEPT_WORDS[state],
+      state === "changed" ? h("div", { class: "row" }, button("Take the other tab's", () => void attempt("The other tab's scenario was not opened", takeTheirs)), button("Keep this one beside it", () => void attempt("The scenario was not kept", keepBeside))) : null,
+    );
+  });
   return h(
     "div",
     {},
@@ -170,6 +187,7 @@ export function scenarioPanel(view: View): HTMLElement {
       },
     ),
     features(view),
+    keptBox(view),
     kept(() => settingsKey(scenarios.document.value), () => settingsForm(scenarios.document.value)),
   );
 }

@@ -80,6 +80,7 @@ function vehicle(index: number): Field[] {
     name("vehicles", index),
     choice("vehicles", index, "type", "Type", [["fixed_wing", "fixed wing"], "multirotor", ["vtol", "VTOL"]]),
     choice("vehicles", index, "autopilot", "Autopilot", [["ardupilot", "ArduPilot"], ["px4", "PX4"]]),
+    finish(index),
     number("vehicles", index, "airspeed_m_s", "Airspeed", "m/s", { required: true }),
     number("vehicles", index, "settle_m", "Straight before a pass", "m", { placeholder: "0", hint: "Straight flight wanted before each pass, so that the aircraft is on its line when the sensor goes on; 150 m suits an ArduPlane of 20 m/s" }),
     number("vehicles", index, "min_turn_radius_m", "Least turn radius", "m", { hint: "The widest of turn radius, bank and load factor counts" }),
@@ -91,6 +92,13 @@ function vehicle(index: number): Field[] {
     number("vehicles", index, "energy_wh", "Energy", "Wh", { placeholder: "no limit", hint: "Needs the cruise power" }),
     number("vehicles", index, "cruise_power_w", "Cruise power", "W"),
   ];
+}
+
+/** Planned with the flight, as its landing or return is part of it. */
+function finish(index: number): Field {
+  const { get, set } = member("vehicles", index, "finish");
+  const choices = [["auto", "return near home, else land"], ["land", "land at the end"], ["return", "return to launch"], ["loiter", "circle at the end"]] as const;
+  return choiceField({ id: `vehicles-${index}-finish`, label: "How its mission ends", choices, get: () => get<string>() ?? "auto", set: (value) => set(value === "auto" ? undefined : value) });
 }
 
 function steered(index: number): Field {

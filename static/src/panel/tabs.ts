@@ -1,5 +1,6 @@
 /** Tabs as the ARIA practice has them: arrow keys move, one panel shows. */
 import { fill, h } from "../dom";
+import { Signal } from "../signal";
 
 export interface Tab {
   id: string;
@@ -10,6 +11,8 @@ export interface Tab {
 export interface Tabs {
   element: HTMLElement;
   panels: HTMLElement[];
+  /** The tab that shows. */
+  shown: Signal<string>;
   show(id: string): void;
   /** Show a tab unless the operator has chosen one. */
   suggest(id: string): void;
@@ -22,6 +25,7 @@ export function tabs(all: Tab[]): Tabs {
     h("button", { type: "button", role: "tab", id: `tab-${tab.id}`, "aria-controls": `panel-${tab.id}`, onclick: () => choose(tab.id) }, tab.label),
   );
   const panels = all.map((tab) => h("div", { role: "tabpanel", id: `panel-${tab.id}`, "aria-labelledby": `tab-${tab.id}`, tabindex: 0 }, tab.content));
+  const shownTab = new Signal<string>((all[0] as Tab).id);
   let chosen = false;
   const choose = (id: string): void => {
     chosen = true;
@@ -35,6 +39,7 @@ export function tabs(all: Tab[]): Tabs {
       const panel = panels[index];
       if (panel) panel.hidden = !shown;
     });
+    if (shownTab.value !== id) shownTab.set(id);
   };
   const element = h("div", { class: "tabs", role: "tablist", "aria-label": "Scenario, plan, flight" }, ...heads);
   element.addEventListener("keydown", (event) => {
@@ -51,5 +56,5 @@ export function tabs(all: Tab[]): Tabs {
     const tab = all[at];
     if (tab && heads[at]) fill(heads[at], tab.label, words ? h("span", { class: "badge" }, words) : null);
   };
-  return { element, panels, show, mark, suggest: (id) => (chosen ? undefined : show(id)) };
+  return { element, panels, shown: shownTab, show, mark, suggest: (id) => (chosen ? undefined : show(id)) };
 }

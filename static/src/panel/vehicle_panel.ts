@@ -8,9 +8,11 @@ import { gauges, kindOf, words } from "./gauges";
 import { holdingBox } from "./holding_box";
 import { uploadBox } from "./upload_box";
 import { vehicleList } from "./vehicle_list";
+import { waypointList } from "./waypoint_list";
+import type { PlanView } from "./plan_panel";
 
-/** `planned` is called when a plan of a flight's gaps is on the map. */
-export function vehiclePanel(planned: () => void): HTMLElement {
+/** `planned` is called when a plan of a flight's gaps is on the map; `edit` leads to the scenario's aircraft. */
+export function vehiclePanel(view: PlanView, planned: () => void, edit: () => void): HTMLElement {
   const title = h("h2", { class: "name" });
   const kind = h("span", { class: "quiet" });
   const name = h("span", {});
@@ -19,6 +21,6 @@ export function vehiclePanel(planned: () => void): HTMLElement {
     fill(name, vehicle ? vehicle.name : "No vehicle");
     fill(kind, vehicle ? kindOf(vehicle) : "");
   });
-  const upload = uploadBox();
-  return h("div", {}, vehicleList(), title, gauges(), upload.controls, commands(), words(), upload.answers, flightChart(), holdingBox(), flightsBox(planned));
+  const upload = uploadBox(edit);
+  return h("div", {}, vehicleList(), title, gauges(), upload.controls, commands(), words(), upload.answers, flightChart(), waypointList(view.zoomToPlace), holdingBox(), flightsBox(planned));
 }

@@ -23,7 +23,15 @@ def await_hook(page: Page, condition: str, limit_s: float = 15.0) -> None:
 def open_scenario(page: Page, path: Path = EXAMPLES / "sar-case-1.geojson") -> None:
     """Open a scenario by the file input and wait until the service has judged it."""
     page.get_by_role("tab", name="Scenario").click()
+    count = ask(page, "replaced()")
     page.set_input_files("#file", path)
+    page.wait_for_function(
+        "count => document.querySelector('#dialog-go') || window.swathplan.replaced() > count", arg=count
+    )
+    if page.locator("#dialog-go").count():
+        # Edits of a test before are nowhere else: the page asks.
+        page.click("#dialog-go")
+        page.wait_for_function("count => window.swathplan.replaced() > count", arg=count)
     page.wait_for_selector("#findings:not([data-state=asking]):not([data-state=empty])")
 
 

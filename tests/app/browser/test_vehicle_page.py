@@ -14,6 +14,7 @@ from playwright.sync_api import Page, expect
 
 from mavlink.wire.codec import Codec
 from mavlink.wire.messages import Message
+from tests.app.browser.air import free_port, vehicles_of
 from tests.app.browser.conftest import EXAMPLES, Service
 from tests.app.browser.helpers import await_hook, open_scenario
 
@@ -23,12 +24,6 @@ LIMIT_MS = 60_000
 
 
 CASE_1 = json.loads((EXAMPLES / "sar-case-1.geojson").read_text(encoding="utf-8"))
-
-
-def vehicles_of(service: Service) -> dict[str, str]:
-    """Where each vehicle of the service is, by name."""
-    known = service.get("/api/v1/vehicles").json()["vehicles"]
-    return {vehicle["name"]: f"{service.address}/api/v1/vehicles/{vehicle['id']}" for vehicle in known}
 
 
 @pytest.fixture(scope="module")
@@ -123,10 +118,7 @@ def test_a_swapped_aircraft_is_acknowledged(flying: Page, service: Service) -> N
 
     It takes the five seconds after which a silent vehicle is lost.
     """
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-        probe.bind(("127.0.0.1", 0))
-        port = probe.getsockname()[1]
-    there = {"name": "swapped", "url": f"udpin:127.0.0.1:{port}", "timeout_s": 0.1}
+    there = {"name": "swapped", "url": f"udpin:127.0.0.1:{free_port()}", "timeout_s": 0.1}
     assert httpx.post(f"{service.address}/api/v1/vehicles", json=there, timeout=20.0).status_code == 201
     beat_until(service, "swapped", 1, lambda vehicle: bool(vehicle["connected"]))
     beat_until(service, "swapped", 2, lambda vehicle: bool(vehicle["other_system"] == 2))
