@@ -23,7 +23,7 @@ function figures({ state: s }: Vehicle): [string, string, boolean?][] {
     ["Height", metres(s.relative_altitude_m)],
     ["Ground speed", number(s.ground_speed_m_s, 1, "m/s")],
     ["Airspeed", number(s.airspeed_m_s, 1, "m/s")],
-    ["Mission item", s.mission_current === null ? "–" : s.mission_total === null ? String(s.mission_current) : `${s.mission_current} of ${s.mission_total}`],
+    ["Mission item", s.mission_current === null ? "–" : s.mission_total === null ? String(s.mission_current) : `${s.mission_current} of ${s.mission_total - 1}`],
     ["From home", metres(home)],
     ["Heading", number(s.heading_deg, 0, "°")],
     ["Battery", number(s.battery_percent, 0, "%")],

@@ -171,6 +171,7 @@ def test_the_gaps_of_a_flight_are_planned(page: Page, planned: str) -> None:
     # Another scenario was on the page meanwhile: what was seen of this one is asked for again.
     page.locator("#flights button", has_text="ended").first.click()
     page.click("#refly")
+    expect(page.get_by_role("dialog")).to_contain_text("stays as it is until the new plan is uploaded")
     page.click("#dialog-go")
     page.wait_for_function(
         "() => window.swathplan.scenario().name.endsWith('-refly')"

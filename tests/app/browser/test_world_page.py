@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import Any
 
 import pytest
 from playwright.sync_api import Page
@@ -71,8 +72,9 @@ def test_a_scenario_across_the_meridian_is_one_place(page: Page, tmp_path: Path)
     def ring(west: float, east: float) -> list[list[float]]:
         return [[west, 9.99], [east, 9.99], [east, 10.01], [west, 10.01], [west, 9.99]]
 
-    def made(name: str, role: str, geometry: dict[str, object]) -> dict[str, object]:
-        return {"type": "Feature", "id": name, "properties": {"role": role, "name": name}, "geometry": geometry}
+    def made(name: str, role: str, geometry: Any) -> dict[str, Any]:
+        properties = {"role": role, "name": name}
+        return {"type": "Feature", "id": name, "properties": properties, "geometry": geometry}
 
     halves = {"type": "MultiPolygon", "coordinates": [[ring(179.99, 180.0)], [ring(-180.0, -179.99)]]}
     stepping = {"type": "Polygon", "coordinates": [ring(179.95, -179.95)]}
