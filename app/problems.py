@@ -30,9 +30,11 @@ TABLE: tuple[tuple[type[errors.ServiceError], int, str, str], ...] = (
     (errors.UnsafeError, 409, "unsafe", "Not to be flown without an explicit override"),
     (errors.RefusedError, 422, "refused", "The input is refused"),
     (errors.OverloadedError, 429, "overloaded", "No room for more work now"),
-    # no 502: a 5xx means that the service is broken, and it is not
+    # no 502: a 5xx means that the service is broken, and it is not; 504 is the vehicle's silence alone
     (errors.LinkError, 409, "vehicle-unreachable", "The vehicle cannot be reached"),
-    (errors.CommandRefusedError, 409, "command-refused", "The vehicle said no"),
+    (errors.CommandRefusedError, 409, "command-refused", "The command is refused"),
+    (errors.CommandOvertakenError, 409, "command-overtaken", "A newer command has overtaken it"),
+    (errors.CommandUnknownError, 504, "command-unknown", "Nobody can tell whether it was carried out"),
 )
 
 
@@ -81,9 +83,15 @@ class Problem(BaseModel):
 
 
 def problem_body(
-    path: str, status: int, kind: str, title: str, detail: str, entries: list[dict[str, Any]] | None = None
+    path: str,
+    status: int,
+    kind: str,
+    title: str,
+    detail: str,
+    entries: list[dict[str, Any]] | None = None,
+    members: Mapping[str, str] | None = None,
 ) -> bytes:
-    """A problem document as bytes."""
+    """A problem document as bytes, with further members where its kind has some."""
     document = {
         "type": TYPE_PREFIX + kind,
         "title": title,
@@ -91,6 +99,7 @@ def problem_body(
         "detail": detail,
         "instance": path,
         "errors": entries or [],
+        **(members or {}),
     }
     return write_json(document).encode(errors="replace")
 
@@ -103,9 +112,10 @@ def problem_response(
     detail: str,
     entries: list[dict[str, Any]] | None = None,
     headers: Mapping[str, str] | None = None,
+    members: Mapping[str, str] | None = None,
 ) -> Response:
     """A problem document as an answer."""
-    body = problem_body(request.url.path, status, kind, title, detail, entries)
+    body = problem_body(request.url.path, status, kind, title, detail, entries, members)
     return Response(body, status, headers=dict(headers or {}), media_type=MEDIA_TYPE)
 
 
@@ -116,11 +126,12 @@ def service_problem(request: Request, error: Exception) -> Response:
     )
     entries = (
         [finding_json(finding) for finding in error.findings]
-        if isinstance(error, errors.RefusedError)
+        if isinstance(error, errors.RefusedError | errors.CommandError)
         else None
     )
+    members = error.members if isinstance(error, errors.CommandError) else None
     headers = {"Retry-After": str(error.retry_after_s)} if isinstance(error, errors.OverloadedError) else None
-    return problem_response(request, status, kind, title, str(error), entries, headers)
+    return problem_response(request, status, kind, title, str(error), entries, headers, members)
 
 
 def http_problem(request: Request, error: Exception) -> Response:

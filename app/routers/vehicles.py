@@ -18,6 +18,7 @@ from app.schemas.missions import ClearedOut, HeldOut, MissionIn, Part, UploadOut
 from app.schemas.preflight import ParametersOut, PreflightIn, PreflightOut
 from app.schemas.vehicles import (
     CommandIn,
+    CommandList,
     CommandOut,
     IdentityIn,
     LogList,
@@ -27,8 +28,8 @@ from app.schemas.vehicles import (
     VehicleOut,
 )
 from app.services.plans.missions import MissionChoice
+from app.services.vehicles.flight_orders import Wish
 from app.services.vehicles.orders import give_order
-from mavlink.transfer.command import CommandOutcome
 
 router = APIRouter(prefix="/api/v1/vehicles", tags=["vehicles"])
 
@@ -224,14 +225,29 @@ async def acknowledge(
     return VehicleOut.of(vehicle)
 
 
-@router.post("/{vehicle_id}/commands", summary="Command", responses=responses(404, 409, 422))
+@router.post("/{vehicle_id}/commands", summary="Command", responses=responses(404, 409, 422, 504))
 async def command(vehicle_id: str, body: CommandIn, fleet: FleetDep) -> CommandOut:
-    """An explicit flight command; nothing else arms or moves a vehicle. 409 when the vehicle says no."""
-    outcome = await give_order(fleet.get(vehicle_id), body.command, body.seq)
-    known = outcome.accepted if isinstance(outcome, CommandOutcome) else outcome.kind == "accepted"
-    return CommandOut(
-        vehicle_id=vehicle_id,
-        command=body.command,
-        outcome="accepted" if known else "unknown",
-        detail=str(outcome),
-    )
+    """An explicit flight command; nothing else arms or moves a vehicle.
+
+    Answered once the vehicle shows it (`done`), or `pending` after `wait_s`. Refused and overtaken commands
+    are a 409, those nobody can tell of a 504, each a problem with the command's members and, in `errors`,
+    the rule and the way out: `not-armed` (start), `mode-would-take-off` (arm), `no-landing` (land of a fixed
+    wing), `command-refused` (the vehicle said no).
+    """
+    vehicle = fleet.get(vehicle_id)
+    wish = Wish(body.command, body.seq, body.arm_first, body.hold_first, body.payload)
+    return CommandOut.of(vehicle, await give_order(vehicle, wish, body.wait_s))
+
+
+@router.get("/{vehicle_id}/commands", summary="List commands", responses=responses(404))
+async def list_commands(vehicle_id: str, fleet: FleetDep) -> CommandList:
+    """The last fifty commands given from here, and what became of each."""
+    vehicle = fleet.get(vehicle_id)
+    return CommandList(commands=[CommandOut.of(vehicle, order) for order in vehicle.book.newest_first()])
+
+
+@router.get("/{vehicle_id}/commands/{command_id}", summary="Read a command", responses=responses(404))
+async def get_command(vehicle_id: str, command_id: str, fleet: FleetDep) -> CommandOut:
+    """How a command stands; a pending one ends as done or as unknown."""
+    vehicle = fleet.get(vehicle_id)
+    return CommandOut.of(vehicle, vehicle.book.get(command_id))

@@ -6,7 +6,7 @@ from dataclasses import asdict
 from datetime import datetime
 from typing import Any, Literal, Self
 
-from pydantic import BaseModel, Field
+from pydantic import BaseModel, ConfigDict, Field
 
 from app.schemas.base import Strict
 from app.schemas.flights import SensorActionOut
@@ -14,9 +14,13 @@ from app.schemas.forwards import ForwardIn, ForwardOut, ForwardsOut
 from app.schemas.missions import SentOut, UploadOut
 from app.services.vehicles.forwarding import MOST_FORWARDS
 from app.services.vehicles.items import state_json
+from app.services.vehicles.order_book import Order
+from app.services.vehicles.orders import WAIT_S
 from app.services.vehicles.vehicle import Vehicle
 
-CommandName = Literal["arm", "disarm", "start", "pause", "resume", "rtl", "goto_item"]
+CommandName = Literal[
+    "arm", "disarm", "start", "pause", "resume", "rtl", "goto_item", "land", "hold", "sensor_off"
+]
 
 
 class VehicleIn(Strict):
@@ -68,6 +72,76 @@ class LinkOut(BaseModel):
     lost_since: datetime | None = Field(description="When it was last heard, while the link is lost.")
 
 
+class CommandIn(Strict):
+    """An explicit flight command."""
+
+    model_config = ConfigDict(
+        json_schema_extra={
+            "examples": [
+                {"command": "start", "arm_first": True},
+                {"command": "goto_item", "seq": 12},
+                {"command": "sensor_off", "payload": "relay:0"},
+            ]
+        }
+    )
+
+    command: CommandName = Field(
+        description="arm: motors ready, nothing moves. start: take off and fly the mission. pause, resume: "
+        "within it. hold: wait where it is. rtl: come back. land: come down where it is; a fixed wing by "
+        "its mission's landing. goto_item: on with the mission from item `seq`. sensor_off: the payload, "
+        "whatever the mode."
+    )
+    seq: int | None = Field(default=None, ge=0, le=65535, description="Item, for goto_item.")
+    arm_first: bool = Field(
+        default=False, description="With start: arm a disarmed aircraft, which then takes off."
+    )
+    hold_first: bool = Field(
+        default=False, description="With arm: first into a mode that keeps the aircraft on the ground."
+    )
+    payload: str | None = Field(
+        default=None,
+        max_length=200,
+        description="With sensor_off: what to switch [that of the mission held].",
+    )
+    wait_s: float = Field(
+        default=WAIT_S, ge=0.0, le=60.0, description="How long to wait for its end; then it is `pending`."
+    )
+
+
+class CommandOut(BaseModel):
+    """A flight command as it stands; refused, overtaken and unknown ones are answered as problems first."""
+
+    vehicle_id: str
+    command_id: str
+    command: CommandName
+    outcome: Literal["done", "refused", "pending", "overtaken", "unknown"] = Field(
+        description="done: the vehicle shows it. pending: not answered, or not shown yet. overtaken: a newer "
+        "command came before. unknown: it may have been carried out."
+    )
+    reason: str = Field(description="In words; empty where nothing is to be said.")
+    given_at: datetime
+
+    @classmethod
+    def of(cls, vehicle: Vehicle, order: Order) -> Self:
+        """The answer for an order."""
+        return cls.model_validate(
+            {
+                "vehicle_id": vehicle.id,
+                "command_id": order.id,
+                "command": order.command,
+                "outcome": order.outcome,
+                "reason": order.reason,
+                "given_at": order.given_at,
+            }
+        )
+
+
+class CommandList(BaseModel):
+    """The latest flight commands of a vehicle, newest first."""
+
+    commands: list[CommandOut]
+
+
 class VehicleOut(BaseModel):
     """A vehicle and how it is."""
 
@@ -96,6 +170,7 @@ class VehicleOut(BaseModel):
     sent: SentOut | None = Field(description="The mission last sent from here; null: none, or cleared.")
     flight_id: str | None = Field(description="The flight being recorded.")
     forward: list[ForwardOut] = Field(description="Other ground stations its link is forwarded to.")
+    command: CommandOut | None = Field(description="The flight command given last from here.")
     upload: UploadOut | None = Field(description="The last upload, without its items.")
     state: dict[str, Any] = Field(description="Position, attitude, mode, mission, battery …; null: not said.")
 
@@ -132,6 +207,7 @@ class VehicleOut(BaseModel):
             sent=SentOut.of(vehicle),
             flight_id=vehicle.flight_id,
             forward=ForwardsOut.of(vehicle).forward,
+            command=None if vehicle.book.latest is None else CommandOut.of(vehicle, vehicle.book.latest),
             upload=UploadOut.of(vehicle.upload, items=False) if vehicle.upload else None,
             state=state_json(vehicle.state),
         )
@@ -164,19 +240,3 @@ class IdentityIn(Strict):
     """The aircraft that is the vehicle from now on."""
 
     system_id: int = Field(ge=1, le=255, description="As other_system says.")
-
-
-class CommandIn(Strict):
-    """An explicit flight command."""
-
-    command: CommandName
-    seq: int | None = Field(default=None, ge=0, le=65535, description="Item, for goto_item.")
-
-
-class CommandOut(BaseModel):
-    """What became of a command; a refusal is a 409 problem."""
-
-    vehicle_id: str
-    command: CommandName
-    outcome: Literal["accepted", "unknown"]
-    detail: str

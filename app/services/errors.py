@@ -11,10 +11,15 @@
     ├── UnsafeError            the plan breaks a hard constraint, or the autopilot cannot hold it
     ├── OverloadedError        no room for more work now
     ├── LinkError              the vehicle cannot be reached
-    └── CommandRefusedError    the vehicle said no
+    └── CommandError           a flight command that was not carried out as far as anybody can tell
+        ├── CommandRefusedError    the vehicle said no, or it was not sent for a reason
+        ├── CommandOvertakenError  a newer one was given before it was settled
+        └── CommandUnknownError    no answer, or nothing to show for it
 """
 
 from __future__ import annotations
+
+from collections.abc import Mapping
 
 from planner.errors import Finding
 
@@ -68,5 +73,32 @@ class LinkError(ServiceError):
     """The vehicle cannot be reached."""
 
 
-class CommandRefusedError(ServiceError):
-    """The vehicle said no."""
+class CommandError(ServiceError):
+    """A flight command that was not carried out as far as anybody can tell.
+
+    Parameters
+    ----------
+    findings
+        The rule that stood against it, with the way out.
+    members
+        What else the answer tells of it.
+    """
+
+    def __init__(
+        self, detail: str, findings: tuple[Finding, ...] = (), members: Mapping[str, str] | None = None
+    ) -> None:
+        self.findings = findings
+        self.members = members or {}
+        super().__init__(detail)
+
+
+class CommandRefusedError(CommandError):
+    """The vehicle said no, or it was not sent for a reason."""
+
+
+class CommandOvertakenError(CommandError):
+    """A newer one was given before it was settled."""
+
+
+class CommandUnknownError(CommandError):
+    """No answer, or nothing to show for it: it may have been carried out."""

@@ -105,6 +105,8 @@ class Aircraft(Protocol):
 
 
 Outcome = tuple[CommandResult, list[Message]]
+#: ArduCopter arms in none of these, AUTO unless AUTO_OPTIONS allows it; planes and PX4 arm in any.
+_NOT_ARMABLE = frozenset({Mode.AUTO, Mode.RTL, Mode.LAND, Mode.BRAKE})
 _OK: Outcome = (CommandResult.ACCEPTED, [])
 
 
@@ -181,6 +183,8 @@ def _arm(aircraft: Aircraft) -> Outcome:
     pilot = aircraft.pilot
     if pilot.armed:
         return _OK
+    if _is_copter(aircraft) and pilot.mode in _NOT_ARMABLE:
+        return _denied(f"Arm: {pilot.mode.value.capitalize()} mode not armable")
     if aircraft.arming_denied:
         return _denied(f"Arm: {aircraft.arming_denied}")
     pilot.arm()

@@ -64,6 +64,10 @@ class FlightCommands(ABC):
             return await self.set_mode("LOITER")
         return await self.command(Command.DO_PAUSE_CONTINUE, (0.0,))
 
+    async def fly_on(self) -> CommandOutcome:
+        """Into the mission's mode from another one, at the current item; one that is disarmed stays so."""
+        return await self.set_mode("AUTO.MISSION" if self.state.autopilot == "px4" else "AUTO")
+
     async def resume(self) -> CommandOutcome:
         """Go on with the mission at its current item."""
         if self.state.autopilot == "px4":

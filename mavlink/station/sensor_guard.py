@@ -37,6 +37,7 @@ class SensorGuard:
         self._passes: tuple[range, ...] = ()
         self._items: int | None = None
         self._changing = False
+        self._interrupted: str | None = None
         self._flown = False
         self._in_pass = False
         self._absent = False
@@ -59,6 +60,14 @@ class SensorGuard:
     def release(self) -> None:
         """Its mission is being replaced or cleared: no pass is known until the next is held."""
         self._passes, self._items, self._changing = (), None, True
+
+    def interrupt(self, reason: str) -> None:
+        """A pass is broken off in a way that the vehicle does not show: until the sensor is off."""
+        self._interrupted = reason
+
+    def pass_at(self, current: int | None) -> range | None:
+        """The pass that an item belongs to; None where it is in none."""
+        return next((each for each in self._passes if current in each), None)
 
     def look(self, state: VehicleState, now_s: float, *, replaced: bool = False) -> str | None:
         """Why the sensor must be switched off now; None while it need not be.
@@ -88,6 +97,7 @@ class SensorGuard:
         if on is None:
             # Nothing shows it: it may be on where a pass was broken off, and once is all that can be done.
             broken_off, self._in_pass = self._in_pass and not passing, False
+            self._interrupted = None
             return self._worded(outside) if broken_off else None
         waits_s = ITEM_S if passing else 0.0 if self._in_pass or self._absent else SEEMS_S
         if self._tries >= MOST_TRIES or now_s < max(self._since_s + waits_s, self._next_s):
@@ -98,7 +108,7 @@ class SensorGuard:
 
     def _calm(self, *, in_pass: bool) -> None:
         """Nothing is amiss: what comes next is judged anew."""
-        self._in_pass, self._absent = in_pass, False
+        self._in_pass, self._absent, self._interrupted = in_pass, False, None
         self._since_s, self._tries, self._next_s = None, 0, -math.inf
 
     @property
@@ -117,13 +127,14 @@ class SensorGuard:
             return f"mode {state.mode or 'unknown'} instead of the mission's", False
         if state.mission_state == "paused":
             return "the mission is paused", False
+        if self._interrupted is not None:
+            return self._interrupted, False
         if self._changing:
             return "the mission is being replaced or cleared", False
         if replaced or (
             self._items is not None and state.mission_total is not None and state.mission_total != self._items
         ):
             return "the vehicle holds another mission", False
-        current = state.mission_current
-        if current is not None and any(current in each for each in self._passes):
+        if self.pass_at(state.mission_current) is not None:
             return None, False
-        return f"item {current} is in no pass", True
+        return f"item {state.mission_current} is in no pass", True

@@ -149,6 +149,18 @@ class MissionTransfers(ABC):
             self._held_mission = machine.items
         return machine.items
 
+    async def mission_held(self, *, anew: bool = False) -> tuple[MissionItem, ...]:
+        """The mission as read last, or read now where it was not, or is not to be believed any more.
+
+        Raises
+        ------
+        TransferFailedError, BusyError, NotConnectedError
+            It could not be read.
+        """
+        if self._held_mission is None or anew:
+            return await self.download(MissionType.MISSION)
+        return self._held_mission
+
     async def clear(self, mission_type: MissionType) -> Outcome:
         """Empty one of the vehicle's lists. Raises BusyError, NotConnectedError."""
         machine = ClearMachine(mission_type, *self._target(), self._settings)

@@ -36,7 +36,7 @@ async def test_it_is_flown_paused_and_resumed(
     assert report["verified"], report
     for command in ("arm", "start"):
         answer = await client.post(vehicle + "/commands", json={"command": command})
-        assert answer.json().get("outcome") == "accepted", answer.text
+        assert answer.json().get("outcome") == "done", answer.text
     await until(client, vehicle, lambda body: (body["state"]["mission_current"] or 0) > 1)
     await client.post(vehicle + "/commands", json={"command": "pause"})
     held = await until(client, vehicle, lambda body: body["state"]["ground_speed_m_s"] < 0.2)

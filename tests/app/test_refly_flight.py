@@ -32,7 +32,7 @@ def seen_in(coverage: dict[str, Any]) -> BaseGeometry:
 async def order(client: httpx.AsyncClient, vehicle: str, command: str, **more: Any) -> None:
     """An explicit command; the vehicle must take it."""
     answer = await client.post(vehicle + "/commands", json={"command": command, **more})
-    assert (answer.status_code, answer.json().get("outcome")) == (200, "accepted"), answer.text
+    assert (answer.status_code, answer.json().get("outcome")) == (200, "done"), answer.text
 
 
 @pytest.mark.parametrize(

@@ -44,7 +44,7 @@ async def test_orders_to_fly_wait_for_the_end_of_an_upload(client: httpx.AsyncCl
         check_problem(await client.delete(vehicle + "/mission"), 409)
         for command in ("pause", "rtl"):
             answer = await client.post(vehicle + "/commands", json={"command": command})
-            assert (answer.status_code, answer.json()["outcome"]) == (200, "accepted"), answer.text
+            assert (answer.status_code, answer.json()["outcome"]) == (200, "done"), answer.text
         assert (await upload).json()["verified"]
         assert (await client.post(vehicle + "/commands", json={"command": "arm"})).status_code == 200
 

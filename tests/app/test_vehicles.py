@@ -96,12 +96,14 @@ async def test_whole_journey(client: httpx.AsyncClient, aircraft: str, payload: 
     assert (await client.get(vehicle + "/mission")).json()["parts"]["mission"] == held
     for command in ("arm", "start"):
         ordered = await client.post(vehicle + "/commands", json={"command": command})
-        assert (ordered.status_code, ordered.json()["outcome"]) == (200, "accepted")
+        assert (ordered.status_code, ordered.json()["outcome"]) == (200, "done")
     await until(client, vehicle, lambda body: body["state"]["landed"] is False)
     reload = {"plan_id": plan_id}
     in_flight = await client.post(vehicle + "/mission", json=reload)
     check_problem(in_flight, 409, "vehicle-flying")
-    flights = await until(client, "/api/v1/flights", lambda body: body["flights"][0]["state"] == "ended")
+    flights = await until(
+        client, "/api/v1/flights", lambda body: [each["state"] for each in body["flights"]] == ["ended"]
+    )
     flight = flights["flights"][0]
     assert (flight["plan_id"], flight["plan_vehicle"]) == (plan_id, "uav-1")
     track = (await client.get(flight["links"]["track.geojson"])).json()

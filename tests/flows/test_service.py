@@ -110,7 +110,7 @@ async def test_what_px4_saw_is_known_to_the_service(
             async with asyncio.timeout(READY_S):
                 # Until position and attitude have settled it says no.
                 while (
-                    await client.post(vehicle + "/commands", json={"command": "start"})
+                    await client.post(vehicle + "/commands", json={"command": "start", "arm_first": True})
                 ).status_code != 200:
                     await asyncio.sleep(0.5)
             await until(client, vehicle, lambda b: b["flight_id"] is not None, 60.0)

@@ -1,63 +1,127 @@
-"""Explicit flight commands; nothing else arms or moves a vehicle."""
+"""Flight commands: given one by one, each told by what the vehicle shows and not by its answer alone."""
 
 from __future__ import annotations
 
-from typing import Final
+import asyncio
+from collections.abc import Callable
+from contextlib import nullcontext
 
 import structlog
 
-from app.services.errors import CommandRefusedError, ConflictError, LinkError, RefusedError
+from app.services.errors import (
+    CommandOvertakenError,
+    CommandRefusedError,
+    CommandUnknownError,
+    ConflictError,
+    LinkError,
+    RefusedError,
+    ServiceError,
+)
+from app.services.vehicles.flight_orders import CARRY_OUT, OrderRefusedError, Wish
+from app.services.vehicles.order_book import FLYING, Order
 from app.services.vehicles.vehicle import Vehicle
 from mavlink import errors as mavlink_errors
-from mavlink.transfer.command import CommandOutcome
-from mavlink.transfer.outcome import Outcome
+from mavlink.encoding.payload import PayloadError
 from planner.errors import Finding
 
 log = structlog.get_logger(__name__)
 
-#: Orders that make a vehicle fly a mission, and so not while one is being changed.
-FLYING_ORDERS: Final = frozenset({"arm", "start", "resume", "goto_item"})
+#: How long an answer is waited for where nobody says: longer than a vehicle is asked again.
+WAIT_S = 10.0
+
+_ERRORS: dict[str, Callable[..., ServiceError]] = {
+    "refused": CommandRefusedError,
+    "overtaken": CommandOvertakenError,
+    "unknown": CommandUnknownError,
+}
 
 
-async def give_order(vehicle: Vehicle, command: str, seq: int | None) -> CommandOutcome | Outcome:
-    """Give an explicit flight command; raises CommandRefusedError when the vehicle says no."""
-    vehicle.turns.require_orders(command)
-    log.info("flight command", vehicle=vehicle.name, command=command, seq=seq)
+async def give_order(vehicle: Vehicle, wish: Wish, wait_s: float = WAIT_S) -> Order:
+    """Give an explicit flight command; one that is not settled in time goes on, and is pending.
+
+    Raises
+    ------
+    CommandRefusedError, CommandOvertakenError, CommandUnknownError
+        It has not been carried out, or nobody can tell.
+    LinkError
+        The vehicle is not there: nothing was sent.
+    BusyError
+        What is to be flown is being changed.
+    RefusedError
+        The wish itself is wrong.
+    """
+    vehicle.turns.require_orders(wish.command)
+    _judge(wish)
+    if not vehicle.state.connected:
+        raise LinkError(f"{vehicle.name}: {vehicle.client.absence}")
+    order = vehicle.book.begin(wish.command)
+    log.info("flight command", vehicle=vehicle.name, command=wish.command, seq=wish.seq, command_id=order.id)
+    task = asyncio.create_task(_follow(vehicle, wish, order))
+    vehicle.book.follow(order, task)
+    done, _ = await asyncio.wait((task,), timeout=wait_s)
+    if done and not task.cancelled():
+        task.result()
+    if order.outcome in _ERRORS:
+        members = {
+            "vehicle_id": vehicle.id,
+            "command_id": order.id,
+            "command": order.command,
+            "outcome": order.outcome,
+            "reason": order.reason,
+        }
+        detail = f"{vehicle.name}: {order.command} {order.outcome}: {order.reason}"
+        raise _ERRORS[order.outcome](detail, order.findings, members)
+    return order
+
+
+def _judge(wish: Wish) -> None:
+    if wish.command == "goto_item" and wish.seq is None:
+        message = "goto_item needs the number of an item in seq"
+        raise RefusedError(message, (Finding("seq", "seq-missing", message, "send seq"),))
+    for option, command in (("arm_first", "start"), ("hold_first", "arm")):
+        if getattr(wish, option) and wish.command != command:
+            message = f"{option} says nothing to {wish.command}"
+            raise RefusedError(
+                message, (Finding(option, "option", message, f"send it with {command} alone"),)
+            )
+
+
+async def _follow(vehicle: Vehicle, wish: Wish, order: Order) -> None:
+    """Carry an order out to its end, and note that end."""
+    flies = wish.command in FLYING
     try:
-        if command in FLYING_ORDERS:
-            with vehicle.turns.ordering(command):
-                outcome = await _order(vehicle, command, seq)
-        else:
-            outcome = await _order(vehicle, command, seq)
+        with vehicle.turns.ordering(wish.command) if flies else nullcontext():
+            outcome, reason = await CARRY_OUT[wish.command](vehicle, wish, order)
+        order.end(outcome, reason)
+    except asyncio.CancelledError:
+        # Overtaken, which is noted already; or the vehicle is let go.
+        order.end("unknown", "given up before it was settled; it may have been carried out")
+    except OrderRefusedError as error:
+        order.end("refused", str(error), (error.finding,))
+    except PayloadError as error:
+        order.end("refused", str(error))
+        fix = "write e.g. relay:0, servo:9:1900:1100 or camera:distance=25"
+        raise RefusedError(str(error), (Finding("payload", "payload", str(error), fix),)) from error
     except (mavlink_errors.NotConnectedError, mavlink_errors.LinkError) as error:
+        if order.sent:
+            order.end("unknown", f"{error}; it may have been carried out")
+            return
+        order.end("refused", str(error))
         raise LinkError(f"{vehicle.name}: {error}") from error
-    except mavlink_errors.BusyError as error:
-        raise ConflictError(f"{vehicle.name} is busy: {error}") from error
-    if isinstance(outcome, CommandOutcome):
-        if outcome.result is not None and not outcome.accepted:
-            said = vehicle.state.texts[-1].text if vehicle.state.texts else ""
-            raise CommandRefusedError(f"{vehicle.name} refused {outcome}{said and f'; it says: {said}'}")
-    elif outcome.kind == "refused":
-        raise CommandRefusedError(f"{vehicle.name}: {outcome}")
-    return outcome
-
-
-async def _order(vehicle: Vehicle, command: str, seq: int | None) -> CommandOutcome | Outcome:
-    client = vehicle.client
-    match command:
-        case "arm":
-            return await client.arm()
-        case "disarm":
-            return await client.disarm()
-        case "start":
-            return await client.start_mission()
-        case "pause":
-            return await client.pause()
-        case "resume":
-            return await client.resume()
-        case "rtl":
-            return await client.return_to_launch()
-        case "goto_item" if seq is not None:
-            return await client.goto_item(seq)
-    message = f"{command} needs the number of an item in seq"
-    raise RefusedError(message, (Finding("seq", "seq-missing", message, "send seq"),))
+    except mavlink_errors.MavlinkError as error:
+        order.end("refused", str(error))
+        raise ConflictError(f"{vehicle.name}: {error}") from error
+    except ServiceError as error:
+        order.end("refused", str(error))
+        raise
+    finally:
+        order.end("unknown", "it failed for a reason nobody foresaw")
+        log.info(
+            "flight command ended",
+            vehicle=vehicle.name,
+            command=wish.command,
+            command_id=order.id,
+            outcome=order.outcome,
+            reason=order.reason,
+        )
+        vehicle.tell()

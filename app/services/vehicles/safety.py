@@ -12,6 +12,7 @@ from app.services.records import SensorAction
 from app.services.vehicles.recorder import FlightRecorder
 from mavlink.encoding.payload import Payload
 from mavlink.errors import CodecError, LinkError, NotConnectedError, ReadOnlyError
+from mavlink.state.telemetry import VehicleState
 from mavlink.station.client import VehicleClient
 from mavlink.station.sensor_guard import SensorGuard
 from mavlink.wire.items import MissionType
@@ -51,6 +52,14 @@ class SensorSafety:
         """The vehicle holds a mission from here."""
         self._guard.hold(payload, passes, items)
 
+    def interrupt(self, reason: str) -> None:
+        """A pass is broken off in a way that the vehicle does not show."""
+        self._guard.interrupt(reason)
+
+    def cut_pass(self, state: VehicleState) -> range | None:
+        """The pass whose items are flown with the sensor off, as it was switched off in it; None else."""
+        return None if state.sensor_shown else self._guard.pass_at(state.mission_current)
+
     def release(self) -> None:
         """Its mission is being replaced or cleared."""
         self._guard.release()
@@ -72,7 +81,7 @@ class SensorSafety:
             outcome = str(await client.switch_off(payload))
         except (NotConnectedError, ReadOnlyError, LinkError, CodecError) as error:
             outcome = f"not sent: {error}"
-        self.last = SensorAction(
+        done = SensorAction(
             at=datetime.now(UTC),
             time_s=state.time_s,
             action="sensor_off",
@@ -84,8 +93,9 @@ class SensorSafety:
         tell = log.error if self._guard.given_up else log.warning
         tell("sensor ordered off", vehicle=self._vehicle, outcome=outcome, given_up=self._guard.given_up)
         try:
-            await self._recorder.act(self.last)
+            await self._recorder.act(done)
         except Exception as error:
             # The watch goes on: the sensor matters more than its record, which the log has too.
             log.error("not kept in the flight's record", vehicle=self._vehicle, exc_info=error)
+        self.last = done
         self._tell()

@@ -16,6 +16,7 @@ from app.services.records import HeldMission, VehicleRecord
 from app.services.store.flights import FlightStore
 from app.services.vehicles.connection import Connection, Home, connect, is_replay, simulated_of
 from app.services.vehicles.forwarding import changes_mission, tell_order
+from app.services.vehicles.order_book import OrderBook
 from app.services.vehicles.recorder import FlightRecorder, HeldPlan
 from app.services.vehicles.recordings import Recordings, Tape
 from app.services.vehicles.safety import SensorSafety
@@ -96,6 +97,7 @@ class Vehicle:
         self._times = times
         self._look_now = asyncio.Event()
         self._recorder = FlightRecorder(flights, record.id, record.name, track_interval_s)
+        self.book = OrderBook()
         self.safety = SensorSafety(record.name, self._recorder, self.tell)
         self.lost_since: datetime | None = None
         self._told_s = -math.inf
@@ -223,6 +225,7 @@ class Vehicle:
         await asyncio.gather(*self._tasks, return_exceptions=True)
         self._tasks = []
         await self._drop()
+        await self.book.close()
         self.tape.end()
 
     async def forward_to(self, addresses: tuple[ForwardAddress, ...]) -> None:
