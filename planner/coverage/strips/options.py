@@ -14,7 +14,7 @@ from planner.airspace.surroundings import Surroundings
 from planner.coverage.lines import NO_ROOM_M, cramped_m, judge_lines, poses_of, roomy
 from planner.coverage.merge import GRID_M
 from planner.coverage.strips.alternatives import of_visit
-from planner.coverage.strips.classify import fits, hull_points, spans_at
+from planner.coverage.strips.classify import Spans, fits, hull_points, spans_at
 from planner.coverage.strips.neighbourhood import complementary
 from planner.coverage.strips.segments import Neighbourhood
 from planner.coverage.strips.sweeps import VARIANTS, Judge, Side, Sweep, Swept, best_sweeps, sweep_passes
@@ -106,7 +106,7 @@ def _at(side: Neighbourhood, angles_rad: Floats) -> Neighbourhood:
     """The same neighbourhood at other angles: those of them that see the region."""
     spans = spans_at(hull_points(side.region.area), angles_rad)
     good = fits(spans.across_m, swaths_m(side.sensor, side.height_m, angles_rad), side.turns)
-    kept = spans_at(hull_points(side.region.area), angles_rad[good])
+    kept = Spans(*(getattr(spans, name)[good] for name in Spans.__slots__))
     return Neighbourhood(
         side.region, side.sensor, side.height_m, side.look, side.turns, angles_rad[good], kept
     )

@@ -24,7 +24,8 @@ from numpy.typing import NDArray
 from planner.coverage.lines import flown_straight
 from planner.coverage.merge import MergedRegion
 from planner.coverage.strips import kernels
-from planner.coverage.strips.classify import ROUNDING_M, angles_around, hull_points, spans_at
+from planner.coverage.strips.classify import ROUNDING_M, hull_points, spans_at
+from planner.coverage.strips.headings import MOST_LANES_FACTOR, grid, telling
 from planner.coverage.strips.segments import Neighbourhood, collect_along
 from planner.route import CollectPass, Look
 from planner.sensors.sar import SarSensor
@@ -36,8 +37,9 @@ Ints = NDArray[np.int64]
 #: Where a sweep begins (left or right half of the lanes) times which way it ends (onward or back).
 VARIANTS = 4
 #: Headings that need this many times the fewest lanes, and more than what is tried exactly, are left out.
-MOST_LANES_FACTOR = 1.5
 MOST_LANES = 1000
+#: Of the headings that a shape singles out, the ones with the shortest lanes are tried, so many of them.
+MOST_TELLING = 32
 #: Kept between neighbouring strips where there is enough to spare.
 LEAST_OVERLAP_M = 0.5
 _SAME_ANGLE_RAD = math.radians(0.01)
@@ -76,10 +78,10 @@ class Sweep:
 
     @property
     def angles_rad(self) -> Floats:
-        """Headings worth trying, shape (M,): the allowed ones, else every 10°."""
+        """Headings worth trying, shape (M,): the allowed ones, else a grid of 10° and the telling ones."""
         if self.region.approach_rad is not None:
             return np.unique(np.mod(np.asarray(self.region.approach_rad, dtype=np.float64), math.tau))
-        return angles_around(math.radians(10.0))
+        return np.union1d(grid(self.region.area, math.radians(10.0)), telling_headings(self, 0.0))
 
     def lanes(self, angles_rad: Floats) -> Ints:
         """How many lanes each heading takes, shape (M,)."""
@@ -147,6 +149,30 @@ def sweeps(region: MergedRegion, sensor: SarSensor, height_m: float, extra: int 
     return tuple(Sweep(region, sensor, height_m, variant, extra) for variant in range(VARIANTS))
 
 
+def telling_headings(sweep: Sweep, turn_m: float, most: int = MOST_TELLING) -> Floats:
+    """Of the headings that the region's shape singles out those with the shortest lanes, ascending.
+
+    Parameters
+    ----------
+    turn_m
+        What a turn from lane to lane is taken to cost.
+    most
+        How many.
+    """
+    angles_rad = telling(sweep.region.area, lambda at_rad: swaths_m(sweep.sensor, sweep.height_m, at_rad))
+    counts = sweep.lanes(angles_rad)
+    holds = _hold(sweep, angles_rad, counts)
+    cost_m = np.full(len(angles_rad), np.inf)
+    most_lanes = MOST_LANES_FACTOR * counts[holds].min() if holds.any() else 0.0
+    for count in np.unique(counts[holds & (counts <= most_lanes)]):
+        rows = np.flatnonzero(holds & (counts == count))
+        lanes = lanes_at(sweep, angles_rad[rows], np.array([0.5]), int(count))
+        ends_m = lanes.lines[:, 0, :, 0, 1] - lanes.lines[:, 0, :, 0, 0]
+        cost_m[rows] = np.hypot(ends_m[..., 0], ends_m[..., 1]).sum(axis=1) + count * turn_m
+    best = np.argsort(cost_m, kind="stable")[:most]
+    return np.sort(angles_rad[best[np.isfinite(cost_m[best])]])
+
+
 def lanes_at(sweep: Sweep, angles_rad: Floats, etas: Floats, count: int) -> Lanes:
     """Lanes at headings (M,) that all take ``count`` of them, and at η (K,)."""
     sensor, height_m = sweep.sensor, sweep.height_m
@@ -198,8 +224,7 @@ def best_sweeps(
     counts = sweep.lanes(angles_rad)
     found: list[Swept] = []
     # Where a crab leaves no swath, no number of lanes sees the region.
-    across_m = spans_at(hull_points(sweep.region.area), angles_rad).across_m
-    holds = counts * swaths_m(sweep.sensor, sweep.height_m, angles_rad) >= across_m - ROUNDING_M
+    holds = _hold(sweep, angles_rad, counts)
     if not holds.any():
         return _empty()
     most = max(kernels.EXACT_UP_TO, math.ceil(MOST_LANES_FACTOR * int(counts[holds].min())))
@@ -294,11 +319,31 @@ def _solve(
         cost_m.reshape(problems),
         cramped_m.reshape(*problems, 2),
         lanes.onward,
+        _strides(sweep, radius_m),
         radius_m,
         discs,
     )
     poses = (entries.reshape(*shape, 3), exits.reshape(*shape, 3), cramped_m.reshape(*shape, 2))
     return lanes, orders.reshape(*shape[:2], VARIANTS, count), costs.reshape(*shape[:2], VARIANTS), poses
+
+
+def _hold(sweep: Sweep, angles_rad: Floats, counts: Ints) -> NDArray[np.bool_]:
+    """At which headings so many strips hold the region, shape (M,)."""
+    across_m = spans_at(hull_points(sweep.region.area), angles_rad).across_m
+    swath_m = swaths_m(sweep.sensor, sweep.height_m, angles_rad)
+    return np.asarray((counts * swath_m >= across_m - ROUNDING_M) & (swath_m > 0.0), dtype=np.bool_)
+
+
+def _strides(sweep: Sweep, radius_m: float) -> int:
+    """The widest stride of a racetrack that a turn can ask for.
+
+    Its lanes, seen to one side out and to the other back, are a stride of strips, a strip and twice the blind
+    ground below apart, or less by that; a turn is two radii wide.
+    """
+    strip = strip_on(sweep.sensor, sweep.height_m, 0.0, "right")
+    swath_m = max(float(strip.swath_m[0]), 1e-3)
+    wide_m = 2.0 * (radius_m + float(strip.near_m[0])) + swath_m
+    return min(kernels.STRIDES, math.ceil(wide_m / swath_m) + 1)
 
 
 def _ways(sweep: Sweep) -> tuple[int, ...]:

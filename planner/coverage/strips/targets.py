@@ -14,17 +14,19 @@ from planner.coverage.estimate import Ends, least_tour_m
 from planner.coverage.lines import roomy
 from planner.coverage.merge import MergedRegion
 from planner.coverage.strips.alternatives import families, parts_of, visits
+from planner.coverage.strips.headings import grid
 from planner.coverage.strips.options import Options, collect_passes, hidden_m, make_options
 from planner.coverage.strips.segments import Neighbourhood
-from planner.coverage.strips.sweeps import Side
+from planner.coverage.strips.sweeps import MOST_TELLING, Side, Sweep, telling_headings
 from planner.errors import InfeasibleError
 from planner.route import CollectPass
 from planner.sensors.sar import SarSensor
 
 Floats = NDArray[np.float64]
 
-#: Divisions of a region are compared at these headings and offsets,
+#: Divisions of a region are compared at these headings, those its shape singles out and offsets,
 STEP_RAD = math.radians(15.0)
+TELLING_COMPARED = 8
 ETAS = np.array([0.0, 0.5, 1.0])
 #: by this many of each part's cheapest options.
 OPTIONS_COMPARED = 48
@@ -53,7 +55,7 @@ class StripTarget:
         """Options at these headings and offsets; None where there are none."""
         return make_options(self.sides, angles_rad, etas, self.around)
 
-    def coarse(self, angles_rad: Floats, etas: Floats) -> Options:
+    def coarse(self, step_rad: float, etas: Floats) -> Options:
         """The options to choose an order by.
 
         Where none has room to turn at both ends, those of a finer grid that have it are taken instead.
@@ -63,13 +65,8 @@ class StripTarget:
         InfeasibleError
             Where no option keeps the hard constraints.
         """
-        free = self.region.approach_rad is None
-        allowed = (
-            angles_rad
-            if self.region.approach_rad is None
-            else np.asarray(self.region.approach_rad, dtype=np.float64)
-        )
-        options = make_options(self.sides, allowed, etas, self.around)
+        angles_rad = headings(self.region, self.sides, step_rad, self.around)
+        options = make_options(self.sides, angles_rad, etas, self.around)
         if options is None:
             options = make_options(
                 self.sides, self.sides[0].angles_rad, np.linspace(0.0, 1.0, 9), self.around
@@ -78,8 +75,8 @@ class StripTarget:
             raise refusal(self.region, self.around)
         if _with_room(options, self.around).any():
             return options
-        turned_rad = np.arange(-math.pi, math.pi - 1e-9, FINE_STEP_RAD, dtype=np.float64) if free else allowed
-        finer = make_options(self.sides, turned_rad, np.linspace(0.0, 1.0, 9), self.around)
+        angles_rad = headings(self.region, self.sides, FINE_STEP_RAD, self.around)
+        finer = make_options(self.sides, angles_rad, np.linspace(0.0, 1.0, 9), self.around)
         kept = (
             np.empty(0, dtype=np.int64) if finer is None else np.flatnonzero(_with_room(finer, self.around))
         )
@@ -178,6 +175,29 @@ def can_be_flown(
     return _some(region, sensor, height_m, around, wide=wide)[1] is not None
 
 
+def headings(
+    region: MergedRegion,
+    sides: tuple[Side, ...],
+    step_rad: float,
+    around: Surroundings,
+    most: int = MOST_TELLING,
+) -> Floats:
+    """The allowed headings, else a grid in the region's own axes; for sweeps also what its shape singles out.
+
+    Parameters
+    ----------
+    most
+        Headings besides the grid.
+    """
+    if region.approach_rad is not None:
+        return np.asarray(region.approach_rad, dtype=np.float64)
+    own_rad = grid(region.area, step_rad)
+    sweep = next((side for side in sides if isinstance(side, Sweep)), None)
+    if sweep is None or most == 0:
+        return own_rad
+    return np.union1d(own_rad, telling_headings(sweep, math.pi * around.radius_m, most))
+
+
 def refusal(region: MergedRegion, around: Surroundings) -> InfeasibleError:
     """What to say where every pass is forbidden."""
     return InfeasibleError(
@@ -197,9 +217,7 @@ def _some(
     """The first families with an option, and these options."""
     sides: tuple[Side, ...] = ()
     for sides in families(region, sensor, height_m, wide=wide):
-        coarse = np.arange(-math.pi, math.pi - 1e-9, STEP_RAD, dtype=np.float64)
-        if region.approach_rad is not None:
-            coarse = np.asarray(region.approach_rad, dtype=np.float64)
+        coarse = headings(region, sides, STEP_RAD, around, TELLING_COMPARED)
         for angles_rad, count in ((coarse, 3), (sides[0].angles_rad, 3), (sides[0].angles_rad, 9)):
             options = make_options(sides, angles_rad, np.linspace(0.0, 1.0, count), around)
             if options is not None:

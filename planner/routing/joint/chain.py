@@ -62,6 +62,26 @@ class Layers:
     between: tuple[Floats, ...]
     last: Floats
 
+    def through(self) -> list[Floats]:
+        """The least cost of a way through each option, place by place."""
+        pre, suf = [self.first], [self.last]
+        for leg_m in self.between:
+            pre.append((pre[-1][:, None] + leg_m).min(axis=0))
+        for leg_m in reversed(self.between):
+            suf.append((leg_m + suf[-1][None, :]).min(axis=1))
+        return [before + after for before, after in zip(pre, reversed(suf), strict=True)]
+
+    def only(self, place: int, option: int) -> Layers:
+        """The same where no other option of a place may be taken."""
+        barred = np.full(len(self.options[place].inner_m), np.inf)
+        barred[option] = 0.0
+        if place == 0:
+            return replace(self, first=self.first + barred)
+        between = tuple(
+            leg_m + barred[None, :] if k == place - 1 else leg_m for k, leg_m in enumerate(self.between)
+        )
+        return replace(self, between=between)
+
     def best(self) -> tuple[float, list[int]]:
         """The cheapest way through: its cost, and the option at each place."""
         cost_m, came_from = self.first, []

@@ -51,8 +51,10 @@ LARGE_ETAS = np.array([0.0, 1.0])
 #: Divided regions, from the first, for which the tour with the region whole is found too.
 MOST_WHOLE = 3
 #: Tours with their legs flown in earnest, those of them to which true costs are fed back, and how often.
-TRUE_TOURS = 4
+TRUE_TOURS = 8
 TRUE_SOLVES = 12
+#: Tours refined to costs this close are one.
+SAME_M = 1e-3
 #: A tour that costs this much more than was thought is chosen anew.
 FALSE_M = 5.0
 #: Options with true costs: a little finer and a little wider than the last refinement, angle and offset.
@@ -132,13 +134,14 @@ def _route(seen: Visible, search: Search) -> tuple[float, tuple[CollectPass, ...
     """The passes of all targets, and what they cost in truth."""
     exact = len(seen.targets) <= EXACT_ORDER_UP_TO
     step_rad, etas = (COARSE_STEP_RAD, COARSE_ETAS) if exact else (LARGE_STEP_RAD, LARGE_ETAS)
-    angles_rad = np.arange(-math.pi, math.pi - 1e-9, step_rad, dtype=np.float64)
     coarse = []
     for target in seen.targets:
         raise_if(search.stop)
-        coarse.append(target.coarse(angles_rad, etas))
+        coarse.append(target.coarse(step_rad, etas))
     tours = Tours(search.ends, search.around, seen.targets)
     candidates = _orders(tours, coarse, search)
+    if exact:
+        candidates += tours.alternatives(candidates[0], coarse)
     refined = []
     for index, choice in enumerate(candidates):
         raise_if(search.stop)
@@ -158,7 +161,7 @@ def _truest(tours: Tours, choices: list[Choice], search: Search) -> tuple[float,
     """
     legs, stop = search.legs, search.stop
     best_m, best = math.inf, tours.passes(choices[0])
-    choices = sorted(choices, key=lambda choice: choice.cost_m)[:TRUE_TOURS]
+    choices = _apart(sorted(choices, key=lambda choice: choice.cost_m))[:TRUE_TOURS]
     for index, choice in enumerate(choices):
         raise_if(stop)
         search.progress("routing", 0.7 + 0.3 * index / len(choices))
@@ -180,6 +183,14 @@ def _truest(tours: Tours, choices: list[Choice], search: Search) -> tuple[float,
             if true_m < best_m:
                 best_m, best = true_m, passes
     return legs.tour_m(best), best
+
+
+def _apart(choices: list[Choice]) -> list[Choice]:
+    """Of choices by cost, those that cost as much as the one before left out: they have come to the same."""
+    before = [-math.inf, *(choice.cost_m for choice in choices)]
+    return [
+        choice for choice, last_m in zip(choices, before, strict=False) if choice.cost_m > last_m + SAME_M
+    ]
 
 
 def _besides(targets: Sequence[Target], place: int, passes: Sequence[CollectPass]) -> float:

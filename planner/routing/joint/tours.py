@@ -19,6 +19,12 @@ Floats = NDArray[np.float64]
 #: The first refinement's steps of heading and offset; each halves them.
 FIRST_STEP_RAD, FIRST_STEP_ETA = math.radians(5.0), 0.25
 REFINEMENTS = 5
+#: Tours refined besides the cheapest, so many over the number of places but at least so many: they cost no
+#: more than this part more than it, and their headings at one place lie so far apart; less in tours of few
+#: places, where most is lanes and a degree may change their number.
+ALTERNATIVES, LEAST_ALTERNATIVES = 16, 6
+WORTH = 0.05
+APART_RAD, APART_OF_FEW_RAD, FEW = math.radians(15.0), math.radians(3.0), 2
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -62,6 +68,28 @@ class Tours:
                 choice = Choice.of(choice.order, layers.options, picked, cost_m)
             step_rad, step_eta = step_rad / 2.0, step_eta / 2.0
         return choice
+
+    def alternatives(self, choice: Choice, coarse: Sequence[Options]) -> list[Choice]:
+        """Tours in the same order with another option at one place, the cheapest of headings apart."""
+        layers = layers_of(self.ends, self.around, [coarse[c] for c in choice.order], self.around.discs)
+        ways = sorted(
+            (float(cost_m[option]), place, int(option))
+            for place, cost_m in enumerate(layers.through())
+            for option in np.flatnonzero(cost_m <= (1.0 + WORTH) * choice.cost_m)
+        )
+        apart_rad = APART_RAD if len(choice.order) > FEW else APART_OF_FEW_RAD
+        taken = [[float(picked.entries[0, 2])] for picked in choice.picked]
+        found: list[Choice] = []
+        for _, place, option in ways:
+            angle_rad = float(layers.options[place].entries[option, 2])
+            if min(abs(math.remainder(angle_rad - other, math.tau)) for other in taken[place]) < apart_rad:
+                continue
+            taken[place].append(angle_rad)
+            cost_m, picked = layers.only(place, option).best()
+            found.append(Choice.of(choice.order, layers.options, picked, cost_m))
+            if len(found) >= max(LEAST_ALTERNATIVES, ALTERNATIVES // len(choice.order)):
+                break
+        return found
 
     def visited(self, choice: Choice) -> list[Target]:
         """The targets in a tour's order."""

@@ -106,7 +106,8 @@ class Target:
         kept = np.flatnonzero(good[:, 0])
         return Options(lines, entries, exits, cost_m[:, 0]).rows(kept) if len(kept) else None
 
-    def coarse(self, angles_rad: Floats, etas: Floats) -> Options:
+    def coarse(self, step_rad: float, etas: Floats) -> Options:
+        angles_rad = np.arange(0.0, math.tau - 1e-9, step_rad)
         found = self.options(angles_rad, etas) or self.options(HEADINGS_RAD, etas)
         if found is None:
             raise InfeasibleError("area", self.region.label, "no pass may be flown", "enlarge the area")

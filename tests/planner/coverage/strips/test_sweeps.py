@@ -146,12 +146,13 @@ def test_best_order_is_the_best_of_every_order(seed: int, lanes: int, states: in
                 for j in range(lane * states, (lane + 1) * states)
             }
         expected = min(expected, *reach.values())
-    cost, found = kernels.best_order(entries, exits, own, none, states, free, free, radius_m, NO_DISCS)
+    turns = kernels.turns_between(entries, exits, own, none, states, max(lanes - 1, 1), radius_m, NO_DISCS)
+    cost, found = kernels.best_order(turns, own, free, free)
     assert cost == pytest.approx(expected)
     if math.isfinite(cost):
         assert sorted(found // states) == list(range(lanes))
         assert own[found].sum() + sum(turn[a, b] for a, b in itertools.pairwise(found)) == pytest.approx(cost)
-    patterned, _ = kernels.pattern_order(entries, exits, own, none, states, free, free, radius_m, NO_DISCS)
+    patterned, _ = kernels.pattern_order(turns, own, free, free)
     assert patterned >= cost - 1e-6
 
 
@@ -177,7 +178,8 @@ def test_racetracks_beat_boustrophedon_where_the_turn_is_wide() -> None:
     exits = np.hstack([lines[:, :, 1].reshape(-1, 2), headings])
     own = np.hypot(*(exits - entries)[:, :2].T)
     free, none = np.ones(len(own), dtype=np.bool_), np.zeros((len(own), 2))
-    common = (entries, exits, own, none, states, free, free, radius_m, NO_DISCS)
+    turns = kernels.turns_between(entries, exits, own, none, states, 5, radius_m, NO_DISCS)
+    common = (turns, own, free, free)
     neighbours, _ = kernels.best_states(*common, np.arange(6, dtype=np.int64))
     cost, order = kernels.best_order(*common)
     assert cost < 0.98 * neighbours
@@ -196,7 +198,8 @@ def test_the_turn_decides_between_boustrophedon_and_racetrack(radius_m: float, o
         for where in ends
     )
     own, free, none = np.full(12, 2000.0), np.ones(12, dtype=np.bool_), np.zeros((12, 2))
-    common = (entries, exits, own, none, 2, free, free, radius_m, NO_DISCS)
+    turns = kernels.turns_between(entries, exits, own, none, 2, lanes - 1, radius_m, NO_DISCS)
+    common = (turns, own, free, free)
     cost, order = kernels.best_order(*common)
     neighbours, _ = kernels.best_states(*common, np.arange(lanes, dtype=np.int64))
     steps = np.abs(np.diff(order // 2))
@@ -281,5 +284,6 @@ def test_strip_extents_agree_with_shapely() -> None:
         extents = kernels.strip_extents(
             edges, np.array([angle]), np.full((1, 1, 1), low), np.full((1, 1, 1), high)
         )
-        cut = turned.intersection(shapely.box(-1e5, low, 1e5, high)).bounds
+        within = kernels.WITHIN_M
+        cut = turned.intersection(shapely.box(-1e5, low + within, 1e5, high - within)).bounds
         assert extents[0, 0, 0] == pytest.approx([cut[0], cut[2]], abs=1e-6)

@@ -18,6 +18,7 @@ from planner.check import judge, seen_times
 from planner.coverage.lines import roomy
 from planner.coverage.merge import split_region
 from planner.coverage.strips.alternatives import of_visit
+from planner.coverage.strips.headings import grid
 from planner.coverage.strips.options import collect_passes, make_options
 from planner.coverage.strips.sweeps import Side, sweeps
 from planner.coverage.strips.targets import MOST_ROOMY, StripTarget, targets
@@ -36,7 +37,7 @@ from tests.planner.stages import joint_route
 
 SENSOR = paper_sensor()
 ETAS = np.array([0.0, 0.5, 1.0])
-STEPS_RAD = np.radians(np.arange(-180.0, 180.0, 30.0))
+STEP_RAD = math.radians(30.0)
 
 
 def stops(area: Polygon, radius_m: float = 100.0, **known: object) -> tuple[StripTarget, ...]:
@@ -222,15 +223,15 @@ def test_where_few_headings_have_room_they_are_looked_for() -> None:
     (region,) = split_region(Region("R", box(-100.0, -100.0, 100.0, 100.0)))
     around = replace(open_ground(), radius_m=100.0)
     (found,) = targets(region, SENSOR, HEIGHT_M, around)
-    every = found.coarse(STEPS_RAD, np.array([0.0, 1.0]))
+    every = found.coarse(STEP_RAD, np.array([0.0, 1.0]))
     # Posts at the ends of all coarse passes: wide enough that no full turn fits there.
     ends = np.concatenate([every.entries[:, :2], every.exits[:, :2]])
     posts = shapely.union_all([Point(*end).buffer(1.0) for end in ends])
     cramped = replace(around, cramped=posts.buffer(around.radius_m))
-    coarse = make_options(found.sides, STEPS_RAD, np.array([0.0, 1.0]), cramped)
+    coarse = make_options(found.sides, grid(region.area, STEP_RAD), np.array([0.0, 1.0]), cramped)
     assert coarse is not None
     assert not (roomy(coarse.entries, cramped) & roomy(coarse.exits, cramped)).any()
-    finer = replace(found, around=cramped).coarse(STEPS_RAD, np.array([0.0, 1.0]))
+    finer = replace(found, around=cramped).coarse(STEP_RAD, np.array([0.0, 1.0]))
     assert (roomy(finer.entries, cramped) & roomy(finer.exits, cramped)).all()
     assert 0 < len(finer.inner_m) <= 2 * MOST_ROOMY
 
