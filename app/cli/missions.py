@@ -130,7 +130,14 @@ def upload(
     ] = None,
     override: Annotated[
         str | None,
-        typer.Option(help="Upload although a hard constraint is broken; say why.", metavar="REASON"),
+        typer.Option(
+            help="Upload although a hard constraint is broken, or the plan is stale; say why.",
+            metavar="REASON",
+        ),
+    ] = None,
+    scenario: Annotated[
+        str | None,
+        typer.Option(help="Refuse the plan as stale unless it is made of this scenario.", metavar="FILE"),
     ] = None,
     vehicle: VehicleName = None,
     payload: Payload = None,
@@ -147,7 +154,8 @@ def upload(
     document = read_plan_file(plan)
     names = list(dict.fromkeys(choice.value for choice in part or [PartChoice.MISSION]))
     choice = MissionChoice(vehicle, None, payload, gimbal)
-    report = run_async(_upload(document, to, names, choice, override, timeout_s))
+    stale = None if scenario is None else _staleness(document, scenario)
+    report = run_async(_upload(document, to, names, choice, override, timeout_s, stale))
     if as_json:
         emit_json(report)
     for name, result in report["parts"].items():
@@ -166,8 +174,23 @@ def upload(
         raise typer.Exit(int(Exit.FAILED))
 
 
+def _staleness(plan: Plan, scenario: str) -> str | None:
+    """Why a plan is not that of a scenario's file; None when it is."""
+    from planner.geojson import scenario_hash
+
+    if scenario_hash(read_document(scenario)) == plan.scenario_hash:
+        return None
+    return f"{scenario} is another than the scenario it was made of"
+
+
 async def _upload(
-    plan: Plan, url: str, parts: list[Any], choice: MissionChoice, override: str | None, timeout_s: float
+    plan: Plan,
+    url: str,
+    parts: list[Any],
+    choice: MissionChoice,
+    override: str | None,
+    timeout_s: float,
+    stale: str | None,
 ) -> dict[str, Any]:
     from app.services.plans.missions import encode_plan
     from app.services.vehicles.connection import connected
@@ -178,7 +201,7 @@ async def _upload(
         if autopilot != "generic":
             choice = replace(choice, autopilot=autopilot)
         mission = encode_plan(plan, choice)
-        findings = judge_upload(plan, mission, parts, client.state, override)
+        findings = judge_upload(plan, mission, parts, client.state, override, stale)
         for finding in findings:
             say(f"{'overridden' if finding.severity == 'error' else 'note'}: {finding}")
         report = new_report(0, plan.scenario_hash, mission, parts, override, findings)

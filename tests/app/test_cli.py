@@ -338,6 +338,21 @@ def test_upload_of_a_violating_plan_needs_a_reason(
     assert swathplan("upload", str(path), "--to", "sim:", "--override", "zone is cold").code == 0
 
 
+def test_upload_of_a_plan_of_another_scenario_needs_a_reason(
+    swathplan: Command, plan_file: Path, scenario_file: Path, tmp_path: Path
+) -> None:
+    """Held against the scenario as it is now: the same goes up, a changed one only with a reason."""
+    same = swathplan("upload", str(plan_file), "--to", "sim:", "--scenario", str(scenario_file))
+    assert same.code == 0, same.err
+    changed = tmp_path / "changed.geojson"
+    changed.write_text(json.dumps(EXAMPLE | {"seed": 1}))
+    stale = ("upload", str(plan_file), "--to", "sim:", "--scenario", str(changed))
+    refused = swathplan(*stale)
+    assert refused.code == 1
+    assert "plan-stale" in refused.err
+    assert swathplan(*stale, "--override", "only the seed differs").code == 0
+
+
 def test_download_from_an_empty_vehicle(swathplan: Command) -> None:
     """What a fresh aircraft holds can be saved in each form."""
     held = json.loads(swathplan("download", "--from", "sim:", "--json").out)
