@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from benchmarks import kernels, transit
+from benchmarks.transit import Look
 from planner.dubins.kernels import dubins_lengths
 
 
@@ -36,9 +37,27 @@ def test_without_the_peer_the_row_says_so() -> None:
 def test_against_the_peer() -> None:
     """Where OMPL is installed a line of ours is never longer than its line by more than 0.5 %."""
     pytest.importorskip("ompl")
-    ratios = list(transit.run(problems=3, seconds=0.3, repeats=1, sets=("open",)))[-1]
-    assert ratios["both_solved"] > 0
-    assert ratios["length_ratio_max"] < 1.005
+    found = list(transit.run(problems=3, seconds=0.3, repeats=1, sets=("open",)))[-1]
+    assert found["at_end_solved"] > 0
+    assert found["at_end_ours_to_ompl_max"] < 1.005
+
+
+def test_time_is_compared_at_equal_quality_and_quality_at_equal_time() -> None:
+    """By hand: one line is there late and longer, one is as good from its third look on, one never is."""
+    ours = [(100.0, 0.002), (200.0, 0.002), (300.0, 0.002)]
+    looks = [
+        [Look(0.001, 150.0), Look(0.0025, 130.0), Look(1.0, 102.0)],
+        [Look(0.001, math.nan), Look(0.004, 260.0), Look(0.5, 201.0), Look(1.0, 199.0)],
+        [Look(0.001, math.nan), Look(1.0, math.nan)],
+    ]
+    row = transit._compared("open", "X", ours, looks)
+    assert (row["solved"], row["at_equal_time_solved"], row["at_end_solved"]) == (3, 2, 2)
+    assert row["at_equal_time_ompl_to_ours_median_of_solved"] == pytest.approx(1.3)
+    assert (row["equal_quality_reached"], row["equal_quality_median_s_of_reached"]) == (1, 0.5)
+    assert row["equal_quality_times_ours_median_of_reached"] == pytest.approx(250.0)
+    assert row["at_end_ours_to_ompl_max"] == pytest.approx(200.0 / 199.0)
+    row = transit._compared("open", "X", ours[2:], looks[2:])
+    assert (row["equal_quality_reached"], row["equal_quality_median_s_of_reached"]) == (0, None)
 
 
 def test_numpy_lengths_are_the_kernel_s() -> None:
