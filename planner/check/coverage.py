@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import fields, is_dataclass
+from typing import Any
 
 from shapely import difference, get_parts, intersection, union_all
 from shapely.geometry import MultiPolygon, Polygon
@@ -79,10 +81,18 @@ def _areal(geometry: BaseGeometry) -> MultiPolygon:
     return MultiPolygon([part for part in get_parts(geometry).tolist() if isinstance(part, Polygon)])
 
 
+def _same(one: Any, other: Any) -> bool:
+    """Whether sensors see the same: they are one, or differ in their names alone."""
+    if one.name == other.name or type(one) is not type(other) or not is_dataclass(one):
+        return bool(one.name == other.name)
+    traits = [trait.name for trait in fields(one) if trait.name != "name"]
+    return all(getattr(one, trait) == getattr(other, trait) for trait in traits)
+
+
 def _counts(scenario: Scenario, region: Region, collect: Collect) -> bool:
     """Whether a collect sees with a sensor, a resolution and a direction that the region allows."""
     sensor = next(s for s in scenario.sensors if s.name == collect.sensor)
-    if sensor.name != scenario.sensor_for(region).name:
+    if not _same(sensor, scenario.sensor_for(region)):
         return False
     if region.min_resolution_m is not None and (
         sensor.resolution_m is None or sensor.resolution_m > region.min_resolution_m

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
+
+from shapely.geometry import Polygon
 
 from planner.airspace.airspace import Airspace, Level
 from planner.airspace.surroundings import Surroundings, surroundings
 from planner.coverage.merge import MergedRegion, merge_regions
-from planner.coverage.registry import family_of
+from planner.coverage.registry import FAMILIES, family_of
 from planner.coverage.relaxation import explained
-from planner.coverage.ways import Target
+from planner.coverage.sharing import Apart, ByFamily
+from planner.coverage.ways import Sharing, Target
 from planner.errors import Finding, InfeasibleError
+from planner.sensors.base import Sensor
 from planner.sensors.suite import Suite
 from planner.vehicle.model import FlightModel
 from planner.wishes import Objective, Region
@@ -86,6 +90,22 @@ class Seeing:
             if len(found) > region.revisits:
                 divided.append(index)
         return Visible(tuple(targets), tuple(divided), tuple(dropped))
+
+    def sharing(self, targets: Sequence[Target], around: Surroundings) -> Sharing:
+        """Which targets may be seen in one pass; the paper's coverage joins none but by its filter."""
+        if not self.wide:
+            return Apart()
+        of_kind: dict[str, list[int]] = {}
+        for k, target in enumerate(targets):
+            of_kind.setdefault(self.suite.named(target.region.sensor).kind, []).append(k)
+        parts = []
+        for kind, own in of_kind.items():
+            family = FAMILIES[kind]
+            parts.append((tuple(own), family.sharing([targets[k] for k in own], self._over, around)))
+        return ByFamily(tuple(parts))
+
+    def _over(self, name: str | None, area: Polygon) -> tuple[Sensor, float]:
+        return self.suite.over(name, area, self.airspace, self.level)
 
     def _some_pass(self, region: MergedRegion, airspace: Airspace, level: Level) -> bool:
         """Whether a region can be seen among other zones or from another level."""

@@ -7,19 +7,27 @@ sensor. The choice among options knows neither sensors nor what an option is mad
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any, Protocol, Self
 
 import numpy as np
 from numpy.typing import NDArray
+from shapely.geometry import Polygon
 
 from planner.airspace.surroundings import Surroundings
 from planner.coverage.merge import MergedRegion
 from planner.route import CollectPass
+from planner.sensors.base import Sensor
 from planner.wishes import Region
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+
+
+#: Items seen together, by their numbers.
+Group = frozenset[int]
+#: The sensor of a name over an area, and the flight height over its ground.
+Over = Callable[[str | None, Polygon], tuple[Sensor, float]]
 
 
 class Options(Protocol):
@@ -71,6 +79,23 @@ class Target(Protocol):
 
     def plain(self) -> Target:
         """The same with its simpler ways alone where it has others too; itself where not."""
+
+
+class Sharing(Protocol):
+    """Which targets may be seen in one pass.
+
+    *Items* are what one pass sees: targets, or pieces of one; a target that takes several passes has none.
+    """
+
+    @property
+    def owners(self) -> Sequence[int]:
+        """Of each item which target it is of; what is left of a target without its items is nothing."""
+
+    def groups(self) -> list[Group]:
+        """Groups of two items and more that one pass may see, those of most items first."""
+
+    def target(self, group: Group) -> Target | None:
+        """What sees all items of a group in one pass; None where nothing does."""
 
 
 class Family(Protocol):
@@ -130,6 +155,9 @@ class Family(Protocol):
         self, region: MergedRegion, sensor: Any, height_m: float, around: Surroundings, *, wide: bool
     ) -> bool:
         """Whether some passes that see a region whole may be flown."""
+
+    def sharing(self, targets: Sequence[Any], over: Over, around: Surroundings) -> Sharing:
+        """Which targets of the family may be seen in one pass."""
 
     def undivided(
         self, region: MergedRegion, sensor: Any, height_m: float, around: Surroundings

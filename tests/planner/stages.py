@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 from shapely.geometry.base import BaseGeometry
@@ -79,7 +80,8 @@ def joint_route(
 
     ends, legs = ends_of(scenario), legs_of(scenario, stop)
     search = Search(ends, around, legs, scenario.seed, complete, progress, stop, enough)
-    return of_targets(search, asked.visible(around), lambda whole: asked.visible(around, whole))
+    share = partial(asked.sharing, around=around)
+    return of_targets(search, asked.visible(around), lambda whole: asked.visible(around, whole), share)
 
 
 def see_hidden(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,7 +14,9 @@ from planner.coverage.merge import MergedRegion
 from planner.coverage.strips.alternatives import families
 from planner.coverage.strips.classify import angles_around, hull_points, spans_at
 from planner.coverage.strips.neighbourhood import can_be_seen, check_sensor
+from planner.coverage.strips.sharing import StripSharing
 from planner.coverage.strips.targets import StripTarget, can_be_flown, targets
+from planner.coverage.ways import Over
 from planner.sensors.sar import SarSensor
 from planner.sensors.strip import swaths_m
 from planner.wishes import Region
@@ -66,6 +68,10 @@ class Strips:
     ) -> bool:
         """Whether some pass, or some sweep of the whole region, may be flown."""
         return can_be_flown(region, sensor, height_m, around, wide=wide)
+
+    def sharing(self, targets: Sequence[StripTarget], over: Over, around: Surroundings) -> StripSharing:
+        """Which targets one strip may hold."""
+        return StripSharing(targets, over, around)
 
     def undivided(
         self, region: MergedRegion, sensor: SarSensor, height_m: float, around: Surroundings

@@ -14,6 +14,7 @@ the tour takes one of each at the least whole length, exactly over the order for
 5. A coarse grid of many families may hide the better order, and regions are divided by an estimate that knows
    nothing of the tour: tours with pairs of passes alone instead of sweeps, and with a divided region whole,
    are found as well and kept where they cost less.
+6. Regions that one pass sees share it where that is shorter (``shared``).
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ from numpy.typing import NDArray
 
 from planner.airspace.surroundings import Surroundings
 from planner.coverage.visible import Visible
-from planner.coverage.ways import Options, Target
+from planner.coverage.ways import Options, Sharing, Target
 from planner.dubins.estimate_kernels import transit_costs
 from planner.errors import InfeasibleError
 from planner.orders_kernels import best_orders
@@ -36,6 +37,7 @@ from planner.progress import Progress, Stop, never, raise_if, silent
 from planner.route import CollectPass, Route, Terminal
 from planner.routing import tour
 from planner.routing.joint.chain import from_start, layers_of, to_end, true_choice
+from planner.routing.joint.shared import Exchange
 from planner.routing.joint.split import split_passes
 from planner.routing.joint.tours import Choice, Tours
 from planner.routing.large.order import large_order
@@ -50,6 +52,8 @@ LARGE_STEP_RAD = math.radians(15.0)
 LARGE_ETAS = np.array([0.0, 1.0])
 #: Divided regions, from the first, for which the tour with the region whole is found too.
 MOST_WHOLE = 3
+#: Times that passes are shared: at first by as few passes as can be, then in the tour found last.
+SHARED_ROUNDS = 4
 #: Tours with their legs flown in earnest, those of them to which true costs are fed back, and how often.
 TRUE_TOURS = 8
 TRUE_SOLVES = 12
@@ -63,6 +67,8 @@ TRUE_STEPS = ((math.radians(5.0), 0.125), (math.radians(1.25), 0.03))
 
 #: The targets with divided regions whole, some merged regions (by index) not divided.
 Whole = Callable[[Collection[int]], Visible]
+#: Which of some targets may be seen in one pass.
+Share = Callable[[Sequence[Target]], Sharing]
 #: A tour's passes with others besides, for ground it leaves unseen; the same where nothing is to be added.
 Complete = Callable[[tuple[CollectPass, ...], Legs], tuple[CollectPass, ...]]
 
@@ -100,7 +106,7 @@ class Search:
     enough: Stop = never
 
 
-def joint_route(search: Search, seen: Visible, whole: Whole) -> JointRoute:
+def joint_route(search: Search, seen: Visible, whole: Whole, share: Share) -> JointRoute:
     """Choose the passes of all targets and their order together.
 
     Raises
@@ -127,6 +133,19 @@ def joint_route(search: Search, seen: Visible, whole: Whole) -> JointRoute:
         trial_m, trial_passes = _route(trial, again)
         if trial_m < cost_m - 1e-6:
             cost_m, passes, seen, kept = trial_m, trial_passes, trial, kept | {index}
+    for number in range(SHARED_ROUNDS):
+        if search.enough():
+            break
+        exchange = Exchange(seen.targets, share(seen.targets), search.ends, search.around, search.legs)
+        shared = exchange.shared(passes, search.stop) if number else exchange.fewest()
+        if shared is not None:
+            trial = replace(seen, targets=shared)
+            trial_m, trial_passes = _route(trial, again)
+            if trial_m < cost_m - 1e-6:
+                cost_m, passes, seen = trial_m, trial_passes, trial
+                continue
+        if number:
+            break
     return JointRoute(Route(passes), cost_m, seen)
 
 

@@ -14,6 +14,7 @@ from shapely.geometry import LineString, Polygon
 from planner.airspace.surroundings import Surroundings
 from planner.coverage.lines import Floats, judge_lines, poses_of
 from planner.coverage.merge import MergedRegion
+from planner.coverage.sharing import Apart
 from planner.errors import InfeasibleError
 from planner.route import CollectPass, Look
 from planner.sensors.base import Properties, SeenGround
@@ -163,6 +164,9 @@ class Scanners:
         self, region: MergedRegion, sensor: Scanner, height_m: float, around: Surroundings, **_: Any
     ) -> bool:
         return Target(region, sensor, around).options(HEADINGS_RAD, np.array([0.5])) is not None
+
+    def sharing(self, *_: Any) -> Apart:
+        return Apart()
 
     def undivided(
         self, region: MergedRegion, sensor: Scanner, height_m: float, around: Surroundings
