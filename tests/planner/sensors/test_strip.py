@@ -17,7 +17,7 @@ from planner.airspace.values import Wind
 from planner.check import footprint, judge
 from planner.frames import LocalFrame
 from planner.geojson import read_scenario
-from planner.pipeline import make_plan
+from planner.pipeline import make_plan, with_bound
 from planner.plan import Plan
 from planner.route import Look
 from planner.scenario import Scenario
@@ -216,7 +216,8 @@ def test_stabilised_and_spotlight_antennas_do_not_crab() -> None:
         sensor = still.in_wind(0.5, 1.0)
         assert not sensor.crabs
         assert float(strip_on(sensor, HEIGHT_M, 0.3, "right").near_m[0]) == still.near_m(HEIGHT_M)
-    plans: list[Plan] = [make_plan(in_crosswind(20.0, stabilised=steered)) for steered in (True, False)]
+    scenarios = [in_crosswind(20.0, stabilised=steered) for steered in (True, False)]
+    plans: list[Plan] = [with_bound(scenario, make_plan(scenario)) for scenario in scenarios]
     assert all(plan.metrics.gap is not None for plan in plans)
     assert plans[0].metrics.duration_s < plans[1].metrics.duration_s
 
