@@ -150,3 +150,27 @@ def _blame(whole: _Box, boxes: list[_Box], rest: list[_Box], findings: Findings)
 
 def _apart_m(one: LonLat, other: LonLat) -> float:
     return float(WGS84.inv(*one, *other)[2])
+
+
+def check_bbox(bbox: Any, raw_features: list[Any], findings: Findings) -> None:
+    """Add a finding where the member ``bbox`` is none (RFC 7946, 5), or does not hold every position."""
+    if bbox is None:
+        return
+    if not isinstance(bbox, list) or len(bbox) not in (4, 6) or not all(is_finite(value) for value in bbox):
+        findings.error(
+            "scenario", "bad-value", "bbox is no list of 4 or 6 numbers", "Write [west, south, east, north]."
+        )
+        return
+    half = len(bbox) // 2
+    (west, south), (east, north) = bbox[:2], bbox[half : half + 2]
+    for feature in raw_features:
+        for lon, lat in _places(feature):
+            across = west <= lon <= east if west <= east else lon >= west or lon <= east
+            if not (across and south <= lat <= north):
+                findings.warning(
+                    "scenario",
+                    "bbox-too-small",
+                    f"bbox does not hold {lon:g}, {lat:g}",
+                    "Remove it or widen it.",
+                )
+                return

@@ -152,7 +152,7 @@ def read_threat(raw: RawFeature, frame: LocalFrame, findings: Findings) -> Threa
     if model == "radar":
         intensity_m = fields.number("intensity_m", above=0.0)
     elif model == "missile":
-        fields.raw("intensity_m")
+        fields.unused("intensity_m", "is that of a radar, this is a missile site")
     height_m = fields.number("height_m", math.inf, above=0.0)
     hard = fields.flag("hard", False)
     centre = shapes.point(raw.name, raw.geometry, frame, findings)

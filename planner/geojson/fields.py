@@ -177,6 +177,12 @@ class Fields:
         """Add a finding about one property."""
         self._findings.error(self.owner, rule, f"{name} {message}", fix)
 
+    def unused(self, name: str, why: str) -> None:
+        """Add a warning where a property is given that nothing will read."""
+        self.raw(name)
+        if name in self:
+            self._findings.warning(self.owner, "not-used", f"{name} {why}", "Remove it.")
+
     def refuse_unknown(self, *, also_known: Iterable[str] = ()) -> None:
         """Add a finding for each property never asked for."""
         known = self._known | set(also_known)

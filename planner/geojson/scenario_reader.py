@@ -13,7 +13,7 @@ from shapely.geometry import Polygon
 from planner.airspace.terrain import Terrains, find_terrain
 from planner.errors import ScenarioError
 from planner.geojson import equipment, features
-from planner.geojson.extent import frame_of, within
+from planner.geojson.extent import check_bbox, frame_of, within
 from planner.geojson.fields import Fields, Findings
 from planner.geojson.home import home_amsl_m, kept_clear
 from planner.geojson.relief import set_on_terrain
@@ -26,7 +26,7 @@ from planner.tasks.registry import TASKS
 NOT_YET = ("search",)
 
 MEMBERS = (
-    "type", "features", "name", "description", "bbox", "crs", "vehicles", "sensors", "altitude_m",
+    "type", "features", "name", "bbox", "crs", "vehicles", "sensors", "altitude_m",
     "altitude_reference", "terrain", "wind", "clearance_m", "objective", "task", "method", "seed",
     "time_budget_s",
 )  # fmt: skip
@@ -80,6 +80,7 @@ def _read(document: Any, findings: Findings, terrains: Terrains | None) -> Scena
         findings.error("scenario", "no-features", "has no list of features", "Add features.")
         return None
     _check_crs(document.get("crs"), findings)
+    check_bbox(document.get("bbox"), raw_features, findings)
     frame = frame_of(raw_features, findings)
     raws = _raw_features(raw_features, findings)
     if frame is None:
@@ -105,9 +106,12 @@ def _read(document: Any, findings: Findings, terrains: Terrains | None) -> Scena
             findings.error(extra, f"several-{role}s", f"is a second {role}", f"Keep one {role}.")
     for raw in raws:
         if raw.role == "importance":
-            findings.warning(raw.name, "not-used", "is not used by the collect task", "Remove it.")
-            raw.fields.number("score", minimum=0.0)
+            score = raw.fields.number("score", minimum=0.0)
             raw.fields.refuse_unknown()
+            said = "is not used by the collect task" + (
+                "" if score is None else f", nor its score of {score:g}"
+            )
+            findings.warning(raw.name, "not-used", said, "Remove it.")
 
     top = Fields("scenario", document, findings)
     top.refuse_unknown(also_known=MEMBERS)
@@ -150,6 +154,9 @@ def _read(document: Any, findings: Findings, terrains: Terrains | None) -> Scena
     if not regions and not any(raw.role == "roi" for raw in raws):
         findings.error("scenario", "no-region", "has no region of interest", "Add a feature of role roi.")
     start = _start(starts, bases, aircraft, raws, findings)
+    for base in bases:
+        if base is not start:
+            findings.warning(base.name, "not-used", "is a base that no vehicle starts from", "Remove it.")
     if findings.errors or start is None or altitude_m is None or clearance_m is None:
         return None
     scenario = Scenario(

@@ -101,3 +101,6 @@ class Properties(Protocol):
 
     def wrong(self, name: str, message: str, fix: str, rule: str = ...) -> None:
         """Add a finding about one property."""
+
+    def unused(self, name: str, why: str) -> None:
+        """Add a warning where a property is given that nothing will read."""

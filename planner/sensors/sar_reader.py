@@ -18,6 +18,8 @@ MAX_SQUINT_DEG = 60.0
 MAX_POINTING_DEG = 15.0
 #: A spotlight pass turns no further than this round its place.
 MAX_TURNED_DEG = 60.0
+#: Two ways to say one thing may differ by this part.
+SAME_PART = 0.01
 
 
 def read_sar(fields: Properties) -> SarSensor | None:
@@ -34,7 +36,7 @@ def read_sar(fields: Properties) -> SarSensor | None:
     pointing_deg = fields.number("pointing_margin_deg", 0.0, minimum=0.0, maximum=MAX_POINTING_DEG)
     position_m = fields.number("position_margin_m", 0.0, minimum=0.0)
     stabilised = fields.flag("stabilised", False)
-    wavelength_m = _wavelength_m(fields)
+    wavelength_m = _wavelength_m(fields, mode)
     if name is None or incidence_deg is None or elevation_deg is None or azimuth_rad is None or look is None:
         return None
     if squint_deg is None or mode is None or pointing_deg is None or position_m is None:
@@ -78,13 +80,22 @@ def read_sar(fields: Properties) -> SarSensor | None:
     )  # fmt: skip
 
 
-def _wavelength_m(fields: Properties) -> float | None:
-    """λ, given, or from the frequency."""
+def _wavelength_m(fields: Properties, mode: str | None) -> float | None:
+    """λ, given, or from the frequency; found where nothing asks for it, or where the two differ."""
     wavelength_m = fields.number("wavelength_m", None, above=0.0)
     frequency_hz = fields.number("frequency_hz", None, above=0.0)
-    if wavelength_m is None and frequency_hz is not None:
-        return SPEED_OF_LIGHT_M_S / frequency_hz
-    return wavelength_m
+    for_aperture = "azimuth_beamwidth_deg" not in fields or "aperture_length_m" in fields
+    if mode != "spotlight" and not for_aperture:
+        for name in ("wavelength_m", "frequency_hz"):
+            fields.unused(name, "is asked for by spotlight and aperture_length_m alone")
+    if frequency_hz is None:
+        return wavelength_m
+    of_frequency_m = SPEED_OF_LIGHT_M_S / frequency_hz
+    if wavelength_m is not None and abs(of_frequency_m - wavelength_m) > SAME_PART * wavelength_m:
+        fields.wrong(
+            "frequency_hz", f"is that of {of_frequency_m:.4g} m, not of wavelength_m", "Give one of the two."
+        )
+    return of_frequency_m if wavelength_m is None else wavelength_m
 
 
 def _turned_rad(
@@ -116,8 +127,18 @@ def _azimuth_beamwidth_rad(fields: Properties) -> float | None:
     beamwidth_deg = fields.number("azimuth_beamwidth_deg", None, above=0.0, below=180.0)
     length_m = fields.number("aperture_length_m", None, above=0.0)
     wavelength_m = fields.number("wavelength_m", None, above=0.0)
+    frequency_hz = fields.number("frequency_hz", None, above=0.0)
+    if wavelength_m is None and frequency_hz is not None:
+        wavelength_m = SPEED_OF_LIGHT_M_S / frequency_hz
     if beamwidth_deg is not None:
-        return math.radians(beamwidth_deg)
+        beamwidth_rad = math.radians(beamwidth_deg)
+        if length_m is not None and (
+            wavelength_m is None or abs(wavelength_m / length_m - beamwidth_rad) > SAME_PART * beamwidth_rad
+        ):
+            fields.wrong(
+                "aperture_length_m", "does not give azimuth_beamwidth_deg, λ / D", "Give one of the two."
+            )
+        return beamwidth_rad
     if length_m is not None and wavelength_m is not None and wavelength_m < length_m * math.pi:
         return wavelength_m / length_m
     if "azimuth_beamwidth_deg" not in fields:
