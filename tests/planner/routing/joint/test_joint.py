@@ -254,7 +254,14 @@ def test_a_divided_region_is_flown_whole_where_the_tour_is_shorter(monkeypatch: 
         feature("L", "roi", "Polygon", corner),
         feature("start", "start", "Point", [0.037, 0.0108]),
     ]
-    document["sensors"][0] |= {"incidence_deg": 50.0, "elevation_beamwidth_deg": 30.0, "look": "both"}
+    document["sensors"][0] |= {
+        "incidence_deg": 50.0,
+        "elevation_beamwidth_deg": 30.0,
+        "look": "both",
+        "stabilised": True,
+    }
+    # Turns of 100 m over the ground in this wind.
+    document["vehicles"][0]["min_turn_radius_m"] = 100.0 * (20.0 / 29.9) ** 2
     scenario = read_scenario(document)
     monkeypatch.setattr(joint, "SHARED_ROUNDS", 0)
     tried = joint_route(scenario)
