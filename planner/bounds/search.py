@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 
 from planner.bounds import cells_kernels as cells_of
 from planner.bounds import lines_kernels as lines
+from planner.bounds import tables_kernels as tables
 from planner.bounds import tours_kernels as tours
 from planner.bounds.nodes import Node, divided
 from planner.progress import Stop, never, raise_if
@@ -225,16 +226,16 @@ def _solve(
     looks = np.concatenate(
         [node.families[rows[0][:, 0].astype(np.int64), 1] for node, rows in zip(nodes, kept, strict=True)]
     )
-    between, evaluated = lines.matrix(cells, offsets, region, looks, shared, pairs, slopes, radius_m)
-    first = lines.terminals(start, cells, cells_of.ENTRY, slopes, radius_m)
-    last = lines.terminals(end, cells, cells_of.EXIT, slopes, radius_m)
+    between, evaluated = tables.matrix(cells, offsets, region, looks, shared, pairs, slopes, radius_m)
+    first = tables.terminals(start, cells, cells_of.ENTRY, slopes, radius_m)
+    last = tables.terminals(end, cells, cells_of.EXIT, slopes, radius_m)
     ahead = tours.ahead_costs(first, between, offsets)
     behind = tours.ahead_costs(last, np.ascontiguousarray(between.T), offsets)
     through, prior, after = tours.through_costs(ahead, behind, between, offsets)
     return _Solved(
         boxes,
         cells,
-        lines.better_slopes(cells, slopes, prior, after, start, end, radius_m),
+        tables.better_slopes(cells, slopes, prior, after, start, end, radius_m),
         np.maximum(known_m, through),
         offsets,
         tours.short_pairs(ahead, behind, between, offsets, target_m),

@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planner.bounds import cells_kernels as cells_of
-from planner.bounds import lines_kernels as lines
+from planner.bounds import tables_kernels as tables
 from planner.bounds import trees_kernels as kernels
 from planner.bounds.nodes import Node, divided
 from planner.progress import Stop, never, raise_if
@@ -140,8 +140,8 @@ def trees_bound_m(
             begins,
             pairs,
             _apart(cells, middles, gaps_m),
-            lines.terminals(start, cells.values, cells_of.ENTRY, cells.slopes, radius_m),
-            lines.terminals(end, cells.values, cells_of.EXIT, cells.slopes, radius_m),
+            tables.terminals(start, cells.values, cells_of.ENTRY, cells.slopes, radius_m),
+            tables.terminals(end, cells.values, cells_of.EXIT, cells.slopes, radius_m),
             np.abs(cells.slopes).sum(axis=1),
             cells.offsets,
             price,
@@ -157,7 +157,7 @@ def trees_bound_m(
             break
         passed = (came >= -1) & (went >= -1)
         ends = (np.where(passed, came, -1), np.where(passed, went, -1))
-        better = lines.better_slopes(cells.values, cells.slopes, *ends, start, end, radius_m)
+        better = tables.better_slopes(cells.values, cells.slopes, *ends, start, end, radius_m)
         cells.slopes = np.where(passed[:, None], better, cells.slopes)
         cells.split(_most(cells, used.astype(np.float64), used > USED * STEPS, lambda _: MOST_SPLIT))
     return best_m
@@ -169,7 +169,7 @@ def _in_order(cells: _Cells, order: Ints, region: Ints, start: Floats, end: Floa
         ahead, behind, prior, after = kernels.along_order(
             order, cells.values, cells.slopes, cells.offsets, region, start, end, radius_m
         )
-        cells.slopes = lines.better_slopes(cells.values, cells.slopes, prior, after, start, end, radius_m)
+        cells.slopes = tables.better_slopes(cells.values, cells.slopes, prior, after, start, end, radius_m)
         through = ahead + behind
         if splits:
             everywhere = np.isfinite(through)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 from shapely.geometry import Polygon
 
@@ -79,7 +80,7 @@ class Seeing:
                         self.level,
                         region,
                         refused,
-                        lambda airspace, level, region=region: self._some_pass(region, airspace, level),  # type: ignore[misc]
+                        partial(self._some_pass, region),
                     )
                 if region.required:
                     raise error from refused
