@@ -328,12 +328,12 @@ def along(here: Floats, there: Floats, slope0: Floats, slope1: Floats) -> float:
     """
     apart = here[THETA] - there[THETA]
     apart -= TWO_PI * math.floor(apart / TWO_PI + 0.5)
-    turned = here[ALPHA] + there[ALPHA]
-    if abs(apart) > turned + SAME_RAD:
+    if abs(apart) > here[ALPHA] + there[ALPHA] + SAME_RAD:
         return np.inf
     e = there[EXIT + E] - here[EXIT + E]
     n = there[EXIT + N] - here[EXIT + N]
-    slack = here[EXIT + REACH] + there[EXIT + REACH] + here[LOOSE] + there[LOOSE]
+    loose = here[LOOSE] + there[LOOSE]
+    slack = here[EXIT + REACH] + there[EXIT + REACH] + loose
     far = math.hypot(e, n)
     aside = abs(here[COS] * n - here[SIN] * e)
     ahead = here[COS] * e + here[SIN] * n
@@ -341,4 +341,13 @@ def along(here: Floats, there: Floats, slope0: Floats, slope1: Floats) -> float:
     if aside > slack + off or ahead < -slack - off:
         return np.inf
     flat = abs(slope0[0]) + abs(slope0[1]) + abs(slope1[0]) + abs(slope1[1])
-    return float(max(far - slack, 0.0) - flat)
+    best = max(far - slack, 0.0) - flat
+    if far > slack:
+        cos, sin = e / far, n / far
+        turned = (_aside(here, EXIT, cos, sin) + _aside(there, EXIT, cos, sin)) / (far - slack)
+        share = 0.5 if loose == 0.0 else 1.0
+        # A line without turns: its radius counts for nothing.
+        lost0, _, _ = _losses(here, EXIT, slope0[0], slope0[1], -cos, -sin, 0.0, turned, 0.0, share)
+        lost1, _, _ = _losses(there, EXIT, -slope1[0], -slope1[1], cos, sin, 0.0, turned, 0.0, share)
+        best = max(best, far - lost0 - lost1)
+    return float(best)

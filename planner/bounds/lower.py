@@ -25,6 +25,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from shapely.geometry.base import BaseGeometry
+
 from planner.bounds.nodes import nodes, terminal
 from planner.bounds.search import exact_bound_m
 from planner.bounds.sweeps import MOST_ORDERED, sweeps_bound_m
@@ -57,6 +59,8 @@ def lower_bound_m(
     part: float = 1.0,
     stop: Stop = never,
     enough: Stop = never,
+    *,
+    grounds: Sequence[BaseGeometry | None] | None = None,
 ) -> float:
     """No plan that sees these regions is shorter than this.
 
@@ -72,14 +76,21 @@ def lower_bound_m(
         Of the effort where it is not given.
     stop, enough
         The one cancels; the other ends the search for a better bound.
+    grounds
+        Of each region what its passes, and those over others near it, see together; None for the region.
     """
-    by_strips = [nodes(each, model.settle_m, index, MOST_STRIPS) for index, each in enumerate(sides)]
+    beside = grounds or [None] * len(sides)
+    by_strips = [
+        nodes(each, model.settle_m, index, MOST_STRIPS, ground)
+        for index, (each, ground) in enumerate(zip(sides, beside, strict=True))
+    ]
     passes = [node for of_region in by_strips for node in of_region]
     between = (terminal(ends[0]), terminal(ends[1]))
     radius_m = model.turn_radius_m
     best_m, most_strips = 0.0, max(len(of_region) for of_region in by_strips)
     by_sweeps = most_strips > FEW_STRIPS and len(by_strips) <= MOST_ORDERED
-    if most_strips > FEW_STRIPS or (most_strips > 1 and len(passes) > EXACT_UP_TO):
+    joined = any(ground is not None for ground in beside)
+    if most_strips > FEW_STRIPS or joined or (most_strips > 1 and len(passes) > EXACT_UP_TO):
         whole = [of_region[0] for of_region in by_strips]
         best_m = sweeps_bound_m(whole, *between, radius_m, known_m * (1.0 - GAPS[0]), stop, enough)
     if len(passes) <= EXACT_UP_TO and best_m < known_m * (1.0 - GAPS[0]):

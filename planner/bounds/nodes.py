@@ -45,6 +45,8 @@ class Seen:
         Where they begin and end: least and most east and north, (2, 2).
     one_place
         Whether the region is so wide that ring and families are those of one place in it.
+    joined
+        Whether passes over regions near it count with its own.
     """
 
     by_area_m: float
@@ -52,6 +54,7 @@ class Seen:
     fewest: int
     extent: Floats
     one_place: bool
+    joined: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,8 +122,17 @@ class Node:
         )
 
 
-def nodes(sides: Sequence[Side], settle_m: float, region_index: int, most: int = 8) -> list[Node]:
-    """The passes one region, part of one or visit to one asks for; of many strips no more than ``most``."""
+def nodes(
+    sides: Sequence[Side],
+    settle_m: float,
+    region_index: int,
+    most: int = 8,
+    ground: BaseGeometry | None = None,
+) -> list[Node]:
+    """The passes one region, part of one or visit to one asks for; of many strips no more than ``most``.
+
+    ``ground`` is what its passes and those over regions near it see together; None for the region alone.
+    """
     region, sensor, height_m = sides[0].region, sides[0].sensor, sides[0].height_m
     strip = strip_on(sensor, height_m, HEADINGS_RAD if sensor.crabs else 0.0, "right")
     ring, middle, around = _rings(region.area)
@@ -133,14 +145,16 @@ def nodes(sides: Sequence[Side], settle_m: float, region_index: int, most: int =
         float((strip.near_m + strip.swath_m).max()),
         settle_m + max(float(np.abs(strip.run_in_m).max()), float(np.abs(strip.run_out_m).max())),
     )
-    least, furthest = np.array(region.area.bounds).reshape(2, 2)
-    by_area_m = region.area.area / float(strip.swath_m.max())
+    seen_area = region.area if ground is None else ground
+    least, furthest = np.array(seen_area.bounds).reshape(2, 2)
+    by_area_m = seen_area.area / float(strip.swath_m.max())
     seen = Seen(
         by_area_m,
         max(run_in_m + run_out_m, 0.0) + settle_m,
-        max(math.ceil(by_area_m / widest_m - 1e-9), 1),
+        max(math.ceil(region.area.area / float(strip.swath_m.max()) / widest_m - 1e-9), 1),
         np.stack([least - reach_m, furthest + reach_m]),
         one_place,
+        ground is not None,
     )
     if one_place:
         # However many strips there are, some pass sees it.

@@ -245,7 +245,20 @@ def _stays(node: Node, radius_m: float, per_cell: int) -> _Stays:
     counts = families[rows[:, 0, 0], 8]
     # However they are laid, passes see no more than a swath for each metre beside run-in and run-out.
     passes_m = np.maximum(passes_m, node.seen.by_area_m + counts[:, None] * node.seen.around_m)
-    return _Stays(passes_m, turn_m, turns_m, counts - 1.0, sets, middles)
+    found = _Stays(passes_m, turn_m, turns_m, counts - 1.0, sets, middles)
+    return _joined(found, node, radius_m) if node.seen.joined else found
+
+
+def _joined(stays: _Stays, node: Node, radius_m: float) -> _Stays:
+    """Stays that begin and end with passes over other regions near it, too, wherever these may lie.
+
+    The straight part of a turn may see one of these; half a turn is left of each.
+    """
+    half_m = math.pi * radius_m
+    turns_m = np.minimum(stays.turns_m, stays.turns[:, None, None, None] * half_m)
+    turns_m = np.where(np.isfinite(stays.turns_m), turns_m, np.inf)
+    turn_m = np.minimum(stays.turn_m, half_m)
+    return _Stays(stays.passes_m, turn_m, turns_m, stays.turns, _within(node), np.zeros(1))
 
 
 def _padded(sets: Floats, looks: int) -> Floats:
@@ -258,11 +271,17 @@ def _padded(sets: Floats, looks: int) -> Floats:
 
 def _anywhere(node: Node) -> _Stays:
     """Stays of many strips: nothing is counted but how much ground they see, and how many they are."""
+    passes_m = np.full((1, 1, 1), node.seen.by_area_m + node.seen.fewest * node.seen.around_m)
+    none = np.zeros((1, 1, 1))
+    return _Stays(passes_m, none, np.zeros((1, 1, 1, 4, 4)), np.zeros(1), _within(node), np.zeros(1))
+
+
+def _within(node: Node) -> Floats:
+    """Sets of ends anywhere within reach of the ground seen."""
     sets = np.empty((1, 4, 1, 2, 4))
     (sets[..., sets_kernels.LEAST_X], sets[..., sets_kernels.LEAST_Y]) = node.seen.extent[0]
     (sets[..., sets_kernels.MOST_X], sets[..., sets_kernels.MOST_Y]) = node.seen.extent[1]
-    passes_m = np.full((1, 1, 1), node.seen.by_area_m + node.seen.fewest * node.seen.around_m)
-    return _Stays(passes_m, np.zeros((1, 1, 1)), np.zeros((1, 1, 1, 4, 4)), np.zeros(1), sets, np.zeros(1))
+    return sets
 
 
 def _headings(node: Node) -> tuple[Floats, float, Flags]:

@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import shapely
 from numpy.typing import NDArray
-from shapely.geometry import Point, Polygon
+from shapely.geometry import LineString, Point, Polygon
 from shapely.ops import substring
 
 from planner.bounds.nodes import HEADINGS_RAD, PLACE_M
@@ -52,12 +52,15 @@ class Unit:
         How often it is to be seen.
     whole
         Whether one pass sees all of it, at some heading.
+    leg
+        Whether it is the middle of one leg of a corridor.
     """
 
     region: MergedRegion
     sensor: SarSensor
     height_m: float
     whole: bool
+    leg: bool = False
 
     @property
     def visits(self) -> int:
@@ -85,27 +88,6 @@ class Unit:
         return in_one(alone(self.region, there), self.sensor, self.height_m)
 
     @property
-    def legs(self) -> list[tuple[float, Sides]]:
-        """How long each leg of a corridor is and the ways to see its middle; none of other shapes.
-
-        What of the axis lies nearer to a straight line than half a swath is one leg. Where passes meet at
-        bends is theirs to choose.
-        """
-        axis = self.region.axis
-        if axis is None or self.whole:
-            return []
-        corners = shapely.get_coordinates(axis.simplify(0.5 * self.reach_m[0]))
-        along_m = [axis.project(Point(corner)) for corner in corners]
-        found = []
-        for begin_m, end_m in itertools.pairwise(along_m):
-            trim_m = TRIMMED * (end_m - begin_m)
-            # Strips are convex: who sees a line sees its hull.
-            leg = substring(axis, begin_m + trim_m, end_m - trim_m).convex_hull.buffer(PLACE_M, quad_segs=1)
-            if seen_at_once(alone(self.region, leg), self.sensor, self.height_m):
-                found.append((end_m - begin_m, in_one(alone(self.region, leg), self.sensor, self.height_m)))
-        return found
-
-    @property
     def flown_m(self) -> float:
         """About what seeing it takes."""
         swath_m = float(swaths_m(self.sensor, self.height_m, HEADINGS_RAD).max())
@@ -128,8 +110,28 @@ def units(regions: Sequence[Region], sensing: Sensing, left_out: Collection[str]
         for part in split_region(region):
             sensor, height_m = sensing(part)
             if sensor.swath_m(height_m) > 0.0:
-                found.append(Unit(part, sensor, height_m, seen_at_once(part, sensor, height_m)))
+                unit = Unit(part, sensor, height_m, seen_at_once(part, sensor, height_m))
+                found += [unit] if unit.whole or part.axis is None else _legs(unit, part.axis)
     return found
+
+
+def _legs(unit: Unit, axis: LineString) -> list[Unit]:
+    """The middle of each leg of a corridor, where one pass sees it; else the corridor.
+
+    What of the axis lies nearer to a straight line than half a swath is one leg. Where passes meet at bends
+    is theirs to choose.
+    """
+    corners = shapely.get_coordinates(axis.simplify(0.5 * unit.reach_m[0]))
+    along_m = [axis.project(Point(corner)) for corner in corners]
+    found = []
+    for begin_m, end_m in itertools.pairwise(along_m):
+        trim_m = TRIMMED * (end_m - begin_m)
+        # Strips are convex: who sees a line sees its hull.
+        line = substring(axis, begin_m + trim_m, end_m - trim_m)
+        region = alone(unit.region, line.convex_hull.buffer(PLACE_M, quad_segs=1))
+        if seen_at_once(region, unit.sensor, unit.height_m):
+            found.append(replace(unit, region=region, whole=True, leg=True))
+    return found or [unit]
 
 
 def alone(region: MergedRegion, area: Polygon) -> MergedRegion:
@@ -191,30 +193,43 @@ def groups(linked: Flags) -> list[list[int]]:
     return found
 
 
-def spread(found: Sequence[Unit], most: int) -> list[tuple[int, Point]]:
-    """Places of units far from each other, each with its unit: of every unit one at least, of wide ones more.
+def pieces(found: Sequence[Unit], in_parts: Collection[int], most: int) -> list[tuple[int, Sides]]:
+    """Of each unit, by its index, what has to be seen of it: all, or places of it.
 
-    The first are those that lie furthest from the places before them, the very first the furthest from the
-    middle of all.
+    Those come first that are longest and furthest from the others before them.
     """
-    owners, points = [], []
+    owners: list[int] = []
+    places: list[Point | None] = []
     for k, unit in enumerate(found):
-        own = [unit.region.area.representative_point()]
+        own: list[Point | None] = [None]
         if not unit.whole:
             ring = unit.region.area.exterior.simplify(unit.reach_m[0] / 10.0)
-            own += [Point(at) for at in shapely.get_coordinates(ring.segmentize(ring.length / PLACES))]
+            own = [Point(at) for at in shapely.get_coordinates(ring.segmentize(ring.length / PLACES))]
+        elif k in in_parts:
+            own = [unit.region.area.representative_point()]
         owners += [k] * len(own)
-        points += own
-    at_m = np.array([(point.x, point.y) for point in points])
+        places += own
+    middles = [place or found[k].region.area.centroid for k, place in zip(owners, places, strict=True)]
+    at_m = np.array([(middle.x, middle.y) for middle in middles])
+    long_m = np.array(
+        [
+            2.0 * float(shapely.minimum_bounding_radius(found[k].region.area)) if place is None else 0.0
+            for k, place in zip(owners, places, strict=True)
+        ]
+    )
     off_m = np.hypot(*(at_m - at_m.mean(axis=0)).T)
-    chosen: list[int] = []
-    for _ in range(min(most, len(points))):
-        chosen.append(int(np.argmax(off_m)))
-        away_m = np.hypot(*(at_m - at_m[chosen[-1]]).T)
-        off_m = away_m if len(chosen) == 1 else np.minimum(off_m, away_m)
-        if off_m.max() <= LEAST_APART_M:
+    chosen: list[tuple[int, Sides]] = []
+    rest = np.ones(len(places), dtype=np.bool_)
+    while rest.any() and len(chosen) < most:
+        best = int(np.argmax(np.where(rest, off_m + long_m, -1.0)))
+        if chosen and off_m[best] + long_m[best] <= LEAST_APART_M:
             break
-    return [(owners[k], points[k]) for k in chosen]
+        away_m = np.hypot(*(at_m - at_m[best]).T)
+        off_m = np.minimum(off_m, away_m) if chosen else away_m
+        rest[best] = False
+        place, unit = places[best], found[owners[best]]
+        chosen += [(owners[best], unit.sides if place is None else unit.seeing(place))] * unit.visits
+    return chosen
 
 
 def apart(found: Sequence[Unit], linked: Flags) -> list[int]:

@@ -1,12 +1,13 @@
 """The lower bound of a plan: over every way its regions may be seen by any method.
 
-Two bounds are looked for, and the better one counts.
+Three bounds are looked for, and the best one counts.
 
+- Of the ground to be seen, as much as a swath sees, and the ways to it: known at once.
 - Of units (``units``) none of which is near another: each is seen by passes of its own, in one pass, strip by
   strip, or as ``auto`` divides it; where both occur the bound is the least over both. Units near these are
-  left out: seeing them as well is no shorter.
+  left out: seeing them as well is no shorter. Near a wide one their ground counts, as much as a swath sees.
 - Of all units, where passes may be shared: a pass for each, and for places far from each other in wide ones,
-  or parts of one longer pass wherever they lie on one line.
+  or parts of one longer pass wherever they lie on one line; of the furthest and longest first.
 
 A unit near others that no single pass sees together with them may be seen in two parts by passes over
 several of them: of such a one a single place counts.
@@ -17,16 +18,20 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Collection, Sequence
+from dataclasses import replace
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
+from shapely.geometry.base import BaseGeometry
 
 from planner.bounds.lower import EXACT_UP_TO, GAPS, exact_effort, lower_bound_m
 from planner.bounds.nodes import nodes, terminal
 from planner.bounds.search import exact_bound_m
-from planner.bounds.units import Sides, Unit, apart, groups, hull_of, near, seen_at_once, spread, units
+from planner.bounds.sweeps import sweeps_bound_m
+from planner.bounds.units import Sides, Unit, apart, groups, hull_of, near, pieces, seen_at_once, units
 from planner.coverage import decompose
-from planner.coverage.merge import MergedRegion
+from planner.coverage.merge import GRID_M, MergedRegion
 from planner.coverage.strips.targets import targets
 from planner.coverage.visible import Seeing
 from planner.errors import InfeasibleError
@@ -36,12 +41,15 @@ from planner.sensors.sar import SarSensor
 
 Flags = NDArray[np.bool_]
 
+#: The ways to see what is asked for, and the ground of all that passes there may see besides.
+Asked = tuple[Sides, BaseGeometry | None]
+
 #: Units taken in several ways that are told apart.
 MOST_APART = 3
-#: Of wide units so many places at most are seen by shared passes, all units together.
-MOST_PLACES = 11
-#: Lines between cells to evaluate where places stand for what is wide.
-EFFORT_PLACES = 1_500_000
+#: Units and places asked for first, where passes are shared: of few the bound is soon close.
+FIRST = (1, 2, 3, 5, 8)
+#: Lines between cells to evaluate of so many.
+EFFORT_SHARED = 2_500_000
 
 
 def plan_bound_m(
@@ -75,13 +83,35 @@ def plan_bound_m(
 
     found = units(seeing.regions, sensing_of, left_out)
     if found:
+        if best_m == 0.0:
+            # A loop holds a circle (Pestov and Ionin; a corner at its base does not matter).
+            best_m = 2.0 * math.pi * seeing.model.turn_radius_m
         linked = near(found, seeing.model.settle_m)
+        best_m = max(best_m, _of_ground_m(seeing, ends, found, linked, stop, enough))
         # Where nothing is shared the first says most, as a rule, else the second.
         ways = (_of_shared_m, _of_apart_m) if linked.any() else (_of_apart_m, _of_shared_m)
         for bound in ways:
             if best_m < length_m * (1.0 - GAPS[0]) and not enough():
                 best_m = max(best_m, bound(seeing, ends, found, linked, length_m, stop, enough))
     return min(best_m, length_m)
+
+
+def _of_ground_m(
+    seeing: Seeing,
+    ends: tuple[Terminal, Terminal],
+    found: Sequence[Unit],
+    linked: Flags,
+    stop: Stop,
+    enough: Stop,
+) -> float:
+    """Of the ground to be seen alone, and where it lies: known at once."""
+    passes = []
+    for k, group in enumerate(groups(linked)):
+        main = max(group, key=lambda j: found[j].flown_m)
+        node = nodes(found[main].sides, seeing.model.settle_m, k, ground=_ground(found, group))[0]
+        passes.append(replace(node, seen=replace(node.seen, one_place=True)))
+    between = (terminal(ends[0]), terminal(ends[1]))
+    return sweeps_bound_m(passes, *between, seeing.model.turn_radius_m, math.inf, stop, enough)
 
 
 def _of_shared_m(
@@ -96,35 +126,25 @@ def _of_shared_m(
     """Of all units, or of as many places as the order can be searched for; 0 where nothing can be shared."""
     if not linked.any() and all(unit.whole for unit in found):
         return 0.0
-    asked = _pieces(found, _in_parts(found, linked))
-    passes = [node for k, (_, sides) in enumerate(asked) for node in nodes(sides, seeing.model.settle_m, k)]
-    of = [k for k, _ in asked]
-    # Of one unit two places may be seen by one pass; two visits are two passes.
-    shared = np.array([[a != b or not found[a].whole for b in of] for a in of])
-    np.fill_diagonal(shared, False)
-    between = (terminal(ends[0]), terminal(ends[1]))
+    asked = pieces(found, _in_parts(found, linked), EXACT_UP_TO)
+    ends_ = (terminal(ends[0]), terminal(ends[1]))
     targets_m = tuple(length_m * (1.0 - gap) for gap in GAPS)
-    radius_m = seeing.model.turn_radius_m
-    work = exact_effort(len(passes)) if all(unit.whole for unit in found) else EFFORT_PLACES
-    return exact_bound_m(passes, *between, radius_m, targets_m, work, stop, enough, shared)
-
-
-def _pieces(found: Sequence[Unit], parts: Collection[int]) -> list[tuple[int, Sides]]:
-    """What is to be seen of each unit, its index and ways: as much as the order can be searched for."""
-    asked: list[tuple[int, Sides]] = []
-    for k, unit in enumerate(found):
-        if unit.whole:
-            asked += [(k, unit.place if k in parts else unit.sides)] * unit.visits
-    rest = [k for k, unit in enumerate(found) if not unit.whole]
-    if len(asked) > EXACT_UP_TO:
-        asked, rest = [], list(range(len(found)))
-    elif all(found[k].region.axis is not None for k in rest):
-        legs = [(leg_m, k, sides) for k in rest for leg_m, sides in found[k].legs]
-        legs.sort(key=lambda leg: -leg[0])
-        return asked + [(k, sides) for _, k, sides in legs[: EXACT_UP_TO - len(asked)]]
-    most = MOST_PLACES if rest else EXACT_UP_TO
-    places = spread([found[k] for k in rest], most - len(asked))
-    return asked + [(rest[k], found[rest[k]].seeing(place)) for k, place in places]
+    best_m, shown = 0.0, 0
+    for most in (*FIRST, EXACT_UP_TO):
+        some = asked[:most]
+        if len(some) == shown or best_m >= targets_m[0] or enough():
+            break
+        shown, of = len(some), [k for k, _ in some]
+        passes = [node for k, (_, each) in enumerate(some) for node in nodes(each, seeing.model.settle_m, k)]
+        # Of one wide unit two places may be seen by one pass; two visits are two passes.
+        shared = np.array([[a != b or not found[a].whole for b in of] for a in of])
+        np.fill_diagonal(shared, False)
+        work = min(exact_effort(len(passes)), EFFORT_SHARED)
+        found_m = exact_bound_m(
+            passes, *ends_, seeing.model.turn_radius_m, targets_m, work, stop, enough, shared
+        )
+        best_m = max(best_m, found_m)
+    return best_m
 
 
 def _in_parts(found: Sequence[Unit], linked: Flags) -> set[int]:
@@ -134,9 +154,9 @@ def _in_parts(found: Sequence[Unit], linked: Flags) -> set[int]:
         if len(group) == 1:
             continue
         first = found[group[0]]
-        together = MergedRegion((), hull_of([found[k].region.area for k in group]), (), ())
-        if not seen_at_once(together, first.sensor, first.height_m):
-            parts.update(group)
+        whole = MergedRegion((), hull_of([found[k].region.area for k in group]), (), ())
+        if not seen_at_once(whole, first.sensor, first.height_m):
+            parts.update(k for k in group if not found[k].leg)
     return parts
 
 
@@ -151,42 +171,53 @@ def _of_apart_m(
 ) -> float:
     """Of units none of which is near another."""
     parts = _in_parts(found, linked)
-    chosen = apart(found, linked)
-    ways: list[list[list[Sides]]] = []
+    ways: list[list[list[Asked]]] = []
     divided = 0
-    for k in chosen:
-        unit = found[k]
-        if unit.whole:
-            ways.append([[unit.place if k in parts else unit.sides] * unit.visits])
-        elif decompose.is_plain(unit.region.area):
-            ways.append([[unit.swept] * unit.visits])
-        elif unit.region.axis is not None or divided == MOST_APART:
-            ways.append([[unit.place] * unit.visits])
-        else:
-            ways.append([[unit.swept] * unit.visits, *_divided(seeing, unit)])
-            divided += len(ways[-1]) > 1
+    for group in groups(linked):
+        main = max(group, key=lambda k: found[k].flown_m)
+        if len(group) > 1 and not found[main].whole:
+            ways.append([[(found[main].swept, _ground(found, group))] * found[main].visits])
+            continue
+        for k in [group[j] for j in apart([found[k] for k in group], linked[np.ix_(group, group)])]:
+            unit = found[k]
+            if unit.whole:
+                ways.append([[(unit.place if k in parts else unit.sides, None)] * unit.visits])
+            elif decompose.is_plain(unit.region.area):
+                ways.append([[(unit.swept, None)] * unit.visits])
+            elif divided == MOST_APART:
+                ways.append([[(unit.place, None)] * unit.visits])
+            else:
+                ways.append([[(unit.swept, None)] * unit.visits, *_divided(seeing, unit)])
+                divided += len(ways[-1]) > 1
     every = list(itertools.product(*ways))
     least_m = length_m
     for taken in every:
         if enough():
             return 0.0
-        together = [each for of_unit in taken for each in of_unit]
+        sides, grounds = zip(*(each for of_unit in taken for each in of_unit), strict=True)
         # Of the next way no more is worth proving than of the worst so far.
         worth_m = min(least_m / (1.0 - GAPS[0]), length_m)
         part = 1.0 / len(every)
-        proved_m = lower_bound_m(ends, seeing.model, together, worth_m, part=part, stop=stop, enough=enough)
+        proved_m = lower_bound_m(
+            ends, seeing.model, sides, worth_m, None, part, stop, enough, grounds=grounds
+        )
         least_m = min(least_m, proved_m)
     return least_m
 
 
-def _divided(seeing: Seeing, unit: Unit) -> list[list[Sides]]:
+def _ground(found: Sequence[Unit], group: Sequence[int]) -> BaseGeometry:
+    """What all passes over units near each other see together."""
+    return shapely.union_all([found[k].region.area for k in group], grid_size=GRID_M)
+
+
+def _divided(seeing: Seeing, unit: Unit) -> list[list[Asked]]:
     """The unit as ``auto`` divides it, where it does."""
     around = seeing.surroundings()
     try:
         found = targets(unit.region, unit.sensor, unit.height_m, around)
     except InfeasibleError:
         return []
-    return [[target.sides for target in found]] if len(found) > unit.visits else []
+    return [[(target.sides, None) for target in found]] if len(found) > unit.visits else []
 
 
 def _sensing(seeing: Seeing, region: MergedRegion) -> tuple[SarSensor, float]:

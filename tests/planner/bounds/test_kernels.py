@@ -128,6 +128,51 @@ def test_no_line_between_passes_of_two_cells_costs_less(
         assert flight + slope0 @ np.array(inside[:2]) >= out - 1e-6
 
 
+@given(
+    rings=st.tuples(hulls(), hulls()),
+    side=st.sampled_from([1.0, -1.0]),
+    theta=angle,
+    ahead=st.floats(0.0, 3000.0),
+    etas=st.tuples(st.floats(0.0, 1.0), st.floats(0.0, 1.0)),
+    alphas=st.tuples(st.floats(0.01, 0.3), st.floats(0.01, 0.3)),
+    half=st.sampled_from([0.02, 0.1, 0.5]),
+    inside=st.lists(unit, min_size=4, max_size=4),
+    slopes=st.lists(unit, min_size=4, max_size=4),
+)
+@settings(max_examples=300, deadline=None)
+def test_no_pass_over_two_regions_is_shorter(
+    rings: tuple[Floats, Floats],
+    side: float,
+    theta: float,
+    ahead: float,
+    etas: tuple[float, float],
+    alphas: tuple[float, float],
+    half: float,
+    inside: list[float],
+    slopes: list[float],
+) -> None:
+    """Of one line over both, from end to end, whatever its heading and offsets are in their cells."""
+    first = family(rings[0], side, (0.0, 0.0))
+    one = flown(rings[0], first, theta, etas[0])
+    other = flown(rings[1], first, theta, etas[1])
+    if one is None or other is None:
+        return
+    # The second region lies so that its pass at this offset ends further on, on the line of the first.
+    along = np.array([math.cos(theta), math.sin(theta)])
+    middle = one[1] + ahead * along - other[1]
+    second = family(rings[1], side, (float(middle[0]), float(middle[1])))
+    cells = []
+    for ring, of, alpha, eta, (x, y) in zip(
+        rings, (first, second), alphas, etas, (inside[:2], inside[2:]), strict=True
+    ):
+        box = np.array([0.0, theta - x * alpha, alpha, eta - y * half, half])
+        cells.append(cells_of.cell(ring, ring, of, box))
+    scale = 30.0
+    slope0, slope1 = scale * np.array(slopes[:2]), scale * np.array(slopes[2:])
+    cost = ahead + float(slope0 @ inside[:2]) - float(slope1 @ inside[2:])
+    assert lines.along(cells[0], cells[1], slope0, slope1) <= cost + 1e-6
+
+
 @st.composite
 def crabbing(draw: st.DrawFn) -> SarSensor:
     """Antennas fixed to an aircraft in a wind, squinted or not, with margins or without."""
