@@ -22,8 +22,9 @@ Clock = Callable[[], float]
 #: The search for better routes ends after this part of the scenario's time budget.
 ROUTING_SHARE = 0.6
 
-#: The bound takes no more than this part of the time for plan and bound together.
-BOUND_SHARE = 1.0 / 3.0
+#: The bound is looked for in this part of the time for plan and bound together; a step begun is ended, which
+#: keeps within a third.
+BOUND_SHARE = 0.25
 
 
 @dataclass(slots=True)
@@ -139,7 +140,7 @@ def with_bound(
 
 
 def time_for_bound_s(planned_s: float, budget_s: float | None) -> float:
-    """How long the bound may be looked for after planning that took so long: a third of the whole."""
+    """How long the bound may be looked for after planning that took so long."""
     spare_s = math.inf if budget_s is None else max(budget_s - planned_s, 0.0)
     return min(BOUND_SHARE / (1.0 - BOUND_SHARE) * planned_s, spare_s)
 

@@ -25,7 +25,7 @@ import shapely
 from numpy.typing import NDArray
 from shapely.geometry.base import BaseGeometry
 
-from planner.bounds.lower import EXACT_UP_TO, GAPS, exact_effort, lower_bound_m
+from planner.bounds.lower import EXACT_UP_TO, GAPS, lower_bound_m
 from planner.bounds.nodes import nodes, terminal
 from planner.bounds.search import exact_bound_m
 from planner.bounds.sweeps import sweeps_bound_m
@@ -46,10 +46,9 @@ Asked = tuple[Sides, BaseGeometry | None]
 
 #: Units taken in several ways that are told apart.
 MOST_APART = 3
-#: Units and places asked for first, where passes are shared: of few the bound is soon close.
-FIRST = (1, 2, 3, 5, 8)
-#: Lines between cells to evaluate of so many.
-EFFORT_SHARED = 2_500_000
+#: Units and places asked for, where passes are shared, and lines between cells to evaluate of so many.
+COUNTS = (1, 2, 3, 5, 8, EXACT_UP_TO)
+EFFORTS_SHARED = (300_000, 2_500_000)
 
 
 def plan_bound_m(
@@ -129,19 +128,19 @@ def _of_shared_m(
     asked = pieces(found, _in_parts(found, linked), EXACT_UP_TO)
     ends_ = (terminal(ends[0]), terminal(ends[1]))
     targets_m = tuple(length_m * (1.0 - gap) for gap in GAPS)
-    best_m, shown = 0.0, 0
-    for most in (*FIRST, EXACT_UP_TO):
-        some = asked[:most]
-        if len(some) == shown or best_m >= targets_m[0] or enough():
+    best_m = 0.0
+    # A little of each at first: of few the bound is soon close.
+    for effort, most in itertools.product(EFFORTS_SHARED, sorted({min(n, len(asked)) for n in COUNTS})):
+        if best_m >= targets_m[0] or enough():
             break
-        shown, of = len(some), [k for k, _ in some]
+        some = asked[:most]
+        of = [k for k, _ in some]
         passes = [node for k, (_, each) in enumerate(some) for node in nodes(each, seeing.model.settle_m, k)]
         # Of one wide unit two places may be seen by one pass; two visits are two passes.
         shared = np.array([[a != b or not found[a].whole for b in of] for a in of])
         np.fill_diagonal(shared, False)
-        work = min(exact_effort(len(passes)), EFFORT_SHARED)
         found_m = exact_bound_m(
-            passes, *ends_, seeing.model.turn_radius_m, targets_m, work, stop, enough, shared
+            passes, *ends_, seeing.model.turn_radius_m, targets_m, effort, stop, enough, shared
         )
         best_m = max(best_m, found_m)
     return best_m

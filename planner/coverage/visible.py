@@ -16,6 +16,7 @@ from planner.coverage.relaxation import explained
 from planner.coverage.sharing import Apart, ByFamily
 from planner.coverage.ways import Sharing, Target
 from planner.errors import Finding, InfeasibleError
+from planner.progress import Stop, never
 from planner.sensors.base import Sensor
 from planner.sensors.suite import Suite
 from planner.vehicle.model import FlightModel
@@ -45,7 +46,7 @@ class Seeing:
         """Area, zones and prices at the level, with the margin transits keep."""
         return surroundings(self.airspace, self.level, self.model, self.objective)
 
-    def visible(self, around: Surroundings, whole: Collection[int] = ()) -> Visible:
+    def visible(self, around: Surroundings, whole: Collection[int] = (), enough: Stop = never) -> Visible:
         """Targets that see the regions.
 
         Regions that are not required and not to be seen are named and left out.
@@ -54,6 +55,8 @@ class Seeing:
         ----------
         whole
             Merged regions not to divide.
+        enough
+            Ends the search for shorter divisions.
 
         Raises
         ------
@@ -71,7 +74,15 @@ class Seeing:
                 family = family_of(sensor)
                 for name in region.names:
                     family.check(by_name[name], sensor, height_m)
-                found = family.targets(region, sensor, height_m, around, wide=self.wide, whole=index in whole)
+                found = family.targets(
+                    region,
+                    sensor,
+                    height_m,
+                    around,
+                    wide=self.wide,
+                    whole=index in whole,
+                    enough=enough,
+                )
             except InfeasibleError as refused:
                 error = refused
                 if error.constraint == "area":

@@ -16,6 +16,7 @@ from shapely.geometry import Polygon
 
 from planner.airspace.surroundings import Surroundings
 from planner.coverage.merge import MergedRegion
+from planner.progress import Stop
 from planner.route import CollectPass
 from planner.sensors.base import Sensor
 from planner.wishes import Region
@@ -135,6 +136,7 @@ class Family(Protocol):
         *,
         wide: bool,
         whole: bool,
+        enough: Stop,
     ) -> Sequence[Target]:
         """The stops that see a region: several where it is divided or to be visited again.
 
@@ -144,6 +146,8 @@ class Family(Protocol):
             Whether any number of passes, and divisions, are allowed; without, the paper's ways.
         whole
             Not to divide it, unless it cannot be seen otherwise.
+        enough
+            Ends the search for a shorter division.
 
         Raises
         ------

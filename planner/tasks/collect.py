@@ -120,7 +120,8 @@ def _joint(asked: Seeing, setting: Setting, seed: int, sight: Sight | None, cont
     watched = (controls.progress, controls.stop, controls.enough)
     search = Search(setting.ends, around, legs, seed, complete, *watched)
     share = partial(asked.sharing, around=around)
-    found = joint_route(search, asked.visible(around), partial(asked.visible, around), share)
+    visible = partial(asked.visible, around, enough=controls.enough)
+    found = joint_route(search, visible(), visible, share)
     return found.route.passes, found.seen.dropped
 
 

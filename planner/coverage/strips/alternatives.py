@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -15,6 +16,7 @@ from planner.coverage.merge import MergedRegion, polygons_of
 from planner.coverage.strips.neighbourhood import neighbourhoods
 from planner.coverage.strips.sweeps import Side, Sweep, sweeps
 from planner.errors import InfeasibleError
+from planner.progress import Stop, never
 from planner.sensors.sar import SarSensor
 
 Floats = NDArray[np.float64]
@@ -71,23 +73,31 @@ def families(
         yield sweeps(region, sensor, height_m, extra=1)
 
 
-def parts_of(region: MergedRegion, estimate: Estimate) -> tuple[MergedRegion, ...]:
+def parts_of(region: MergedRegion, estimate: Estimate, enough: Stop = never) -> tuple[MergedRegion, ...]:
     """The region whole, or the division of it that costs less.
 
     A corridor is cut at its bends and its legs joined again where one sweep of both is cheaper; merged
     regions are tried apart; other shapes are cut at reflex corners and beside holes, one cut after the other,
-    as long as that saves.
+    as long as that saves and until it is enough: then the best so far is taken, if there is one.
     """
     best: tuple[MergedRegion, ...] = (region,)
     cost_m = estimate(best)
     starts: list[tuple[MergedRegion, ...]] = []
+
+    def over() -> bool:
+        return math.isfinite(cost_m) and enough()
+
+    if over():
+        return best
     if len(region.originals) > 1:
         starts.append(region.split())
     if region.axis is not None and len(region.originals) == 1:
         pieces = decompose.legs(region.originals[0], region.axis)
         if pieces is not None:
-            starts.append(_joined(tuple(_part(region, piece) for piece in pieces), estimate))
+            starts.append(_joined(tuple(_part(region, piece) for piece in pieces), estimate, enough))
     for start in starts:
+        if over():
+            return best
         trial_m = estimate(start)
         if _saves(trial_m, cost_m):
             best, cost_m = start, trial_m
@@ -98,7 +108,7 @@ def parts_of(region: MergedRegion, estimate: Estimate) -> tuple[MergedRegion, ..
             if not decompose.is_plain(_ground(part))
             for pieces in decompose.cuts(_ground(part))
         ]
-        costs = [estimate(trial) for trial in trials]
+        costs = [estimate(trial) for trial in itertools.takewhile(lambda _: not over(), trials)]
         if not costs or not _saves(min(costs), cost_m):
             return best
         cost_m = min(costs)
@@ -141,16 +151,16 @@ def least_lanes(region: MergedRegion, sensor: SarSensor, height_m: float) -> int
     return int(sweep.lanes(sweep.angles_rad).min())
 
 
-def _joined(parts: tuple[MergedRegion, ...], estimate: Estimate) -> tuple[MergedRegion, ...]:
+def _joined(parts: tuple[MergedRegion, ...], estimate: Estimate, enough: Stop) -> tuple[MergedRegion, ...]:
     """Neighbouring legs of a corridor as one where that costs less."""
     cost_m = estimate(parts)
-    while 1 < len(parts) <= MOST_LEGS_TO_JOIN:
+    while 1 < len(parts) <= MOST_LEGS_TO_JOIN and not enough():
         trials = []
         for k in range(len(parts) - 1):
             both = decompose.merged((parts[k].area, parts[k + 1].area))
             if both is not None:
                 trials.append((*parts[:k], _part(parts[k], both), *parts[k + 2 :]))
-        costs = [estimate(trial) for trial in trials]
+        costs = [estimate(trial) for trial in itertools.takewhile(lambda _: not enough(), trials)]
         if not costs or min(costs) >= cost_m:
             return parts
         cost_m = min(costs)

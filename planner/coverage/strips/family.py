@@ -17,6 +17,7 @@ from planner.coverage.strips.neighbourhood import can_be_seen, check_sensor
 from planner.coverage.strips.sharing import StripSharing
 from planner.coverage.strips.targets import StripTarget, can_be_flown, targets
 from planner.coverage.ways import Over
+from planner.progress import Stop
 from planner.sensors.sar import SarSensor
 from planner.sensors.strip import swaths_m
 from planner.wishes import Region
@@ -59,9 +60,10 @@ class Strips:
         *,
         wide: bool,
         whole: bool,
+        enough: Stop,
     ) -> tuple[StripTarget, ...]:
         """The stops that see a region."""
-        return targets(region, sensor, height_m, around, wide=wide, whole=whole)
+        return targets(region, sensor, height_m, around, wide=wide, whole=whole, enough=enough)
 
     def can_be_flown(
         self, region: MergedRegion, sensor: SarSensor, height_m: float, around: Surroundings, *, wide: bool

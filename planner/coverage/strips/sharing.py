@@ -54,6 +54,8 @@ class StripSharing:
         self._over = over
         self._around = around
         self._items = list(_items(targets))
+        self._groups: list[Group] | None = None
+        self._gaps_m = [_gap_m(item, around.radius_m) for item in self._items]
         self._known: dict[Group, StripTarget | None] = {}
 
     @property
@@ -63,13 +65,23 @@ class StripSharing:
 
     def groups(self) -> list[Group]:
         """Groups of two items and more, those of most items first."""
+        if self._groups is None:
+            self._groups = self._found()
+        return self._groups
+
+    def _found(self) -> list[Group]:
         found: set[Group] = set()
-        for angle_rad in np.arange(0.0, math.pi - 1e-9, STEP_RAD).tolist():
-            found.update(self._at(angle_rad))
+        angles_rad = np.arange(0.0, math.pi - 1e-9, STEP_RAD)
+        spans = [spans_at(hull_points(item.region.area), angles_rad) for item in self._items]
+        swaths = [swaths_m(item.sensor, item.height_m, angles_rad) for item in self._items]
+        for k in range(len(angles_rad)):
+            across = [(float(span.y_min_m[k]), float(span.y_max_m[k])) for span in spans]
+            along = [(float(span.x_min_m[k]), float(span.x_max_m[k])) for span in spans]
+            found.update(self._at(np.array(across), np.array(along), [float(one[k]) for one in swaths]))
         areas = np.array([item.region.area for item in self._items], dtype=object)
         gaps_m = shapely.distance(areas[:, None], areas[None, :])
         for k, j in itertools.combinations(range(len(self._items)), 2):
-            if gaps_m[k, j] <= self._gap_m(self._items[k]):
+            if gaps_m[k, j] <= self._gaps_m[k]:
                 found.add(frozenset((k, j)))
         kept = [group for group in found if self._agree(group)]
         kept.sort(key=lambda group: (-len(group), sorted(group)))
@@ -117,30 +129,23 @@ class StripSharing:
         )
         return StripTarget(region, sides, self._around)
 
-    def _at(self, angle_rad: float) -> Iterator[Group]:
-        """Groups at one heading: of items that one swath holds, runs without room for a turn in between."""
-        heading = np.array([angle_rad])
-        spans = [spans_at(hull_points(item.region.area), heading) for item in self._items]
-        low_m = np.array([float(span.y_min_m[0]) for span in spans])
-        high_m = np.array([float(span.y_max_m[0]) for span in spans])
-        back_m = np.array([float(span.x_min_m[0]) for span in spans])
-        ahead_m = np.array([float(span.x_max_m[0]) for span in spans])
-        for k, item in enumerate(self._items):
-            swath_m = float(swaths_m(item.sensor, item.height_m, heading)[0])
-            inside = np.flatnonzero((low_m >= low_m[k]) & (high_m <= low_m[k] + swath_m))
+    def _at(self, across_m: Floats, along_m: Floats, swaths: Sequence[float]) -> Iterator[Group]:
+        """Groups at one heading: of items that one swath holds, runs without room for a turn in between.
+
+        Spans are (N, 2), across and along.
+        """
+        for k, swath_m in enumerate(swaths):
+            low_m = across_m[k, 0]
+            inside = np.flatnonzero((across_m[:, 0] >= low_m) & (across_m[:, 1] <= low_m + swath_m))
             run: list[int] = []
             end_m = -math.inf
-            for j in inside[np.argsort(back_m[inside], kind="stable")].tolist():
-                if back_m[j] > end_m + self._gap_m(item):
+            for j in inside[np.argsort(along_m[inside, 0], kind="stable")].tolist():
+                if along_m[j, 0] > end_m + self._gaps_m[k]:
                     yield from _runs(run, k)
                     run = []
                 run.append(j)
-                end_m = max(end_m, float(ahead_m[j]))
+                end_m = max(end_m, float(along_m[j, 1]))
             yield from _runs(run, k)
-
-    def _gap_m(self, item: _Item) -> float:
-        """Items further apart along the heading have nothing to share: a line joins their passes as well."""
-        return item.sensor.collection_m(item.height_m, 0.0) + math.tau * self._around.radius_m
 
     def _agree(self, group: Group) -> bool:
         """Whether the items of a group agree on a sensor and a heading."""
@@ -149,6 +154,11 @@ class StripSharing:
         if any(replace(item.sensor, name="", relief_m=0.0) != first for item in members[1:]):
             return False
         return _common([item.region.approach_rad for item in members]) != ()
+
+
+def _gap_m(item: _Item, radius_m: float) -> float:
+    """Items further apart along the heading have nothing to share: a line joins their passes as well."""
+    return item.sensor.collection_m(item.height_m, 0.0) + math.tau * radius_m
 
 
 def _items(targets: Sequence[StripTarget]) -> Iterator[_Item]:

@@ -19,6 +19,7 @@ from planner.coverage.strips.options import Options, collect_passes, hidden_m, m
 from planner.coverage.strips.segments import Neighbourhood
 from planner.coverage.strips.sweeps import MOST_TELLING, Side, Sweep, telling_headings
 from planner.errors import InfeasibleError
+from planner.progress import Stop, never
 from planner.route import CollectPass
 from planner.sensors.sar import SarSensor
 
@@ -121,6 +122,7 @@ def targets(
     *,
     wide: bool = True,
     whole: bool = False,
+    enough: Stop = never,
 ) -> tuple[StripTarget, ...]:
     """The stops that see one region; several where it is divided or to be visited again.
 
@@ -130,6 +132,8 @@ def targets(
         Whether more than two swaths, divisions and sweeps are allowed; without, the paper's neighbourhoods.
     whole
         Not to divide it, unless it cannot be seen otherwise.
+    enough
+        Ends the search for a shorter division.
 
     Raises
     ------
@@ -154,7 +158,7 @@ def targets(
     if wide and (
         undivided is None or (not whole and (bool((_passes(undivided) > 1).all()) or region.axis is not None))
     ):
-        parts = parts_of(region, estimate)
+        parts = parts_of(region, estimate, enough)
     found = []
     for part in parts:
         for visit in visits(part):

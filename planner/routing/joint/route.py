@@ -127,22 +127,26 @@ def joint_route(search: Search, seen: Visible, whole: Whole, share: Share) -> Jo
         cost_m, passes = min((cost_m, passes), fewer, key=lambda found: found[0])
     kept: frozenset[int] = frozenset()
     for index in seen.divided[:MOST_WHOLE]:
+        if search.enough():
+            break
         trial = whole(kept | {index})
-        if search.enough() or index in trial.divided:
+        if index in trial.divided:
             continue
         trial_m, trial_passes = _route(trial, again)
         if trial_m < cost_m - 1e-6:
             cost_m, passes, seen, kept = trial_m, trial_passes, trial, kept | {index}
+    sharing = None
     for number in range(SHARED_ROUNDS):
         if search.enough():
             break
-        exchange = Exchange(seen.targets, share(seen.targets), search.ends, search.around, search.legs)
-        shared = exchange.shared(passes, search.stop) if number else exchange.fewest()
+        sharing = sharing or share(seen.targets)
+        exchange = Exchange(seen.targets, sharing, search.ends, search.around, search.legs)
+        shared = exchange.shared(passes, search.stop, search.enough) if number else exchange.fewest()
         if shared is not None:
             trial = replace(seen, targets=shared)
             trial_m, trial_passes = _route(trial, again)
             if trial_m < cost_m - 1e-6:
-                cost_m, passes, seen = trial_m, trial_passes, trial
+                cost_m, passes, seen, sharing = trial_m, trial_passes, trial, None
                 continue
         if number:
             break
@@ -161,13 +165,15 @@ def _route(seen: Visible, search: Search) -> tuple[float, tuple[CollectPass, ...
     candidates = _orders(tours, coarse, search)
     if exact:
         candidates += tours.alternatives(candidates[0], coarse)
-    refined = []
+    refined: list[Choice] = []
     for index, choice in enumerate(candidates):
         raise_if(search.stop)
+        if refined and search.enough():
+            break
         search.progress("routing", 0.4 + 0.3 * index / len(candidates))
         refined.append(tours.refined(choice))
     cost_m, passes = _truest(tours, refined, search)
-    cost_m, passes = split_passes(cost_m, passes, search.legs, search.stop)
+    cost_m, passes = split_passes(cost_m, passes, search.legs, search.stop, search.enough)
     more = search.complete(passes, search.legs)
     return (cost_m, passes) if more is passes else (search.legs.tour_m(more), more)
 

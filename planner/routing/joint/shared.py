@@ -57,7 +57,7 @@ class Exchange:
     around: Surroundings
     legs: Legs
 
-    def shared(self, passes: Sequence[CollectPass], stop: Stop) -> tuple[Target, ...] | None:
+    def shared(self, passes: Sequence[CollectPass], stop: Stop, enough: Stop) -> tuple[Target, ...] | None:
         """The targets with passes shared, by a tour that has been found; None where that saves nothing."""
         stops, groups = self._stops(passes), self.sharing.groups()
         if stops is None or not groups:
@@ -70,6 +70,8 @@ class Exchange:
             tried: list[tuple[float, int, Group, list[_Stop]]] = []
             for group in groups:
                 raise_if(stop)
+                if enough():
+                    break
                 trial = None if group in here else self._exchanged(stops, group, options)
                 if trial is not None:
                     tried.append((self._tour_m(trial), len(tried), group, trial))

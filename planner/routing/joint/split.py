@@ -11,7 +11,7 @@ from collections import Counter
 
 import numpy as np
 
-from planner.progress import Stop, raise_if
+from planner.progress import Stop, never, raise_if
 from planner.route import CollectPass
 from planner.routing.legs import Legs, leaves
 
@@ -26,7 +26,9 @@ LEAST_GAIN_M = 0.5
 Passes = tuple[CollectPass, ...]
 
 
-def split_passes(cost_m: float, passes: Passes, legs: Legs, stop: Stop) -> tuple[float, Passes]:
+def split_passes(
+    cost_m: float, passes: Passes, legs: Legs, stop: Stop, enough: Stop = never
+) -> tuple[float, Passes]:
     """The tour with runs of passes moved as long as that makes it truly cheaper.
 
     Only runs out of regions with several passes are moved: with whole regions the search has been over all
@@ -39,6 +41,8 @@ def split_passes(cost_m: float, passes: Passes, legs: Legs, stop: Stop) -> tuple
     """
     for _ in range(ROUNDS):
         raise_if(stop)
+        if enough():
+            break
         trials = sorted(_moves(passes), key=lambda move: move[0])[:TRIED]
         best = (cost_m - LEAST_GAIN_M, passes)
         for _, first, last, at in trials:
