@@ -8,6 +8,8 @@ from planner.airspace.airspace import Airspace, Level
 from planner.airspace.threats import curve_risk
 from planner.dubins.path import MIN_TURN_RAD, Path
 from planner.plan import Metrics
+from planner.profile.flight import Flight
+from planner.profile.lines import cut
 from planner.route import CollectPass
 from planner.vehicle.limits import Use
 from planner.vehicle.model import FlightModel
@@ -17,28 +19,31 @@ DIVIDING_M = 100.0
 
 
 def measure(
-    path: Path,
+    flight: Flight,
     passes: tuple[CollectPass, ...],
     model: FlightModel,
     airspace: Airspace,
     level: Level,
     direct_m: float,
 ) -> Metrics:
-    """Measure the path of one aircraft; the judge adds what is covered, the caller what planning took.
+    """Measure the flight of one aircraft; the judge adds what is covered, the caller what planning took.
 
-    The path length ratio is eq 10, the risks are eqs 12 and 14 of Li et al. (2018) with dividing points every
-    100 m along the flown line, the duty cycle is the fraction of the line with the sensor on. The duration
-    and the energy are those in the model's wind.
+    Length, duration, duty cycle (its fraction with the sensor on), turns and the path length ratio (eq 10 of
+    Li et al. 2018) are those of the mission phase; the risks (eqs 12 and 14, with dividing points every
+    100 m), the flight's length and duration and the energy those of all phases, in the model's wind.
 
     Parameters
     ----------
     direct_m
         From the start to the end.
     """
-    length_m = path.length_m
+    from_m, until_m = flight.mission_m
+    path = cut(flight.path, from_m, until_m)
+    (start_m, start_s), (end_m, end_s) = flight.along(from_m), flight.along(until_m)
+    length_m = end_m - start_m
     collection_m = math.fsum(collect.length_m for collect in passes)
-    missile, radar = curve_risk(path.sample(5.0)[:, :2], airspace.threats, DIVIDING_M, level.height_m)
-    flown_s = model.duration_s(path)
+    points = flight.path.sample(5.0)[:, :2]
+    missile, radar = curve_risk(points, airspace.threats, DIVIDING_M, level.height_m)
     return Metrics(
         length_m=length_m,
         collection_length_m=collection_m,
@@ -47,17 +52,19 @@ def measure(
         risk_missile=missile,
         risk_radar=radar,
         turns=turns(path),
-        duration_s=flown_s,
-        energy_wh=model.energy_wh(flown_s),
+        duration_s=end_s - start_s,
+        energy_wh=model.energy_wh(flight.duration_s),
         coverage={},
         planning_time_s={},
+        flight_length_m=flight.length_m,
+        flight_duration_s=flight.duration_s,
+        route_length_m=flight.path.length_m - flight.inserted_m,
     )
 
 
-def used(path: Path, model: FlightModel) -> Use:
-    """What of its range, time and energy an aircraft uses for a path, in the wind of the model."""
-    flown_s = model.duration_s(path)
-    return Use(path.length_m, flown_s, model.energy_wh(flown_s))
+def used(flight: Flight, model: FlightModel) -> Use:
+    """What of its range, time and energy an aircraft uses for a flight, all phases together."""
+    return Use(flight.length_m, flight.duration_s, model.energy_wh(flight.duration_s))
 
 
 def turns(path: Path) -> int:

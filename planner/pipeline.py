@@ -11,7 +11,7 @@ from planner.check import judge
 from planner.metrics import measure
 from planner.plan import Plan
 from planner.progress import Progress, Stop, never, silent
-from planner.publish import Chart, assemble, uncovered, whole_path
+from planner.publish import Chart, assemble, uncovered
 from planner.scenario import Scenario
 from planner.tasks.registry import task_of
 from planner.tasks.task import Controls
@@ -73,7 +73,6 @@ def make_plan(
     setting = answer.setting
     chart = Chart(scenario.frame, setting.level)
     with watch.stage("publish"):
-        path = whole_path(answer.legs, answer.passes)
         start, end = setting.ends
         direct_m = math.dist(start.position, end.position)
         draft = assemble(
@@ -83,9 +82,17 @@ def make_plan(
             setting.airspace,
             setting.suite,
             setting.ends,
+            answer.composed,
             answer.legs,
             answer.passes,
-            metrics=measure(path, answer.passes, setting.model, setting.airspace, setting.level, direct_m),
+            metrics=measure(
+                answer.composed.flight,
+                answer.passes,
+                setting.model,
+                setting.airspace,
+                setting.level,
+                direct_m,
+            ),
             methods=answer.methods,
             planner_version=__version__,
             scenario_hash=scenario.scenario_hash,
@@ -125,7 +132,7 @@ def with_bound(
         Seconds, for ``metrics.planning_time_s``.
     """
     watch = _Stopwatch(clock)
-    length_m = plan.metrics.length_m
+    route_m = plan.metrics.route_length_m or plan.metrics.length_m
     with watch.stage("bound"):
         bound_m = task_of(scenario.task).bound_m(scenario, plan, stop, enough)
     return replace(
@@ -133,7 +140,7 @@ def with_bound(
         metrics=replace(
             plan.metrics,
             lower_bound_m=bound_m,
-            gap=1.0 - bound_m / length_m,
+            gap=1.0 - bound_m / route_m,
             planning_time_s=plan.metrics.planning_time_s | watch.seconds,
         ),
     )

@@ -218,8 +218,9 @@ class Metrics:
 
     ``length_m`` and ``duration_s`` are those of the mission phase, from where take-off and climbing turns end
     to where descending turns or the landing begin; ``flight_length_m``, ``flight_duration_s`` and
-    ``energy_wh`` of all phases. ``lower_bound_m`` is what no mission over these regions is shorter than,
-    threats left out, and ``gap`` how much of ``length_m`` is above it; None where there is no bound.
+    ``energy_wh`` of all phases. ``route_length_m`` is the line over the ground from start to end, without
+    turns flown for height; ``lower_bound_m`` what no line over these regions is shorter than, threats left
+    out, and ``gap`` how much of the route is above it; None where there is no bound.
     """
 
     length_m: float
@@ -238,6 +239,7 @@ class Metrics:
     gap: float | None = None
     flight_length_m: float | None = None
     flight_duration_s: float | None = None
+    route_length_m: float | None = None
     left_out: tuple[LeftOut, ...] = ()
 
 

@@ -12,22 +12,20 @@ from numpy.typing import ArrayLike
 from shapely.geometry import LinearRing, MultiPolygon, Polygon
 
 from planner.airspace.airspace import Airspace, Level
-from planner.airspace.shapes import DiscShape, hard_shapes
+from planner.airspace.shapes import DiscShape, banded_shapes
 from planner.airspace.terrain import Ground
 from planner.airspace.threats import curve_risk
 from planner.airspace.zones import keep_out
-from planner.dubins.path import Path, Segment, join
+from planner.flown import flown_path, line_between
 from planner.frames import LocalFrame
 from planner.metrics import DIVIDING_M
 from planner.plan import (
     Collect,
     Fence,
-    FlownPath,
+    Finish,
     Footprint,
     LonLat,
-    LonLatAlt,
     Metrics,
-    PathSegment,
     Plan,
     PlanVehicle,
     Transit,
@@ -35,6 +33,9 @@ from planner.plan import (
     ZoneCircle,
     ZonePolygon,
 )
+from planner.profile.compose import Composed
+from planner.profile.finish import finish_of
+from planner.profile.lines import cut
 from planner.route import CollectPass, Terminal
 from planner.sensors.base import Sensor
 from planner.sensors.registry import seen as seen_from
@@ -43,11 +44,8 @@ from planner.transit.certificate import proven_m
 from planner.vehicle.aircraft import Aircraft
 from planner.vehicle.model import FlightModel
 
-#: Vertices of the published line: on arcs (the contract asks for at most 10 m; closer on tight ones, so that
-#: chords stay near the arc and hardly shorter than it) and on straights, where the chord in longitude and
-#: latitude must not leave the straight by more than a centimetre or so.
-MAX_ARC_EDGE_M = 5.0
-MAX_ARC_EDGE_RAD = 0.08
+#: Vertices of straights of the published line: the chord in longitude and latitude must not leave the
+#: straight by more than a centimetre or so.
 MAX_STRAIGHT_EDGE_M = 1000.0
 #: From this latitude on straights have more vertices, so that the chord stays as near; the last degree counts
 #: as one.
@@ -85,24 +83,14 @@ class Chart:
 
 @dataclass(frozen=True, slots=True)
 class Leg:
-    """A flyable connection and where it leads: names, and the method that found it."""
+    """Where a leg leads, and the method that found it."""
 
     from_name: str
     to_name: str
-    path: Path
     method: str
 
 
-def whole_path(legs: tuple[Leg, ...], passes: tuple[CollectPass, ...]) -> Path:
-    """Legs and passes in turn, beginning and ending with a leg."""
-    pieces = [legs[0].path]
-    for collect, leg in zip(passes, legs[1:], strict=True):
-        pieces.append(Path((Segment("straight", collect.entry, collect.length_m),)))
-        pieces.append(leg.path)
-    return join(*pieces)
-
-
-def vehicle_value(aircraft: Aircraft) -> PlanVehicle:
+def vehicle_value(aircraft: Aircraft, finish: Finish) -> PlanVehicle:
     """What the mission needs to know of an aircraft."""
     return PlanVehicle(
         aircraft.name,
@@ -111,21 +99,7 @@ def vehicle_value(aircraft: Aircraft) -> PlanVehicle:
         aircraft.airspeed_m_s,
         aircraft.min_turn_radius_m,
         aircraft.max_climb_deg,
-    )
-
-
-def flown_path(chart: Chart, model: FlightModel, path: Path) -> FlownPath:
-    """The whole line of one aircraft."""
-    radii = [segment.radius_m for segment in path.segments if segment.kind != "straight"]
-    flown_s = model.duration_s(path)
-    return FlownPath(
-        vehicle=model.name,
-        line=_line(chart, path),
-        segments=_segments(chart, path),
-        length_m=path.length_m,
-        duration_s=flown_s,
-        energy_wh=model.energy_wh(flown_s),
-        min_turn_radius_m=min(radii) if radii else None,
+        finish,
     )
 
 
@@ -134,45 +108,41 @@ def collects_and_transits(
     model: FlightModel,
     airspace: Airspace,
     suite: Suite,
+    composed: Composed,
     legs: tuple[Leg, ...],
     passes: tuple[CollectPass, ...],
 ) -> tuple[tuple[Collect, ...], tuple[Transit, ...], tuple[Footprint, ...]]:
     """The features along the line, numbered from 1 in flight order."""
     collects, transits = [], []
     footprints: list[Footprint] = []
-    level = chart.level
+    level, flight = chart.level, composed.flight
     zones = replace(keep_out(airspace, level, soft=False), area=None)
-    along_m = along_s = 0.0
-    for seq, leg in enumerate(legs, start=1):
-        missile, radar = curve_risk(leg.path.sample(5.0)[:, :2], airspace.threats, DIVIDING_M, level.height_m)
+    for seq, (leg, (from_m, until_m)) in enumerate(zip(legs, composed.legs_m, strict=True), start=1):
+        path = cut(flight.path, from_m, until_m)
+        missile, radar = curve_risk(path.sample(5.0)[:, :2], airspace.threats, DIVIDING_M, level.height_m)
+        line = line_between(flight, from_m, until_m, chart.lonlats, chart.straight_edge_m)
+        length_m = flight.along(until_m)[0] - flight.along(from_m)[0]
         transits.append(
             Transit(
-                model.name, seq, leg.from_name, leg.to_name, _line(chart, leg.path), leg.path.length_m,
-                missile, radar, leg.method, proven_m(leg.path, zones),
+                model.name, seq, leg.from_name, leg.to_name, line, length_m,
+                missile, radar, leg.method, proven_m(path, zones),
             )
         )  # fmt: skip
-        along_m += leg.path.length_m
-        along_s += model.duration_s(leg.path)
-        if seq > len(passes):
-            break
-        collect = passes[seq - 1]
+    for seq, (collect, (from_m, until_m)) in enumerate(zip(passes, composed.passes_m, strict=True), start=1):
         name = "+".join(collect.regions)
         (lon0, lat0), (lon1, lat1) = chart.lonlats([collect.start, collect.end])
         middle = ((collect.start[0] + collect.end[0]) / 2.0, (collect.start[1] + collect.end[1]) / 2.0)
-        end_m = along_m + collect.length_m
-        flown = Path((Segment("straight", collect.entry, collect.length_m),))
-        end_s = along_s + model.duration_s(flown)
+        (start_m, start_s), (end_m, end_s) = flight.along(from_m), flight.along(until_m)
         collects.append(
             Collect(
                 model.name, seq, name, collect.regions, collect.sensor, collect.look,
                 ((lon0, lat0, level.altitude_m), (lon1, lat1, level.altitude_m)),
                 chart.frame.true_heading_deg(*middle, collect.angle_rad),
-                along_m, end_m, along_s, end_s,
+                start_m, end_m, start_s, end_s,
             )
         )  # fmt: skip
         sensor = suite.named(collect.sensor)
         footprints.extend(_footprints(chart, airspace.terrain, model.name, seq, name, collect, sensor))
-        along_m, along_s = end_m, end_s
     return tuple(collects), tuple(transits), tuple(footprints)
 
 
@@ -229,14 +199,20 @@ def uncovered(
 
 
 def fence(chart: Chart, airspace: Airspace) -> Fence:
-    """The operating area and everything hard."""
+    """The operating area and everything hard up to the route's level; with a ceiling what is flown over."""
     inclusion = () if airspace.area is None else (_zone(chart, "area", airspace.area),)
     polygons, circles = [], []
-    for shape in hard_shapes(airspace, chart.level):
+    level = chart.level
+    for banded in banded_shapes(airspace, level.amsl_m - level.height_m):
+        shape = banded.shape
+        if not banded.hard or banded.low_m > level.height_m or banded.high_m < 0.0:
+            continue
+        ceiling_m = None if banded.high_m >= level.height_m else banded.high_m
         if isinstance(shape, DiscShape):
-            circles.append(ZoneCircle(shape.name, chart.lonlats([shape.centre])[0], shape.radius_m))
+            centre = chart.lonlats([shape.centre])[0]
+            circles.append(ZoneCircle(shape.name, centre, shape.radius_m, ceiling_m=ceiling_m))
         else:
-            polygons.append(_zone(chart, shape.name, shape.area))
+            polygons.append(replace(_zone(chart, shape.name, shape.area), ceiling_m=ceiling_m))
     return Fence(inclusion, tuple(polygons), tuple(circles))
 
 
@@ -247,37 +223,6 @@ def _zone(chart: Chart, name: str, area: Polygon) -> ZonePolygon:
     return ZonePolygon(name, chart.lonlats(corners))
 
 
-def _segments(chart: Chart, path: Path) -> tuple[PathSegment, ...]:
-    ends = chart.lonlats([segment.start.position for segment in path.segments] + [path.end.position])
-    values = []
-    along_m = 0.0
-    for segment, start, end in zip(path.segments, ends, ends[1:], strict=False):
-        centre = segment.centre
-        values.append(
-            PathSegment(
-                segment.kind,
-                start,
-                end,
-                along_m,
-                segment.length_m,
-                None if centre is None else segment.radius_m,
-                None if centre is None else chart.lonlats([centre])[0],
-                None if centre is None else abs(math.degrees(segment.turn_rad)),
-                chart.level.altitude_m,
-                chart.level.altitude_m,
-            )
-        )
-        along_m += segment.length_m
-    return tuple(values)
-
-
-def _line(chart: Chart, path: Path) -> tuple[LonLatAlt, ...]:
-    tightest_m = min(segment.radius_m for segment in path.segments)
-    arc_edge_m = min(MAX_ARC_EDGE_M, MAX_ARC_EDGE_RAD * tightest_m)
-    points = path.sample(arc_edge_m, chart.straight_edge_m)[:, :2]
-    return tuple((lon, lat, chart.level.altitude_m) for lon, lat in chart.lonlats(points))
-
-
 def assemble(
     name: str,
     chart: Chart,
@@ -285,6 +230,7 @@ def assemble(
     airspace: Airspace,
     suite: Suite,
     ends: tuple[Terminal, Terminal],
+    composed: Composed,
     legs: tuple[Leg, ...],
     passes: tuple[CollectPass, ...],
     *,
@@ -296,16 +242,21 @@ def assemble(
     warnings: tuple[str, ...],
 ) -> Plan:
     """The plan of one aircraft, not yet judged: without violations and what is uncovered."""
-    collects, transits, footprints = collects_and_transits(chart, model, airspace, suite, legs, passes)
+    collects, transits, footprints = collects_and_transits(
+        chart, model, airspace, suite, composed, legs, passes
+    )
+    flight, begin = composed.flight, composed.flight.path.start
+    heading_deg = chart.frame.true_heading_deg(*begin.position, begin.angle_rad)
+    path = flown_path(flight, model, chart.lonlats, chart.straight_edge_m, heading_deg)
     home, end = chart.lonlats([terminal.position for terminal in ends])
     return Plan(
         name=name,
-        vehicles=(vehicle_value(model.aircraft),),
+        vehicles=(vehicle_value(model.aircraft, finish_of(model.aircraft, *ends)),),
         altitude_m=chart.level.altitude_m,
         altitude_reference=chart.level.reference,
         home=home,
         end=end,
-        paths=(flown_path(chart, model, whole_path(legs, passes)),),
+        paths=(path,),
         collects=collects,
         transits=transits,
         footprints=footprints,

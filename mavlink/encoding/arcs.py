@@ -12,6 +12,7 @@ from collections.abc import Callable
 
 from mavlink.dialects.mission import Mission, placed
 from mavlink.encoding.options import EncodeError
+from mavlink.encoding.stops import WHOLE_TURN_DEG
 from mavlink.encoding.task import Task
 from mavlink.wire.items import Command, Frame, MissionItem
 from planner.plan import PathSegment
@@ -37,14 +38,8 @@ _WIDER_M = 2.0
 _TURN_STEPS = 256.0
 
 
-def flown_round(task: Task, altitude_m: Callable[[float], float]) -> Callable[[PathSegment], bool]:
-    """Whether an arc becomes a turn round its centre.
-
-    Parameters
-    ----------
-    altitude_m
-        Of the path, by distance along it.
-    """
+def flown_round(task: Task) -> Callable[[PathSegment], bool]:
+    """Whether an arc becomes a turn round its centre."""
     arcs = task.options.arcs
     if arcs == "loiter" and not task.is_plane:
         raise EncodeError(
@@ -57,12 +52,11 @@ def flown_round(task: Task, altitude_m: Callable[[float], float]) -> Callable[[P
     def suits(segment: PathSegment) -> bool:
         if segment.turn_deg is None or segment.radius_m is None or segment.centre is None:
             return False
-        places_m = (segment.start_m + part * segment.length_m for part in (0.0, 0.25, 0.5, 0.75, 1.0))
-        heights_m = [altitude_m(along_m) for along_m in places_m]
+        rise_m = abs(segment.end_altitude_m - segment.start_altitude_m)
         return (
-            least_deg < segment.turn_deg < 360.0
+            least_deg < segment.turn_deg < WHOLE_TURN_DEG
             and segment.radius_m <= _LARGEST_M
-            and max(heights_m) - min(heights_m) <= _LEVEL_M
+            and rise_m <= _LEVEL_M
         )
 
     return suits
@@ -78,6 +72,28 @@ def turn_item(task: Task, arc: PathSegment, altitude_m: float) -> MissionItem:
     # Param 4: the line that follows counts from where the circle is left, not from its centre.
     parameters = (turns, 0.0, radius_m if arc.kind == "right" else -radius_m, 1.0)
     return placed(Command.NAV_LOITER_TURNS, arc.centre, altitude_m, task.frame, parameters)
+
+
+def circle_item(task: Task, turns: PathSegment, command: int) -> MissionItem:
+    """Whole turns as a circle that is flown to its end altitude (LOITER_TO_ALT), or on and on (LOITER_UNLIM).
+
+    The item's radius is positive clockwise.
+    """
+    if turns.centre is None or turns.turn_deg is None or turns.radius_m is None:
+        raise ValueError(f"the segment at {turns.start_m:g} m is no turn")
+    radius_m = turns.radius_m
+    if task.is_plane:
+        middle_m = 0.5 * (turns.start_altitude_m + turns.end_altitude_m)
+        above_sea_m = middle_m + (0.0 if task.frame == Frame.GLOBAL else task.options.home_altitude_m)
+        radius_m = float(round(radius_m / widened(above_sea_m)))
+    signed_m = radius_m if turns.kind == "right" else -radius_m
+    if command == Command.NAV_LOITER_TO_ALT:
+        # ArduPilot always waits for the heading and stores no flag for it; PX4 must be told. The 1 in the end
+        # makes both fly the line from where they leave the circle, not from its centre.
+        parameters = (1.0 if task.is_px4 else 0.0, signed_m, 0.0, 1.0)
+    else:
+        parameters = (0.0, 0.0, signed_m, task.any_yaw)
+    return placed(command, turns.centre, turns.end_altitude_m, task.frame, parameters)
 
 
 def circles_widen_m(mission: Mission, home_altitude_m: float) -> float:

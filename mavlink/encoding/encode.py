@@ -1,8 +1,9 @@
 """Plan to mission, fence and rally points, in the dialect of an autopilot.
 
-In flight order: the home row (ArduPilot), the take-off, a circle up to the plan's altitude (fixed wing), the
-speed, then the path: waypoints at the ends of its straights, points on its arcs or turns round their centres,
-and exactly both ends of each collect, the sensor switched right behind them; last the return or the landing.
+In flight order: the home row (ArduPilot), the take-off, the speed, then the path: waypoints at the ends of
+its straights, points on its arcs or turns round their centres, circles where it climbs or descends in whole
+turns, and exactly both ends of each collect, the sensor switched right behind them; last, with the sensor off
+once more, the return or the landing. Places and heights are the plan's, of all of its phases.
 A gimbal is pointed before the path, anew right behind a collect whose next one looks elsewhere, and rests
 before the landing.
 """
@@ -16,12 +17,11 @@ from functools import partial
 
 from mavlink.dialects import Autopilot
 from mavlink.dialects.base import GLOBAL_FRAMES
-from mavlink.dialects.mission import Mission, home_item, numbered, placed
-from mavlink.encoding.arcs import flown_round, turn_item
+from mavlink.dialects.mission import Mission, home_item, numbered, placed, unplaced
+from mavlink.encoding.arcs import circle_item, flown_round, turn_item
 from mavlink.encoding.ends import beginning, ending
 from mavlink.encoding.fence import fence_items
-from mavlink.encoding.manoeuvres import MARGIN_M
-from mavlink.encoding.options import EncodeError, EncodeOptions, Finish
+from mavlink.encoding.options import EncodeError, EncodeOptions
 from mavlink.encoding.payload import (
     ActuatorPayload,
     Payload,
@@ -31,14 +31,16 @@ from mavlink.encoding.payload import (
     switch_items,
 )
 from mavlink.encoding.pointing import Pointings, pointings_of
-from mavlink.encoding.stops import Stop, altitudes_along, stops_along
+from mavlink.encoding.stops import MERGE_M, Stop, stops_along
 from mavlink.encoding.task import Task, task_of
 from mavlink.wire.items import Command, Frame, MissionItem, MissionResult, MissionType
 from planner.plan import LonLat, Plan
 
-__all__ = ["EncodeError", "EncodeOptions", "Finish", "Mission", "encode"]
+__all__ = ["EncodeError", "EncodeOptions", "Mission", "encode"]
 
 _DEFAULT = EncodeOptions()
+#: Kept free round a waypoint that lies off the path.
+_MARGIN_M = 20.0
 
 
 def encode(
@@ -78,7 +80,7 @@ def encode(
     unlisted = sorted({item.command for item in (on, off) if not task.dialect.knows(item.command)})
     payload_notes += tuple(f"it is not known whether {task.dialect.name} takes command {n}" for n in unlisted)
     first, last = beginning(task), ending(task)
-    as_turn = flown_round(task, altitudes_along(task.path))
+    as_turn = flown_round(task)
     stops = stops_along(
         task.path,
         task.collects,
@@ -87,12 +89,13 @@ def encode(
         task.off_delay_m,
         partial(_may_overshoot, task) if task.turns_early_m > 0.0 else None,
         as_turn,
+        (task.phase_end_m("take_off"), task.landing_m),
     )
     home = [home_item(plan.home, options.home_altitude_m)] if task.dialect.home_row else []
-    flight = _flight(task, (stop for stop in stops if stop.along_m > first.skipped_m), on, off, pointing)
+    flight = _flight(task, stops, on, off, pointing)
     fence, fence_notes = fence_items(plan, (task.path,))
     return Mission(
-        mission=numbered([*home, *_placed([*first.items, *flight, *pointing.rest, *last.items])]),
+        mission=numbered([*home, *_placed([*first.items, *flight, *last.items])]),
         fence=tuple(_placed(fence)),
         rally=_rally(task),
         autopilot=task.dialect.autopilot,
@@ -150,7 +153,15 @@ def _flight(
     """Waypoints along the path, the sensor switched right behind those where a collect starts or ends."""
     items: list[MissionItem] = [*pointing.before(0)]
     collecting = begun = pointed = 0
+    ended = False
     for stop in stops:
+        if not ended and stop.along_m >= task.mission_end_m - MERGE_M:
+            ended = True
+            items += _before_the_end(task, off, pointing)
+        if stop.turns is not None:
+            if stop.turns is not task.last_turns or task.vehicle.finish != "loiter":
+                items.append(circle_item(task, stop.turns, Command.NAV_LOITER_TO_ALT))
+            continue
         if stop.arc is not None:
             items.append(turn_item(task, stop.arc, stop.altitude_m))
         parameters = (0.0, _acceptance_m(task, stop), 0.0, task.any_yaw)
@@ -167,6 +178,18 @@ def _flight(
             items += pointing.before(pointed)
         if stop.on and (before == 0 or stop.off):
             items.append(on)
+    return items if ended else [*items, *_before_the_end(task, off, pointing)]
+
+
+def _before_the_end(task: Task, off: MissionItem, pointing: Pointings) -> list[MissionItem]:
+    """Behind the mission, before it comes down: the sensor off in any case, the gimbal at rest.
+
+    PX4 comes back to the landing's start on RTL; ArduPilot refuses to arm with it unless RTL_AUTOLAND is set.
+    """
+    items = [off] if task.collects else []
+    items += pointing.rest
+    if task.is_px4 and not task.hovers:
+        items.append(unplaced(Command.DO_LAND_START))
     return items
 
 
@@ -181,7 +204,7 @@ def _acceptance_m(task: Task, stop: Stop) -> float:
 def _may_overshoot(task: Task, place: LonLat) -> bool:
     """Whether a waypoint that is turned before may lie there: PX4 wants every waypoint inside its fence."""
     here = task.local.xy(place)
-    return task.room.line_outside_m2([here, (here[0] + 1.0, here[1])], MARGIN_M) <= 0.0
+    return task.room.line_outside_m2([here, (here[0] + 1.0, here[1])], _MARGIN_M) <= 0.0
 
 
 def _arc_notes(task: Task, turns: int) -> tuple[str, ...]:

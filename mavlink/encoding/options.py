@@ -9,7 +9,6 @@ from typing import Literal, get_args
 from mavlink.encoding.gimbal import Gimbal
 from mavlink.encoding.payload import Payload, RelayPayload
 
-Finish = Literal["auto", "rtl", "land", "loiter"]
 Arcs = Literal["auto", "points", "loiter"]
 
 DEFAULT_PAYLOAD: Payload = RelayPayload(relay=0)
@@ -32,19 +31,9 @@ class EncodeOptions:
         and where the item can hold them. ``auto`` takes turns where they were measured to be flown better.
     payload
         How the sensor is switched. PX4 has no relays: there a relay becomes the actuator of the same place.
-    finish
-        ``auto`` returns when the path ends near home and lands otherwise; PX4's fixed wings always land.
     acceptance_radius_m
         Distance at which a waypoint counts as reached, where the autopilot lets items say it; None for the
         vehicle's own.
-    takeoff_altitude_m
-        Height over home that the take-off of a fixed wing climbs to, straight ahead.
-    climb_radius_m
-        Radius of the circles up and down; None for a little more than the tightest turn.
-    approach_altitude_m, approach_slope_deg
-        Where the straight approach of a fixed wing begins, and how steep it is; PX4 allows 5°.
-    near_home_m
-        Ends nearer to home than this are left to the return.
     off_delay_m
         How far past a collect's end the sensor is switched off, for autopilots that pass waypoints early.
         None for what the autopilot needs: on PX4's fixed wings how early it turns, elsewhere 0.
@@ -59,31 +48,17 @@ class EncodeOptions:
     chord_error_m: float = 2.0
     arcs: Arcs = "auto"
     payload: Payload = DEFAULT_PAYLOAD
-    finish: Finish = "auto"
     acceptance_radius_m: float | None = None
-    takeoff_altitude_m: float = 50.0
-    climb_radius_m: float | None = None
-    approach_altitude_m: float = 40.0
-    approach_slope_deg: float = 4.0
-    near_home_m: float = 200.0
     off_delay_m: float | None = None
     home_altitude_m: float = 0.0
     rally_at_home: bool = False
     gimbal: Gimbal | None = None
 
     def __post_init__(self) -> None:
-        positive = {
-            "chord_error_m": self.chord_error_m,
-            "takeoff_altitude_m": self.takeoff_altitude_m,
-            "climb_radius_m": 1.0 if self.climb_radius_m is None else self.climb_radius_m,
-            "approach_altitude_m": self.approach_altitude_m,
-            "approach_slope_deg": self.approach_slope_deg,
-        }
         if self.arcs not in get_args(Arcs):
             raise EncodeError(f"arcs is {self.arcs!r}: auto, points or loiter is meant")
-        for name, value in positive.items():
-            if not (math.isfinite(value) and value > 0.0):
-                raise EncodeError(f"{name} is {value}: a positive number is meant")
+        if not (math.isfinite(self.chord_error_m) and self.chord_error_m > 0.0):
+            raise EncodeError(f"chord_error_m is {self.chord_error_m}: a positive number is meant")
         if self.acceptance_radius_m is not None and not 1.0 <= self.acceptance_radius_m <= 255.0:
             raise EncodeError(f"acceptance_radius_m is {self.acceptance_radius_m}: 1 to 255 is meant")
         if self.off_delay_m is not None and not (math.isfinite(self.off_delay_m) and self.off_delay_m >= 0.0):

@@ -6,13 +6,15 @@ import math
 from bisect import bisect_right
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from itertools import pairwise
+from functools import partial
 
-from mavlink.wire.geometry import LocalMap, arc_points, chord_step_rad, distance_m, here
+from mavlink.wire.geometry import LocalMap, arc_points, chord_step_rad, here
 from planner.plan import Collect, FlownPath, LonLat, PathSegment
 
 #: Places nearer than this along the path are one; those of a collect win.
 MERGE_M = 0.5
+#: From so much on an arc is whole turns; rounding may have taken a little.
+WHOLE_TURN_DEG = 359.9
 #: No arc is cut into chords of more than this, however large the chord error allowed.
 LARGEST_STEP_RAD = math.radians(45.0)
 
@@ -29,6 +31,8 @@ class Stop:
         How many collects end and begin here.
     arc
         The arc that is flown to here round its centre, without waypoints of its own.
+    turns
+        Whole turns that are flown from here, and left here.
     """
 
     along_m: float
@@ -37,6 +41,7 @@ class Stop:
     off: int = 0
     on: int = 0
     arc: PathSegment | None = None
+    turns: PathSegment | None = None
 
 
 def stops_along(
@@ -47,11 +52,14 @@ def stops_along(
     off_delay_m: float = 0.0,
     may_overshoot: Callable[[LonLat], bool] | None = None,
     flown_round: Callable[[PathSegment], bool] = lambda _: False,
+    between_m: tuple[float, float] = (0.0, math.inf),
 ) -> tuple[Stop, ...]:
     """Ends of the straights, points on the arcs, and exactly both ends of each collect, in flight order.
 
     Parameters
     ----------
+    between_m
+        The part of the path whose places are named; its beginning has no stop.
     chord_error_m
         Largest distance between an arc and the line through its points (the sagitta of each chord).
     off_delay_m
@@ -63,7 +71,7 @@ def stops_along(
     flown_round
         Which arcs are flown round their centres.
     """
-    altitude = altitudes_along(path)
+    altitude = partial(altitude_along, path)
     stops: list[Stop] = []
     skipped: list[tuple[float, float]] = []
     for collect in collects:
@@ -82,7 +90,15 @@ def stops_along(
             stops.append(replace(end, off=1))
         else:
             stops += [end, replace(late, altitude_m=altitude(late.along_m), off=1)]
+    from_m, until_m = between_m
     for segment in path.segments:
+        if segment.start_m < from_m - MERGE_M or segment.start_m > until_m - MERGE_M:
+            continue
+        if segment.kind == "vertical":
+            continue
+        if is_whole_turns(segment):
+            stops.append(Stop(segment.start_m, here(segment.start), segment.end_altitude_m, turns=segment))
+            continue
         if flown_round(segment):
             end_m = segment.start_m + segment.length_m
             stops.append(Stop(segment.start_m, here(segment.start), altitude(segment.start_m)))
@@ -93,6 +109,17 @@ def stops_along(
             along_m = segment.start_m + segment.length_m * number / (len(places) - 1)
             if not any(since_m <= along_m <= until_m for since_m, until_m in skipped):
                 stops.append(Stop(along_m, here(place), altitude(along_m)))
+    # Turns are left where they are entered: a waypoint there would be behind the aircraft.
+    left_m = [s.turns.start_m + s.turns.length_m for s in stops if s.turns is not None]
+    begun_m = [from_m, *left_m]
+    stops = [
+        stop
+        for stop in stops
+        if stop.on
+        or stop.off
+        or stop.turns is not None
+        or (stop.along_m > from_m and all(abs(stop.along_m - m) > MERGE_M for m in begun_m))
+    ]
     return _merged(stops, {here(place[:2]) for collect in collects for place in collect.line})
 
 
@@ -149,7 +176,8 @@ def _merged(stops: list[Stop], exact: set[LonLat]) -> tuple[Stop, ...]:
     """Stops in order; those nearer than MERGE_M to each other are one, at an exact place if there is one."""
     merged: list[Stop] = []
     for stop in sorted(stops, key=lambda s: (s.along_m, -s.off, s.on)):
-        if not merged or stop.along_m - merged[-1].along_m > MERGE_M:
+        apart = not merged or stop.along_m - merged[-1].along_m > MERGE_M
+        if apart or stop.turns is not None or merged[-1].turns is not None:
             merged.append(stop)
             continue
         last = merged[-1]
@@ -158,33 +186,25 @@ def _merged(stops: list[Stop], exact: set[LonLat]) -> tuple[Stop, ...]:
             merged.append(stop)
         else:
             kept = stop if stop.place in exact else last
-            arc = last.arc or stop.arc
-            merged[-1] = replace(kept, off=last.off + stop.off, on=last.on + stop.on, arc=arc)
+            merged[-1] = replace(
+                kept,
+                off=last.off + stop.off,
+                on=last.on + stop.on,
+                arc=last.arc or stop.arc,
+                turns=last.turns or stop.turns,
+            )
     return tuple(merged)
 
 
-def altitudes_along(path: FlownPath) -> Callable[[float], float]:
-    """Altitude by distance along a path, linear between the vertices of its line."""
-    return _Altitudes(path)
+def altitude_along(path: FlownPath, along_m: float) -> float:
+    """Altitude at a distance along a path: its segments have even slopes."""
+    starts_m = [segment.start_m for segment in path.segments]
+    segment = path.segments[max(0, bisect_right(starts_m, along_m) - 1)]
+    part = (along_m - segment.start_m) / segment.length_m if segment.length_m > 0.0 else 1.0
+    part = min(1.0, max(0.0, part))
+    return segment.start_altitude_m + part * (segment.end_altitude_m - segment.start_altitude_m)
 
 
-class _Altitudes:
-    """Altitude along a path, linear between the vertices of its line."""
-
-    def __init__(self, path: FlownPath) -> None:
-        self._altitudes_m = [altitude_m for _, _, altitude_m in path.line]
-        steps_m = [distance_m(a[:2], b[:2]) for a, b in pairwise(path.line)]
-        total_m = math.fsum(steps_m)
-        # Geodesic chords are a little shorter than the arcs they cut.
-        scale = path.length_m / total_m if total_m > 0.0 else 1.0
-        self._along_m = [0.0]
-        for step_m in steps_m:
-            self._along_m.append(self._along_m[-1] + step_m * scale)
-
-    def __call__(self, along_m: float) -> float:
-        index = min(bisect_right(self._along_m, along_m), len(self._along_m) - 1)
-        before = max(0, index - 1)
-        low_m, high_m = self._along_m[before], self._along_m[index]
-        part = min(1.0, max(0.0, (along_m - low_m) / (high_m - low_m))) if high_m > low_m else 0.0
-        low, high = self._altitudes_m[before], self._altitudes_m[index]
-        return low + part * (high - low)
+def is_whole_turns(segment: PathSegment) -> bool:
+    """Whether a segment is whole turns of a circle, as heights are won and lost on."""
+    return segment.turn_deg is not None and segment.turn_deg >= WHOLE_TURN_DEG

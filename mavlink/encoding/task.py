@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 from mavlink.dialects import Autopilot, Dialect, dialect_for
 from mavlink.encoding.fence import Room, room_of
-from mavlink.encoding.manoeuvres import orbit_radius_m
 from mavlink.encoding.options import EncodeError, EncodeOptions
+from mavlink.encoding.stops import is_whole_turns
 from mavlink.wire.geometry import LocalMap
 from mavlink.wire.items import Frame
-from planner.plan import Collect, FlownPath, PathSegment, Plan, PlanVehicle
+from planner.plan import Collect, FlownPath, PathSegment, PhaseKind, Plan, PlanVehicle
 
 #: NPFG_SW_DST_MLT · NPFG_PERIOD · NPFG_DAMPING, as PX4 has them by default.
 _PX4_TURNS_EARLY_S = 0.32 * 10.0 * 0.7
@@ -68,37 +68,40 @@ class Task:
 
     @property
     def altitude_over_home_m(self) -> float:
-        """The plan's altitude, as far as the height of home is known."""
-        over_sea = self.plan.altitude_reference == "amsl"
-        return self.plan.altitude_m - (self.options.home_altitude_m if over_sea else 0.0)
+        """The plan's altitude over home."""
+        return self.over_home_m(self.plan.altitude_m)
 
     @property
     def any_yaw(self) -> float:
         """Param 4 that leaves the heading to the autopilot."""
         return math.nan if self.is_px4 else 0.0
 
-    @property
-    def orbit_radius_m(self) -> float:
-        """Radius of the circles up and down."""
-        return self.options.climb_radius_m or orbit_radius_m(self.vehicle.min_turn_radius_m)
+    def over_home_m(self, altitude_m: float) -> float:
+        """An altitude of the plan over home, where its path begins."""
+        return altitude_m - self.path.line[0][2]
 
-    def direction_rad(self, segment: PathSegment, *, at_start: bool) -> float:
-        """Direction of flight at one end of a segment, counter-clockwise from east."""
-        here, there = self.local.xy(segment.start), self.local.xy(segment.end)
-        if segment.centre is None:
-            return math.atan2(there[1] - here[1], there[0] - here[0])
-        centre = self.local.xy(segment.centre)
-        place = here if at_start else there
-        outward_rad = math.atan2(place[1] - centre[1], place[0] - centre[0])
-        return outward_rad + (math.pi / 2.0 if segment.kind == "left" else -math.pi / 2.0)
+    def phase_end_m(self, kind: PhaseKind) -> float:
+        """Where a phase ends along the path; its beginning where there is no such phase."""
+        phase = self.path.phase(kind)
+        return 0.0 if phase is None else phase.end_m
 
     @property
-    def free_straight_m(self) -> float:
-        """How much of the path's beginning is straight, before anything is collected."""
-        first = self.path.segments[0]
-        if first.kind != "straight":
-            return 0.0
-        return min([first.length_m, *(collect.start_m for collect in self.collects)])
+    def mission_end_m(self) -> float:
+        """Where the mission phase ends along the path."""
+        phase = self.path.phase("mission")
+        return self.path.length_m if phase is None else phase.end_m
+
+    @property
+    def landing_m(self) -> float:
+        """Where the landing begins along the path; its end where the flight does not land."""
+        phase = self.path.phase("landing")
+        return self.path.length_m if phase is None else phase.start_m
+
+    @property
+    def last_turns(self) -> PathSegment | None:
+        """The whole turns that the path ends in; None where it ends otherwise."""
+        last = self.path.segments[-1]
+        return last if is_whole_turns(last) else None
 
 
 def task_of(plan: Plan, name: str | None, autopilot: Autopilot | None, options: EncodeOptions) -> Task:
@@ -122,6 +125,8 @@ def task_of(plan: Plan, name: str | None, autopilot: Autopilot | None, options: 
         local,
         room_of(plan.fence, local),
     )
+    if path.phase("take_off") is None:
+        raise EncodeError("the plan's path has no take-off: plan again")
     if not task.altitude_over_home_m > 0.0:
         raise EncodeError(f"the plan's altitude is {task.altitude_over_home_m:g} m over home")
     return task

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -58,6 +59,36 @@ def _depth(inside: BaseGeometry, area: Polygon) -> float:
         )
         depth_m = max(depth_m, *(float(area.boundary.distance(place)) for place in places))
     return depth_m
+
+
+@dataclass(frozen=True, slots=True)
+class Banded:
+    """A shape that counts between two heights over home; at all heights where these are not known."""
+
+    shape: DiscShape | PolygonShape
+    hard: bool
+    low_m: float = -math.inf
+    high_m: float = math.inf
+
+
+def banded_shapes(airspace: Airspace, home_amsl_m: float | None) -> Iterator[Banded]:
+    """Threats, no-fly zones and obstacles with the heights between which they count, clearance included."""
+    for threat in airspace.threats:
+        yield Banded(
+            DiscShape(threat.name, threat.centre, threat.radius_m), threat.hard, high_m=threat.height_m
+        )
+    for zone in airspace.no_fly:
+        low_m, high_m = -math.inf, math.inf
+        if home_amsl_m is not None:
+            low_m, high_m = zone.floor_m - home_amsl_m, zone.ceiling_m - home_amsl_m
+        if zone.area is not None:
+            yield Banded(PolygonShape(zone.name, zone.area), True, low_m, high_m)
+        elif zone.centre is not None and zone.radius_m is not None:
+            yield Banded(DiscShape(zone.name, zone.centre, zone.radius_m), True, low_m, high_m)
+    for obstacle in airspace.obstacles:
+        shape = PolygonShape(obstacle.name, obstacle.area.buffer(airspace.clearance_m))
+        top_m = obstacle.base_m + obstacle.height_m + airspace.clearance_m
+        yield Banded(shape, True, high_m=top_m)
 
 
 def hard_shapes(airspace: Airspace, level: Level) -> Iterator[DiscShape | PolygonShape]:

@@ -218,8 +218,14 @@ def pieces_of(path: Line) -> Array:
     return rows
 
 
-def keep_out(airspace: Airspace, level: Level, margin_m: float = 0.0, soft: bool = True) -> KeepOut:
-    """What is forbidden at a level.
+def keep_out(
+    airspace: Airspace,
+    level: Level,
+    margin_m: float = 0.0,
+    soft: bool = True,
+    lowest: Level | None = None,
+) -> KeepOut:
+    """What is forbidden at a level, or anywhere from a lower one up to it.
 
     Parameters
     ----------
@@ -230,22 +236,25 @@ def keep_out(airspace: Airspace, level: Level, margin_m: float = 0.0, soft: bool
         Every zone grows and the area shrinks by this much, besides the clearance of obstacles.
     soft
         Whether soft threats are among the zones, with ``hard=False``.
+    lowest
+        The lower level; None for the one level alone.
     """
     clearance_m = airspace.clearance_m
+    lowest = lowest or level
     discs: list[Disc] = []
     polygons: list[PolygonZone] = []
     for threat in airspace.threats:
-        if (threat.hard or soft) and level.height_m <= threat.height_m:
+        if (threat.hard or soft) and lowest.height_m <= threat.height_m:
             discs.append(Disc(threat.name, *threat.centre, threat.radius_m + margin_m, threat.hard))
     for zone in airspace.no_fly:
-        if not zone.floor_m <= level.amsl_m <= zone.ceiling_m:
+        if zone.floor_m > level.amsl_m or zone.ceiling_m < lowest.amsl_m:
             continue
         if zone.centre is not None and zone.radius_m is not None:
             discs.append(Disc(zone.name, *zone.centre, zone.radius_m + margin_m, True))
         if zone.area is not None:
             polygons.extend(_inflated(zone.name, zone.area, margin_m))
     for obstacle in airspace.obstacles:
-        if level.height_m <= obstacle.base_m + obstacle.height_m + clearance_m:
+        if lowest.height_m <= obstacle.base_m + obstacle.height_m + clearance_m:
             polygons.extend(_inflated(obstacle.name, obstacle.area, margin_m + clearance_m))
     return KeepOut(tuple(discs), tuple(polygons), inner_area(airspace.area, margin_m))
 

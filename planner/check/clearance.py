@@ -9,14 +9,24 @@ import numpy as np
 from numpy.typing import NDArray
 from shapely.geometry import LineString
 
-from planner.airspace.shapes import hard_shapes, soft_shapes
+from planner.airspace.shapes import banded_shapes
+from planner.check.heights import between
 from planner.check.places import PLACE_TOLERANCE_M, lonlat, middle
 from planner.plan import FlownPath, Plan, Violation
 from planner.scenario import Scenario
 
 
-def place_violations(scenario: Scenario, path: FlownPath, line: LineString) -> Iterator[Violation]:
-    """What of a line is outside the operating area, in a hard zone or in a soft threat."""
+def place_violations(
+    scenario: Scenario, path: FlownPath, line_m: NDArray[np.float64], heights_m: NDArray[np.float64]
+) -> Iterator[Violation]:
+    """What of a line is outside the operating area, in a hard zone or in a soft threat.
+
+    Parameters
+    ----------
+    heights_m
+        Of the line's vertices over home: zones count where the line is between their floor and their ceiling.
+    """
+    line = LineString(line_m)
     if scenario.area is not None:
         outside = line.difference(scenario.area.buffer(PLACE_TOLERANCE_M))
         if not outside.is_empty:
@@ -28,28 +38,33 @@ def place_violations(scenario: Scenario, path: FlownPath, line: LineString) -> I
                 "m",
                 middle(scenario, outside),
             )
-    where = (scenario.airspace, scenario.level)
-    for hard, shapes in ((True, hard_shapes(*where)), (False, soft_shapes(*where))):
-        for shape in shapes:
-            depth_m = shape.depth_m(line)
-            if depth_m <= 0.0:
-                continue
-            inside = line.intersection(shape.polygon())
-            yield Violation(
-                "hard-zone" if hard else "soft-threat",
-                shape.name,
-                f"{inside.length:.1f} m are flown inside {shape.name}, up to {depth_m:.1f} m deep",
-                float(inside.length),
-                "m",
-                middle(scenario, inside),
-                hard=hard,
-            )
+    home_amsl_m = scenario.level.amsl_m - scenario.level.height_m
+    for banded in banded_shapes(scenario.airspace, home_amsl_m):
+        shape = banded.shape
+        low = between(line_m, heights_m, banded.low_m, banded.high_m)
+        depth_m = 0.0 if low.is_empty else shape.depth_m(low)
+        if depth_m <= 0.0:
+            continue
+        inside = low.intersection(shape.polygon())
+        yield Violation(
+            "hard-zone" if banded.hard else "soft-threat",
+            shape.name,
+            f"{inside.length:.1f} m are flown inside {shape.name}, up to {depth_m:.1f} m deep",
+            float(inside.length),
+            "m",
+            middle(scenario, inside),
+            hard=banded.hard,
+        )
 
 
 def clearance_violations(
     scenario: Scenario, plan: Plan, path: FlownPath, line_m: NDArray[np.float64]
 ) -> Iterator[Violation]:
-    """Height over the ground all along the line, no farther apart than half the ground's posts."""
+    """Height over the ground all along the line, no farther apart than half the ground's posts.
+
+    From where the flight has first reached what is kept to where it last leaves it; before and behind that
+    it is over the ground.
+    """
     ground = scenario.terrain
     if ground is None:
         return
@@ -72,13 +87,20 @@ def clearance_violations(
             "m",
             lonlat(scenario, places[int(np.argmax(unknown))]),
         )
-    worst = int(np.argmin(np.where(unknown, np.inf, clear_m)))
-    if clear_m[worst] < scenario.clearance_m:
+    clear_m = np.where(unknown, np.inf, clear_m)
+    high = np.flatnonzero(clear_m >= scenario.clearance_m)
+    if len(high) == 0:
+        wanted_m = np.full(len(clear_m), scenario.clearance_m)
+    else:
+        wanted_m = np.zeros(len(clear_m))
+        wanted_m[high[0] : high[-1] + 1] = scenario.clearance_m
+    worst = int(np.argmin(clear_m - wanted_m))
+    if clear_m[worst] < wanted_m[worst] - PLACE_TOLERANCE_M:
         yield Violation(
             "terrain-clearance",
             path.vehicle,
-            f"{clear_m[worst]:.1f} m over the ground, {scenario.clearance_m:g} m are to be kept",
-            float(scenario.clearance_m - clear_m[worst]),
+            f"{clear_m[worst]:.1f} m over the ground, {wanted_m[worst]:g} m are to be kept",
+            float(wanted_m[worst] - clear_m[worst]),
             "m",
             lonlat(scenario, places[worst]),
         )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Collection, Iterator
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +12,7 @@ from shapely.ops import substring
 
 from planner.check.kinematics import LENGTH_TOLERANCE, MAX_ARC_EDGE_M
 from planner.check.places import PLACE_TOLERANCE_M, lonlat
+from planner.check.times import SPOT_M
 from planner.plan import FlownPath, Plan, Violation
 from planner.scenario import Scenario
 
@@ -20,17 +21,32 @@ END_ANGLE_TOLERANCE_RAD = math.radians(1.0)
 
 
 def terminal_violations(
-    scenario: Scenario, path: FlownPath, line_m: NDArray[np.float64], radius_m: float
+    scenario: Scenario,
+    path: FlownPath,
+    line_m: NDArray[np.float64],
+    radius_m: float,
+    circling: Collection[str] = (),
 ) -> Iterator[Violation]:
     """The path begins at the start and ends at the end, in their directions.
 
-    The first and the last edge may be chords of arcs of ``radius_m`` or wider, which begin and end off the
-    chord's direction by half of what they turn.
+    Where the flight ends in a circle, the path passes over the end before that. The first and the last edge
+    may be chords of arcs of ``radius_m`` or wider, which begin and end off the chord's direction by half of
+    what they turn.
+
+    Parameters
+    ----------
+    circling
+        Vehicles whose flight ends in a circle.
     """
-    for terminal, place, direction in (
-        (scenario.start, line_m[0], line_m[1] - line_m[0]),
-        (scenario.end, line_m[-1], line_m[-1] - line_m[-2]),
-    ):
+    edges = np.diff(line_m, axis=0)
+    flown = edges[np.hypot(edges[:, 0], edges[:, 1]) > SPOT_M]
+    ends = [(scenario.start, line_m[0], flown[0])]
+    circles_at_end = path.vehicle in circling
+    if not circles_at_end:
+        ends.append((scenario.end, line_m[-1], flown[-1]))
+    else:
+        yield from _passed_over(scenario, LineString(line_m))
+    for terminal, place, direction in ends:
         gap_m = math.dist(terminal.position, place)
         if gap_m > PLACE_TOLERANCE_M:
             yield Violation(
@@ -56,23 +72,47 @@ def terminal_violations(
                 )
 
 
+def _passed_over(scenario: Scenario, line: LineString) -> Iterator[Violation]:
+    gap_m = line.distance(Point(scenario.end.position))
+    if gap_m > PLACE_TOLERANCE_M:
+        yield Violation(
+            "continuity",
+            scenario.end.name,
+            f"the path misses {scenario.end.name} by {gap_m:.2f} m",
+            gap_m,
+            "m",
+        )
+
+
 def _chord_rad(edge_m: float, radius_m: float) -> float:
     """How far the direction at an end of an arc may be off its chord; none for edges too long for one."""
     return 0.0 if edge_m > MAX_ARC_EDGE_M else math.asin(min(1.0, edge_m / (2.0 * radius_m)))
 
 
 def collect_violations(
-    scenario: Scenario, plan: Plan, path: FlownPath, line: LineString, settle_m: float
+    scenario: Scenario,
+    plan: Plan,
+    path: FlownPath,
+    line: LineString,
+    over_ground_m: Callable[[float], float],
+    settle_m: float,
 ) -> Iterator[Violation]:
-    """Each collect lies on the path where it says, in its direction, and what is flown before is straight."""
+    """Each collect lies on the path where it says, in its direction, and what is flown before is straight.
+
+    Parameters
+    ----------
+    over_ground_m
+        Distance over the ground along the line at a distance along it in three dimensions.
+    """
     for collect in plan.collects_of(path.vehicle):
         (east0, north0), (east1, north1) = scenario.frame.to_local([place[:2] for place in collect.line])
         length_m = math.hypot(east1 - east0, north1 - north0)
         # Distances along the published line are those of arcs, the line's own are those of its chords: after
         # many turns a collect begins some metres sooner on the line than it says.
-        allowed_m = PLACE_TOLERANCE_M + LENGTH_TOLERANCE * collect.start_m
-        from_m = min(max(collect.start_m - allowed_m, 0.0), line.length)
-        near = substring(line, from_m, collect.end_m + allowed_m)
+        start_m, end_m = over_ground_m(collect.start_m), over_ground_m(collect.end_m)
+        allowed_m = PLACE_TOLERANCE_M + LENGTH_TOLERANCE * start_m
+        from_m = min(max(start_m - allowed_m, 0.0), line.length)
+        near = substring(line, from_m, end_m + allowed_m)
         if isinstance(near, LineString):
             from_m += near.project(Point(east0, north0))
         flown = np.asarray(substring(line, from_m, from_m + length_m).coords)

@@ -8,7 +8,6 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from planner.airspace.values import Wind
 from planner.check.places import lonlat
 from planner.plan import FlownPath, Violation
 from planner.scenario import Scenario
@@ -18,6 +17,8 @@ from planner.vehicle.aircraft import Aircraft
 MAX_ARC_EDGE_M = 10.0
 RADIUS_TOLERANCE = 1e-4
 LENGTH_TOLERANCE = 1e-3
+ROTOR_TIME_TOLERANCE = 2e-2
+ROTOR_SLOWER = 4.0
 #: What rounding to 11 decimals of a degree may move both ends of an edge against each other.
 DIRECTION_NOISE_M = 2e-6
 
@@ -38,9 +39,12 @@ def turn_violations(
         )
 
 
-def duration_violations(path: FlownPath, time_s: float) -> Iterator[Violation]:
+def duration_violations(path: FlownPath, time_s: float, *, hovers: bool) -> Iterator[Violation]:
     """What a path says of its duration, against the time its line takes."""
-    if abs(time_s - path.duration_s) > LENGTH_TOLERANCE * max(time_s, 1.0):
+    # What hovers is no faster than the line allows; how much slower is for its autopilot's corners to say.
+    least_s = time_s - (ROTOR_TIME_TOLERANCE if hovers else LENGTH_TOLERANCE) * max(time_s, 1.0)
+    most_s = time_s * (ROTOR_SLOWER if hovers else 1.0 + LENGTH_TOLERANCE) + LENGTH_TOLERANCE
+    if not least_s <= path.duration_s <= most_s:
         yield Violation(
             "duration",
             path.vehicle,
@@ -91,20 +95,3 @@ def turn_radius_m(line_m: NDArray[np.float64]) -> tuple[float, NDArray[np.float6
         radii = (lengths_m[:-1] + lengths_m[1:]) / 4.0 / np.sin(np.maximum(delta - noise, 0.0) / 2.0)
     worst = int(np.argmin(radii))
     return float(radii[worst]), points[worst + 1]
-
-
-def flown_s(line_m: NDArray[np.float64], airspeed_m_s: float, wind: Wind) -> float:
-    """Time to fly a polyline in a steady wind, edge by edge.
-
-    The velocity over the ground is v along the edge; less the wind it must be as long as the airspeed, so
-    v² - 2 v w + W² = V² with w the wind's component along the edge.
-    """
-    if wind.speed_m_s >= airspeed_m_s:
-        return math.inf
-    edges = np.diff(line_m, axis=0)
-    lengths_m = np.hypot(edges[:, 0], edges[:, 1])
-    edges, lengths_m = edges[lengths_m > 0.0], lengths_m[lengths_m > 0.0]
-    toward = np.array([math.cos(wind.toward_rad), math.sin(wind.toward_rad)])
-    along_m_s = wind.speed_m_s * (edges @ toward) / lengths_m
-    speeds_m_s = along_m_s + np.sqrt(along_m_s**2 + airspeed_m_s**2 - wind.speed_m_s**2)
-    return float((lengths_m / speeds_m_s).sum())

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from shapely.geometry import LineString, MultiPolygon, Polygon
@@ -11,14 +12,20 @@ from shapely.geometry import LineString, MultiPolygon, Polygon
 from planner.check.clearance import clearance_violations, place_violations
 from planner.check.continuity import collect_violations, terminal_violations
 from planner.check.coverage import covered
+from planner.check.heights import (
+    ground_violations,
+    level_violations,
+    phase_violations,
+    slope_violations,
+)
 from planner.check.kinematics import (
     LENGTH_TOLERANCE,
     duration_violations,
-    flown_s,
     limit_violations,
     turn_radius_m,
     turn_violations,
 )
+from planner.check.times import line_s
 from planner.plan import Plan, Violation
 from planner.scenario import Scenario
 
@@ -53,34 +60,56 @@ def judge(scenario: Scenario, plan: Plan) -> Verdict:
     violations: list[Violation] = []
     lengths_m: list[float] = []
     tightest_m = math.inf
+    home_ground_m = scenario.altitude_m - scenario.level.height_m
     for path in plan.paths:
         aircraft = next(a for a in scenario.aircraft if a.name == path.vehicle).in_wind(
             scenario.wind.speed_m_s
         )
+        vehicle = next(v for v in plan.vehicles if v.name == path.vehicle)
         line_m = scenario.frame.to_local([place[:2] for place in path.line])
+        altitudes_m = np.array([place[2] for place in path.line])
         line = LineString(line_m)
-        lengths_m.append(float(np.hypot(*np.diff(line_m, axis=0).T).sum()))
+        over_m = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(line_m, axis=0).T))])
+        reached_m = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(over_m), np.diff(altitudes_m)))])
+        lengths_m.append(float(reached_m[-1]))
         radius_m, where = turn_radius_m(line_m)
         tightest_m = min(tightest_m, radius_m)
-        time_s = flown_s(line_m, aircraft.airspeed_m_s, scenario.wind)
+        datum_amsl_m = scenario.level.amsl_m - scenario.altitude_m
+        time_s = line_s(line_m, altitudes_m, aircraft, scenario.wind, datum_amsl_m)
+        circling = (vehicle.name,) if vehicle.finish != "land" and vehicle.type != "multirotor" else ()
         violations += turn_violations(scenario, aircraft, path, radius_m, where)
-        violations += place_violations(scenario, path, line)
+        violations += place_violations(scenario, path, line_m, altitudes_m - home_ground_m)
         violations += clearance_violations(scenario, plan, path, line_m)
-        violations += terminal_violations(scenario, path, line_m, aircraft.ground_turn_radius_m)
-        violations += duration_violations(path, time_s)
+        violations += slope_violations(path, vehicle, line_m, altitudes_m)
+        violations += ground_violations(path, vehicle, altitudes_m, _grounds_m(scenario, home_ground_m))
+        violations += level_violations(plan.collects_of(vehicle.name))
+        violations += phase_violations(path)
+        violations += terminal_violations(scenario, path, line_m, aircraft.ground_turn_radius_m, circling)
+        violations += duration_violations(path, time_s, hovers=vehicle.type == "multirotor")
         violations += limit_violations(aircraft, path, lengths_m[-1], time_s)
-        violations += collect_violations(scenario, plan, path, line, aircraft.settle_m)
+        over_ground_m = partial(np.interp, xp=reached_m, fp=over_m)
+        violations += collect_violations(scenario, plan, path, line, over_ground_m, aircraft.settle_m)
     coverage, unseen, missed = covered(scenario, plan)
     violations += missed
     length_m = math.fsum(lengths_m)
-    if abs(length_m - plan.metrics.length_m) > LENGTH_TOLERANCE * max(length_m, 1.0):
-        violations.append(
-            Violation(
-                "length",
-                "metrics",
-                f"metrics say {plan.metrics.length_m:.1f} m, the line measures {length_m:.1f} m",
-                abs(length_m - plan.metrics.length_m),
-                "m",
-            )
-        )
+    mission_m = math.fsum(
+        phase.end_m - phase.start_m for path in plan.paths for phase in path.phases if phase.kind == "mission"
+    )
+    for said_m, measured_m, what in (
+        (plan.metrics.flight_length_m, length_m, "the flight"),
+        (plan.metrics.length_m, mission_m, "the mission"),
+    ):
+        off_m = math.inf if said_m is None else abs(measured_m - said_m)
+        if off_m > LENGTH_TOLERANCE * max(measured_m, 1.0):
+            message = f"metrics say {said_m} m of {what}, the line measures {measured_m:.1f} m"
+            violations.append(Violation("length", "metrics", message, off_m, "m"))
     return Verdict(tuple(violations), length_m, tightest_m, coverage, unseen)
+
+
+def _grounds_m(scenario: Scenario, home_ground_m: float) -> tuple[float, float]:
+    """Altitude of the ground at start and end over the plan's datum: home's where there is no terrain."""
+    if scenario.terrain is None:
+        return home_ground_m, home_ground_m
+    end_m = float(scenario.terrain.at(np.array([scenario.end.position]))[0])
+    datum_amsl_m = scenario.level.amsl_m - scenario.altitude_m
+    return home_ground_m, home_ground_m if math.isnan(end_m) else end_m - datum_amsl_m

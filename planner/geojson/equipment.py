@@ -52,6 +52,7 @@ def read_aircraft(raw: Any, index: int, findings: Findings) -> Aircraft | None:
     time_s = fields.number("max_flight_time_s", None, above=0.0)
     settle_m = fields.number("settle_m", 0.0, minimum=0.0)
     base = fields.text("base", None)
+    finish: Any = fields.choice("finish", ("auto", "land", "return", "loiter"), "auto")
     if "reserve" in fields and energy_wh is None:
         fields.wrong("reserve", "is a part of energy_wh, which is missing", "Add energy_wh or remove it.")
     if energy_wh is not None and power_w is None:
@@ -64,11 +65,19 @@ def read_aircraft(raw: Any, index: int, findings: Findings) -> Aircraft | None:
     fields.refuse_unknown()
     if name is None or airspeed_m_s is None or radius_m is None or max_climb_deg is None or settle_m is None:
         return None
-    if kind is None or autopilot is None or reserve is None:
+    if kind is None or autopilot is None or reserve is None or finish is None:
+        return None
+    if autopilot == "px4" and kind == "fixed_wing" and finish not in ("auto", "land"):
+        fields.wrong(
+            "finish",
+            f"is {finish}, but PX4's fixed wings take no mission without a landing (MIS_TKO_LAND_REQ)",
+            "Set finish to land, or leave it out.",
+            rule="finish-not-flown",
+        )
         return None
     return Aircraft(
         name, kind, autopilot, airspeed_m_s, radius_m, max_climb_deg, energy_wh, power_w, range_m, time_s,
-        settle_m, base, reserve=reserve,
+        settle_m, base, reserve=reserve, finish=finish,
     )  # fmt: skip
 
 

@@ -13,8 +13,9 @@ from planner.coverage.visible import Seeing
 from planner.errors import Finding, InfeasibleError
 from planner.metrics import used
 from planner.plan import LeftOut, Plan
+from planner.profile.compose import Composed
 from planner.progress import Progress, Stop, silent
-from planner.publish import Leg, whole_path
+from planner.publish import Leg
 from planner.route import CollectPass
 from planner.routing.greedy.route import li2018_route
 from planner.routing.joint.route import Search, joint_route
@@ -39,6 +40,7 @@ class _Flight:
 
     passes: Passes
     dropped: tuple[Finding, ...]
+    composed: Composed
     legs: tuple[Leg, ...]
     notes: tuple[str, ...]
     use: Use
@@ -63,8 +65,8 @@ def collect(scenario: Scenario, controls: Controls) -> Answer:
                 replace(controls, progress=part_of(progress, 0.0, 0.5)),
             )
         with controls.stage("transit"):
-            legs, notes = transits.through(found[0], part_of(progress, 0.5, 0.9), controls.stop)
-        return _Flight(*found, legs, notes, used(whole_path(legs, found[0]), setting.model))
+            composed, legs, notes = transits.through(found[0], part_of(progress, 0.5, 0.9), controls.stop)
+        return _Flight(*found, composed, legs, notes, used(composed.flight, setting.model))
 
     flight, left = within_limits(
         fly(frozenset(), controls.progress),
@@ -79,6 +81,7 @@ def collect(scenario: Scenario, controls: Controls) -> Answer:
         dropped += hidden_findings(sight, flight.passes, by_paper=methods["coverage"] == "li2018")
     return Answer(
         setting,
+        flight.composed,
         flight.legs,
         flight.passes,
         methods,
@@ -93,8 +96,9 @@ def bound_m(scenario: Scenario, plan: Plan, stop: Stop, enough: Stop) -> float:
     setting = Setting.of(scenario)
     seen = {name for collect in plan.collects for name in collect.regions}
     left_out = {region.name for region in scenario.regions} - seen
-    asked, length_m = seeing(scenario, setting), plan.metrics.length_m
-    return plan_bound_m(asked, setting.ends, length_m, left_out, stop, enough)
+    asked = seeing(scenario, setting)
+    route_m = plan.metrics.route_length_m or plan.metrics.length_m
+    return plan_bound_m(asked, setting.ends, route_m, left_out, stop, enough)
 
 
 def _found(asked: Seeing, setting: Setting, methods: dict[str, str], seed: int, controls: Controls) -> Found:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from planner.errors import Finding
 from planner.plan import LeftOut, Plan
+from planner.profile.compose import Composed
 from planner.progress import Progress, Stop
 from planner.publish import Leg
 from planner.route import CollectPass
@@ -44,8 +45,10 @@ class Answer:
     ----------
     setting
         What the stages were told.
+    composed
+        The whole flight.
     legs, passes
-        Legs and passes in turn, beginning and ending with a leg.
+        Names and methods of its legs, and its passes, in flight order.
     methods
         The algorithm of each stage that was used.
     dropped
@@ -57,6 +60,7 @@ class Answer:
     """
 
     setting: Setting
+    composed: Composed
     legs: tuple[Leg, ...]
     passes: tuple[CollectPass, ...]
     methods: dict[str, str]

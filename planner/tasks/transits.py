@@ -1,17 +1,19 @@
-"""From passes in order to a flyable line: a leg to each, and to the end."""
+"""From stations in order to the whole flight, by the methods asked for."""
 
 from __future__ import annotations
 
-import math
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Literal
 
-from planner.airspace.zones import TRANSIT_MARGIN_M, KeepOut, keep_out
-from planner.dubins.path import Path, Segment, join
+from planner.airspace.zones import KeepOut
+from planner.dubins.path import Path
 from planner.errors import InfeasibleError
-from planner.progress import Progress, Stop, raise_if
+from planner.profile.compose import Composed
+from planner.progress import Progress, Stop
 from planner.publish import Leg
 from planner.route import Anchor, CollectPass
-from planner.routing.legs import anchor, leaves
+from planner.tasks.flying import Connector, FlightLevels, Station, fly_whole
 from planner.tasks.setting import Setting
 from planner.transit import ssas_connector
 from planner.transit.refine import Risk, connect_by_cost
@@ -31,47 +33,61 @@ class Transits:
     setting: Setting
     objective: Objective
     methods: dict[str, str]
-    zones: KeepOut
     risk: Risk
 
     @classmethod
     def of(cls, setting: Setting, objective: Objective, methods: dict[str, str]) -> Transits:
-        """Round what the setting's level meets, with the margin of transits."""
-        zones = keep_out(setting.airspace, setting.level, TRANSIT_MARGIN_M)
+        """Round what the setting's level meets."""
         risk = Risk.of(setting.airspace.threats, objective, setting.level.height_m)
-        return cls(setting, objective, methods, zones, risk)
+        return cls(setting, objective, methods, risk)
 
     def through(
-        self, passes: tuple[CollectPass, ...], progress: Progress, stop: Stop
-    ) -> tuple[tuple[Leg, ...], tuple[str, ...]]:
-        """Legs from the start through all collects to the end, and what is to be said of them."""
-        start, end = self.setting.ends
+        self, passes: Sequence[CollectPass], progress: Progress, stop: Stop
+    ) -> tuple[Composed, tuple[Leg, ...], tuple[str, ...]]:
+        """The flight through all collects, its legs, and what is to be said of them."""
         settle_m = self.setting.model.settle_m
-        starts = [anchor(start), *(leaves(one) for one in passes)]
-        settling = [one.settling(settle_m) for one in passes]
-        goals = [*(Anchor(*pose.position, pose.angle_rad) for pose in settling), anchor(end)]
-        names = [start.name, *("+".join(one.regions) for one in passes), end.name]
-        legs: list[Leg] = []
-        notes: list[str] = []
-        for k, (begin, goal) in enumerate(zip(starts, goals, strict=True)):
-            raise_if(stop)
-            progress("transit", k / len(starts))
-            path, method = self.leg(begin, goal, stop, notes, names[k : k + 2])
-            if k < len(passes) and settle_m > 0.0:
-                path = _extended(path, passes[k])
-            legs.append(Leg(names[k], names[k + 1], path, method))
-        return tuple(legs), tuple(notes)
+        return self.by([Station.of(collect, settle_m) for collect in passes], progress, stop)
 
-    def leg(
-        self, start: Anchor, goal: Anchor, stop: Stop, notes: list[str], names: list[str]
-    ) -> tuple[Path, str]:
-        """One connection; where SSAS finds none, or one through threats that cost more than the tangent
-        connector's line, that is taken, and ``notes`` say so.
-        """
+    def by(
+        self, stations: Sequence[Station], progress: Progress, stop: Stop
+    ) -> tuple[Composed, tuple[Leg, ...], tuple[str, ...]]:
+        """The flight by all stations, its legs, and what is to be said of them."""
+        setting = self.setting
+        levels = FlightLevels(setting.airspace, setting.level, setting.level.altitude_m)
+        weights = {"missile": self.objective.missile, "radar": self.objective.radar}
+        unminded = [t.name for t in setting.airspace.threats if not t.hard and weights[t.model] <= 0.0]
+        return fly_whole(
+            stations,
+            setting.ends,
+            setting.model,
+            levels,
+            self._connectors(stop),
+            self.risk.cost_m,
+            unminded,
+            progress,
+            stop,
+        )
+
+    def _connectors(self, stop: Stop) -> dict[str, Connector]:
         radius_m = self.setting.model.turn_radius_m
+
+        def tangent(start: Anchor, goal: Anchor, zones: KeepOut) -> Path:
+            return connect_by_cost(start, goal, zones, radius_m, self.risk, stop)
+
         if self.methods["transit"] != "ssas":
-            return connect_by_cost(start, goal, self.zones, radius_m, self.risk, stop), "tangent"
+            return {"tangent": tangent}
+
+        def ssas(start: Anchor, goal: Anchor, zones: KeepOut) -> Path:
+            return self._ssas(start, goal, zones, tangent, stop)
+
+        return {"ssas": ssas, "tangent": tangent}
+
+    def _ssas(self, start: Anchor, goal: Anchor, zones: KeepOut, other: Connector, stop: Stop) -> Path:
+        """SSAS's line; none where it leads through threats and costs more than another."""
         threats, height_m = self.setting.airspace.threats, self.setting.level.height_m
+        smoothing: Literal["fillet", "shortcut"] = (
+            "shortcut" if self.methods["smoothing"] == "shortcut" else "fillet"
+        )
         try:
             path, _ = ssas_connector.connect(
                 start,
@@ -79,24 +95,16 @@ class Transits:
                 threats=threats,
                 objective=self.objective,
                 height_m=height_m,
-                keep_out=self.zones,
-                radius_m=radius_m,
-                smoothing="shortcut" if self.methods["smoothing"] == "shortcut" else "fillet",
+                keep_out=zones,
+                radius_m=self.setting.model.turn_radius_m,
+                smoothing=smoothing,
                 stop=stop,
             )
         except InfeasibleError as error:
-            notes.append(f"SSAS connects {names[0]} and {names[1]} in no way ({error.message}): tangent used")
-            return connect_by_cost(start, goal, self.zones, radius_m, self.risk, stop), "tangent"
-        avoided = ssas_connector.avoidable(start, goal, threats, self.objective, height_m, self.zones)
-        if not avoided.clear(path):
-            other = connect_by_cost(start, goal, self.zones, radius_m, self.risk, stop)
-            if self.risk.cost_m(other) < self.risk.cost_m(path):
-                notes.append(f"SSAS connects {names[0]} and {names[1]} through threats only: tangent used")
-                return other, "tangent"
-        return path, "ssas"
-
-
-def _extended(path: Path, collect: CollectPass) -> Path:
-    """A leg with its settling run: straight on to where the collect begins."""
-    gap_m = math.dist(path.end.position, collect.start)
-    return join(path, Path((Segment("straight", path.end, gap_m),)))
+            raise InfeasibleError(
+                error.constraint, error.feature, f"in no way ({error.message})", error.relaxation
+            ) from error
+        avoided = ssas_connector.avoidable(start, goal, threats, self.objective, height_m, zones)
+        if not avoided.clear(path) and self.risk.cost_m(other(start, goal, zones)) < self.risk.cost_m(path):
+            raise InfeasibleError("transit", "threats", "through threats only", "Use transit tangent.")
+        return path

@@ -10,6 +10,7 @@ STANDARD_GRAVITY_M_S2 = 9.80665
 
 VehicleType = Literal["fixed_wing", "multirotor", "vtol"]
 Autopilot = Literal["ardupilot", "px4"]
+FinishWish = Literal["auto", "land", "return", "loiter"]
 
 #: Share of the energy kept where a scenario says nothing else.
 DEFAULT_RESERVE = 0.2
@@ -44,6 +45,8 @@ class Aircraft:
         Name of the base it starts from; None for the scenario's start.
     wind_m_s
         Steady wind it flies in, from any direction, slower than ``airspeed_m_s``.
+    finish
+        How its flight ends; ``auto`` is for ``planner.profile.finish`` to say.
     """
 
     name: str
@@ -60,6 +63,7 @@ class Aircraft:
     base: str | None = None
     wind_m_s: float = 0.0
     reserve: float = DEFAULT_RESERVE
+    finish: FinishWish = "auto"
 
     @property
     def usable_wh(self) -> float | None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 from planner.angles import heading_from_angle
@@ -13,11 +13,14 @@ from planner.plan import (
     AltitudeReference,
     Collect,
     Fence,
+    Finish,
     FlownPath,
     Footprint,
     LonLat,
     Metrics,
     PathSegment,
+    Phase,
+    PhaseKind,
     Plan,
     PlanVehicle,
     ZonePolygon,
@@ -68,6 +71,146 @@ def lonlat(point: tuple[float, float]) -> LonLat:
     return float(lon_deg), float(lat_deg)
 
 
+#: Of the flights' ends: height and length of the run, radius of turns, height and length of the approach.
+RUN_M, RUN_HEIGHT_M = 350.0, 50.0
+CIRCLE_M = 105.0
+APPROACH_M, APPROACH_HEIGHT_M = 580.0, 40.0
+TURNS = 3
+SPEED_M_S = 20.0
+
+
+@dataclass(frozen=True, slots=True)
+class Piece:
+    """A segment of the flight, or None for a climb on the spot, with its phase, heights and collect."""
+
+    phase: PhaseKind
+    segment: Segment | None
+    place: Pose
+    from_m: float
+    to_m: float
+    collect_m: tuple[float, float] | None = None
+
+    @property
+    def length_m(self) -> float:
+        """In three dimensions."""
+        over_m = 0.0 if self.segment is None else self.segment.length_m
+        return math.hypot(over_m, self.to_m - self.from_m)
+
+
+def flight_of(
+    legs: tuple[Leg, ...], start: Pose, vehicle_type: str, top_m: float, finish: Finish, ground_m: float
+) -> list[Piece]:
+    """The whole flight: up before the legs, down behind them."""
+    path = flown(legs, start)
+    hovers = vehicle_type == "multirotor"
+    lift_m = {"fixed_wing": 0.0, "vtol": RUN_HEIGHT_M, "multirotor": top_m}[vehicle_type]
+    pieces: list[Piece] = []
+    run = Segment("straight", start if hovers else _behind(start, RUN_M), RUN_M)
+    low_m = ground_m + lift_m
+    if lift_m:
+        first_m = ground_m + min(10.0, lift_m) if hovers else low_m
+        pieces.append(Piece("take_off", None, run.start, ground_m, first_m))
+        if hovers:
+            pieces.append(Piece("climb", None, run.start, first_m, ground_m + top_m))
+    top_m += ground_m
+    if not hovers:
+        run_end_m = low_m if lift_m else low_m + RUN_HEIGHT_M
+        pieces.append(Piece("take_off", run, run.start, low_m, run_end_m))
+        pieces.append(Piece("climb", _turns("left", start), start, run_end_m, top_m))
+    for leg, segment in zip(legs, path.segments, strict=True):
+        pieces.append(Piece("mission", segment, segment.start, top_m, top_m, leg.collect_m))
+    end = path.end
+    if hovers:
+        down_m = top_m if finish == "loiter" else ground_m
+        return pieces if finish == "loiter" else [*pieces, Piece("landing", None, end, top_m, down_m)]
+    bottom_m = {"land": ground_m + APPROACH_HEIGHT_M, "return": ground_m + 100.0, "loiter": top_m}[finish]
+    pieces.append(Piece("return", _turns("right", end), end, top_m, bottom_m))
+    if finish == "land":
+        approach = Segment("straight", end, APPROACH_M)
+        touch_m = bottom_m if lift_m else ground_m
+        pieces.append(Piece("landing", approach, end, bottom_m, touch_m))
+        if lift_m:
+            pieces.append(Piece("landing", None, approach.end, bottom_m, ground_m))
+    return pieces
+
+
+def _turns(kind: Literal["left", "right"], pose: Pose) -> Segment:
+    return Segment(kind, pose, TURNS * math.tau * CIRCLE_M, CIRCLE_M)
+
+
+def _behind(pose: Pose, distance_m: float) -> Pose:
+    return Pose(
+        pose.east_m - distance_m * math.cos(pose.angle_rad),
+        pose.north_m - distance_m * math.sin(pose.angle_rad),
+        pose.angle_rad,
+    )
+
+
+def _path_segment(piece: Piece, along_m: float) -> PathSegment:
+    heights = (piece.from_m, piece.to_m)
+    segment, place = piece.segment, lonlat(piece.place.position)
+    if segment is None:
+        return PathSegment("vertical", place, place, along_m, piece.length_m, None, None, None, *heights)
+    straight = segment.kind == "straight"
+    return PathSegment(
+        segment.kind,
+        place,
+        lonlat(segment.end.position),
+        along_m,
+        piece.length_m,
+        None if straight else segment.radius_m,
+        None if segment.centre is None else lonlat(segment.centre),
+        None if straight else abs(math.degrees(segment.turn_rad)),
+        *heights,
+    )
+
+
+def _collect(piece: Piece, along_m: float, number: int) -> Collect:
+    assert piece.segment is not None
+    assert piece.collect_m is not None
+    first_m, last_m = piece.collect_m
+    ends = [lonlat(piece.segment.at(distance_m).position) for distance_m in piece.collect_m]
+    return Collect(
+        vehicle="uav-1",
+        seq=number,
+        roi=f"R{number + 1}",
+        regions=(f"R{number + 1}",),
+        sensor="sar",
+        look="right",
+        line=((*ends[0], piece.from_m), (*ends[1], piece.from_m)),
+        heading_deg=heading_from_angle(piece.place.angle_rad),
+        start_m=along_m + first_m,
+        end_m=along_m + last_m,
+        start_s=(along_m + first_m) / SPEED_M_S,
+        end_s=(along_m + last_m) / SPEED_M_S,
+    )
+
+
+def _vertices(piece: Piece) -> list[tuple[float, float, float]]:
+    if piece.segment is None:
+        place = lonlat(piece.place.position)
+        return [(*place, piece.from_m), (*place, piece.to_m)]
+    rows = Path((piece.segment,)).sample(10.0)
+    rise_m = piece.to_m - piece.from_m
+    return [
+        (*lonlat((east, north)), piece.from_m + rise_m * at_m / piece.segment.length_m)
+        for east, north, _, at_m in rows
+    ]
+
+
+def _phases(pieces: list[Piece]) -> tuple[Phase, ...]:
+    phases: list[Phase] = []
+    along_m = 0.0
+    for piece in pieces:
+        end_m = along_m + piece.length_m
+        if phases and phases[-1].kind == piece.phase:
+            phases[-1] = replace(phases[-1], end_m=end_m, end_s=end_m / SPEED_M_S)
+        else:
+            phases.append(Phase(piece.phase, along_m, end_m, along_m / SPEED_M_S, end_m / SPEED_M_S))
+        along_m = end_m
+    return tuple(phases)
+
+
 def make_plan(
     legs: tuple[Leg, ...] = LEGS,
     *,
@@ -76,81 +219,61 @@ def make_plan(
     start: Pose = START,
     altitude_m: float = 300.0,
     altitude_reference: AltitudeReference = "terrain",
+    ground_m: float = 0.0,
     fence: Fence | None = None,
-    ends_at_home: bool = False,
+    finish: Finish = "land",
     min_turn_radius_m: float = 100.0,
 ) -> Plan:
-    """A plan of one vehicle whose path is exactly the legs."""
-    path = flown(legs, start)
+    """A plan of one vehicle whose mission is exactly the legs: the whole flight.
+
+    ``altitude_m`` counts from the ground at home, which is at ``ground_m`` over the plan's datum.
+    """
+    pieces = flight_of(legs, start, vehicle_type, altitude_m, finish, ground_m)
     segments: list[PathSegment] = []
     collects: list[Collect] = []
+    line: list[tuple[float, float, float]] = []
     along_m = 0.0
-    speed_m_s = 20.0
-    for leg, segment in zip(legs, path.segments, strict=True):
-        straight = segment.kind == "straight"
-        segments.append(
-            PathSegment(
-                segment.kind,
-                lonlat(segment.start.position),
-                lonlat(segment.end.position),
-                along_m,
-                segment.length_m,
-                None if straight else segment.radius_m,
-                None if segment.centre is None else lonlat(segment.centre),
-                None if straight else abs(leg.turn_deg),
-            )
-        )
-        if leg.collect_m is not None:
-            first_m, last_m = leg.collect_m
-            collects.append(
-                Collect(
-                    vehicle="uav-1",
-                    seq=len(collects),
-                    roi=f"R{len(collects) + 1}",
-                    regions=(f"R{len(collects) + 1}",),
-                    sensor="sar",
-                    look="right",
-                    line=(
-                        (*lonlat(segment.at(first_m).position), altitude_m),
-                        (*lonlat(segment.at(last_m).position), altitude_m),
-                    ),
-                    heading_deg=heading_from_angle(segment.start.angle_rad),
-                    start_m=along_m + first_m,
-                    end_m=along_m + last_m,
-                    start_s=(along_m + first_m) / speed_m_s,
-                    end_s=(along_m + last_m) / speed_m_s,
-                )
-            )
-        along_m += segment.length_m
-    home = lonlat(path.start.position)
-    line = tuple((*lonlat((east, north)), altitude_m) for east, north, _, _ in path.sample(10.0))
+    for piece in pieces:
+        segments.append(_path_segment(piece, along_m))
+        if piece.collect_m is not None:
+            collects.append(_collect(piece, along_m, len(collects)))
+        line += _vertices(piece)[1 if line else 0 :]
+        along_m += piece.length_m
+    phases = _phases(pieces)
+    mission = next(phase for phase in phases if phase.kind == "mission")
+    mission_m = mission.end_m - mission.start_m
+    home = line[0][:2]
+    heading_deg = None if vehicle_type == "multirotor" else heading_from_angle(start.angle_rad)
+    path = FlownPath(
+        "uav-1", tuple(line), tuple(segments), along_m, along_m / SPEED_M_S, None, 100.0, phases, heading_deg
+    )
     collected_m = sum(collect.end_m - collect.start_m for collect in collects)
     return Plan(
         name="by hand",
-        vehicles=(PlanVehicle("uav-1", vehicle_type, autopilot, speed_m_s, min_turn_radius_m),),
-        altitude_m=altitude_m,
+        vehicles=(PlanVehicle("uav-1", vehicle_type, autopilot, SPEED_M_S, min_turn_radius_m, 8.0, finish),),
+        altitude_m=altitude_m + ground_m,
         altitude_reference=altitude_reference,
         home=home,
-        end=home if ends_at_home else lonlat(path.end.position),
-        paths=(
-            FlownPath("uav-1", line, tuple(segments), path.length_m, path.length_m / speed_m_s, None, 100.0),
-        ),
+        end=home if finish == "return" else lonlat(_end_of(pieces).position),
+        paths=(path,),
         collects=tuple(collects),
         transits=(),
         footprints=tuple(_footprint(collect) for collect in collects),
         uncovered=(),
         fence=square_fence(6000.0) if fence is None else fence,
         metrics=Metrics(
-            length_m=path.length_m,
+            length_m=mission_m,
             collection_length_m=collected_m,
-            duty_cycle=collected_m / path.length_m,
+            duty_cycle=collected_m / mission_m,
             path_length_ratio=None,
             risk_missile=0.0,
             risk_radar=0.0,
-            turns=sum(1 for segment in segments if segment.kind != "straight"),
-            duration_s=path.length_m / speed_m_s,
+            turns=sum(1 for leg in legs if leg.turn_deg),
+            duration_s=mission_m / SPEED_M_S,
             energy_wh=None,
             coverage={collect.roi: 1.0 for collect in collects},
+            flight_length_m=along_m,
+            flight_duration_s=along_m / SPEED_M_S,
         ),
         violations=(),
         methods={},
@@ -158,6 +281,11 @@ def make_plan(
         planner_version="0",
         seed=0,
     )
+
+
+def _end_of(pieces: list[Piece]) -> Pose:
+    last = pieces[-1]
+    return last.place if last.segment is None else last.segment.end
 
 
 def _footprint(collect: Collect) -> Footprint:

@@ -80,7 +80,7 @@ def test_a_task_is_answered_published_and_judged() -> None:
         assert line.distance(Point(region.area.centroid)) < 0.05
     assert {v.constraint for v in plan.violations} == {"coverage"}
     assert max(plan.metrics.coverage.values()) < 1e-6
-    assert plan.metrics.length_m == pytest.approx(line.length, rel=1e-3)
+    assert plan.metrics.route_length_m == pytest.approx(line.length, rel=1e-3)
 
 
 @pytest.mark.parametrize(

@@ -59,7 +59,7 @@ def test_no_methods_plan_is_below_any_methods_bound(
             plan = with_bound(scenario, make_plan(scenario))
         except InfeasibleError:
             continue
-        lengths.append(plan.metrics.length_m)
+        lengths.append(plan.metrics.route_length_m)
         assert plan.metrics.lower_bound_m is not None
         bounds.append(plan.metrics.lower_bound_m)
     bounds.append(plan_bound_m(scenario, 1.3 * min(lengths)))

@@ -11,6 +11,7 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 import shapely
 from hypothesis import given
@@ -54,8 +55,9 @@ def test_anywhere_on_earth_plans_alike(origin: Place) -> None:
     assert there.metrics.length_m == pytest.approx(here.metrics.length_m, rel=5e-3)
     assert {v.constraint for v in there.violations} == {v.constraint for v in here.violations}
     assert all(share >= 0.9999 for share in there.metrics.coverage.values())
-    lons, lats, _ = zip(*there.paths[0].line, strict=True)
-    assert GEOD.line_length(lons, lats) == pytest.approx(there.metrics.length_m, rel=1e-3)
+    lons, lats, altitudes_m = zip(*there.paths[0].line, strict=True)
+    geodesic_m = float(np.hypot(GEOD.line_lengths(lons, lats), np.diff(altitudes_m)).sum())
+    assert geodesic_m == pytest.approx(there.metrics.flight_length_m, rel=1e-3)
     assert max(abs(b - a) for a, b in pairwise(lons)) < 180.0
 
 

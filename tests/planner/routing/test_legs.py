@@ -13,7 +13,7 @@ from shapely.geometry import LineString, Point
 
 from planner.airspace.prices import INSIDE_FACTOR
 from planner.airspace.zones import TRANSIT_MARGIN_M
-from planner.check import flown_s
+from planner.check import line_s
 from planner.dubins.words import shortest_between
 from planner.errors import InfeasibleError
 from planner.geojson import read_scenario
@@ -194,7 +194,8 @@ def test_in_a_wind_time_counts(start: Anchor, goal: Anchor, from_deg: float) -> 
     legs = legs_in(scenario, never)
     zones = module.keep_out(scenario.airspace, scenario.level, TRANSIT_MARGIN_M)
     path = connect(start, goal, zones, aircraft.planned_turn_radius_m, never)
-    seconds = flown_s(path.sample(0.5)[:, :2], aircraft.airspeed_m_s, scenario.wind)
+    points = path.sample(0.5)[:, :2]
+    seconds = line_s(points, np.zeros(len(points)), aircraft, scenario.wind, 0.0)
     assert legs.cost_m(start, goal) == pytest.approx(aircraft.airspeed_m_s * seconds, rel=1e-4)
 
 

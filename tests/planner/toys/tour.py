@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import math
 
-from planner.dubins.path import join
-from planner.publish import Leg
 from planner.route import Anchor
-from planner.routing.legs import anchor
 from planner.routing.tour import order
 from planner.scenario import Scenario
+from planner.tasks.flying import Station
 from planner.tasks.methods import chosen_methods
 from planner.tasks.setting import Setting
 from planner.tasks.task import Answer, Controls, Task
@@ -23,16 +21,11 @@ def fly(scenario: Scenario, controls: Controls) -> Answer:
     middles = [region.area.centroid.coords[0] for region in scenario.regions]
     with controls.stage("routing"):
         visiting = order(middles, start.position, end.position, "exact")
-    stops = [anchor(start), *(Anchor(*middles[k]) for k in visiting), anchor(end)]
-    transits, paths = Transits.of(setting, scenario.objective, methods), []
+    stations = [Station(scenario.regions[k].name, Anchor(*middles[k])) for k in visiting]
     with controls.stage("transit"):
-        here = stops[0]
-        for there in stops[1:]:
-            path, _ = transits.leg(here, there, controls.stop, [], ["", ""])
-            paths.append(path)
-            here = Anchor(*path.end.position, path.end.angle_rad)
-    leg = Leg(start.name, end.name, join(*paths), "tangent")
-    return Answer(setting, (leg,), (), methods, (), ())
+        transits = Transits.of(setting, scenario.objective, methods)
+        composed, legs, notes = transits.by(stations, controls.progress, controls.stop)
+    return Answer(setting, composed, legs, (), methods, (), notes)
 
 
 def straight_m(scenario: Scenario, *_: object) -> float:

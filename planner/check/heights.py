@@ -1,0 +1,140 @@
+"""The flight's heights: from the ground and back, no steeper than the aircraft climbs, level on passes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+from shapely.geometry import LineString, MultiLineString
+
+from planner.check.times import SPOT_M
+from planner.plan import Collect, FlownPath, PlanVehicle, Violation
+
+#: Rounding of coordinates makes a short edge look steeper than it is.
+SLOPE_TOLERANCE_DEG = 0.05
+HEIGHT_TOLERANCE_M = 0.05
+
+Floats = NDArray[np.float64]
+
+
+def slope_violations(
+    path: FlownPath, vehicle: PlanVehicle, line_m: Floats, altitudes_m: Floats
+) -> Iterator[Violation]:
+    """The steepest edge, and climbs on the spot of what cannot hover."""
+    over_ground_m = np.hypot(*np.diff(line_m, axis=0).T)
+    rises_m = np.diff(altitudes_m)
+    spot = over_ground_m <= SPOT_M
+    if vehicle.type == "fixed_wing" and float(np.abs(rises_m[spot]).sum()) > HEIGHT_TOLERANCE_M:
+        where = int(np.argmax(np.where(spot, np.abs(rises_m), 0.0)))
+        yield Violation(
+            "climb",
+            path.vehicle,
+            f"{abs(rises_m[where]):.1f} m are climbed on the spot, which a fixed wing cannot",
+            float(abs(rises_m[where])),
+            "m",
+            path.line[where][:2],
+        )
+    slopes_deg = np.degrees(np.arctan2(np.abs(rises_m), np.where(spot, np.inf, over_ground_m)))
+    worst = int(np.argmax(slopes_deg))
+    if slopes_deg[worst] > vehicle.max_climb_deg + SLOPE_TOLERANCE_DEG:
+        yield Violation(
+            "climb",
+            path.vehicle,
+            f"a slope of {slopes_deg[worst]:.1f}°, the limit is {vehicle.max_climb_deg:g}°",
+            float(slopes_deg[worst] - vehicle.max_climb_deg),
+            "deg",
+            path.line[worst][:2],
+        )
+
+
+def ground_violations(
+    path: FlownPath, vehicle: PlanVehicle, altitudes_m: Floats, grounds_m: tuple[float, float]
+) -> Iterator[Violation]:
+    """The path begins on the ground, and ends there where it is to land.
+
+    Parameters
+    ----------
+    grounds_m
+        Altitude of the ground at its first and its last place, over the plan's datum.
+    """
+    ends = [("begins", 0, grounds_m[0])]
+    if vehicle.finish == "land":
+        ends.append(("ends", -1, grounds_m[1]))
+    for word, index, ground_m in ends:
+        off_m = float(altitudes_m[index]) - ground_m
+        if abs(off_m) > HEIGHT_TOLERANCE_M:
+            yield Violation(
+                "continuity",
+                path.vehicle,
+                f"the path {word} {off_m:.1f} m over the ground",
+                abs(off_m),
+                "m",
+                path.line[index][:2],
+            )
+
+
+def level_violations(collects: tuple[Collect, ...]) -> Iterator[Violation]:
+    """Collects are flown level."""
+    for collect in collects:
+        rise_m = abs(collect.line[1][2] - collect.line[0][2])
+        if rise_m > HEIGHT_TOLERANCE_M:
+            yield Violation(
+                "collect-level",
+                collect.roi,
+                f"collect {collect.seq} rises or falls by {rise_m:.2f} m",
+                rise_m,
+                "m",
+                collect.line[0][:2],
+            )
+
+
+def phase_violations(path: FlownPath) -> Iterator[Violation]:
+    """Phases follow each other over the whole path."""
+    reached_m = 0.0
+    for phase in path.phases:
+        gap_m = abs(phase.start_m - reached_m)
+        if gap_m > HEIGHT_TOLERANCE_M or phase.end_m < phase.start_m:
+            yield Violation(
+                "phases", path.vehicle, f"the phase {phase.kind} begins {gap_m:.2f} m off", gap_m, "m"
+            )
+        reached_m = phase.end_m
+    if abs(reached_m - path.length_m) > HEIGHT_TOLERANCE_M:
+        off_m = abs(reached_m - path.length_m)
+        yield Violation(
+            "phases", path.vehicle, f"the phases end {off_m:.2f} m off the path's end", off_m, "m"
+        )
+
+
+def between(line_m: Floats, heights_m: Floats, low_m: float, high_m: float) -> MultiLineString:
+    """What of a line lies between two heights, both included."""
+    if low_m == -math.inf and high_m == math.inf:
+        return MultiLineString([line_m])
+    parts: list[Floats] = []
+    run: list[Floats] = []
+    for (a, b), (h0, h1) in zip(pairwise(line_m), pairwise(heights_m), strict=True):
+        first, last = _inside(float(h0), float(h1), low_m, high_m)
+        if first > last:
+            parts, run = _closed(parts, run), []
+            continue
+        if not run or first > 0.0:
+            parts, run = _closed(parts, run), [a + first * (b - a)]
+        run.append(a + last * (b - a))
+        if last < 1.0:
+            parts, run = _closed(parts, run), []
+    return MultiLineString([LineString(part) for part in _closed(parts, run)])
+
+
+def _inside(from_m: float, to_m: float, low_m: float, high_m: float) -> tuple[float, float]:
+    """Between which parts of an edge its height lies between two; an empty interval where nowhere."""
+    if from_m == to_m:
+        return (0.0, 1.0) if low_m <= from_m <= high_m else (1.0, 0.0)
+    parts = sorted(((low_m - from_m) / (to_m - from_m), (high_m - from_m) / (to_m - from_m)))
+    return max(parts[0], 0.0), min(parts[1], 1.0)
+
+
+def _closed(parts: list[Floats], run: list[Floats]) -> list[Floats]:
+    """The parts, with one more where a run has two places."""
+    return [*parts, np.array(run)] if len(run) > 1 else parts

@@ -1,0 +1,109 @@
+"""How long a published line takes, by the judge's own reckoning.
+
+Wings: every edge at the true airspeed of its height, as the wind lets it go over the ground. What hovers: as
+fast as the bends of the line and its acceleration allow, at rest where it climbs on the spot.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planner.airspace.values import Wind
+from planner.check.kinematics import MAX_ARC_EDGE_M
+from planner.vehicle.aircraft import Aircraft
+from planner.vehicle.manners import Manners, manners_of
+
+Floats = NDArray[np.float64]
+
+#: Edges shorter than this over the ground are flown on the spot.
+SPOT_M = 0.01
+
+
+def line_s(line_m: Floats, altitudes_m: Floats, aircraft: Aircraft, wind: Wind, datum_amsl_m: float) -> float:
+    """Time to fly a line.
+
+    Parameters
+    ----------
+    line_m, altitudes_m
+        Shapes (N, 2) and (N,): east and north, and altitude over a datum ``datum_amsl_m`` above the sea.
+    """
+    manners = manners_of(aircraft)
+    over_m = np.hypot(*np.diff(line_m, axis=0).T)
+    rises_m = np.diff(altitudes_m)
+    spot = over_m <= SPOT_M
+    hover_s = _spot_s(rises_m, spot, manners)
+    if aircraft.type == "multirotor":
+        return hover_s + _rotor_s(line_m[np.concatenate([[True], ~spot])], rises_m[~spot], aircraft, manners)
+    if wind.speed_m_s >= aircraft.airspeed_m_s:
+        return math.inf
+    flown = ~spot
+    middles_m = datum_amsl_m + 0.5 * (altitudes_m[1:] + altitudes_m[:-1])[flown]
+    # ICAO standard atmosphere: density falls with the 4.2559th power of temperature.
+    density = ((288.15 - 0.0065 * np.clip(middles_m, -1_000.0, 11_000.0)) / 288.15) ** 4.25588
+    slope = over_m[flown] / np.hypot(over_m[flown], rises_m[flown])
+    air_m_s = aircraft.airspeed_m_s / np.sqrt(density) * slope
+    toward = np.array([math.cos(wind.toward_rad), math.sin(wind.toward_rad)])
+    along_m_s = wind.speed_m_s * (np.diff(line_m, axis=0)[flown] @ toward) / over_m[flown]
+    # The velocity over the ground less the wind is as long as the airspeed: v² - 2 v w + W² = V².
+    ground_m_s = along_m_s + np.sqrt(along_m_s**2 + air_m_s**2 - wind.speed_m_s**2)
+    return hover_s + float((over_m[flown] / ground_m_s).sum())
+
+
+def _spot_s(rises_m: Floats, spot: NDArray[np.bool_], manners: Manners) -> float:
+    """Climbs on the spot, those that follow each other as one; the last metres down at landing speed."""
+    total_s, k = 0.0, 0
+    while k < len(rises_m):
+        if not spot[k]:
+            k += 1
+            continue
+        height_m = 0.0
+        while k < len(rises_m) and spot[k]:
+            height_m += float(rises_m[k])
+            k += 1
+        if abs(height_m) < SPOT_M:
+            continue
+        slow_m = min(manners.land_below_m, -height_m) if height_m < 0.0 else 0.0
+        rate = manners.climb_m_s if height_m > 0.0 else manners.sink_m_s
+        total_s += slow_m / manners.land_m_s if slow_m > 0.0 else 0.0
+        total_s += _rest_to_rest_s(abs(height_m) - slow_m, rate, manners.vertical_accel_m_s2)
+    return total_s
+
+
+def _rest_to_rest_s(distance_m: float, speed_m_s: float, accel_m_s2: float) -> float:
+    peak = min(speed_m_s, math.sqrt(max(distance_m, 0.0) * accel_m_s2))
+    return 0.0 if peak <= 0.0 else distance_m / peak + peak / accel_m_s2
+
+
+def _rotor_s(line_m: Floats, rises_m: Floats, aircraft: Aircraft, manners: Manners) -> float:
+    """Over the ground, from rest to rest."""
+    edges = np.diff(line_m, axis=0)
+    over_m = np.hypot(edges[:, 0], edges[:, 1])
+    if len(over_m) == 0:
+        return 0.0
+    lengths_m = np.hypot(over_m, rises_m)
+    rate = np.where(rises_m > 0.0, manners.climb_m_s, manners.sink_m_s)
+    with np.errstate(divide="ignore"):
+        limits = np.minimum(
+            aircraft.airspeed_m_s, np.where(rises_m == 0.0, np.inf, rate * lengths_m / np.abs(rises_m))
+        )
+    turned = np.abs(np.mod(np.diff(np.arctan2(edges[:, 1], edges[:, 0])) + np.pi, 2.0 * np.pi) - np.pi)
+    capped_m = np.minimum(over_m, MAX_ARC_EDGE_M)
+    with np.errstate(divide="ignore"):
+        radii_m = (capped_m[:-1] + capped_m[1:]) / 4.0 / np.sin(np.maximum(turned, 1e-9) / 2.0)
+    corners = np.concatenate([[0.0], np.sqrt(manners.accel_m_s2 * radii_m), [0.0]])
+    corners[1:-1] = np.minimum(corners[1:-1], np.minimum(limits[1:], limits[:-1]))
+    for k, length_m in enumerate(lengths_m):
+        corners[k + 1] = min(corners[k + 1], math.sqrt(corners[k] ** 2 + 2.0 * manners.accel_m_s2 * length_m))
+    for k in range(len(lengths_m) - 1, -1, -1):
+        reach = math.sqrt(corners[k + 1] ** 2 + 2.0 * manners.accel_m_s2 * lengths_m[k])
+        corners[k] = min(corners[k], reach)
+    peaks = np.minimum(
+        limits, np.sqrt(manners.accel_m_s2 * lengths_m + 0.5 * (corners[:-1] ** 2 + corners[1:] ** 2))
+    )
+    peaks = np.maximum(peaks, np.maximum(corners[:-1], corners[1:]))
+    speeding_m = (2.0 * peaks**2 - corners[:-1] ** 2 - corners[1:] ** 2) / (2.0 * manners.accel_m_s2)
+    changing_s = (2.0 * peaks - corners[:-1] - corners[1:]) / manners.accel_m_s2
+    return float((changing_s + np.maximum(lengths_m - speeding_m, 0.0) / peaks).sum())

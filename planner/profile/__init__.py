@@ -1,0 +1,1 @@
+"""Heights along a line: take-off, climb limits, climbing turns, landing."""

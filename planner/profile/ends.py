@@ -1,0 +1,187 @@
+"""Both ends of a flight as its aircraft and autopilot fly them: up from the start, down to the end."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from planner.airspace.terrain import Ground
+from planner.airspace.zones import KeepOut
+from planner.dubins.path import Path, join
+from planner.plan import Finish
+from planner.profile.circling import circle_down
+from planner.profile.foot import Foot
+from planner.profile.heights import Heights, level
+from planner.profile.rise import Connect, Rise, Terms, fall, rise
+from planner.progress import Stop, never
+from planner.route import Anchor, Terminal
+from planner.vehicle import manners
+from planner.vehicle.manners import manners_of
+from planner.vehicle.model import FlightModel
+
+#: Flown level before a first pass, while the autopilot settles on its height.
+LEVEL_OFF_S = 5.0
+#: Winds slower than this do not choose the direction of a take-off or a landing.
+MINDED_WIND_M_S = 2.0
+#: Missions keep circles up to this radius in whole metres, wider ones in steps of ten.
+WHOLE_METRES_UP_TO_M, WIDE_STEP_M = 255.0, 10.0
+#: Circles are so much wider than the tightest turn.
+EASY_TURN = 1.05
+
+
+@dataclass(frozen=True, slots=True)
+class Surround:
+    """What both ends of a flight are placed in.
+
+    Parameters
+    ----------
+    top_m
+        Altitude of the route over the flight's datum.
+    zones
+        What is to be kept out of at any height from the ground up to the top, margins included.
+    connect, cost_m
+        See ``Terms``.
+    ground
+        Terrain and what is kept over it, in altitudes over the same datum; None where the ground is flat.
+    clearance_m
+        Kept over terrain behind take-off and before landing.
+    """
+
+    top_m: float
+    zones: KeepOut
+    connect: Connect
+    cost_m: Callable[[Path], float]
+    ground: Ground | None = None
+    clearance_m: float = 0.0
+    stop: Stop = never
+
+
+def up(start: Terminal, ground_m: float, goal: Anchor, model: FlightModel, around: Surround) -> Rise:
+    """From lift-off to a goal at the route's height.
+
+    Raises
+    ------
+    InfeasibleError
+        Where no line leads there.
+    """
+    slope_rad = climb_slope_rad(model)
+    aircraft, height_m = model.aircraft, around.top_m - ground_m
+    lift_m = run_m = rise_m = 0.0
+    if aircraft.type == "multirotor":
+        lift_m = height_m
+    elif aircraft.type == "vtol":
+        lift_m = min(manners.TAKE_OFF_HEIGHT_M, height_m)
+        run_m = manners.VTOL_SPEED_UP_S * model.airspeed_m_s
+    else:
+        rise_m = min(manners.TAKE_OFF_HEIGHT_M, height_m)
+        run_m = rise_m / math.tan(slope_rad)
+    foot = Foot(start.position, start.angle_rad, ground_m, lift_m, run_m, rise_m, _into_rad(model))
+    return rise(foot, goal, _terms(around, slope_rad, model))
+
+
+def down(
+    end: Terminal,
+    home: tuple[float, float],
+    grounds_m: tuple[float, float],
+    origin: Anchor,
+    model: FlightModel,
+    around: Surround,
+    finish: Finish,
+) -> Rise:
+    """From an origin at the route's height to the ground at the end, or to the circle that a flight ends in.
+
+    Parameters
+    ----------
+    grounds_m
+        Altitude of the ground at home and at the end.
+
+    Returns
+    -------
+    Rise
+        Its ``run_m`` and ``turns_m`` count from the end, backwards.
+    """
+    slope_rad = sink_slope_rad(model)
+    terms = _terms(around, slope_rad, model)
+    aircraft = model.aircraft
+    if aircraft.type != "multirotor" and finish != "land":
+        # The route ends over its end; the circle follows.
+        leg = around.connect(origin, Anchor(*end.position, end.angle_rad))
+        centre = home if finish == "return" else end.position
+        bottom_m = min(around.top_m, grounds_m[0] + manners.RETURN_HEIGHT_M)
+        over = Anchor(*leg.end.position, leg.end.angle_rad)
+        circled = circle_down(over, centre, bottom_m if finish == "return" else around.top_m, terms)
+        heights = level(leg.length_m, around.top_m).then(circled.heights)
+        return Rise(join(leg, circled.path), heights, 0.0, circled.turns_m)
+    place, ground_m = (home, grounds_m[0]) if finish == "return" else (end.position, grounds_m[1])
+    height_m = around.top_m - ground_m
+    lift_m = run_m = rise_m = 0.0
+    if aircraft.type == "multirotor":
+        lift_m = 0.0 if finish == "loiter" else height_m
+        ground_m = around.top_m - lift_m
+    elif aircraft.type == "vtol":
+        lift_m = min(manners.APPROACH_HEIGHT_M, height_m)
+        stop_m = model.airspeed_m_s**2 / (2.0 * manners.VTOL_BRAKING_M_S2)
+        run_m = max(manners.VTOL_STOPS * stop_m, lift_m)
+    else:
+        rise_m = min(manners.APPROACH_HEIGHT_M, height_m)
+        run_m = rise_m / math.tan(min(math.radians(manners.APPROACH_SLOPE_DEG), slope_rad))
+    angle_rad = end.angle_rad if finish == "land" else None
+    foot = Foot(place, angle_rad, ground_m, lift_m, run_m, rise_m, _into_rad(model))
+    return fall(foot, origin, terms)
+
+
+def climb_slope_rad(model: FlightModel) -> float:
+    """Steepest climb over the ground: the aircraft's, and with the wind behind no faster than it is flown."""
+    return _slope_rad(model, manners_of(model.aircraft).climb_m_s)
+
+
+def sink_slope_rad(model: FlightModel) -> float:
+    """Steepest descent over the ground."""
+    return _slope_rad(model, manners_of(model.aircraft).sink_m_s)
+
+
+def _slope_rad(model: FlightModel, rate_m_s: float) -> float:
+    fastest_m_s = model.airspeed_m_s + model.wind.speed_m_s
+    return min(math.radians(model.max_climb_deg), math.atan(rate_m_s / fastest_m_s))
+
+
+def circle_radius_m(model: FlightModel) -> float:
+    """Radius of climbing and descending turns: somewhat above the tightest turn, as missions can say it."""
+    radius_m = EASY_TURN * model.turn_radius_m
+    if radius_m <= WHOLE_METRES_UP_TO_M:
+        return float(math.ceil(radius_m))
+    return float(math.ceil(radius_m / WIDE_STEP_M) * WIDE_STEP_M)
+
+
+def _into_rad(model: FlightModel) -> float | None:
+    if model.wind.speed_m_s < MINDED_WIND_M_S or model.aircraft.type == "multirotor":
+        return None
+    return model.wind.toward_rad + math.pi
+
+
+def _terms(around: Surround, slope_rad: float, model: FlightModel) -> Terms:
+    def too_low(path: Path, heights: Heights) -> bool:
+        ground = around.ground
+        if ground is None:
+            return False
+        points = path.sample(ground.step_m / 2.0, ground.step_m / 2.0)
+        clear_m = heights.at(points[:, 3]) - ground.at(points[:, :2])
+        # At the run's end the aircraft is lower than what is kept; it may be, for as long as it climbs out.
+        kept_m = np.minimum(around.clearance_m, heights.knots[0][1] - ground.at(points[:1, :2]))
+        wanted_m = np.minimum(around.clearance_m, kept_m + points[:, 3] * math.tan(slope_rad))
+        return bool(np.any(~(clear_m >= wanted_m - 1e-6)))
+
+    return Terms(
+        around.top_m,
+        slope_rad,
+        circle_radius_m(model),
+        LEVEL_OFF_S * model.airspeed_m_s,
+        around.zones,
+        around.connect,
+        around.cost_m,
+        too_low,
+        around.stop,
+    )

@@ -1,0 +1,24 @@
+"""How a flight ends where it is not said."""
+
+from __future__ import annotations
+
+import math
+
+from planner.plan import Finish
+from planner.route import Terminal
+from planner.vehicle.aircraft import Aircraft
+
+#: A flight that ends nearer to its start than this returns to it.
+NEAR_HOME_M = 200.0
+
+
+def finish_of(aircraft: Aircraft, start: Terminal, end: Terminal) -> Finish:
+    """The finish asked for; else a return where the end is near the start, a landing elsewhere.
+
+    PX4's wings take no mission without a landing (MIS_TKO_LAND_REQ), so they always land.
+    """
+    if aircraft.finish != "auto":
+        return aircraft.finish
+    if aircraft.autopilot == "px4" and aircraft.type != "multirotor":
+        return "land"
+    return "return" if math.dist(start.position, end.position) <= NEAR_HOME_M else "land"

@@ -1,0 +1,311 @@
+"""From the ground to the height of a route: run, climb along the first leg, climbing turns where it is short.
+
+A descent is a rise flown backwards: see :func:`fall`.
+
+The run's direction, where it is free, and the leg behind it are chosen together. The leg climbs as steeply as
+the aircraft may until it is high enough. Where the leg is too short for that, or low zones lie under it,
+whole turns are flown first, on a circle that touches the leg where one is clear of zones, else beside it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+
+from planner.airspace.zones import KeepOut
+from planner.dubins.path import Path, Segment, SegmentKind, join
+from planner.errors import InfeasibleError
+from planner.profile.foot import Foot
+from planner.profile.heights import Heights, tidy
+from planner.profile.lines import circle, cut, straights, with_circle
+from planner.progress import Stop, never, raise_if
+from planner.route import Anchor, Pose
+
+Connect = Callable[[Anchor, Anchor], Path]
+
+SIDES: tuple[SegmentKind, SegmentKind] = ("left", "right")
+#: Distances of circles beside the leg, in turn radii, directions to them, and places where they are entered.
+BESIDE_RADII, BESIDE_WAYS, ENTRIES = (3.0, 5.0, 8.0, 13.0, 21.0), 12, 8
+#: Circles beside the leg to which lines are sought.
+MOST_BESIDE = 6
+#: A turn more is not flown for the sake of less height than this.
+NO_TURN_M = 0.5
+
+
+@dataclass(frozen=True, slots=True)
+class Terms:
+    """What a rise keeps to.
+
+    Parameters
+    ----------
+    top_m
+        Altitude to be reached.
+    slope_rad
+        Steepest climb.
+    radius_m
+        Of climbing turns.
+    level_off_m
+        Flown level at the top before the goal.
+    zones
+        What is to be kept out of at any height up to the top, margins included.
+    connect
+        A flyable line between two anchors; raises InfeasibleError.
+    cost_m
+        Of a line: its length, and what its risk counts.
+    too_low
+        Whether a line behind the run, at these heights, comes too near to the ground below.
+    """
+
+    top_m: float
+    slope_rad: float
+    radius_m: float
+    level_off_m: float
+    zones: KeepOut
+    connect: Connect
+    cost_m: Callable[[Path], float]
+    too_low: Callable[[Path, Heights], bool] = lambda path, heights: False
+    stop: Stop = never
+
+    def run_for_m(self, rise_m: float) -> float:
+        """Distance over the ground that a climb takes at least."""
+        return max(rise_m, 0.0) / math.tan(self.slope_rad)
+
+
+@dataclass(frozen=True, slots=True)
+class Rise:
+    """A way up.
+
+    Parameters
+    ----------
+    path, heights
+        From the foot to the goal; where it climbs on the spot first, the first two knots say so.
+    run_m
+        Where the run ends.
+    turns_m
+        Where the climbing turns end; the run's end without any.
+    """
+
+    path: Path
+    heights: Heights
+    run_m: float
+    turns_m: float
+
+    @property
+    def inserted_m(self) -> float:
+        """Length of what is flown between run and turns' end."""
+        return self.turns_m - self.run_m
+
+
+#: Number of hard and of other conflicts, and cost: less is better.
+_Rank = tuple[int, int, float]
+
+
+def rise(foot: Foot, goal: Anchor, terms: Terms) -> Rise:
+    """The cheapest way found from the ground to a goal at the top, clear of zones where there is one.
+
+    Raises
+    ------
+    InfeasibleError
+        Where no line leads from any run to the goal.
+    """
+    best: tuple[_Rank, Path, float] | None = None
+    failed: InfeasibleError | None = None
+    for angle_rad in foot.headings(_natural_rad(foot, goal, terms)):
+        raise_if(terms.stop)
+        begin = foot.run_end(angle_rad)
+        try:
+            leg = terms.connect(begin, goal)
+        except InfeasibleError as error:
+            failed = error
+            continue
+        run = _run(foot, leg.start)
+        hard, soft = _conflicts(run, terms.zones)
+        rank = (hard, soft, terms.cost_m(run) + terms.cost_m(leg))
+        if best is None or rank < best[0]:
+            best = (rank, leg, leg.start.angle_rad)
+    if best is None:
+        raise failed or InfeasibleError("take-off", "start", "no way leads from it", "Move the start.")
+    _, leg, _ = best
+    climbed, heights, turns_m = _climbed(foot, leg, terms)
+    run = _run(foot, climbed.start)
+    knots = [(0.0, foot.ground_m)]
+    if foot.lift_m > 0.0:
+        knots.append((0.0, foot.ground_m + foot.lift_m))
+    if foot.run_m > 0.0:
+        knots.append((foot.run_m, foot.altitude_m))
+    whole = Heights(tuple(knots)) if len(knots) > 1 else None
+    heights = heights if whole is None else whole.then(heights)
+    path = join(run, climbed) if foot.run_m > 0.0 else climbed
+    return Rise(path, heights, foot.run_m, foot.run_m + turns_m)
+
+
+def fall(foot: Foot, origin: Anchor, terms: Terms) -> Rise:
+    """The way down from an origin at the top to the ground: a rise flown backwards.
+
+    ``foot.angle_rad`` is the direction in which the aircraft arrives. ``run_m`` and ``turns_m`` of what is
+    given count from the ground, backwards.
+    """
+    backwards = replace(terms, connect=lambda a, b: terms.connect(_turned(b), _turned(a)).reverse())
+    back = None if foot.angle_rad is None else foot.angle_rad + math.pi
+    # With the wind ahead at the landing it is behind on the line flown backwards.
+    into = None if foot.into_rad is None else foot.into_rad + math.pi
+    up = rise(replace(foot, angle_rad=back, into_rad=into), _turned(origin), backwards)
+    return Rise(up.path.reverse(), up.heights.reverse(), up.run_m, up.turns_m)
+
+
+def _turned(anchor: Anchor) -> Anchor:
+    angle_rad = None if anchor.angle_rad is None else anchor.angle_rad + math.pi
+    return Anchor(anchor.east_m, anchor.north_m, angle_rad)
+
+
+def _run(foot: Foot, end: Pose) -> Path:
+    start = Pose(*foot.position, end.angle_rad)
+    return Path((Segment("straight", start, foot.run_m),))
+
+
+def _natural_rad(foot: Foot, goal: Anchor, terms: Terms) -> float:
+    """The direction in which the leg would leave the foot if nothing were flown straight."""
+    try:
+        return terms.connect(Anchor(*foot.position, None), goal).start.angle_rad
+    except InfeasibleError:
+        return math.atan2(goal.north_m - foot.position[1], goal.east_m - foot.position[0])
+
+
+def _conflicts(path: Path, zones: KeepOut) -> tuple[int, int]:
+    """Hard and other zones that a line enters."""
+    if path.length_m <= 0.0 or zones.clear(path):
+        return 0, 0
+    found = zones.conflicts(path)
+    return sum(c.hard for c in found), sum(not c.hard for c in found)
+
+
+def _climbed(foot: Foot, leg: Path, terms: Terms) -> tuple[Path, Heights, float]:
+    """The leg with its climb, and where on it climbing turns end (0 without any)."""
+    needed_m = terms.run_for_m(terms.top_m - foot.altitude_m)
+    if needed_m <= max(leg.length_m - terms.level_off_m, 0.0):
+        plain = Heights(tidy(((0.0, foot.altitude_m), (needed_m, terms.top_m), (leg.length_m, terms.top_m))))
+        hard, soft = _conflicts(cut(leg, 0.0, needed_m), terms.zones)
+        rank = (hard + terms.too_low(leg, plain), soft, 0.0)
+        if rank[:2] == (0, 0):
+            return leg, plain, 0.0
+        found = _turning(foot, leg, terms)
+        return found[1:] if found is not None and found[0] < rank else (leg, plain, 0.0)
+    found = _turning(foot, leg, terms)
+    if found is not None and found[0][:2] == (0, 0):
+        return found[1:]
+    beside = _beside(foot, leg, terms)
+    choices = [choice for choice in (found, beside) if choice is not None]
+    if not choices:
+        raise InfeasibleError(
+            "climb",
+            "start",
+            f"there is no place for turns of {terms.radius_m:.0f} m radius to climb {terms.top_m:.0f} m in",
+            "Fly lower, climb steeper (max_climb_deg), or give more room.",
+        )
+    return min(choices, key=lambda choice: choice[0])[1:]
+
+
+_Choice = tuple[_Rank, Path, Heights, float]
+
+
+def _turning(foot: Foot, leg: Path, terms: Terms) -> _Choice | None:
+    """Climbing turns on a circle that touches the leg; the best there is, clear or not."""
+    best: _Choice | None = None
+    for at_m in straights(leg, 2.0 * terms.radius_m):
+        raise_if(terms.stop)
+        for choice in _turns_at(foot, leg, at_m, terms):
+            if best is None or choice[0] < best[0]:
+                best = choice
+        if best is not None and best[0][:2] == (0, 0):
+            # Further along there are no fewer turns to fly, for as much is climbed on the way.
+            break
+    return best
+
+
+def _turns_at(foot: Foot, leg: Path, at_m: float, terms: Terms) -> Iterator[_Choice]:
+    """Turns at one place: as many as the leg behind needs, or all of the height there."""
+    slope = math.tan(terms.slope_rad)
+    in_m = min(terms.top_m, foot.altitude_m + at_m * slope)
+    round_m = math.tau * terms.radius_m
+    ahead_m = max(leg.length_m - at_m - terms.level_off_m, 0.0)
+    counts = {
+        max(1, math.ceil((out_m - in_m - NO_TURN_M) / (round_m * slope)))
+        for out_m in (max(in_m, terms.top_m - ahead_m * slope), terms.top_m)
+    }
+    for count in sorted(counts):
+        out_m = min(terms.top_m, in_m + count * round_m * slope)
+        rest_m = min(terms.run_for_m(terms.top_m - out_m), leg.length_m - at_m)
+        for side in SIDES:
+            turns = circle(leg, at_m, side, terms.radius_m, count)
+            flown = (cut(leg, 0.0, at_m), circle(leg, at_m, side, terms.radius_m, 1))
+            hard, soft = (
+                sum(many)
+                for many in zip(
+                    *(_conflicts(piece, terms.zones) for piece in (*flown, cut(leg, at_m, at_m + rest_m))),
+                    strict=True,
+                )
+            )
+            knots = (
+                (0.0, foot.altitude_m),
+                (at_m, in_m),
+                (at_m + turns.length_m, out_m),
+                (at_m + turns.length_m + rest_m, terms.top_m),
+                (leg.length_m + turns.length_m, terms.top_m),
+            )
+            line, heights = with_circle(leg, at_m, turns), Heights(tidy(knots))
+            hard += terms.too_low(line, heights)
+            yield (hard, soft, turns.length_m), line, heights, at_m + turns.length_m
+
+
+def _beside(foot: Foot, leg: Path, terms: Terms) -> _Choice | None:
+    """All of the height on a circle beside the leg's beginning, with lines to it and on from it."""
+    best: _Choice | None = None
+    begin = Anchor(*leg.start.position, leg.start.angle_rad)
+    goal = Anchor(*leg.end.position, leg.end.angle_rad)
+    tried = 0
+    for radii in BESIDE_RADII:
+        for way in range(BESIDE_WAYS):
+            way_rad = leg.start.angle_rad + way * math.tau / BESIDE_WAYS
+            centre = (
+                begin.east_m + radii * terms.radius_m * math.cos(way_rad),
+                begin.north_m + radii * terms.radius_m * math.sin(way_rad),
+            )
+            for side in SIDES:
+                if tried >= MOST_BESIDE:
+                    return best
+                if not terms.zones.clear(_ring(centre, 0.0, side, terms.radius_m)):
+                    continue
+                tried += 1
+                choice = _round(foot, begin, goal, centre, side, terms)
+                if choice is not None and (best is None or choice[0] < best[0]):
+                    best = choice
+    return best
+
+
+def _ring(centre: tuple[float, float], at_rad: float, side: SegmentKind, radius_m: float) -> Path:
+    """A whole circle about a centre, from a place at an angle seen from there."""
+    turn = 1.0 if side == "left" else -1.0
+    place = (centre[0] + radius_m * math.cos(at_rad), centre[1] + radius_m * math.sin(at_rad))
+    return Path((Segment(side, Pose(*place, at_rad + turn * math.pi / 2.0), math.tau * radius_m, radius_m),))
+
+
+def _round(
+    foot: Foot, begin: Anchor, goal: Anchor, centre: tuple[float, float], side: SegmentKind, terms: Terms
+) -> _Choice | None:
+    """The cheapest of the ways by a circle: to it, round it until high enough, and on."""
+    best: _Choice | None = None
+    for k in range(ENTRIES):
+        raise_if(terms.stop)
+        ring = _ring(centre, k * math.tau / ENTRIES, side, terms.radius_m)
+        pose = Anchor(*ring.start.position, ring.start.angle_rad)
+        try:
+            through = join(terms.connect(begin, pose), terms.connect(pose, goal))
+            there_m = terms.connect(begin, pose).length_m
+        except InfeasibleError:
+            continue
+        for choice in _turns_at(foot, through, there_m, terms):
+            rank = (*choice[0][:2], choice[0][2] + terms.cost_m(through))
+            if best is None or rank < best[0]:
+                best = (rank, *choice[1:])
+    return best

@@ -1,0 +1,151 @@
+"""How long the stretches of a flight take.
+
+Wings keep their airspeed as the autopilot measures it, the equivalent one, so through thinner air they fly
+faster: by the root of the density at sea level over that at their height (standard atmosphere). What hovers
+keeps a speed over the ground, and brakes before arcs to what it flies their chords with.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from itertools import groupby, pairwise
+
+from planner.airspace.values import Wind
+from planner.dubins.path import Path
+from planner.profile.flight import Stretch
+from planner.vehicle.aircraft import Aircraft
+from planner.vehicle.atmosphere import true_over_equivalent
+from planner.vehicle.manners import CHORD_ERROR_M, LARGEST_STEP_RAD, Manners
+from planner.vehicle.wind import duration_s
+
+#: Speeds are found to a part in a million.
+HALVINGS = 40
+
+
+def wing_times(
+    stretches: Sequence[Stretch], aircraft: Aircraft, manners: Manners, wind: Wind, datum_amsl_m: float
+) -> list[float]:
+    """Seconds of each stretch flown on wings; hover stretches at the hover's rates."""
+    on_the_spot_s = _spots_s(stretches, manners)
+    return [
+        spot_s
+        if s.segment is None
+        else duration_s(Path((s.segment,)), _over_ground_m_s(s, aircraft.airspeed_m_s, datum_amsl_m), wind)
+        for s, spot_s in zip(stretches, on_the_spot_s, strict=True)
+    ]
+
+
+def _over_ground_m_s(stretch: Stretch, airspeed_m_s: float, datum_amsl_m: float) -> float:
+    """Horizontal part of the true airspeed on a stretch."""
+    middle_m = datum_amsl_m + 0.5 * (stretch.start_altitude_m + stretch.end_altitude_m)
+    return airspeed_m_s * true_over_equivalent(middle_m) * stretch.ground_m / stretch.length_m
+
+
+def _spots_s(stretches: Sequence[Stretch], manners: Manners) -> list[float]:
+    """Seconds of each climb on the spot, 0 for others; those that follow each other are one, and share it."""
+    found: list[float] = []
+    for on_the_spot, run in groupby(stretches, key=lambda s: s.segment is None):
+        together = list(run)
+        rise_m = together[-1].end_altitude_m - together[0].start_altitude_m
+        total_s = spot_s(rise_m, manners) if on_the_spot else 0.0
+        found += [total_s * s.length_m / abs(rise_m) if on_the_spot else 0.0 for s in together]
+    return found
+
+
+def spot_s(rise_m: float, manners: Manners) -> float:
+    """Seconds of a climb or descent on the spot, from rest to rest, the last metres at landing speed."""
+    if rise_m >= 0.0:
+        return rest_to_rest_s(rise_m, manners.climb_m_s, manners.vertical_accel_m_s2)
+    slow_m = min(manners.land_below_m, -rise_m)
+    slow_s = slow_m / manners.land_m_s if manners.land_m_s > 0.0 else 0.0
+    return rest_to_rest_s(-rise_m - slow_m, manners.sink_m_s, manners.vertical_accel_m_s2) + slow_s
+
+
+def rest_to_rest_s(distance_m: float, speed_m_s: float, accel_m_s2: float) -> float:
+    """Seconds for a distance from rest to rest at a limited speed and acceleration."""
+    if distance_m <= speed_m_s**2 / accel_m_s2:
+        return 2.0 * math.sqrt(max(distance_m, 0.0) / accel_m_s2)
+    return distance_m / speed_m_s + speed_m_s / accel_m_s2
+
+
+def rotor_times(stretches: Sequence[Stretch], speed_m_s: float, manners: Manners) -> list[float]:
+    """Seconds of each stretch flown by what hovers: at rest at both ends of what is flown over the ground."""
+    limits = [_allowed_m_s(s, speed_m_s, manners) for s in stretches]
+    joints = [0.0, *(min(pair) for pair in pairwise(limits)), 0.0]
+    for k, s in enumerate(stretches):
+        joints[k + 1] = min(joints[k + 1], _reached_m_s(joints[k], s.ground_m, manners))
+    for k in range(len(stretches) - 1, -1, -1):
+        joints[k] = min(joints[k], _reached_m_s(joints[k + 1], stretches[k].ground_m, manners))
+    return [
+        spot_s if s.segment is None else _between_s(s.length_m, joints[k], joints[k + 1], limits[k], manners)
+        for k, (s, spot_s) in enumerate(zip(stretches, _spots_s(stretches, manners), strict=True))
+    ]
+
+
+def _allowed_m_s(stretch: Stretch, speed_m_s: float, manners: Manners) -> float:
+    """Fastest on a stretch: on arcs what their chords allow, on slopes what the rates do."""
+    if stretch.segment is None:
+        return 0.0
+    allowed = speed_m_s
+    if stretch.segment.kind != "straight":
+        turn_rad, radius_m = abs(stretch.segment.turn_rad), stretch.segment.radius_m
+        allowed = min(allowed, chord_speed_m_s(turn_rad, radius_m, manners))
+    rise_m = stretch.end_altitude_m - stretch.start_altitude_m
+    rate = manners.climb_m_s if rise_m > 0.0 else manners.sink_m_s
+    return min(allowed, rate * stretch.length_m / abs(rise_m)) if abs(rise_m) > 0.0 else allowed
+
+
+def chord_speed_m_s(turn_rad: float, radius_m: float, manners: Manners) -> float:
+    """Speed along an arc that is flown from chord to chord, as missions say it.
+
+    ArduCopter flies a chord no faster than from rest to rest, which over short ones its jerk decides:
+    half a chord of c takes it to v with c / 2 = √(v³ / j). PX4 passes a corner as fast as the circle allows
+    that touches both chords where it takes up the next one.
+    """
+    step_rad = 2.0 * math.acos(max(1.0 - CHORD_ERROR_M / radius_m, math.cos(0.5 * LARGEST_STEP_RAD)))
+    chords = max(1, math.ceil(turn_rad / step_rad - 1e-9))
+    corner_rad = turn_rad / chords
+    if manners.corner_m > 0.0:
+        return math.sqrt(manners.accel_m_s2 * manners.corner_m / math.tan(0.5 * corner_rad))
+    chord_m = 2.0 * radius_m * math.sin(0.5 * corner_rad)
+    return float((0.25 * chord_m**2 * manners.jerk_m_s3) ** (1.0 / 3.0))
+
+
+def _change_s(from_m_s: float, to_m_s: float, manners: Manners) -> float:
+    """Seconds that a change of speed takes: its acceleration rises and falls by the jerk."""
+    change = abs(to_m_s - from_m_s)
+    accel, jerk = manners.accel_m_s2, manners.jerk_m_s3
+    return 2.0 * math.sqrt(change / jerk) if change < accel**2 / jerk else change / accel + accel / jerk
+
+
+def _change_m(from_m_s: float, to_m_s: float, manners: Manners) -> float:
+    """Distance that a change of speed takes."""
+    return 0.5 * (from_m_s + to_m_s) * _change_s(from_m_s, to_m_s, manners)
+
+
+def _reached_m_s(from_m_s: float, distance_m: float, manners: Manners) -> float:
+    """Fastest at the end of a distance, found by halving."""
+    low, high = from_m_s, from_m_s + math.sqrt(2.0 * manners.accel_m_s2 * distance_m) + 1e-9
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if _change_m(from_m_s, middle, manners) <= distance_m else (low, middle)
+    return low
+
+
+def _between_s(length_m: float, from_m_s: float, to_m_s: float, most_m_s: float, manners: Manners) -> float:
+    """Seconds for a length between two speeds, faster between them as far as there is room."""
+    if length_m <= 0.0:
+        return 0.0
+    low, high = max(from_m_s, to_m_s), max(most_m_s, from_m_s, to_m_s)
+
+    def changing_m(peak: float) -> float:
+        return _change_m(from_m_s, peak, manners) + _change_m(peak, to_m_s, manners)
+
+    if changing_m(high) > length_m:
+        for _ in range(HALVINGS):
+            middle = 0.5 * (low + high)
+            low, high = (middle, high) if changing_m(middle) <= length_m else (low, middle)
+        high = low
+    changing_s = _change_s(from_m_s, high, manners) + _change_s(high, to_m_s, manners)
+    return changing_s + max(length_m - changing_m(high), 0.0) / max(high, 1e-6)

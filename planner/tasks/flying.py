@@ -1,0 +1,238 @@
+"""From passes in order to the whole flight: up to the first, on from each to the next, down from the last."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from itertools import pairwise
+from typing import TypeVar
+
+import numpy as np
+
+from planner.airspace.airspace import Airspace, Level
+from planner.airspace.zones import TRANSIT_MARGIN_M, KeepOut, keep_out
+from planner.dubins.path import Path, Segment, join
+from planner.errors import InfeasibleError
+from planner.profile.compose import Composed, compose, times_of
+from planner.profile.ends import Surround, climb_slope_rad, down, sink_slope_rad, up
+from planner.profile.finish import finish_of
+from planner.profile.heights import level as level_heights
+from planner.profile.lines import cut
+from planner.profile.rise import Rise
+from planner.progress import Progress, Stop, raise_if
+from planner.publish import Leg
+from planner.route import Anchor, CollectPass, Terminal
+from planner.vehicle.model import FlightModel
+
+#: Take-off, climbing turns and approaches keep this far: they are held less well than lines.
+MANOEUVRE_MARGIN_M = 20.0
+
+#: A flyable line between two anchors clear of zones; raises InfeasibleError.
+Connector = Callable[[Anchor, Anchor, KeepOut], Path]
+#: The part of a line that is flown low.
+Low = Callable[[Path], Path]
+#: What one leg is made of by a connector.
+Made = TypeVar("Made")
+
+
+@dataclass(frozen=True, slots=True)
+class Station:
+    """Where a leg leads: a pass, or a place that is flown over.
+
+    Parameters
+    ----------
+    arrive
+        Where the leg ends: before the settling run of a pass.
+    collect
+        The pass; None where there is none.
+    """
+
+    name: str
+    arrive: Anchor
+    collect: CollectPass | None = None
+
+    @classmethod
+    def of(cls, collect: CollectPass, settle_m: float) -> Station:
+        """That of a pass with so much straight flight before it."""
+        pose = collect.settling(settle_m)
+        return cls("+".join(collect.regions), Anchor(*pose.position, pose.angle_rad), collect)
+
+
+@dataclass(frozen=True, slots=True)
+class FlightLevels:
+    """The flight's heights.
+
+    Parameters
+    ----------
+    airspace, level
+        Where the route is flown.
+    altitude_m
+        Of the route, over the flight's datum.
+    """
+
+    airspace: Airspace
+    level: Level
+    altitude_m: float
+
+    @property
+    def home_ground_m(self) -> float:
+        """Altitude of home over the flight's datum."""
+        return self.altitude_m - self.level.height_m
+
+    @property
+    def datum_amsl_m(self) -> float:
+        """Height of the flight's datum over mean sea level."""
+        return self.level.amsl_m - self.altitude_m
+
+    def ground_m(self, place: tuple[float, float]) -> float:
+        """Altitude of the ground at a place over the flight's datum: home's where there is no terrain."""
+        ground = self.airspace.terrain
+        if ground is None:
+            return self.home_ground_m
+        there_m = float(ground.at(np.array([place]))[0])
+        return self.home_ground_m if math.isnan(there_m) else there_m - self.datum_amsl_m
+
+    def zones(self, margin_m: float, *, low: bool) -> KeepOut:
+        """What is to be kept out of at the route's level, or, ``low``, anywhere from the ground up to it."""
+        lowest = Level(0.0, self.level.amsl_m - self.level.height_m) if low else None
+        return keep_out(self.airspace, self.level, margin_m, lowest=lowest)
+
+
+def fly_whole(
+    stations: Sequence[Station],
+    ends: tuple[Terminal, Terminal],
+    model: FlightModel,
+    levels: FlightLevels,
+    connectors: Mapping[str, Connector],
+    cost_m: Callable[[Path], float],
+    unminded: Collection[str],
+    progress: Progress,
+    stop: Stop,
+) -> tuple[Composed, tuple[Leg, ...], tuple[str, ...]]:
+    """The whole flight of one aircraft, its legs, and notes on legs that not the first connector found.
+
+    Parameters
+    ----------
+    stations
+        In flight order, one at least.
+    ends
+        Start and end.
+    connectors
+        By the name of their method; the first that finds a line makes the leg.
+    cost_m
+        Of a line: its length, and what its risk counts.
+    unminded
+        Threats whose risk has no weight.
+
+    Raises
+    ------
+    InfeasibleError
+        Where no line leads from one to the next, or there is no place to climb in.
+    """
+    start, end = ends
+    names = [start.name, *(station.name for station in stations), end.name]
+    zones = levels.zones(TRANSIT_MARGIN_M, low=False)
+    low_zones = levels.zones(TRANSIT_MARGIN_M, low=True)
+    manoeuvre_zones = levels.zones(MANOEUVRE_MARGIN_M, low=True).without(unminded)
+    legs: list[Leg] = []
+    notes: list[str] = []
+
+    def connect(connector: Connector, low: Low, here: Anchor, there: Anchor) -> Path:
+        path = connector(here, there, zones)
+        if low_zones == zones or low_zones.clear(low(path)):
+            return path
+        try:
+            return connector(here, there, low_zones)
+        except InfeasibleError:
+            # Not every way is barred: how it climbs is looked at by itself.
+            return path
+
+    def made(make: Callable[[Connector], Made]) -> Made:
+        ends_of_leg = (names[len(legs)], names[len(legs) + 1])
+        *others, (last, connector) = connectors.items()
+        for method, other in others:
+            try:
+                found = make(other)
+            except InfeasibleError as error:
+                said = " and ".join(ends_of_leg)
+                notes.append(f"{method.upper()} connects {said} {error.message}: {last} used")
+            else:
+                legs.append(Leg(*ends_of_leg, method))
+                return found
+        found = make(connector)
+        legs.append(Leg(*ends_of_leg, last))
+        return found
+
+    def around(connector: Connector, low: Low) -> Surround:
+        airspace = levels.airspace
+        return Surround(
+            levels.altitude_m,
+            manoeuvre_zones,
+            partial(connect, connector, low),
+            cost_m,
+            airspace.terrain,
+            airspace.clearance_m,
+            stop,
+        )
+
+    progress("transit", 0.0)
+    first, goal = stations[0], stations[0].arrive
+    climb_m = levels.level.height_m / math.tan(climb_slope_rad(model))
+    sink_m = levels.level.height_m / math.tan(sink_slope_rad(model))
+    rising = made(
+        lambda connector: up(
+            start, levels.home_ground_m, goal, model, around(connector, lambda path: cut(path, 0.0, climb_m))
+        )
+    )
+    rising = _settled(rising, first.collect, levels.altitude_m)
+    arrived, between = rising.path, []
+    for here, there in pairwise(stations):
+        raise_if(stop)
+        progress("transit", len(legs) / (len(stations) + 1))
+        leg = made(partial(_leg, _leaves(here, arrived), there.arrive, zones))
+        arrived = _straight_on(leg, there.collect)
+        between.append(arrived)
+    origin = _leaves(stations[-1], arrived)
+    grounds_m = (levels.home_ground_m, levels.ground_m(end.position))
+    finish = finish_of(model.aircraft, start, end)
+    falling = made(
+        lambda connector: down(
+            end,
+            start.position,
+            grounds_m,
+            origin,
+            model,
+            around(connector, lambda path: cut(path, path.length_m - sink_m, path.length_m)),
+            finish,
+        )
+    )
+    times = times_of(model, levels.datum_amsl_m)
+    passes = [station.collect for station in stations]
+    composed = compose(rising, between, passes, falling, levels.altitude_m, times)
+    return composed, tuple(legs), tuple(notes)
+
+
+def _leaves(station: Station, arrived: Path) -> Anchor:
+    """Where the next leg begins: behind the pass, or where the last leg has come to."""
+    pose = arrived.end if station.collect is None else station.collect.exit
+    return Anchor(*pose.position, pose.angle_rad)
+
+
+def _leg(start: Anchor, goal: Anchor, zones: KeepOut, connector: Connector) -> Path:
+    return connector(start, goal, zones)
+
+
+def _settled(rising: Rise, collect: CollectPass | None, top_m: float) -> Rise:
+    """A rise with the settling run of the first pass."""
+    path = _straight_on(rising.path, collect)
+    gap_m = path.length_m - rising.path.length_m
+    heights = rising.heights.then(level_heights(gap_m, top_m)) if gap_m > 0.0 else rising.heights
+    return Rise(path, heights, rising.run_m, rising.turns_m)
+
+
+def _straight_on(path: Path, collect: CollectPass | None) -> Path:
+    """A leg with the settling run behind it: straight on to where the collect begins."""
+    gap_m = 0.0 if collect is None else math.dist(path.end.position, collect.start)
+    return join(path, Path((Segment("straight", path.end, gap_m),))) if gap_m > 1e-9 else path

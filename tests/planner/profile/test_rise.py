@@ -1,0 +1,144 @@
+"""Rises and falls: from the ground to the route and back, within the slope, flyable, clear of zones."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from shapely.geometry import LineString, Point
+
+from planner.airspace.zones import Disc, KeepOut
+from planner.dubins.path import Path
+from planner.profile.circling import circle_down
+from planner.profile.foot import Foot
+from planner.profile.rise import Rise, Terms, fall, rise
+from planner.route import Anchor
+from planner.transit.tangent import connect
+
+RADIUS_M = 100.0
+CIRCLE_M = 105.0
+SLOPE_RAD = math.radians(8.0)
+OPEN = KeepOut()
+
+
+def terms(top_m: float, zones: KeepOut = OPEN) -> Terms:
+    return Terms(
+        top_m,
+        SLOPE_RAD,
+        CIRCLE_M,
+        100.0,
+        zones,
+        lambda start, goal: connect(start, goal, zones, RADIUS_M),
+        lambda path: path.length_m,
+    )
+
+
+def wing(angle_rad: float | None = None, into_rad: float | None = None) -> Foot:
+    return Foot((0.0, 0.0), angle_rad, 0.0, 0.0, 50.0 / math.tan(SLOPE_RAD), 50.0, into_rad)
+
+
+def sampled(found: Rise) -> tuple[np.ndarray, np.ndarray]:
+    points = found.path.sample(5.0, 5.0)
+    return points[:, :2], found.heights.at(points[:, 3])
+
+
+def steepest(found: Rise) -> float:
+    rows = found.heights.knots
+    return max(abs(b - a) / (b_m - a_m) for (a_m, a), (b_m, b) in pairwise(rows) if b_m > a_m + 1e-6)
+
+
+def continuous(path: Path) -> bool:
+    return all(
+        math.dist(a.end.position, b.start.position) < 1e-6
+        and abs(math.remainder(a.end.angle_rad - b.start.angle_rad, math.tau)) < 1e-6
+        for a, b in pairwise(path.segments)
+    )
+
+
+goals = st.tuples(st.floats(600.0, 9_000.0), st.floats(-math.pi, math.pi), st.floats(-math.pi, math.pi))
+
+
+@settings(max_examples=40)
+@given(goals, st.floats(80.0, 900.0), st.booleans())
+def test_up_and_down_keep_the_slope(goal: tuple[float, float, float], top_m: float, down: bool) -> None:
+    """Whatever the distance, the height is won within the slope, on a line that can be flown."""
+    away_m, way_rad, angle_rad = goal
+    there = Anchor(away_m * math.cos(way_rad), away_m * math.sin(way_rad), angle_rad)
+    found = fall(wing(), there, terms(top_m)) if down else rise(wing(), there, terms(top_m))
+    first, last = found.heights.knots[0][1], found.heights.knots[-1][1]
+    assert (first, last) == pytest.approx((top_m, 0.0) if down else (0.0, top_m), abs=1e-6)
+    assert steepest(found) <= math.tan(SLOPE_RAD) * (1.0 + 1e-9)
+    assert continuous(found.path)
+    assert found.heights.length_m == pytest.approx(found.path.length_m, abs=1e-6)
+    ends = (found.path.start, found.path.end)
+    high, low = ends if down else ends[::-1]
+    assert low.position == pytest.approx((0.0, 0.0), abs=1e-6)
+    assert high.position == pytest.approx(there.position, abs=1e-6)
+
+
+@settings(max_examples=30)
+@given(goals, st.floats(300.0, 700.0), st.floats(0.0, math.tau), st.booleans())
+def test_what_is_flown_low_is_clear_of_zones(
+    goal: tuple[float, float, float], away_m: float, way_rad: float, hard: bool
+) -> None:
+    """With a disc beside the start that holds neither end, run, climb and turns stay out of it."""
+    disc = Disc("d", away_m * math.cos(way_rad), away_m * math.sin(way_rad), 0.4 * away_m, hard)
+    there = Anchor(goal[0] * math.cos(goal[1]), goal[0] * math.sin(goal[1]), goal[2])
+    shape = Point(disc.east_m, disc.north_m).buffer(disc.radius_m, quad_segs=90)
+    if shape.distance(Point(there.position)) < 3.0 * RADIUS_M:
+        return
+    found = rise(wing(), there, terms(500.0, KeepOut(discs=(disc,))))
+    places, _ = sampled(found)
+    assert LineString(places).intersection(shape.buffer(-0.5)).length == 0.0
+
+
+def test_a_given_heading_is_flown() -> None:
+    """The run goes where the start says, whatever way the route lies."""
+    found = rise(wing(angle_rad=2.0), Anchor(4_000.0, -1_000.0, 0.0), terms(300.0))
+    assert found.path.start.angle_rad == pytest.approx(2.0)
+    down = fall(wing(angle_rad=2.0), Anchor(4_000.0, -1_000.0, 0.0), terms(300.0))
+    assert math.remainder(down.path.end.angle_rad - 2.0, math.tau) == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("into_rad", [0.0, 1.3, -2.4])
+def test_nobody_takes_off_or_lands_with_the_wind_behind(into_rad: float) -> None:
+    """Runs go into the wind, or across it."""
+    for way_rad in np.linspace(-math.pi, math.pi, 7):
+        there = Anchor(3_000.0 * math.cos(way_rad), 3_000.0 * math.sin(way_rad), 0.5)
+        foot = wing(into_rad=into_rad)
+        assert math.cos(rise(foot, there, terms(300.0)).path.start.angle_rad - into_rad) >= -1e-6
+        assert math.cos(fall(foot, there, terms(300.0)).path.end.angle_rad - into_rad) >= -1e-6
+
+
+def test_a_long_first_leg_climbs_without_turns() -> None:
+    """Where the leg is long enough nothing is inserted."""
+    found = rise(wing(), Anchor(8_000.0, 0.0, 0.0), terms(500.0))
+    assert found.inserted_m == 0.0
+    assert found.path.length_m == pytest.approx(8_000.0)
+
+
+def test_a_short_first_leg_climbs_in_no_more_turns_than_it_needs() -> None:
+    """One turn fewer would be too steep."""
+    found = rise(wing(), Anchor(1_500.0, 0.0, 0.0), terms(500.0))
+    round_m = math.tau * CIRCLE_M
+    arcs = [segment for segment in found.path.segments if segment.kind != "straight"]
+    turns = sum(segment.length_m for segment in arcs if segment.length_m >= round_m - 1e-6)
+    assert turns == pytest.approx(round(turns / round_m) * round_m)
+    room_m = found.path.length_m - round_m - 100.0
+    assert room_m * math.tan(SLOPE_RAD) < 500.0 + 1.0
+
+
+@given(st.floats(120.0, 900.0), st.floats(-math.pi, math.pi))
+@settings(max_examples=20)
+def test_a_return_ends_on_its_circle(top_m: float, angle_rad: float) -> None:
+    """Down to the circle's height, on the circle, at least once round."""
+    found = circle_down(Anchor(900.0, 200.0, angle_rad), (0.0, 0.0), 100.0, terms(top_m))
+    places, altitudes_m = sampled(found)
+    assert altitudes_m[-1] == pytest.approx(100.0, abs=1e-6)
+    assert steepest(found) <= math.tan(SLOPE_RAD) * (1.0 + 1e-9)
+    last = places[-int(math.tau * CIRCLE_M / 5.0) :]
+    np.testing.assert_allclose(np.hypot(*last.T), CIRCLE_M, atol=1e-6)
