@@ -121,6 +121,9 @@ def rise(foot: Foot, goal: Anchor, terms: Terms) -> Rise:
             continue
         run = _run(foot, leg.start)
         hard, soft = _conflicts(run, terms.zones)
+        if foot.run_m > 0.0:
+            low_m = foot.ground_m + foot.lift_m
+            hard += terms.too_low(run, Heights(((0.0, low_m), (foot.run_m, foot.altitude_m))))
         rank = (hard, soft, terms.cost_m(run) + terms.cost_m(leg))
         if best is None or rank < best[0]:
             best = (rank, leg, leg.start.angle_rad)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+import numpy as np
 import pytest
 from shapely.geometry import LineString, Point, Polygon
 
@@ -80,7 +81,9 @@ def test_a_task_is_answered_published_and_judged() -> None:
         assert line.distance(Point(region.area.centroid)) < 0.05
     assert {v.constraint for v in plan.violations} == {"coverage"}
     assert max(plan.metrics.coverage.values()) < 1e-6
-    assert plan.metrics.route_length_m == pytest.approx(line.length, rel=1e-3)
+    altitudes_m = np.array([place[2] for place in plan.paths[0].line])
+    lengths_m = np.hypot(np.hypot(*np.diff(np.array(line.coords), axis=0).T), np.diff(altitudes_m))
+    assert plan.metrics.flight_length_m == pytest.approx(float(lengths_m.sum()), rel=1e-3)
 
 
 @pytest.mark.parametrize(

@@ -33,7 +33,7 @@ def warned(scenario: Scenario) -> set[str]:
     return {warning.feature for warning in scenario.warnings if warning.rule == "home-height-unknown"}
 
 
-@pytest.mark.parametrize(("home_m", "inside"), [(None, False), (0.0, True), (400.0, False), (1600.0, True)])
+@pytest.mark.parametrize(("home_m", "inside"), [(None, False), (0.0, True), (400.0, False), (3000.0, True)])
 def test_a_zone_is_crossed_only_where_its_band_is_known_to_be_elsewhere(
     home_m: float | None, inside: bool
 ) -> None:

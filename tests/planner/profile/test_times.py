@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import pytest
 from hypothesis import given, settings
@@ -12,7 +13,7 @@ from scipy.integrate import quad
 from planner.airspace.values import Wind
 from planner.dubins.path import Segment
 from planner.profile.flight import Stretch
-from planner.profile.times import rest_to_rest_s, rotor_times, wing_times
+from planner.profile.times import chord_speed_m_s, rest_to_rest_s, rotor_times, wing_times
 from planner.route import Pose
 from planner.vehicle.aircraft import Aircraft
 from planner.vehicle.manners import Manners
@@ -49,17 +50,31 @@ def test_from_rest_to_rest(distance_m: float, speed_m_s: float, accel_m_s2: floa
     assert rest_to_rest_s(distance_m, speed_m_s, accel_m_s2) == pytest.approx(expected, rel=1e-4)
 
 
-def test_a_straight_between_two_arcs_is_entered_and_left_at_the_arcs_speed() -> None:
-    """On arcs of radius r what hovers flies √(a r), between them faster as far as there is room."""
+def test_a_longer_straight_takes_longer_by_what_is_flown_at_full_speed() -> None:
+    """Speeding up from an arc and braking for the next one take the same, however long the straight."""
     arc = Segment("left", ORIGIN, 40.0, 10.0)
     on_arc = Stretch("mission", ORIGIN, arc, 0.0, 0.0, 0.0)
-    times = rotor_times([on_arc, straight(400.0), on_arc], 12.0, ROTOR)
-    slow = math.sqrt(2.5 * 10.0)
-    speeding_m = (144.0 - slow**2) / 5.0
-    expected = 2.0 * (12.0 - slow) / 2.5 + (400.0 - 2.0 * speeding_m) / 12.0
-    assert times[1] == pytest.approx(expected)
-    # From rest to the arc's speed, and the rest of it at that.
-    assert times[0] == pytest.approx(slow / 2.5 + (40.0 - slow**2 / 5.0) / slow)
+    short, long = (rotor_times([on_arc, straight(m), on_arc], 12.0, ROTOR) for m in (400.0, 1_000.0))
+    assert long[1] - short[1] == pytest.approx(600.0 / 12.0)
+    assert short[0] == pytest.approx(long[0])
+    assert short[1] > 400.0 / 12.0
+    assert short[0] > 40.0 / 12.0
+
+
+@pytest.mark.parametrize(("chord_m", "flown_m_s"), [(4.0, 1.5), (14.0, 3.7), (17.0, 3.8), (26.0, 5.5)])
+def test_chords_are_flown_as_fast_as_arducopter_flew_them(chord_m: float, flown_m_s: float) -> None:
+    """Speeds along chords of arcs, from a flight in ArduCopter 4.6-dev with its own parameters."""
+    turn_rad = math.radians(40.0)
+    radius_m = chord_m / (2.0 * math.sin(0.5 * turn_rad))
+    assert chord_speed_m_s(turn_rad, radius_m, ROTOR) == pytest.approx(flown_m_s, rel=0.12)
+
+
+def test_px4_passes_corners_on_the_circle_inside_its_acceptance() -> None:
+    """A corner of 45° taken up 2 m before it: on the circle that touches both lines there."""
+    px4 = replace(ROTOR, corner_m=2.0, accel_m_s2=3.0)
+    assert chord_speed_m_s(math.radians(45.0), 3.0, px4) == pytest.approx(
+        math.sqrt(3.0 * 2.0 / math.tan(math.radians(22.5)))
+    )
 
 
 def test_climbs_on_the_spot_that_follow_each_other_are_one() -> None:

@@ -144,7 +144,8 @@ def test_plan_times_are_those_of_its_line(speed_m_s: float, from_deg: float) -> 
     for collect in plan.collects:
         for there_m, there_s in ((collect.start_m, collect.start_s), (collect.end_m, collect.end_s)):
             expected_s = np.interp(there_m * at_m[-1] / path.length_m, at_m, at_s)
-            assert there_s == pytest.approx(expected_s, rel=1e-3, abs=0.01)
+            # Chords of turns are a little shorter than the arcs that distances count.
+            assert there_s == pytest.approx(expected_s, rel=3e-3)
 
 
 def time_of(plan: Plan, scenario: Scenario, wind: Wind) -> float:
