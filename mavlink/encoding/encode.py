@@ -89,7 +89,7 @@ def encode(
         task.off_delay_m,
         partial(_may_overshoot, task) if task.turns_early_m > 0.0 else None,
         as_turn,
-        (task.phase_end_m("take_off"), task.landing_m),
+        (task.taken_off_m, task.landing_m),
     )
     home = [home_item(plan.home, options.home_altitude_m)] if task.dialect.home_row else []
     flight = _flight(task, stops, on, off, pointing)
@@ -155,7 +155,8 @@ def _flight(
     collecting = begun = pointed = 0
     ended = False
     for stop in stops:
-        if not ended and stop.along_m >= task.mission_end_m - MERGE_M:
+        past_m = stop.along_m - task.mission_end_m
+        if not ended and collecting == 0 and past_m > (MERGE_M if stop.turns is None else -MERGE_M):
             ended = True
             items += _before_the_end(task, off, pointing)
         if stop.turns is not None:

@@ -106,5 +106,6 @@ def _land(task: Task) -> MissionItem:
     else:
         # ArduPilot stores the sign of LAND's param 4 alone; 1 is what it gives back for none.
         command, yaw = Command.NAV_LAND, math.nan if task.is_px4 else 1.0
-    height_m = round(task.over_home_m(task.path.line[-1][2]), 3)
-    return placed(command, task.plan.end, height_m, Frame.GLOBAL_RELATIVE_ALT, (0.0, 0.0, 0.0, yaw))
+    # Counted from where the approach before it is: PX4 wants both alike.
+    height_m = round(float(task.path.line[-1][2]), 3)
+    return placed(command, task.plan.end, height_m, task.frame, (0.0, 0.0, 0.0, yaw))

@@ -82,7 +82,8 @@ def stops_along(
         if may_overshoot is not None and _straight_left_m(path, collect) < off_delay_m - MERGE_M:
             place = _beyond(collect, local, off_delay_m)
             if _free(path, collects, collect.end_m, beyond_m) and may_overshoot(place):
-                stops.append(Stop(beyond_m, place, altitude(collect.end_m), off=1))
+                # Named as the collect's end, which it stands for: whole turns may begin before ``beyond_m``.
+                stops.append(Stop(collect.end_m, place, altitude(collect.end_m), off=1))
                 skipped.append((collect.end_m - MERGE_M, beyond_m))
                 continue
         late = _late_stop(path, collect, local, off_delay_m)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from mavlink.dialects import Autopilot, Dialect, dialect_for
 from mavlink.encoding.fence import Room, room_of
 from mavlink.encoding.options import EncodeError, EncodeOptions
-from mavlink.encoding.stops import is_whole_turns
+from mavlink.encoding.stops import MERGE_M, is_whole_turns
 from mavlink.wire.geometry import LocalMap
 from mavlink.wire.items import Frame
 from planner.plan import Collect, FlownPath, PathSegment, PhaseKind, Plan, PlanVehicle
@@ -84,6 +84,16 @@ class Task:
         """Where a phase ends along the path; its beginning where there is no such phase."""
         phase = self.path.phase(kind)
         return 0.0 if phase is None else phase.end_m
+
+    @property
+    def taken_off_m(self) -> float:
+        """Where the take-off item ends: with the phase, or as high as the path climbs on the spot."""
+        end_m = self.phase_end_m("take_off")
+        for segment in self.path.segments:
+            if segment.kind != "vertical" or segment.start_m > end_m + MERGE_M:
+                break
+            end_m = max(end_m, segment.start_m + segment.length_m)
+        return end_m
 
     @property
     def mission_end_m(self) -> float:

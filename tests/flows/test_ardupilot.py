@@ -22,7 +22,7 @@ from mavlink.dialects import dialect_for
 from mavlink.dialects.ardupilot import ArduPilotDialect
 from mavlink.dialects.compare import Difference, differences
 from mavlink.dialects.mission import home_item, numbered, placed, unplaced
-from mavlink.encoding.encode import EncodeOptions, encode
+from mavlink.encoding.encode import encode
 from mavlink.links.link import open_link
 from mavlink.station.client import VehicleClient
 from mavlink.station.verify import VerifiedUpload
@@ -47,7 +47,6 @@ SPEEDUP = 40.0
 
 #: Margins of the sensor, as docs/ardupilot.md records them.
 MARGINS = {"pointing_margin_deg": 1.5, "position_margin_m": 5.0}
-LAND = EncodeOptions(finish="land")
 
 
 @cache
@@ -55,7 +54,9 @@ def planned(
     case: int, settle_m: float, *, margins: bool = False, wind: tuple[float, float] | None = None
 ) -> tuple[Scenario, Plan]:
     """A shared case and its plan."""
-    scenario = read_scenario(case_document(case, {"settle_m": settle_m}, MARGINS if margins else None, wind))
+    scenario = read_scenario(
+        case_document(case, {"settle_m": settle_m, "finish": "land"}, MARGINS if margins else None, wind)
+    )
     return scenario, make_plan(scenario)
 
 
@@ -68,7 +69,7 @@ async def flown(
     folder: Path, scenario: Scenario, plan: Plan, wind: tuple[float, float] | None = None
 ) -> Figures:
     """Store a plan, fly it, and judge it: inside the fence, at its height, landed at its end."""
-    mission = encode(plan, autopilot="ardupilot", options=LAND)
+    mission = encode(plan, autopilot="ardupilot")
     async with aeroplane(folder, plan.home, SPEEDUP, in_wind(wind)) as client:
         await store(client, mission)
         flight = await fly(client)

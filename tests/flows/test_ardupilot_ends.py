@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from mavlink.encoding.encode import EncodeOptions, encode
+from mavlink.encoding.encode import encode
 from mavlink.encoding.payload import RelayPayload
 from mavlink.rules.table import judge_parameters, names_to_read, needs_of
 from mavlink.state.track import TrackPoint
@@ -46,9 +46,9 @@ def away_m(frame: LocalFrame, points: Sequence[TrackPoint], place: tuple[float, 
 @pytest.mark.skipif(not QUADPLANE.is_file(), reason="no quadplane.parm beside the simulator")
 async def test_a_vtol_hovers_up_sees_its_regions_and_hovers_down(tmp_path: Path) -> None:
     """It leaves the ground straight up, flies its passes on wings, and disarms where the plan ends."""
-    scenario = read_scenario(case_document(1, VTOL, MARGINS))
+    scenario = read_scenario(case_document(1, {**VTOL, "finish": "land"}, MARGINS))
     plan = make_plan(scenario)
-    mission = encode(plan, options=EncodeOptions(finish="land"))
+    mission = encode(plan)
     async with aeroplane(tmp_path, plan.home, SPEEDUP, model="quadplane") as client:
         await client.wait_for(lambda state: state.type == "vtol", 10.0)
         needs = needs_of(plan, mission, RelayPayload(), 150.0)
@@ -76,7 +76,7 @@ async def test_a_vtol_hovers_up_sees_its_regions_and_hovers_down(tmp_path: Path)
 
 async def test_a_return_circles_over_home_and_stays_armed(tmp_path: Path) -> None:
     """A plan that ends at home is left to the return, which does not land: as the mission's notes say."""
-    scenario = read_scenario(case_document(4, {}))
+    scenario = read_scenario(case_document(4, {"finish": "return"}))
     plan = make_plan(scenario)
     mission = encode(plan)
     assert mission.mission[-1].command == Command.NAV_RETURN_TO_LAUNCH

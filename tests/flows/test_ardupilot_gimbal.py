@@ -42,7 +42,7 @@ async def test_the_gimbal_points_to_the_side_of_every_pass(tmp_path: Path) -> No
         async with VehicleClient(link, tap=watch.frame) as client:
             await booted(client)
             for text in ("mount:tilt=44.6", "manager:tilt=44.6,yaw=course,device=1", "manager:tilt=40"):
-                options = EncodeOptions(gimbal=parse_gimbal(text), finish="land")
+                options = EncodeOptions(gimbal=parse_gimbal(text))
                 mission = encode(plan, options=options)
                 await store(client, mission)
             needs = needs_of(plan, mission, RelayPayload())

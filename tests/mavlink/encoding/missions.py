@@ -30,6 +30,9 @@ A, W, R, L = (
 )
 
 
+LANDINGS = (Command.NAV_LAND, Command.NAV_VTOL_LAND)
+
+
 def commands(mission: Mission) -> list[int]:
     return [int(item.command) for item in mission.mission]
 
@@ -40,12 +43,13 @@ def local(item: MissionItem) -> tuple[float, float]:
 
 
 def flight(mission: Mission) -> list[MissionItem]:
-    """The waypoints that follow the path: at the path's frame, between the speed and the way down."""
+    """Of the mission phase alone: behind the climb, up to where it comes down, without the last off."""
     items = list(mission.mission)
     first = commands(mission).index(Command.DO_CHANGE_SPEED) + 1
-    ends = {Command.NAV_RETURN_TO_LAUNCH, Command.NAV_LAND, Command.DO_LAND_START, L, Command.NAV_VTOL_LAND}
+    ends = {*LANDINGS, Command.NAV_RETURN_TO_LAUNCH, Command.NAV_LOITER_UNLIM, Command.DO_LAND_START, L}
+    first += items[first].command == L
     last = next(index for index in range(first, len(items)) if items[index].command in ends)
-    return items[first:last]
+    return items[first : last - (items[last - 1].command not in (W, Command.NAV_LOITER_TURNS))]
 
 
 def path_line(legs: tuple[Leg, ...], start: Pose = START) -> LineString:

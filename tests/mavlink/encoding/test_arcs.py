@@ -148,9 +148,12 @@ def test_an_arc_that_climbs_stays_points() -> None:
     """An item has one height, so an arc over sloping ground is flown along its points."""
     plan = make_plan((STRAIGHT, Leg(turn_deg=180.0), STRAIGHT))
     (path,) = plan.paths
-    line = tuple((lon, lat, 300.0 + 0.1 * n) for n, (lon, lat, _) in enumerate(path.line))
+    climbing = tuple(
+        replace(each, end_altitude_m=each.end_altitude_m + 5.0) if each.turn_deg == 180.0 else each
+        for each in path.segments
+    )
     assert commands(encode(plan)).count(T) == 1
-    assert commands(encode(replace(plan, paths=(replace(path, line=line),)))).count(T) == 0
+    assert commands(encode(replace(plan, paths=(replace(path, segments=climbing),)))).count(T) == 0
 
 
 def test_collects_are_switched_the_same() -> None:
@@ -166,4 +169,4 @@ def test_collects_are_switched_the_same() -> None:
         for mission in (points, turns)
     ]
     assert switches[0] == switches[1]
-    assert len(switches[0]) == 4
+    assert len(switches[0]) == 5

@@ -33,7 +33,11 @@ def test_triggers_bracket_each_collect(autopilot: Autopilot, kind: VehicleType) 
     switch = Command.DO_SET_RELAY if autopilot == "ardupilot" else Command.DO_SET_ACTUATOR
     switches = [index for index, item in enumerate(items) if item.command == switch]
     ends = [place for collect in plan.collects_of("uav-1") for place in collect.line]
-    assert len(switches) == len(ends) == 4
+    assert len(switches) == len(ends) + 1 == 5
+    last = switches.pop()
+    assert last > switches[-1] + 1, "off once more, behind the mission's last waypoint"
+    off = 0.0 if autopilot == "ardupilot" else -1.0
+    assert (items[last].param2 if switch == Command.DO_SET_RELAY else items[last].param1) == off
     states = []
     for index, (lon_deg, lat_deg, altitude_m) in zip(switches, ends, strict=True):
         before = items[index - 1]
@@ -113,7 +117,7 @@ def test_collects_that_meet_share_a_waypoint() -> None:
     """Where one collect ends as the next begins, off stands before on."""
     legs = (Leg(length_m=1000.0, collect_m=(400.0, 1000.0)), Leg(length_m=1000.0, collect_m=(0.0, 500.0)))
     items = flight(encode(make_plan(legs)))
-    assert [int(item.command) for item in items] == [W, W, R, W, R, R, W, R, W]
+    assert [int(item.command) for item in items] == [W, R, W, R, R, W, R, W]
     assert [item.param2 for item in items if item.command == R] == [1.0, 0.0, 1.0, 0.0]
 
 
@@ -123,9 +127,16 @@ def test_overlapping_collects_keep_the_sensor_on() -> None:
     first = plan.collects[0]
     middle = tuple((a + b) / 2.0 for a, b in zip(*first.line, strict=True))
     last = (*lonlat(flown((Leg(length_m=900.0),), START).end.position), 300.0)
-    second = replace(first, seq=1, line=((middle[0], middle[1], 300.0), last), start_m=600.0, end_m=900.0)
+    begun_m = first.start_m - 400.0
+    second = replace(
+        first,
+        seq=1,
+        line=((middle[0], middle[1], 300.0), last),
+        start_m=begun_m + 600.0,
+        end_m=begun_m + 900.0,
+    )
     items = flight(encode(replace(plan, collects=(first, second))))
-    assert [int(item.command) for item in items] == [W, W, R, W, W, W, R, W]
+    assert [int(item.command) for item in items] == [W, R, W, W, W, R, W]
 
 
 def test_the_sensor_may_go_off_late() -> None:

@@ -64,20 +64,9 @@ def test_the_gimbal_points_before_the_first_pass_anew_for_the_other_side_and_res
     mission = encode(two_sided(make_plan(LEGS)), options=EncodeOptions(gimbal=Gimbal("manager", 45.0)))
     speed = Command.DO_CHANGE_SPEED
     assert switched(mission) == [
-        Command.NAV_TAKEOFF,
-        L,
-        speed,
-        P,
-        R,
-        R,
-        R,
-        R,
-        P,
-        R,
-        R,
-        P,
-        L,
-        Command.NAV_LAND,
+        *(Command.NAV_TAKEOFF, speed, P, L),
+        *(R, R, R, R, P, R, R),
+        *(R, P, L, Command.NAV_LAND),
     ]
     angles = [(item.param1, item.param2) for item in pointings(mission)]
     assert angles == [(-45.0, 90.0), (-45.0, -90.0), (0.0, 0.0)]
@@ -94,9 +83,9 @@ def test_px4_takes_control_once_and_the_mission_stays_feasible() -> None:
     mission = encode(two_sided(make_plan(LEGS, autopilot="px4")), options=options)
     speed, start, land = Command.DO_CHANGE_SPEED, Command.DO_LAND_START, Command.NAV_LAND
     assert switched(mission) == [
-        *(Command.NAV_TAKEOFF, L, speed, C, P),
-        *(A, A, A, A, P, A, A, P),
-        *(start, L, land),
+        *(Command.NAV_TAKEOFF, speed, C, P, L),
+        *(A, A, A, A, P, A, A),
+        *(A, P, start, L, land),
     ]
     assert mission.dialect.check(mission.mission) == ()
 

@@ -14,6 +14,7 @@ from shapely.geometry import LineString, MultiPoint, Point
 
 from mavlink.dialects import Autopilot, VehicleType
 from mavlink.encoding.encode import EncodeError, EncodeOptions, encode
+from planner.plan import AltitudeReference
 from tests.mavlink.encoding.missions import (
     KINDS,
     W,
@@ -23,7 +24,7 @@ from tests.mavlink.encoding.missions import (
     local,
     path_line,
 )
-from tests.mavlink.plans import Leg, make_plan
+from tests.mavlink.plans import START, Leg, make_plan
 
 
 @given(leg_lists, st.floats(0.3, 30.0))
@@ -32,7 +33,8 @@ def test_waypoints_keep_the_chord_error(legs: tuple[Leg, ...], chord_error_m: fl
     """The exact line is nowhere farther from the line between waypoints than stated, nor the other way."""
     options = EncodeOptions(chord_error_m=chord_error_m)
     mission = encode(make_plan(legs, vehicle_type="multirotor"), options=options)
-    waypoints = LineString([local(item) for item in flight(mission)])
+    # The take-off ends over the start, where no waypoint need be.
+    waypoints = LineString([START.position, *(local(item) for item in flight(mission))])
     exact = path_line(legs)
     # Hausdorff over vertices, both ways; waypoints are rounded to 1e-7 degrees, about a centimetre.
     away_m = max(waypoints.distance(Point(p)) for p in exact.coords)
@@ -48,7 +50,7 @@ def test_arcs_have_a_waypoint_every_45_degrees(leg: Leg) -> None:
     options = EncodeOptions(chord_error_m=10_000.0)
     mission = encode(make_plan((Leg(length_m=500.0), leg), vehicle_type="multirotor"), options=options)
     points = MultiPoint([local(item) for item in flight(mission)])
-    assert len(points.geoms) == 2 + math.ceil(abs(leg.turn_deg) / 45.0 - 1e-9)
+    assert len(points.geoms) == 1 + math.ceil(abs(leg.turn_deg) / 45.0 - 1e-9)
 
 
 def test_a_larger_chord_error_needs_fewer_waypoints() -> None:
@@ -91,27 +93,36 @@ def test_items_survive_the_wire(autopilot: Autopilot, kind: VehicleType) -> None
 
 
 @pytest.mark.parametrize(("reference", "frame"), [("home", 3), ("terrain", 3), ("amsl", 0)])
-def test_altitudes_count_from_what_the_plan_says(reference: str, frame: int) -> None:
+def test_altitudes_count_from_what_the_plan_says(reference: AltitudeReference, frame: int) -> None:
     """Heights over home and over flat ground are relative to home, heights over the sea are global."""
-    plan = replace(make_plan(), altitude_reference=reference)
+    ground_m = 120.0 if reference == "amsl" else 0.0
+    plan = make_plan(altitude_reference=reference, ground_m=ground_m)
     mission = encode(plan, options=EncodeOptions(home_altitude_m=120.0))
     assert {item.frame for item in flight(mission) if item.command == W} == {frame}
-    assert {item.z for item in flight(mission) if item.command == W} == {300.0}
-    assert mission.mission[1].frame == 3, "the take-off climbs over home"
+    assert {item.z for item in flight(mission) if item.command == W} == {300.0 + ground_m}
+    takeoff, land = mission.mission[1], mission.mission[-1]
+    assert (takeoff.frame, takeoff.z) == (3, 50.0), "the take-off climbs over home"
+    assert (land.frame, land.z) == (frame, ground_m), "and the landing is as high as home"
     assert mission.mission[0].z == 120.0
 
 
 def test_altitudes_may_change_along_the_path() -> None:
-    """Waypoints take the altitude of the line where they stand."""
-    plan = make_plan((Leg(length_m=1000.0), Leg(length_m=1000.0)))
+    """Waypoints take the altitude of the slope where they stand, inside a segment too."""
+    plan = make_plan((Leg(length_m=1000.0, collect_m=(400.0, 500.0)), Leg(length_m=1000.0)))
     (path,) = plan.paths
-    line = tuple((lon, lat, 300.0 + 50.0 * n) for n, (lon, lat, _) in enumerate(path.line))
-    items = flight(encode(replace(plan, paths=(replace(path, line=line),))))
-    assert [item.z for item in items] == pytest.approx([300.0, 350.0, 400.0], abs=0.02)
+    first, second = (s for s in path.segments if s.kind == "straight" and abs(s.length_m - 1000.0) < 1.0)
+    slopes = {first: (300.0, 350.0), second: (350.0, 300.0)}
+    segments = tuple(
+        replace(s, start_altitude_m=slopes[s][0], end_altitude_m=slopes[s][1]) if s in slopes else s
+        for s in path.segments
+    )
+    sloping = replace(plan, paths=(replace(path, segments=segments),))
+    waypoints = [item for item in flight(encode(sloping)) if item.command == W]
+    assert [item.z for item in waypoints] == pytest.approx([320.0, 325.0, 350.0, 300.0], abs=0.02)
 
 
 def test_a_plan_below_home_is_refused() -> None:
     """An altitude over the sea that lies under home cannot be flown."""
-    plan = make_plan(altitude_m=100.0, altitude_reference="amsl")
+    plan = replace(make_plan(altitude_reference="amsl", ground_m=120.0), altitude_m=100.0)
     with pytest.raises(EncodeError, match="over home"):
-        encode(plan, options=EncodeOptions(home_altitude_m=120.0))
+        encode(plan)

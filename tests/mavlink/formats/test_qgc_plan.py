@@ -54,12 +54,13 @@ def test_the_file_has_the_members_that_ground_stations_want(
 ) -> None:
     """Versions, firmware, vehicle, speeds, home; items numbered from 1 without the home row."""
     plan = document(autopilot, kind)
+    home_lon_deg, home_lat_deg = make_plan(vehicle_type=kind).home
     mission = plan["mission"]
     assert (plan["fileType"], plan["version"]) == ("Plan", 1)
     assert (plan["geoFence"]["version"], plan["rallyPoints"]["version"], mission["version"]) == (2, 2, 2)
     assert (mission["firmwareType"], mission["vehicleType"]) == (firmware, vehicle)
     assert (mission["cruiseSpeed"], mission["hoverSpeed"]) == (20.0, 20.0)
-    assert mission["plannedHomePosition"] == [33.49, -117.75, 120.0]
+    assert mission["plannedHomePosition"] == pytest.approx([home_lat_deg, home_lon_deg, 120.0], abs=1e-7)
     items = mission["items"]
     assert items[0]["command"] == Command.NAV_TAKEOFF
     assert [item["doJumpId"] for item in items] == list(range(1, len(items) + 1))

@@ -109,12 +109,12 @@ def swapped() -> str:
         (changed(4, 3, "70000"), 4, "command", "command 70000"),
         (changed(4, 5, ""), 4, "param 2", "param 2 ''"),
         (changed(4, 10, "500,5"), 4, "altitude", "write a point for the comma"),
-        (changed(4, 8, "999"), 4, "latitude", "latitude 999 is out of range"),
-        (changed(4, 9, "181"), 4, "longitude", "longitude 181 is out of range$"),
+        (changed(3, 8, "999"), 3, "latitude", "latitude 999 is out of range"),
+        (changed(3, 9, "181"), 3, "longitude", "longitude 181 is out of range$"),
         (changed(4, 9, "nan"), 4, "longitude", "longitude 'nan'"),
         (changed(4, 8, "inf"), 4, "latitude", "latitude 'inf'"),
         (changed(2, 3, "22"), 2, "command", "home position"),
-        (swapped(), 2, "latitude", "latitude -117.75 is out of range: .* seem to be swapped"),
+        (swapped(), 2, "latitude", "latitude -117.753 is out of range: .* seem to be swapped"),
     ],
 )
 def test_errors_name_the_line_and_the_column(text: str, line: int, column: str | None, says: str) -> None:
