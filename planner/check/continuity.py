@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Collection, Iterator
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +27,7 @@ def terminal_violations(
     line_m: NDArray[np.float64],
     radius_m: float,
     circling: Collection[str] = (),
+    returning: Collection[str] = (),
 ) -> Iterator[Violation]:
     """The path begins at the start and ends at the end, in their directions.
 
@@ -37,13 +39,16 @@ def terminal_violations(
     ----------
     circling
         Vehicles whose flight ends in a circle.
+    returning
+        Vehicles that come down where they started.
     """
     edges = np.diff(line_m, axis=0)
     flown = edges[np.hypot(edges[:, 0], edges[:, 1]) > SPOT_M]
     ends = [(scenario.start, line_m[0], flown[0])]
     circles_at_end = path.vehicle in circling
     if not circles_at_end:
-        ends.append((scenario.end, line_m[-1], flown[-1]))
+        last = replace(scenario.start, angle_rad=None) if path.vehicle in returning else scenario.end
+        ends.append((last, line_m[-1], flown[-1]))
     else:
         yield from _passed_over(scenario, LineString(line_m))
     for terminal, place, direction in ends:

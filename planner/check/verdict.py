@@ -76,7 +76,9 @@ def judge(scenario: Scenario, plan: Plan) -> Verdict:
         tightest_m = min(tightest_m, radius_m)
         datum_amsl_m = scenario.level.amsl_m - scenario.altitude_m
         time_s = line_s(line_m, altitudes_m, aircraft, scenario.wind, datum_amsl_m)
-        circling = (vehicle.name,) if vehicle.finish != "land" and vehicle.type != "multirotor" else ()
+        hovers = vehicle.type == "multirotor"
+        circling = (vehicle.name,) if vehicle.finish != "land" and not hovers else ()
+        returning = (vehicle.name,) if vehicle.finish == "return" and hovers else ()
         violations += turn_violations(scenario, aircraft, path, radius_m, where)
         violations += place_violations(scenario, path, line_m, altitudes_m - home_ground_m)
         violations += clearance_violations(scenario, plan, path, line_m)
@@ -84,8 +86,10 @@ def judge(scenario: Scenario, plan: Plan) -> Verdict:
         violations += ground_violations(path, vehicle, altitudes_m, _grounds_m(scenario, home_ground_m))
         violations += level_violations(plan.collects_of(vehicle.name))
         violations += phase_violations(path)
-        violations += terminal_violations(scenario, path, line_m, aircraft.ground_turn_radius_m, circling)
-        violations += duration_violations(path, time_s, hovers=vehicle.type == "multirotor")
+        violations += terminal_violations(
+            scenario, path, line_m, aircraft.ground_turn_radius_m, circling, returning
+        )
+        violations += duration_violations(path, time_s, hovers=hovers)
         violations += limit_violations(aircraft, path, lengths_m[-1], time_s)
         over_ground_m = partial(np.interp, xp=reached_m, fp=over_m)
         violations += collect_violations(scenario, plan, path, line, over_ground_m, aircraft.settle_m)

@@ -37,9 +37,11 @@ def wing_times(
 
 
 def _over_ground_m_s(stretch: Stretch, airspeed_m_s: float, datum_amsl_m: float) -> float:
-    """Horizontal part of the true airspeed on a stretch."""
-    middle_m = datum_amsl_m + 0.5 * (stretch.start_altitude_m + stretch.end_altitude_m)
-    return airspeed_m_s * true_over_equivalent(middle_m) * stretch.ground_m / stretch.length_m
+    """Horizontal part of the true airspeed on a stretch, its slowness averaged over the heights (Simpson)."""
+    low_m, high_m = datum_amsl_m + stretch.start_altitude_m, datum_amsl_m + stretch.end_altitude_m
+    ends = 1.0 / true_over_equivalent(low_m) + 1.0 / true_over_equivalent(high_m)
+    slowness = (ends + 4.0 / true_over_equivalent(0.5 * (low_m + high_m))) / 6.0
+    return airspeed_m_s / slowness * stretch.ground_m / stretch.length_m
 
 
 def _spots_s(stretches: Sequence[Stretch], manners: Manners) -> list[float]:

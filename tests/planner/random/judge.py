@@ -132,7 +132,7 @@ def faults(document: dict[str, Any], plan: dict[str, Any]) -> list[str]:
         return [*found, f"{len(paths)} paths"]
     line_m = ground.places(paths[0]["geometry"]["coordinates"])
     line = LineString(line_m)
-    found += _ends(ground, line_m)
+    found += _ends(ground, line_m, plan["vehicles"][0])
     found += _turns(ground, line_m)
     found += _places(ground, line)
     found += _lengths(paths[0], plan)
@@ -143,16 +143,26 @@ def faults(document: dict[str, Any], plan: dict[str, Any]) -> list[str]:
     return found
 
 
-def _ends(ground: Ground, line_m: Floats) -> list[str]:
-    """The path goes from start to end, in their directions."""
+def _ends(ground: Ground, line_m: Floats, vehicle: dict[str, Any]) -> list[str]:
+    """The path goes from start to end, in their directions; over the end where it returns or circles."""
     start = ground.of_role("start")[0]
     ends = ground.of_role("end")
     end = ends[0] if ends else {**start, "properties": {"role": "end"}}
+    edges = np.diff(line_m, axis=0)
+    edges = edges[np.hypot(*edges.T) > 1e-3]
+    places = [(start, line_m[0], edges[0])]
     found = []
-    for feature, place, edge in (
-        (start, line_m[0], line_m[1] - line_m[0]),
-        (end, line_m[-1], line_m[-1] - line_m[-2]),
-    ):
+    if vehicle["finish"] == "land" or (vehicle["finish"], vehicle["type"]) == ("loiter", "multirotor"):
+        places.append((end, line_m[-1], edges[-1]))
+    else:
+        over = Point(ground.places([end["geometry"]["coordinates"]])[0])
+        gap_m = LineString(line_m).distance(over)
+        home_m = math.dist(line_m[-1], line_m[0])
+        if vehicle["type"] != "multirotor" and gap_m > ground.slack_m:
+            found.append(f"end missed by {gap_m:.2f} m")
+        if vehicle["finish"] == "return" and home_m > 2.0 * turn_radius_m(ground) + 10.0:
+            found.append(f"end missed: {home_m:.2f} m from home after the return")
+    for feature, place, edge in places:
         gap_m = math.dist(place, ground.places([feature["geometry"]["coordinates"]])[0])
         if gap_m > ground.slack_m:
             found.append(f"{feature['properties']['role']} missed by {gap_m:.2f} m")
@@ -214,9 +224,9 @@ def _places(ground: Ground, line: LineString) -> list[str]:
 
 
 def _lengths(path: dict[str, Any], plan: dict[str, Any]) -> list[str]:
-    """Length by geodesics between the vertices."""
-    lons, lats = np.array([place[:2] for place in path["geometry"]["coordinates"]]).T
-    length_m = GEOD.line_length(lons, lats)
+    """Length by geodesics between the vertices, and their heights."""
+    lons, lats, altitudes_m = np.array(path["geometry"]["coordinates"]).T
+    length_m = float(np.hypot(GEOD.line_lengths(lons, lats), np.diff(altitudes_m)).sum())
     said_m = path["properties"]["length_m"]
     if abs(said_m - length_m) > 1.5e-3 * length_m:
         return [f"length {said_m:.0f} m, measured {length_m:.0f} m"]

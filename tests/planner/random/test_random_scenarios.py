@@ -114,5 +114,5 @@ def test_the_judge_of_the_tests_finds_faults() -> None:
     }
     plans = {"not seen": blind, "end": short}
     for change in changed:
-        said = {"end": "missed", "settling": "settling run"}.get(change, change)
+        said = {"end": "measured", "settling": "settling run"}.get(change, change)
         assert said in wrong(change), change
