@@ -97,7 +97,7 @@ def _row(regions: int, threats: int, seed: int, repeats: int) -> dict[str, Any]:
         "seed": seed,
         "seconds": min(seconds),
         "peak_mb": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0,
-        "length_m": plan.metrics.length_m,
+        "length_m": plan.metrics.route_length_m,
         "lower_bound_m": plan.metrics.lower_bound_m,
         "gap": plan.metrics.gap,
         "least_coverage": min(plan.metrics.coverage.values()),

@@ -15,7 +15,7 @@ from mavlink.state.telemetry import VehicleState
 from planner.plan import Plan, Violation
 from tests.mavlink.plans import make_plan, square_fence
 
-PLAN = replace(make_plan(fence=square_fence(5000.0), ends_at_home=True), altitude_reference="home")
+PLAN = make_plan(fence=square_fence(5000.0), finish="return", altitude_reference="home")
 LON_DEG, LAT_DEG = PLAN.home
 STATE = VehicleState(
     connected=True,
