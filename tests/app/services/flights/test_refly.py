@@ -8,8 +8,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import httpx
+import numpy as np
 import pytest
-from shapely import line_interpolate_point, union_all
+from shapely import union_all
 from shapely.geometry import LineString, shape
 
 from app.main import create_app
@@ -34,16 +35,18 @@ def track_of(plan: Plan, skipped: Callable[[int, float], bool]) -> list[TrackSam
     """The path flown exactly, the sensor on in the collects but where ``skipped(seq, metres into it)``."""
     frame = SCENARIO.frame
     path = plan.paths[0]
-    line = LineString(frame.to_local([place[:2] for place in path.line]))
+    line_m = np.column_stack([frame.to_local([place[:2] for place in path.line]), [p[2] for p in path.line]])
+    reached_m = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(line_m, axis=0), axis=1))])
+    scale = reached_m[-1] / path.length_m
     samples = []
-    scale = line.length / path.length_m
     for step in range(int(path.length_m // 5)):
         along_m = 5.0 * step
-        lon_deg, lat_deg = frame.to_wgs84(line_interpolate_point(line, along_m * scale).coords[0])
+        east_m, north_m, altitude_m = (np.interp(along_m * scale, reached_m, axis) for axis in line_m.T)
+        lon_deg, lat_deg = frame.to_wgs84((east_m, north_m))
         on = any(
             c.start_m <= along_m <= c.end_m and not skipped(c.seq, along_m - c.start_m) for c in plan.collects
         )
-        place = (float(lon_deg), float(lat_deg), plan.altitude_m, plan.altitude_m)
+        place = (float(lon_deg), float(lat_deg), float(altitude_m), float(altitude_m))
         samples.append(TrackSample(along_m / 20.0, *place, None, 0.0, 20.0, None, on))
     return samples
 
