@@ -16,15 +16,11 @@ from tests.planner.scenarios import feature, small
 
 
 @pytest.mark.parametrize(
-    ("origin", "aircraft"),
-    [
-        ((180.0, -17.0), "autopilot=ardupilot"),
-        ((0.0, 0.0), "autopilot=px4"),
-        ((-150.0, 89.0), "autopilot=px4"),
-    ],
+    ("origin", "autopilot"),
+    [((180.0, -17.0), "ardupilot"), ((0.0, 0.0), "px4"), ((-150.0, 89.0), "px4")],
     ids=["antimeridian", "zero", "pole"],
 )
-async def test_whole_journey(client: httpx.AsyncClient, origin: Place, aircraft: str) -> None:
+async def test_whole_journey(client: httpx.AsyncClient, origin: Place, autopilot: str) -> None:
     """All of the regions is seen as flown, on the lines planned, and every answer has a place on the map."""
     put = put_at(origin)
     document = small(
@@ -36,10 +32,10 @@ async def test_whole_journey(client: httpx.AsyncClient, origin: Place, aircraft:
             feature("start", "start", "Point", [*put(0, 0), 10.0]),
         ]
     )
-    document["vehicles"][0]["settle_m"] = 100.0
+    document["vehicles"][0] |= {"settle_m": 100.0, "autopilot": autopilot}
     record = (await client.post("/api/v1/plans", json=document, params={"wait": 60})).json()
     assert record["state"] == "done", record
-    vehicle = await connected(client, f"sim:?speedup=200&{aircraft}")
+    vehicle = await connected(client, f"sim:?speedup=200&autopilot={autopilot}")
     report = (await client.post(vehicle + "/mission", json={"plan_id": record["id"]})).json()
     assert report["verified"], report
     for item in report["parts"]["mission"]["held"]:
