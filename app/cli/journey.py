@@ -46,10 +46,14 @@ def demo(
     metrics = plan["metrics"]
     covered = [name for name, fraction in metrics["coverage"].items() if fraction >= 0.9999]
     told.tell(
-        f"planned in {planned_s:.2f} s, {metrics['length_m'] / 1000:.2f} km, "
+        f"planned in {planned_s:.2f} s, {metrics['flight_length_m'] / 1000:.2f} km and "
+        f"{metrics['flight_duration_s'] / 60:.1f} min of flight, "
+        f"{metrics['length_m'] / 1000:.2f} km of mission, "
         f"regions covered {len(covered)} of {len(metrics['coverage'])}, violations {len(plan['violations'])}",
         planned_s=planned_s,
         length_m=metrics["length_m"],
+        flight_length_m=metrics["flight_length_m"],
+        flight_duration_s=metrics["flight_duration_s"],
         coverage=metrics["coverage"],
         violations=plan["violations"],
     )

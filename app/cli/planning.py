@@ -152,13 +152,14 @@ def tell_plan(document: dict[str, Any]) -> None:
     metrics = document["metrics"]
     coverage = metrics["coverage"].values()
     say(
-        f"planned: {metrics['length_m'] / 1000:.2f} km, {metrics['duration_s'] / 60:.1f} min, "
-        f"collecting {metrics['duty_cycle']:.0%} of the way, "
+        f"planned: {metrics['length_m'] / 1000:.2f} km, {metrics['duration_s'] / 60:.1f} min "
+        f"(the whole flight {metrics['flight_length_m'] / 1000:.2f} km, "
+        f"{metrics['flight_duration_s'] / 60:.1f} min), collecting {metrics['duty_cycle']:.0%} of the way, "
         f"{sum(fraction >= 0.9999 for fraction in coverage)} of {len(coverage)} regions covered"
     )
     if metrics.get("gap") is not None:
         say(
-            f"no plan is shorter than {metrics['lower_bound_m'] / 1000:.2f} km: "
+            f"no plan is shorter than {metrics['lower_bound_m'] / 1000:.2f} km from start to end: "
             f"this one is at most {metrics['gap']:.1%} from the best"
         )
     violations = document["violations"]

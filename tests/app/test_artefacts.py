@@ -76,7 +76,7 @@ async def test_payload_and_vehicle_are_chosen_by_query(client: httpx.AsyncClient
 
 
 async def test_report_tells_all_and_escapes_names(client: httpx.AsyncClient, plan_file: Path) -> None:
-    """The report has a row for each collect and region; a name cannot smuggle markup into it."""
+    """The report has a row for each collect, region and phase; a name cannot smuggle markup into it."""
     plan = json.loads(plan_file.read_text())
     scenario = EXAMPLE | {"name": "<script>alert(1)</script>"}
     plan_id = await stored(client, plan_file, scenario, name="<script>alert(1)</script>")
@@ -87,8 +87,10 @@ async def test_report_tells_all_and_escapes_names(client: httpx.AsyncClient, pla
     assert "script" not in page.tags
     assert "default-src 'none'" in answer.headers["content-security-policy"]
     collects = [f for f in plan["features"] if f["properties"]["role"] == "collect"]
+    (path,) = (f["properties"] for f in plan["features"] if f["properties"]["role"] == "path")
     rows = page.tags.count("tr")
-    assert rows > len(collects) + len(plan["metrics"]["coverage"])
+    assert rows > len(collects) + len(plan["metrics"]["coverage"]) + len(path["phases"])
+    assert {"take-off", "mission", "landing", "Whole flight"} <= {text.strip() for text in page.texts}
     assert page.tags.count("polygon") >= len(collects)
     assert {"harbour", "depot", "Every constraint is kept."} <= {text.strip() for text in page.texts}
 
