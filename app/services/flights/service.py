@@ -11,6 +11,7 @@ from app.services.documents import read_object
 from app.services.errors import ConflictError, NotFoundError
 from app.services.flights.as_flown import SEEN_FRACTION, SLIVER_M, SLIVER_M2, gaps, regions_json, triggers
 from app.services.flights.gpx import write_gpx
+from app.services.flights.phases import flown_phases
 from app.services.flights.photos import photos_of, spacing_of, switched_by_photos
 from app.services.flights.refly import refly_scenario
 from app.services.plans.missions import plan_of
@@ -217,7 +218,8 @@ def _coverage(flight: _Flown) -> dict[str, Any]:
 
     Members: ``coverage`` {region: fraction as flown}, ``planned_coverage``, ``collects`` with the
     distance of the track from each planned line while the sensor was on, ``triggers`` with how the sensor
-    was switched over each and which photos are missing, and ``regions`` with what was wanted of each, what
+    was switched over each and which photos are missing, ``phases`` with how long each of the flight's was to
+    take and took, and ``regions`` with what was wanted of each, what
     is missing, and whether it counts as ``seen``: from ``seen_fraction`` of it on.
     """
     record, samples = flight.record, flight.samples
@@ -241,6 +243,12 @@ def _coverage(flight: _Flown) -> dict[str, Any]:
         "planned_coverage": plan.metrics.coverage,
         "collects": [asdict(collect) for collect in result.passes],
         "triggers": [asdict(trigger) for trigger in switched],
+        "phases": [
+            asdict(phase)
+            for path in plan.paths
+            if path.vehicle == record.plan_vehicle or len(plan.paths) == 1
+            for phase in flown_phases(path, samples)
+        ],
         "seen_fraction": SEEN_FRACTION,
         "regions": regions_json(scenario, plan, result),
         "features": features,

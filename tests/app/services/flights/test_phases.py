@@ -1,0 +1,47 @@
+"""Phases of a flight as recorded: found where the plan has them, whatever time they took."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from app.services.flights.phases import flown_phases
+from app.services.records import TrackSample
+from planner.plan import FlownPath
+from tests.mavlink.plans import make_plan
+
+
+def recorded(path: FlownPath, slower: float, from_s: float = 100.0) -> list[TrackSample]:
+    """The path's own line, flown evenly in its duration by a factor, a place every half second; then rest."""
+    lons, lats, altitudes_m = np.array(path.line).T
+    east_m, north_m = (lons - lons[0]) * 92_800.0, (lats - lats[0]) * 111_100.0
+    steps_m = np.sqrt(np.diff(east_m) ** 2 + np.diff(north_m) ** 2 + np.diff(altitudes_m) ** 2)
+    along_m = np.concatenate([[0.0], np.cumsum(steps_m)])
+    times_s = np.arange(0.0, path.duration_s * slower + 2.0, 0.5)
+    at_m = times_s / (path.duration_s * slower) * along_m[-1]
+    columns = [np.interp(at_m, along_m, values) for values in (lons, lats, altitudes_m)]
+    return [
+        TrackSample(from_s + time_s, lon, lat, None, height_m, None, None, None, None, sensor_on=False)
+        for time_s, lon, lat, height_m in zip(times_s, *columns, strict=True)
+    ]
+
+
+@pytest.mark.parametrize("kind", ["fixed_wing", "multirotor", "vtol"])
+@pytest.mark.parametrize("slower", [1.0, 1.3])
+def test_phases_are_found_where_they_are_planned(kind: str, slower: float) -> None:
+    """Flown evenly, every phase takes its share of the whole."""
+    (path,) = make_plan(vehicle_type=kind).paths
+    found = flown_phases(path, recorded(path, slower))
+    assert [phase.kind for phase in found] == [phase.kind for phase in path.phases]
+    for phase in found:
+        assert phase.flown_s == pytest.approx(slower * phase.planned_s, abs=3.0)
+
+
+def test_what_was_not_recorded_is_unknown() -> None:
+    """Without a track no phase has a duration; cut short, the phases behind the cut have none."""
+    (path,) = make_plan().paths
+    assert {phase.flown_s for phase in flown_phases(path, [])} == {None}
+    samples = recorded(path, 1.0)
+    cut = flown_phases(path, samples[: len(samples) // 2])
+    assert cut[0].flown_s is not None
+    assert cut[-1].flown_s is None
