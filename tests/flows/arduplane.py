@@ -52,18 +52,20 @@ def arduplane(
     speedup: float = 1.0,
     parameters: Mapping[str, float] = PARAMETERS,
     model: str = "plane",
+    binary: str = "",
+    defaults: str = "",
 ) -> Iterator[subprocess.Popen[bytes]]:
     """Run the simulator in a folder of its own, calling a port on loopback; ``home`` is (lon, lat)."""
     own = folder / "own.parm"
     own.write_text("".join(f"{name} {value:g}\n" for name, value in parameters.items()))
     command = [
-        BINARY,
+        binary or BINARY,
         "--synthetic-clock",
         "--wipe",
         *("--model", model),
         *("--speedup", f"{speedup:g}"),
         *("--home", f"{home[1]:.7f},{home[0]:.7f},{HOME_ALTITUDE_M:g},0"),
-        *("--defaults", f"{default_parameters(model).resolve()},{own}"),
+        *("--defaults", f"{(Path(defaults) if defaults else default_parameters(model)).resolve()},{own}"),
         *("--serial0", f"udpclient:127.0.0.1:{port}"),
         *("--serial1", "none"),
         *("--serial2", "none"),
@@ -92,11 +94,13 @@ async def aeroplane(
     speedup: float,
     parameters: Mapping[str, float] = PARAMETERS,
     model: str = "plane",
+    binary: str = "",
+    defaults: str = "",
 ) -> AsyncIterator[VehicleClient]:
-    """A simulator that has booted, and a client of it."""
+    """A simulator that has booted, and a client of it; another binary and its parameters where named."""
     link = await open_link("udpin:127.0.0.1:0")
     port = int(link.url.rpartition(":")[2])
-    with arduplane(folder, port, home, speedup, parameters, model):
+    with arduplane(folder, port, home, speedup, parameters, model, binary, defaults):
         async with VehicleClient(link) as client:
             await booted(client)
             yield client

@@ -1,0 +1,126 @@
+"""Whole flights in a real ArduPlane and ArduCopter take as long as planned.
+
+Skipped unless ``SWATHPLAN_ARDUPLANE`` and ``SWATHPLAN_ARDUCOPTER`` (with ``copter.parm`` beside it, or named by
+``SWATHPLAN_ARDUCOPTER_PARAMS``) name the simulators. ``pytest --log-cli-level=INFO`` shows a row for each.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import logging
+import os
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from app.services.flights.phases import flown_phases
+from mavlink.encoding.encode import EncodeOptions, encode
+from mavlink.station.client import VehicleClient
+from planner.geojson import read_scenario
+from planner.pipeline import make_plan
+from tests.flows.arduplane import BINARY, HOME_ALTITUDE_M, aeroplane, arm, fly, in_wind
+from tests.flows.flying import EXAMPLES, WIND, Flight, case_document, store, until_disarmed
+
+log = logging.getLogger(__name__)
+pytestmark = pytest.mark.ardupilot
+
+COPTER = os.environ.get("SWATHPLAN_ARDUCOPTER", "")
+#: Climbs and descents in turns are flown at these rates: what 8° are at 20 m/s, with the wind behind 28 m/s.
+RATES = {"TECS_CLMB_MAX": 2.81, "TECS_SINK_MAX": 2.81}
+MARGINS = {"pointing_margin_deg": 1.5, "position_margin_m": 5.0}
+SET_MODE, MISSION_START = 176, 300
+LOITER, AUTO = 5.0, 3.0
+#: Until it knows where it is.
+POSITION_TRIES = 400
+#: A shared case drawn so much smaller fits a multirotor.
+SMALL = 0.12
+
+
+@pytest.mark.skipif(not BINARY, reason="SWATHPLAN_ARDUPLANE names no simulator")
+@pytest.mark.parametrize("wind", [None, WIND, (8.0, 90.0)], ids=["still air", "west wind", "east wind"])
+async def test_an_aeroplane_takes_as_long_as_planned(
+    tmp_path: Path, wind: tuple[float, float] | None
+) -> None:
+    """From lift-off to touch-down within 3 %; a plan is all that was known before."""
+    document = case_document(1, {"settle_m": 150, "finish": "land"}, MARGINS, wind)
+    plan = make_plan(read_scenario(document))
+    mission = encode(plan, options=EncodeOptions(home_altitude_m=HOME_ALTITUDE_M))
+    async with aeroplane(tmp_path, plan.home, 40.0, {**in_wind(wind), **RATES}) as client:
+        await store(client, mission)
+        flight = await fly(client)
+    told = f"8 m/s from {wind[1]:g}°" if wind else "none"
+    assert ratio(flight, plan.paths[0], "ArduPlane", told) == pytest.approx(1.0, abs=0.03)
+
+
+@pytest.mark.skipif(not COPTER, reason="SWATHPLAN_ARDUCOPTER names no simulator")
+async def test_a_multirotor_takes_as_long_as_planned(tmp_path: Path) -> None:
+    """Its corners and jerk are in the plan: the whole flight within 3 %."""
+    plan = make_plan(read_scenario(small_case()))
+    mission = encode(plan, options=EncodeOptions(home_altitude_m=HOME_ALTITUDE_M))
+    folder = os.environ.get("SWATHPLAN_ARDUCOPTER_PARAMS", str(Path(COPTER).with_name("copter.parm")))
+    async with aeroplane(tmp_path, plan.home, 20.0, model="+", binary=COPTER, defaults=folder) as client:
+        # It takes no mission while it still reads its storage.
+        await client.wait_for(lambda state: state.home_lat_deg is not None, 60.0)
+        await store(client, mission)
+        flight = await hovering(client)
+    assert ratio(flight, plan.paths[0], "ArduCopter", "none") == pytest.approx(1.0, abs=0.03)
+
+
+def small_case() -> dict[str, Any]:
+    """Case 1 about its start, an eighth as wide, 80 m up, for a multirotor at 10 m/s."""
+    document: dict[str, Any] = json.loads((EXAMPLES / "sar-case-1.geojson").read_text())
+    start = next(f for f in document["features"] if f["properties"]["role"] == "start")
+    origin = start["geometry"]["coordinates"][:2]
+
+    def drawn(places: Any) -> Any:
+        if isinstance(places[0], list):
+            return [drawn(place) for place in places]
+        return [o + SMALL * (c - o) for o, c in zip(origin, places, strict=False)]
+
+    for feature in document["features"]:
+        feature["geometry"]["coordinates"] = drawn(feature["geometry"]["coordinates"])
+        for name in ("radius_m", "intensity_m"):
+            if name in feature["properties"]:
+                feature["properties"][name] *= SMALL
+    document["altitude_m"] = 80.0
+    document["vehicles"] = [
+        {"name": "uav-1", "type": "multirotor", "airspeed_m_s": 10.0, "finish": "land", "settle_m": 20}
+    ]
+    return document
+
+
+async def hovering(client: VehicleClient) -> Flight:
+    """Arm where it knows its position, start the mission, wait for the landing."""
+    for _ in range(POSITION_TRIES):
+        if (await client.command(SET_MODE, (1.0, LOITER))).accepted:
+            break
+        await asyncio.sleep(0.25)
+    await arm(client)
+    assert (await client.command(SET_MODE, (1.0, AUTO))).accepted
+    recorder = client.start_recording()
+    assert (await client.command(MISSION_START, (0.0, 0.0))).accepted
+    texts = await until_disarmed(client)
+    client.stop_recording(recorder)
+    return Flight(recorder.track(), texts, client.state)
+
+
+def ratio(flight: Flight, path: Any, name: str, wind: str) -> float:
+    """Flown over planned, all phases together; tells one row of a table."""
+    phases = flown_phases(path, flight.samples())
+    flown = [phase.flown_s for phase in phases]
+    assert None not in flown, phases
+    cells = [f"{phase.kind} {phase.planned_s:.0f} → {phase.flown_s:.0f} s" for phase in phases]
+    whole_s = sum(seconds for seconds in flown if seconds is not None)
+    share = whole_s / path.duration_s
+    log.info(
+        "| %s | %s | %s | %.0f → %.0f s | %.3f |",
+        name,
+        wind,
+        " · ".join(cells),
+        path.duration_s,
+        whole_s,
+        share,
+    )
+    return share
