@@ -9,10 +9,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from itertools import pairwise
 
 from mavlink.dialects.mission import Mission, placed
 from mavlink.encoding.options import EncodeError
-from mavlink.encoding.stops import WHOLE_TURN_DEG
+from mavlink.encoding.stops import WHOLE_TURN_DEG, is_whole_turns
 from mavlink.encoding.task import Task
 from mavlink.wire.items import Command, Frame, MissionItem
 from planner.plan import PathSegment
@@ -39,7 +40,10 @@ _TURN_STEPS = 256.0
 
 
 def flown_round(task: Task) -> Callable[[PathSegment], bool]:
-    """Whether an arc becomes a turn round its centre."""
+    """Whether an arc becomes a turn round its centre.
+
+    Not right behind whole turns: those are left towards the next item, which must not be a centre.
+    """
     arcs = task.options.arcs
     if arcs == "loiter" and not task.is_plane:
         raise EncodeError(
@@ -49,6 +53,8 @@ def flown_round(task: Task) -> Callable[[PathSegment], bool]:
         return lambda _: False
     least_deg = _WORTH_IT_DEG if arcs == "auto" else _LEFT_BEFORE_DEG
 
+    behind_turns = {behind for before, behind in pairwise(task.path.segments) if is_whole_turns(before)}
+
     def suits(segment: PathSegment) -> bool:
         if segment.turn_deg is None or segment.radius_m is None or segment.centre is None:
             return False
@@ -57,6 +63,7 @@ def flown_round(task: Task) -> Callable[[PathSegment], bool]:
             least_deg < segment.turn_deg < WHOLE_TURN_DEG
             and segment.radius_m <= _LARGEST_M
             and rise_m <= _LEVEL_M
+            and segment not in behind_turns
         )
 
     return suits

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_right
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -15,6 +15,8 @@ from planner.plan import Collect, FlownPath, LonLat, PathSegment
 MERGE_M = 0.5
 #: From so much on an arc is whole turns; rounding may have taken a little.
 WHOLE_TURN_DEG = 359.9
+#: From so many radii on PX4 takes a place for one outside a circle, and a little more.
+_OUTSIDE = 1.06
 #: No arc is cut into chords of more than this, however large the chord error allowed.
 LARGEST_STEP_RAD = math.radians(45.0)
 
@@ -121,7 +123,27 @@ def stops_along(
         or stop.turns is not None
         or (stop.along_m > from_m and all(abs(stop.along_m - m) > MERGE_M for m in begun_m))
     ]
-    return _merged(stops, {here(place[:2]) for collect in collects for place in collect.line})
+    merged = _merged(stops, {here(place[:2]) for collect in collects for place in collect.line})
+    return tuple(_left_outwards(merged, local))
+
+
+def _left_outwards(stops: Sequence[Stop], local: LocalMap) -> Iterator[Stop]:
+    """Stops without those right behind whole turns that lie on the circle still, as on an arc that goes on.
+
+    A circle is left towards the place behind it. PX4 waits for that course only where the place lies outside
+    (``exit_course_is_reachable`` of its mission_block.cpp); else it leaves at once when it is high enough.
+    """
+    turns: PathSegment | None = None
+    for number, stop in enumerate(stops):
+        if stop.turns is not None:
+            turns = stop.turns
+        elif turns is not None and turns.centre is not None and turns.radius_m is not None:
+            away_m = math.dist(local.xy(stop.place), local.xy(turns.centre))
+            last = number == len(stops) - 1
+            if away_m <= _OUTSIDE * turns.radius_m and not (stop.on or stop.off or stop.arc or last):
+                continue
+            turns = None
+        yield stop
 
 
 def _segment_places(segment: PathSegment, local: LocalMap, chord_error_m: float) -> list[LonLat]:

@@ -74,7 +74,7 @@ def encode_plan(plan: Plan, choice: MissionChoice) -> Mission:
         fix = "write e.g. manager:tilt=45, manager:tilt=45,yaw=course, mount:tilt=45 or none"
         raise RefusedError(str(error), (Finding("gimbal", "gimbal", str(error), fix),)) from error
     except EncodeError as error:
-        fix = "plan for another autopilot, payload or gimbal"
+        fix = "plan for another autopilot, finish, payload or gimbal"
         raise RefusedError(str(error), (Finding("plan", "cannot-be-encoded", str(error), fix),)) from error
 
 

@@ -12,7 +12,7 @@ from mavlink.encoding.encode import EncodeError, encode
 from mavlink.wire.items import Command
 from planner.plan import Finish
 from tests.mavlink.encoding.missions import L, W, commands, local
-from tests.mavlink.plans import FRAME, RUN_M, START, Leg, make_plan
+from tests.mavlink.plans import CIRCLE_M, FRAME, RUN_M, START, Leg, make_plan
 
 
 def test_a_multirotor_climbs_on_the_spot() -> None:
@@ -106,3 +106,23 @@ def test_a_landing_elsewhere_is_said() -> None:
     assert words in encode(make_plan()).notes
     plan = make_plan()
     assert words not in encode(replace(plan, end=plan.home)).notes
+
+
+@pytest.mark.parametrize("autopilot", ["ardupilot", "px4"])
+@pytest.mark.parametrize("turn_deg", [200.0, -200.0, 80.0, -80.0])
+@pytest.mark.parametrize("radius_m", [CIRCLE_M, 130.0, 300.0])
+def test_climbing_turns_are_left_towards_a_place_outside_their_circle(
+    autopilot: str, turn_deg: float, radius_m: float
+) -> None:
+    """An arc right behind them is no turn of its own, and no waypoint of it lies on the circle.
+
+    PX4 leaves a circle anywhere where the next place is nearer to its centre than 1.05 radii, and ArduPlane
+    would leave it towards the centre of the next turn.
+    """
+    plan = make_plan((Leg(turn_deg=turn_deg, radius_m=radius_m), Leg(length_m=900.0)), autopilot=autopilot)
+    items = encode(plan).mission
+    at = next(index for index, item in enumerate(items) if item.command == L)
+    circle = items[at]
+    behind = next(item for item in items[at + 1 :] if item.x or item.y)
+    assert behind.command == W
+    assert math.dist(local(behind), local(circle)) > 1.05 * CIRCLE_M
