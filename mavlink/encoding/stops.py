@@ -198,7 +198,7 @@ def _late_stop(path: FlownPath, collect: Collect, local: LocalMap, off_delay_m: 
 def _merged(stops: list[Stop], exact: set[LonLat]) -> tuple[Stop, ...]:
     """Stops in order; those nearer than MERGE_M to each other are one, at an exact place if there is one."""
     merged: list[Stop] = []
-    for stop in sorted(stops, key=lambda s: (s.along_m, -s.off, s.on)):
+    for stop in sorted(stops, key=_in_order):
         apart = not merged or stop.along_m - merged[-1].along_m > MERGE_M
         if apart or stop.turns is not None or merged[-1].turns is not None:
             merged.append(stop)
@@ -217,6 +217,11 @@ def _merged(stops: list[Stop], exact: set[LonLat]) -> tuple[Stop, ...]:
                 turns=last.turns or stop.turns,
             )
     return tuple(merged)
+
+
+def _in_order(stop: Stop) -> tuple[float, int, int]:
+    """Whole turns come behind what is named where they begin, though a file rounds distances."""
+    return stop.along_m + (0.0 if stop.turns is None else MERGE_M), -stop.off, stop.on
 
 
 def altitude_along(path: FlownPath, along_m: float) -> float:

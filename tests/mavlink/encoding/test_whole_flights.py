@@ -15,6 +15,7 @@ from mavlink.dialects import Autopilot, VehicleType
 from mavlink.dialects.compare import differences
 from mavlink.encoding.encode import EncodeOptions, encode
 from mavlink.wire.items import Command, Frame, MissionItem
+from planner.geojson import read_plan, write_plan
 from planner.plan import AltitudeReference, Finish, Plan
 from planner.route import Pose
 from tests.mavlink.encoding.missions import KINDS, LANDINGS, L, W, local
@@ -70,7 +71,8 @@ def flights(draw: st.DrawFn) -> Flown:
         altitude_reference=reference,
         ground_m=draw(st.floats(0.0, 1500.0)) if reference == "amsl" else 0.0,
     )
-    return Flown(plan, autopilot, kind)
+    # As made, or as a file has it, with rounded distances.
+    return Flown(read_plan(write_plan(plan)) if draw(st.booleans()) else plan, autopilot, kind)
 
 
 def over_datum_m(item: MissionItem, plan: Plan) -> float:
