@@ -20,6 +20,15 @@ _TILT_LIMIT_DEG = 35.0
 _WAYPOINT_RADIUS_M = 2.0
 _L1_PERIOD_S = {"kinematic": 7.0, "jsbsim": 12.0}
 
+#: Climbing and descending: TECS_CLMB_MAX, TECS_SINK_MAX; WPNAV_SPEED_UP, WPNAV_SPEED_DN; FW_T_CLMB_R_SP,
+#: FW_T_SINK_R_SP; MPC_Z_V_AUTO_UP, MPC_Z_V_AUTO_DN, by default.
+_RATES_M_S = {
+    (Flavour.ARDUPILOT, False): (5.0, 5.0),
+    (Flavour.ARDUPILOT, True): (2.5, 1.5),
+    (Flavour.PX4, False): (3.0, 2.0),
+    (Flavour.PX4, True): (3.0, 1.5),
+}
+
 
 @dataclass(frozen=True, slots=True)
 class SimSettings:
@@ -50,6 +59,8 @@ class SimSettings:
     heading_deg
         Where it points on the ground; None: north, and at the place of the mission's take-off once that
         begins, as whoever launches it would point it.
+    climb_m_s, sink_m_s
+        Fastest that it climbs and descends; 0: as its autopilot does by default.
     l1_period_s
         Period of the lateral guidance; None: 7 s, and 12 s under JSBSim, whose roll is slower.
     acceptance_m
@@ -81,8 +92,8 @@ class SimSettings:
     turn_radius_m: float = 100.0
     max_bank_deg: float | None = None
     roll_rate_deg_s: float = 75.0
-    climb_m_s: float = 5.0
-    sink_m_s: float = 4.0
+    climb_m_s: float = 0.0
+    sink_m_s: float = 0.0
     l1_period_s: float | None = None
     wind_m_s: float = 0.0
     wind_from_deg: float = 0.0
@@ -108,6 +119,11 @@ class SimSettings:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "autopilot", Flavour(self.autopilot))
+        for name, rate_m_s in zip(
+            ("climb_m_s", "sink_m_s"), _RATES_M_S[self.autopilot, self.hovers], strict=True
+        ):
+            if getattr(self, name) == 0.0:
+                object.__setattr__(self, name, rate_m_s)
         if self.vehicle_type == "vtol":
             raise ValueError(
                 "no vtol is simulated: its transitions between rotors and wings are not; take fixed_wing or "

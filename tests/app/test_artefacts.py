@@ -65,6 +65,22 @@ async def test_missions_are_what_other_programs_read(client: httpx.AsyncClient, 
     assert ElementTree.fromstring(kml.text).tag == "{http://www.opengis.net/kml/2.2}kml"
 
 
+async def test_a_plan_that_returns_is_no_mission_of_px4s_wings(
+    client: httpx.AsyncClient, plan_file: Path, tmp_path: Path
+) -> None:
+    """PX4 wants a landing: refused with the finish to plan with, while ArduPilot's file is handed out."""
+    plan = json.loads(plan_file.read_text())
+    plan["vehicles"][0]["finish"] = "return"
+    returning = tmp_path / "returning.geojson"
+    returning.write_text(json.dumps(plan))
+    base = f"/api/v1/plans/{await stored(client, returning)}/mission.plan"
+    refused = await client.get(base, params={"autopilot": "px4"})
+    check_problem(refused, 422, "cannot-be-encoded")
+    assert "plan again with finish 'land' of vehicle uav-1" in refused.json()["detail"]
+    items = (await client.get(base)).json()["mission"]["items"]
+    assert items[-1]["command"] == 20
+
+
 async def test_payload_and_vehicle_are_chosen_by_query(client: httpx.AsyncClient, plan_id: str) -> None:
     """The sensor's switch can be chosen; what cannot be is refused."""
     base = f"/api/v1/plans/{plan_id}/mission.waypoints"
