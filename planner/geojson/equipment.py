@@ -67,10 +67,10 @@ def read_aircraft(raw: Any, index: int, findings: Findings) -> Aircraft | None:
         return None
     if kind is None or autopilot is None or reserve is None or finish is None:
         return None
-    if autopilot == "px4" and kind == "fixed_wing" and finish not in ("auto", "land"):
+    if autopilot == "px4" and kind != "multirotor" and finish not in ("auto", "land"):
         fields.wrong(
             "finish",
-            f"is {finish}, but PX4's fixed wings take no mission without a landing (MIS_TKO_LAND_REQ)",
+            f"is {finish}, but PX4's wings take no mission without a landing (MIS_TKO_LAND_REQ)",
             "Set finish to land, or leave it out.",
             rule="finish-not-flown",
         )

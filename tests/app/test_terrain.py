@@ -130,7 +130,7 @@ def test_a_broken_file_is_named_as_the_sender_has_it(content: bytes) -> None:
         (written(np.zeros((3, 5, 5), np.uint8), crs="EPSG:4326",
                  transform=from_origin(0, 0, 0.1, 0.1)), "x.tif", "raster-format"),
         (ramp(crs="EPSG:4979"), "x.tif", "geoid-grid-missing"),
-        (ramp(transform=from_origin(275.0, 37.0, 0.002, 0.002)), "x.tif", "no-georeference"),
+        (ramp(transform=from_origin(575.0, 37.0, 0.002, 0.002)), "x.tif", "no-georeference"),
         (ramp(transform=from_origin(0.0, 120.0, 0.002, 0.002)), "x.tif", "no-georeference"),
     ],
 )  # fmt: skip

@@ -1,7 +1,7 @@
 """Whole flights in a real ArduPlane and ArduCopter take as long as planned.
 
-Skipped unless ``SWATHPLAN_ARDUPLANE`` and ``SWATHPLAN_ARDUCOPTER`` name the simulators (``copter.parm`` beside
-it, or named by ``SWATHPLAN_ARDUCOPTER_PARAMS``). ``pytest --log-cli-level=INFO`` shows a row for each.
+Skipped unless ``SWATHPLAN_ARDUPLANE`` and ``SWATHPLAN_ARDUCOPTER`` name the simulators (``copter.parm``
+beside it, or named by ``SWATHPLAN_ARDUCOPTER_PARAMS``). ``pytest --log-cli-level=INFO`` shows a row for each.
 """
 
 from __future__ import annotations
