@@ -156,7 +156,8 @@ def _flight(
     ended = False
     for stop in stops:
         past_m = stop.along_m - task.mission_end_m
-        if not ended and collecting == 0 and past_m > (MERGE_M if stop.turns is None else -MERGE_M):
+        # The place that a landing comes from belongs to it; one that ends a collect still to the mission.
+        if not ended and collecting == 0 and past_m > -MERGE_M and not stop.off:
             ended = True
             items += _before_the_end(task, off, pointing)
         if stop.turns is not None:
@@ -179,7 +180,11 @@ def _flight(
             items += pointing.before(pointed)
         if stop.on and (before == 0 or stop.off):
             items.append(on)
-    return items if ended else [*items, *_before_the_end(task, off, pointing)]
+    if ended:
+        return items
+    last = [item for item in items if item.command == Command.NAV_WAYPOINT][-1:]
+    approach = last if task.is_px4 and not task.hovers else []
+    return [*items, *_before_the_end(task, off, pointing), *approach]
 
 
 def _before_the_end(task: Task, off: MissionItem, pointing: Pointings) -> list[MissionItem]:

@@ -159,7 +159,7 @@ def short_of(priority: float) -> Document:
         feature(n, "roi", "Polygon", square(e, 0.04, 0.002), required=False, priority=p)
         for n, e, p in (("X", -0.03, priority), ("Y", 0.05, 1.0))
     ]
-    return vehicle(with_features(*far), max_range_m=21_000.0)
+    return vehicle(with_features(*far), max_range_m=26_000.0)
 
 
 def many(budget_s: float) -> Document:
@@ -243,6 +243,7 @@ PROOFS: dict[tuple[str, str], tuple[Document, Document]] = {
     ("vehicle", "max_range_m"): (small(), vehicle(max_range_m=1000.0)),
     ("vehicle", "max_flight_time_s"): (small(), vehicle(max_flight_time_s=100.0)),
     ("vehicle", "settle_m"): (small(), vehicle(settle_m=300.0)),
+    ("vehicle", "finish"): (small(), vehicle(finish="land")),
     ("vehicle", "base"): (based(), based(base="B0")),
     ("sensor", "name"): (small(), sensor(name="other")),
     ("sensor", "type"): (small(), sensor(type="camera")),
