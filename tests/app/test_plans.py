@@ -75,6 +75,8 @@ async def test_bound_follows_the_plan(client: httpx.AsyncClient) -> None:
     assert (answer.json()["state"], answer.json()["metrics"]) == ("done", {"length_m": 1.0})
     assert (await client.get(place + "/plan.geojson")).json()["metrics"] == {"length_m": 1.0}
     watched = asyncio.create_task(client.get(place + "/events"))
+    # Until the watcher is served: it must not come after the bound.
+    await asyncio.sleep(1.0)
     # Another plan needs the one worker: the bound ends with what it has.
     other = (await client.post(PLANS, json=scenario(), params={"wait": 20})).json()
     assert other["state"] == "done"
