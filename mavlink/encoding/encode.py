@@ -154,10 +154,12 @@ def _flight(
     items: list[MissionItem] = [*pointing.before(0)]
     collecting = begun = pointed = 0
     ended = False
+    straight_in = not task.hovers and task.path.phase("return") is None
     for stop in stops:
         past_m = stop.along_m - task.mission_end_m
         # The place that a landing comes from belongs to it; one that ends a collect still to the mission.
-        if not ended and collecting == 0 and past_m > -MERGE_M and not stop.off:
+        begins = stop.turns is not None or (straight_in and not stop.off)
+        if not ended and collecting == 0 and past_m > (-MERGE_M if begins else MERGE_M):
             ended = True
             items += _before_the_end(task, off, pointing)
         if stop.turns is not None:
