@@ -62,6 +62,8 @@ def test_disc_depth_is_the_distance_to_the_line(path: Path, east_m: float, north
         assert r - math.dist(conflict.where, (east_m, north_m)) == pytest.approx(conflict.depth_m, abs=1e-6)
 
 
+# GEOS raises the floating-point flag on odd shapes; what it gives back is held against the line itself.
+@pytest.mark.filterwarnings("ignore:invalid value encountered in buffer:RuntimeWarning")
 @settings(deadline=None)
 @given(lines, polygons)
 def test_polygon_conflict_is_shapelys(path: Path, polygon: Polygon) -> None:
