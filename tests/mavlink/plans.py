@@ -76,6 +76,8 @@ RUN_M, RUN_HEIGHT_M = 350.0, 50.0
 CIRCLE_M = 105.0
 APPROACH_M, APPROACH_HEIGHT_M = 580.0, 40.0
 TURNS = 3
+#: Length over the ground for a metre of height, where no circles are flown for it.
+RUN_A_METRE = 10.0
 SPEED_M_S = 20.0
 
 
@@ -98,12 +100,18 @@ class Piece:
 
 
 def flight_of(
-    legs: tuple[Leg, ...], start: Pose, vehicle_type: str, top_m: float, finish: Finish, ground_m: float
+    legs: tuple[Leg, ...],
+    start: Pose,
+    vehicle_type: str,
+    top_m: float,
+    finish: Finish,
+    ground_m: float,
+    circles: bool = True,
 ) -> list[Piece]:
     """The whole flight: up before the legs, down behind them."""
     path = flown(legs, start)
     hovers = vehicle_type == "multirotor"
-    lift_m = {"fixed_wing": 0.0, "vtol": RUN_HEIGHT_M, "multirotor": top_m}[vehicle_type]
+    lift_m = {"fixed_wing": 0.0, "vtol": min(RUN_HEIGHT_M, top_m), "multirotor": top_m}[vehicle_type]
     pieces: list[Piece] = []
     run = Segment("straight", start if hovers else _behind(start, RUN_M), RUN_M)
     low_m = ground_m + lift_m
@@ -114,9 +122,15 @@ def flight_of(
             pieces.append(Piece("climb", None, run.start, first_m, ground_m + top_m))
     top_m += ground_m
     if not hovers:
-        run_end_m = low_m if lift_m else low_m + RUN_HEIGHT_M
+        run_end_m = low_m if lift_m else min(low_m + RUN_HEIGHT_M, top_m)
+        climb_m = 0.0 if circles else RUN_A_METRE * (top_m - run_end_m)
+        run = replace(run, start=_behind(run.start, climb_m))
         pieces.append(Piece("take_off", run, run.start, low_m, run_end_m))
-        pieces.append(Piece("climb", _turns("left", start), start, run_end_m, top_m))
+        if circles:
+            pieces.append(Piece("climb", _turns("left", start), start, run_end_m, top_m))
+        elif climb_m > 0.0:
+            climb = Segment("straight", run.end, climb_m)
+            pieces.append(Piece("mission", climb, climb.start, run_end_m, top_m))
     for leg, segment in zip(legs, path.segments, strict=True):
         pieces.append(Piece("mission", segment, segment.start, top_m, top_m, leg.collect_m))
     end = path.end
@@ -124,7 +138,13 @@ def flight_of(
         down_m = top_m if finish == "loiter" else ground_m
         return pieces if finish == "loiter" else [*pieces, Piece("landing", None, end, top_m, down_m)]
     bottom_m = {"land": ground_m + APPROACH_HEIGHT_M, "return": ground_m + 100.0, "loiter": top_m}[finish]
-    pieces.append(Piece("return", _turns("right", end), end, top_m, bottom_m))
+    bottom_m = min(bottom_m, top_m)
+    if circles or finish != "land":
+        pieces.append(Piece("return", _turns("right", end), end, top_m, bottom_m))
+    elif top_m > bottom_m:
+        descent = Segment("straight", end, RUN_A_METRE * (top_m - bottom_m))
+        pieces.append(Piece("mission", descent, end, top_m, bottom_m))
+        end = descent.end
     if finish == "land":
         approach = Segment("straight", end, APPROACH_M)
         touch_m = bottom_m if lift_m else ground_m
@@ -223,12 +243,15 @@ def make_plan(
     fence: Fence | None = None,
     finish: Finish = "land",
     min_turn_radius_m: float = 100.0,
+    circles: bool = True,
 ) -> Plan:
     """A plan of one vehicle whose mission is exactly the legs: the whole flight.
 
-    ``altitude_m`` counts from the ground at home, which is at ``ground_m`` over the plan's datum.
+    ``altitude_m`` counts from the ground at home, which is at ``ground_m`` over the plan's datum. Without
+    ``circles`` wings climb straight to the legs, and come straight down from them to a landing: both belong
+    to the mission.
     """
-    pieces = flight_of(legs, start, vehicle_type, altitude_m, finish, ground_m)
+    pieces = flight_of(legs, start, vehicle_type, altitude_m, finish, ground_m, circles)
     segments: list[PathSegment] = []
     collects: list[Collect] = []
     line: list[tuple[float, float, float]] = []

@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 
 from mavlink.dialects import VehicleType
-from mavlink.encoding.encode import EncodeError, encode
+from mavlink.encoding.encode import EncodeError, EncodeOptions, encode
 from mavlink.wire.items import Command
 from planner.plan import Finish
 from tests.mavlink.encoding.missions import L, W, commands, local
@@ -126,3 +126,35 @@ def test_climbing_turns_are_left_towards_a_place_outside_their_circle(
     behind = next(item for item in items[at + 1 :] if item.x or item.y)
     assert behind.command == W
     assert math.dist(local(behind), local(circle)) > 1.05 * CIRCLE_M
+
+
+@pytest.mark.parametrize("autopilot", ["ardupilot", "px4"])
+@pytest.mark.parametrize("kind", ["fixed_wing", "vtol"])
+@pytest.mark.parametrize("altitude_m", [40.0, 300.0])
+def test_a_landing_straight_in_begins_at_a_place_of_its_own(
+    autopilot: str, kind: VehicleType, altitude_m: float
+) -> None:
+    """Without circles: the last off and PX4's mark before the place that it comes down from."""
+    leg = Leg(length_m=1500.0, collect_m=(500.0, 1500.0))
+    plan = make_plan((leg,), autopilot=autopilot, vehicle_type=kind, altitude_m=altitude_m, circles=False)
+    items = encode(plan, options=EncodeOptions(off_delay_m=0.0)).mission
+    assert not {L, Command.NAV_LOITER_UNLIM, Command.NAV_LOITER_TURNS} & {item.command for item in items}
+    *before, last, land = items
+    assert land.command == (Command.NAV_VTOL_LAND if kind == "vtol" else Command.NAV_LAND)
+    landing = plan.paths[0].phase("landing")
+    assert landing is not None
+    # ArduPilot comes in from where the last collect ended; PX4's landing has a waypoint behind its mark.
+    begins = next(s for s in plan.paths[0].segments if s.start_m >= landing.start_m - 0.01).start
+    places = [item for item in items if item.command == W]
+    assert math.dist(local(places[-1]), FRAME.to_local(begins)) < 0.05
+    assert places[-1].z == pytest.approx(40.0)
+    if autopilot == "px4":
+        assert last.command == W
+        assert before[-1].command == Command.DO_LAND_START
+    switch = Command.DO_SET_RELAY if autopilot == "ardupilot" else Command.DO_SET_ACTUATOR
+    offs = [index for index, item in enumerate(items) if item.command == switch]
+    assert len(offs) == 3
+    ends = items[: offs[1]][-1]
+    (collect,) = plan.collects
+    assert math.dist(local(ends), FRAME.to_local(collect.line[1][:2])) < 0.05
+    assert offs[2] > offs[1]
