@@ -10,8 +10,9 @@ vertex is passed within WPNAV_RADIUS r: ``b = 2 r / sin(theta/2)`` at most, the 
 waypoint is reached abeam.
 
 PX4 takes the corner where the next waypoint is taken up, at the acceptance radius: ``b = r``, at the speed of
-the circle tangent to both legs there, ``sqrt(a r / tan(theta/2))`` (``computeMaxSpeedInWaypoint``). A
-waypoint is reached within the radius.
+the circle tangent to both legs there with half of its acceleration, ``sqrt(a r / tan(theta/2))``
+(``computeMaxSpeedInWaypoint``, MPC_XY_TRAJ_P), and no faster than it could stop from at the next waypoint
+(``computeMaxSpeedFromDistance``). A waypoint is reached within the radius.
 """
 
 from __future__ import annotations
@@ -31,6 +32,8 @@ _POSITION_GAIN_PER_S = 0.8
 _ALTITUDE_GAIN_PER_S = 0.7
 #: Braking is planned with a part of the acceleration there is, the rest steers.
 _BRAKING = 0.6
+#: PX4's share for corners (MPC_XY_TRAJ_P), and its jerk (MPC_JERK_AUTO).
+_PX4_CORNERS, _PX4_JERK_M_S3 = 0.5, 4.0
 _ALTITUDE_REACHED_M = 2.0
 #: With less way to go than this the nose stays where it points.
 _YAW_FROM_M = 3.0
@@ -104,8 +107,8 @@ class LegFollower:
         self._corner_m_s = [self._corner_speed_m_s(vertex) for vertex in range(len(self._vertices))]
         for leg in range(len(self._directions) - 1, 0, -1):
             length_m = self._directions[leg][2] - self._reach_m[leg] - self._reach_m[leg + 1]
-            most = speed_to_stop_m_s(length_m, self._braking_m_s2, self._corner_m_s[leg + 1])
-            self._corner_m_s[leg] = min(self._corner_m_s[leg], most)
+            end_m_s = self._corner_m_s[leg + 1] if agility.reached_abeam else 0.0
+            self._corner_m_s[leg] = min(self._corner_m_s[leg], self._most_m_s(length_m, end_m_s))
         self._leg = 0
         self.cross_track_m = 0.0
 
@@ -164,7 +167,7 @@ class LegFollower:
             return HoverCommand(north, east)
         end_m_s = self._corner_m_s[leg + 1]
         free_m = left_m - self._reach_m[leg + 1]
-        speed_m_s = min(speed_m_s, speed_to_stop_m_s(free_m, self._braking_m_s2, end_m_s))
+        speed_m_s = min(speed_m_s, self._most_m_s(free_m, end_m_s))
         speed_m_s = min(speed_m_s, self._speed_on_slope_m_s(leg))
         across = _POSITION_GAIN_PER_S * self.cross_track_m
         across = min(max(across, -0.7 * speed_m_s), 0.7 * speed_m_s)
@@ -194,8 +197,7 @@ class LegFollower:
         speed_m_s = min(speed_m_s, self._corner_m_s[vertex])
         if vertex + 1 == len(self._vertices) - 1 or self._corner_m_s[vertex + 1] < speed_m_s:
             free_m = self._directions[vertex][2] - behind * reach_m - self._reach_m[vertex + 1]
-            most = speed_to_stop_m_s(free_m, self._braking_m_s2, self._corner_m_s[vertex + 1])
-            speed_m_s = min(speed_m_s, most)
+            speed_m_s = min(speed_m_s, self._most_m_s(free_m, self._corner_m_s[vertex + 1]))
         known = speed_m_s**2 / (2.0 * reach_m)
         back = _POSITION_GAIN_PER_S * min(1.0, speed_m_s / max(math.hypot(off_n, off_e), 1e-6))
         heading = (before * u_n + behind * v_n, before * u_e + behind * v_e)
@@ -247,7 +249,17 @@ class LegFollower:
         if self._agility.reached_abeam:
             return math.sqrt(2.0 * a_m_s2 * reach_m)
         half_angle = self._half_angle_rad(vertex) or 0.0
-        return math.sqrt(a_m_s2 * reach_m / max(math.tan(half_angle), 1e-9))
+        return math.sqrt(_PX4_CORNERS * a_m_s2 * reach_m / max(math.tan(half_angle), 1e-9))
+
+    def _most_m_s(self, distance_m: float, end_m_s: float) -> float:
+        """Fastest speed from which an end's speed is reached in a distance."""
+        if self._agility.reached_abeam:
+            return speed_to_stop_m_s(distance_m, self._braking_m_s2, end_m_s)
+        # PX4 counts on its acceleration changing from one limit to the other before it brakes.
+        a_m_s2 = self._agility.acceleration_m_s2
+        delay_m_s = 2.0 * a_m_s2**2 / _PX4_JERK_M_S3
+        most = math.sqrt(delay_m_s**2 + 2.0 * a_m_s2 * max(distance_m, 0.0) + end_m_s**2) - delay_m_s
+        return max(most, end_m_s)
 
     def _half_angle_rad(self, vertex: int) -> float | None:
         """Half the angle turned at a vertex; None where it is sharp or a leg has no length."""

@@ -10,6 +10,7 @@ from planner.dubins.path import Path, Segment, join
 from planner.profile.flight import Flight, Times, whole_flight
 from planner.profile.heights import Heights, level
 from planner.profile.rise import Rise
+from planner.profile.smoothed import smoothed_times
 from planner.profile.times import rotor_times, wing_times
 from planner.route import CollectPass
 from planner.vehicle.manners import LIFT_OFF_HEIGHT_M, manners_of
@@ -86,7 +87,8 @@ def times_of(model: FlightModel, datum_amsl_m: float) -> Times:
     """
     manners = manners_of(model.aircraft)
     if model.aircraft.type == "multirotor":
-        return partial(rotor_times, speed_m_s=model.airspeed_m_s, manners=manners)
+        rotor = smoothed_times if manners.corner_m > 0.0 else rotor_times
+        return partial(rotor, speed_m_s=model.airspeed_m_s, manners=manners)
     return partial(
         wing_times, aircraft=model.aircraft, manners=manners, wind=model.wind, datum_amsl_m=datum_amsl_m
     )

@@ -2,7 +2,8 @@
 
 Wings keep their airspeed as the autopilot measures it, the equivalent one, so through thinner air they fly
 faster: by the root of the density at sea level over that at their height (standard atmosphere). What hovers
-keeps a speed over the ground, and brakes before arcs to what it flies their chords with.
+keeps a speed over the ground, and brakes before arcs to what it flies their chords with; under PX4 see
+``planner.profile.smoothed``.
 """
 
 from __future__ import annotations
@@ -14,13 +15,11 @@ from itertools import groupby, pairwise
 from planner.airspace.values import Wind
 from planner.dubins.path import Path
 from planner.profile.flight import Stretch
+from planner.profile.jerks import HALVINGS, change_m, change_s, chords_of
 from planner.vehicle.aircraft import Aircraft
 from planner.vehicle.atmosphere import true_over_equivalent
-from planner.vehicle.manners import CHORD_ERROR_M, LARGEST_STEP_RAD, Manners
+from planner.vehicle.manners import Manners
 from planner.vehicle.wind import duration_s
-
-#: Speeds are found to a part in a million.
-HALVINGS = 40
 
 
 def wing_times(
@@ -99,31 +98,22 @@ def _allowed_m_s(stretch: Stretch, speed_m_s: float, manners: Manners) -> float:
 
 
 def chord_speed_m_s(turn_rad: float, radius_m: float, manners: Manners) -> float:
-    """Speed along an arc that is flown from chord to chord, as missions say it.
+    """Speed along an arc that ArduCopter flies from chord to chord, as missions say it.
 
-    ArduCopter flies a chord no faster than from rest to rest, which over short ones its jerk decides:
-    half a chord of c takes it to v with c / 2 = √(v³ / j). PX4 passes a corner as fast as the circle allows
-    that touches both chords where it takes up the next one.
+    It flies a chord no faster than from rest to rest, which over short ones its jerk decides: half a chord of
+    c takes it to v with c / 2 = √(v³ / j).
     """
-    step_rad = 2.0 * math.acos(max(1.0 - CHORD_ERROR_M / radius_m, math.cos(0.5 * LARGEST_STEP_RAD)))
-    chords = max(1, math.ceil(turn_rad / step_rad - 1e-9))
-    corner_rad = turn_rad / chords
-    if manners.corner_m > 0.0:
-        return math.sqrt(manners.accel_m_s2 * manners.corner_m / math.tan(0.5 * corner_rad))
+    corner_rad = turn_rad / chords_of(turn_rad, radius_m)
     chord_m = 2.0 * radius_m * math.sin(0.5 * corner_rad)
     return float((0.25 * chord_m**2 * manners.jerk_m_s3) ** (1.0 / 3.0))
 
 
 def _change_s(from_m_s: float, to_m_s: float, manners: Manners) -> float:
-    """Seconds that a change of speed takes: its acceleration rises and falls by the jerk."""
-    change = abs(to_m_s - from_m_s)
-    accel, jerk = manners.accel_m_s2, manners.jerk_m_s3
-    return 2.0 * math.sqrt(change / jerk) if change < accel**2 / jerk else change / accel + accel / jerk
+    return change_s(from_m_s, to_m_s, manners.accel_m_s2, manners.jerk_m_s3)
 
 
 def _change_m(from_m_s: float, to_m_s: float, manners: Manners) -> float:
-    """Distance that a change of speed takes."""
-    return 0.5 * (from_m_s + to_m_s) * _change_s(from_m_s, to_m_s, manners)
+    return change_m(from_m_s, to_m_s, manners.accel_m_s2, manners.jerk_m_s3)
 
 
 def _reached_m_s(from_m_s: float, distance_m: float, manners: Manners) -> float:

@@ -38,10 +38,17 @@ class Manners:
         Of what hovers: along and across its line, and up and down.
     jerk_m_s3
         How fast that acceleration changes.
-    corner_m
-        How far before a corner it takes up the next line; 0 where it blends both by its jerk.
     land_m_s, land_below_m
         Touch-down speed of what hovers, and the height under which it is flown.
+    corner_m, corner_share
+        How far before a corner it takes up the next line, and the share of its acceleration that it turns
+        with there; 0 where it blends both lines by its jerk.
+    land_from_m
+        From this height on its descent slows down to the touch-down speed.
+    take_off_m_s, take_off_below_m, take_off_accel_m_s2
+        Its climb off the ground, up to a height.
+    height_reached_m
+        So much under a height it counts as reached.
     """
 
     climb_m_s: float
@@ -52,6 +59,12 @@ class Manners:
     land_m_s: float = 0.0
     land_below_m: float = 0.0
     corner_m: float = 0.0
+    corner_share: float = 1.0
+    land_from_m: float = 0.0
+    take_off_m_s: float = 0.0
+    take_off_below_m: float = 0.0
+    take_off_accel_m_s2: float = 0.0
+    height_reached_m: float = 0.0
 
 
 #: TECS_CLMB_MAX, TECS_SINK_MAX; Q_ACCEL_Z, Q_LAND_SPEED (hover of quadplanes).
@@ -61,8 +74,9 @@ _COPTER = Manners(2.5, 1.5, 2.5, 1.0, 1.0, 0.5, 10.0)
 #: FW_T_CLMB_R_SP, FW_T_SINK_R_SP; MPC_LAND_SPEED, MPC_LAND_ALT2 (hover of VTOLs).
 _PX4_WING = Manners(3.0, 2.0, land_m_s=0.7, land_below_m=5.0)
 #: MPC_Z_V_AUTO_UP, MPC_Z_V_AUTO_DN, MPC_ACC_HOR, MPC_JERK_AUTO, MPC_ACC_UP_MAX, MPC_LAND_SPEED,
-#: MPC_LAND_ALT2, NAV_ACC_RAD.
-_PX4_MULTIROTOR = Manners(3.0, 1.5, 3.0, 4.0, 4.0, 0.7, 5.0, 2.0)
+#: MPC_LAND_ALT2, NAV_ACC_RAD, MPC_XY_TRAJ_P, MPC_LAND_ALT1; MPC_TKO_SPEED, MPC_LAND_ALT1, MPC_TKO_SPEED over
+#: MPC_TKO_RAMP_T; NAV_MC_ALT_RAD.
+_PX4_MULTIROTOR = Manners(3.0, 1.5, 3.0, 4.0, 4.0, 0.7, 5.0, 2.0, 0.5, 10.0, 1.5, 10.0, 0.5, 0.8)
 
 
 def manners_of(aircraft: Aircraft) -> Manners:

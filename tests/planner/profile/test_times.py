@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 import pytest
 from hypothesis import given, settings
@@ -68,14 +67,6 @@ def test_chords_are_flown_as_fast_as_arducopter_flew_them(chord_m: float, flown_
     turn_rad = math.radians(10.0)
     radius_m = chord_m / (2.0 * math.sin(0.5 * turn_rad))
     assert chord_speed_m_s(turn_rad, radius_m, ROTOR) == pytest.approx(flown_m_s, rel=0.12)
-
-
-def test_px4_passes_corners_on_the_circle_inside_its_acceptance() -> None:
-    """A corner of 45° taken up 2 m before it: on the circle that touches both lines there."""
-    px4 = replace(ROTOR, corner_m=2.0, accel_m_s2=3.0)
-    assert chord_speed_m_s(math.radians(45.0), 3.0, px4) == pytest.approx(
-        math.sqrt(3.0 * 2.0 / math.tan(math.radians(22.5)))
-    )
 
 
 def test_climbs_on_the_spot_that_follow_each_other_are_one() -> None:

@@ -1,0 +1,201 @@
+"""How long the stretches of a flight take what hovers under PX4, which smooths its way from place to place.
+
+Its speed over the ground is held under what lets it brake for the place ahead, and for the next one as if it
+had to stop there; a corner is passed on the circle that touches both lines where it takes up the next place.
+Sources: PX4 v1.16, ``TrajectoryConstraints.hpp``, ``TrajMath.hpp`` (``computeMaxSpeedFromDistance``,
+``computeMaxSpeedInWaypoint``) and ``FlightTaskAuto.cpp``.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import groupby, pairwise
+
+from planner.profile.flight import Stretch
+from planner.profile.jerks import HALVINGS, change_m, change_s, chords_of
+from planner.vehicle.manners import Manners
+
+#: Places nearer than this are one in a mission.
+ONE_PLACE_M = 0.5
+#: Up to this angle off its way it does not hold its speed in for turning (its cosine is 0.98).
+NO_TURN_RAD = math.acos(0.98)
+
+
+@dataclass(frozen=True, slots=True)
+class _Leg:
+    """A straight between two places of a mission; ``number`` is of its stretch."""
+
+    number: int
+    length_m: float
+    angle_rad: float
+    most_m_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class Braking:
+    """What a speed is limited by on the way to a place; it counts as reached from ``short_m`` on."""
+
+    accel_m_s2: float
+    jerk_m_s3: float
+    short_m: float
+
+    @property
+    def slack_m_s(self) -> float:
+        """It counts on braking no sooner than the acceleration has changed from one limit to the other."""
+        return 4.0 * self.accel_m_s2**2 / self.jerk_m_s3
+
+    def most_m_s(self, distance_m: float, end_m_s: float) -> float:
+        """Fastest at a distance from a place to be passed at a speed: v² + slack v = 2 a d + end²."""
+        b, c = self.slack_m_s, 2.0 * self.accel_m_s2 * distance_m + end_m_s**2
+        return max(0.5 * (math.sqrt(b**2 + 4.0 * c) - b), end_m_s)
+
+    def distance_m(self, speed_m_s: float, end_m_s: float) -> float:
+        """From where on a speed is too fast, until the place counts as reached."""
+        if speed_m_s <= end_m_s:
+            return 0.0
+        over = speed_m_s**2 + self.slack_m_s * speed_m_s - end_m_s**2
+        return max(over / (2.0 * self.accel_m_s2) - self.short_m, 0.0)
+
+    def time_s(self, speed_m_s: float, end_m_s: float) -> float:
+        """Seconds for that distance: dt = (2 + slack / v) dv / (2 a), then at the end's speed."""
+        if speed_m_s <= end_m_s:
+            return 0.0
+        last_m_s = min(self.most_m_s(self.short_m, end_m_s), speed_m_s)
+        slowing_s = (speed_m_s - last_m_s) / self.accel_m_s2
+        slowing_s += self.slack_m_s / (2.0 * self.accel_m_s2) * math.log(speed_m_s / last_m_s)
+        if last_m_s > end_m_s:
+            return slowing_s
+        return slowing_s + max(self.slack_m_s / (2.0 * self.accel_m_s2) - self.short_m / end_m_s, 0.0)
+
+
+def smoothed_times(stretches: Sequence[Stretch], speed_m_s: float, manners: Manners) -> list[float]:
+    """Seconds of each stretch: at rest where what is flown over the ground begins, and where it ends."""
+    found = _spots_s(stretches, manners)
+    legs = [leg for k, s in enumerate(stretches) for leg in _legs(k, s, speed_m_s, manners)]
+    braking = Braking(manners.accel_m_s2, manners.jerk_m_s3, manners.corner_m)
+    corners = [_corner_m_s(here, behind, braking, manners) for here, behind in pairwise(legs)]
+    passed_m_s, turn_m = 0.0, 0.0
+    for k, leg in enumerate(legs):
+        last = k == len(legs) - 1
+        end_m_s = 0.0 if last else corners[k]
+        # Places are taken up early: only the first leg is the shorter for it.
+        length_m = max(leg.length_m - (braking.short_m if k == 0 else 0.0), 0.0)
+        time_s, passed_m_s = _leg_s(length_m, passed_m_s, end_m_s, turn_m, leg.most_m_s, braking)
+        found[leg.number] += time_s
+        turn_m = 0.0 if last else _turn_m(_turned_rad(leg, legs[k + 1]), braking.short_m)
+    return found
+
+
+def _legs(number: int, stretch: Stretch, speed_m_s: float, manners: Manners) -> list[_Leg]:
+    """The straights that a stretch is flown by."""
+    segment = stretch.segment
+    if segment is None or stretch.ground_m < ONE_PLACE_M:
+        return []
+    rise_m = stretch.end_altitude_m - stretch.start_altitude_m
+    rate = manners.climb_m_s if rise_m > 0.0 else manners.sink_m_s
+    most = min(speed_m_s, rate * stretch.ground_m / abs(rise_m)) if abs(rise_m) > 0.0 else speed_m_s
+    if segment.kind == "straight":
+        return [_Leg(number, segment.length_m, segment.start.angle_rad, most)]
+    count = chords_of(abs(segment.turn_rad), segment.radius_m)
+    step_rad = segment.turn_rad / count
+    chord_m = 2.0 * segment.radius_m * math.sin(0.5 * abs(step_rad))
+    first_rad = segment.start.angle_rad + 0.5 * step_rad
+    return [_Leg(number, chord_m, first_rad + k * step_rad, most) for k in range(count)]
+
+
+def _turned_rad(leg: _Leg, behind: _Leg) -> float:
+    return abs(math.remainder(behind.angle_rad - leg.angle_rad, math.tau))
+
+
+def _corner_m_s(leg: _Leg, behind: _Leg, braking: Braking, manners: Manners) -> float:
+    """Speed at the place between two legs; it stops where the second one is shorter than it is early."""
+    if behind.length_m < braking.short_m:
+        return 0.0
+    accel = manners.corner_share * braking.accel_m_s2
+    half_rad = max(0.5 * _turned_rad(leg, behind), 1e-6)
+    return min(
+        leg.most_m_s,
+        behind.most_m_s,
+        math.sqrt(accel * braking.short_m / math.tan(half_rad)),
+        braking.most_m_s(behind.length_m, 0.0),
+    )
+
+
+def _turn_m(turned_rad: float, early_m: float) -> float:
+    """Length of the arc that touches both lines of a corner as far from it as the place is taken up early."""
+    return 0.0 if turned_rad < NO_TURN_RAD else early_m * turned_rad / math.tan(0.5 * turned_rad)
+
+
+def _leg_s(
+    length_m: float, from_m_s: float, end_m_s: float, turn_m: float, most_m_s: float, braking: Braking
+) -> tuple[float, float]:
+    """Seconds for a leg, no faster than before while it turns; and the speed it is left at."""
+    turn_m = min(turn_m, length_m) if from_m_s > 0.0 else 0.0
+    turning_s = turn_m / from_m_s if turn_m > 0.0 else 0.0
+    free_m = length_m - turn_m
+    left_m_s = braking.most_m_s(braking.short_m, end_m_s)
+
+    def needed_m(peak_m_s: float) -> float:
+        speeding_m = change_m(from_m_s, peak_m_s, braking.accel_m_s2, braking.jerk_m_s3)
+        return speeding_m + braking.distance_m(peak_m_s, end_m_s)
+
+    low, high = from_m_s, most_m_s
+    if needed_m(low) >= free_m:
+        left_m_s = min(left_m_s, from_m_s) if from_m_s > 0.0 else left_m_s
+        return turning_s + free_m / (0.5 * (from_m_s + left_m_s)), left_m_s
+    if needed_m(high) > free_m:
+        for _ in range(HALVINGS):
+            middle = 0.5 * (low + high)
+            low, high = (middle, high) if needed_m(middle) <= free_m else (low, middle)
+        high = low
+    speeding_s = change_s(from_m_s, high, braking.accel_m_s2, braking.jerk_m_s3)
+    cruising_s = (free_m - needed_m(high)) / high
+    return turning_s + speeding_s + cruising_s + braking.time_s(high, end_m_s), min(left_m_s, high)
+
+
+def _spots_s(stretches: Sequence[Stretch], manners: Manners) -> list[float]:
+    """Seconds of each climb on the spot, 0 for others; those that follow each other are one."""
+    found: list[float] = []
+    for on_the_spot, run in groupby(stretches, key=lambda s: s.segment is None):
+        together = list(run)
+        foot_m, top_m = together[0].start_altitude_m, together[-1].end_altitude_m
+        for s in together:
+            if not on_the_spot:
+                found.append(0.0)
+            elif top_m > foot_m:
+                heights_m = (s.start_altitude_m - foot_m, s.end_altitude_m - foot_m)
+                begun_s, ended_s = (climb_s(height_m, top_m - foot_m, manners) for height_m in heights_m)
+                found.append(ended_s - begun_s)
+            else:
+                found.append(descent_s(foot_m - top_m, manners) * s.length_m / (foot_m - top_m))
+    return found
+
+
+def climb_s(height_m: float, top_m: float, manners: Manners) -> float:
+    """Seconds from the ground to a height on the way up to the top: slowly first, braking for the top."""
+    slow_m_s, slow_accel = manners.take_off_m_s, manners.take_off_accel_m_s2
+    low_m = min(height_m, manners.take_off_below_m)
+    ramp_m = slow_m_s**2 / (2.0 * slow_accel)
+    if low_m < ramp_m:
+        return math.sqrt(2.0 * low_m / slow_accel)
+    low_s = slow_m_s / slow_accel + (low_m - ramp_m) / slow_m_s
+    if height_m <= manners.take_off_below_m:
+        return low_s
+    braking = Braking(manners.vertical_accel_m_s2, manners.jerk_m_s3, manners.height_reached_m)
+    above_m = max(top_m - manners.take_off_below_m - manners.height_reached_m, 0.0)
+    above_s, _ = _leg_s(above_m, slow_m_s, 0.0, 0.0, manners.climb_m_s, braking)
+    return low_s + above_s * (height_m - manners.take_off_below_m) / (top_m - manners.take_off_below_m)
+
+
+def descent_s(height_m: float, manners: Manners) -> float:
+    """Seconds down to the ground, the speed falling between two heights to that of touching down."""
+    slow_m = min(height_m, manners.land_below_m)
+    falling_m = min(height_m, manners.land_from_m) - slow_m
+    time_s = slow_m / manners.land_m_s + (height_m - slow_m - falling_m) / manners.sink_m_s
+    time_s += change_s(0.0, manners.sink_m_s, manners.vertical_accel_m_s2, manners.jerk_m_s3) / 2.0
+    if falling_m > 0.0:
+        gradient = (manners.sink_m_s - manners.land_m_s) / (manners.land_from_m - manners.land_below_m)
+        time_s += math.log(1.0 + gradient * falling_m / manners.land_m_s) / gradient
+    return time_s
