@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from shapely import constrained_delaunay_triangles
 from shapely.geometry import LineString, Point, Polygon
+from shapely.ops import unary_union
 
 from planner.airspace.kernels import CLEAR, FORBIDDEN, OUTSIDE, leg_verdict
 from planner.airspace.zones import ring_edges
@@ -31,7 +33,19 @@ EDGES = np.concatenate(RINGS)
 OFFSETS = np.cumsum([0, *(len(ring) for ring in RINGS)], dtype=np.int64)
 NO_EDGES = np.empty((0, 4))
 
-place = st.tuples(st.floats(-500.0, 4500.0), st.floats(-500.0, 3500.0))
+ALLOWED = [
+    np.array(piece.exterior.coords[:3])
+    for piece in constrained_delaunay_triangles(AREA.difference(unary_union(ZONES))).geoms
+]
+#: Well inside one of the triangles of the allowed ground: hardly one is drawn in vain.
+place = st.builds(
+    lambda corners, first, second: tuple(
+        corners.T @ (first, (1.0 - first) * second, (1.0 - first) * (1.0 - second))
+    ),
+    st.sampled_from(ALLOWED),
+    st.floats(0.001, 0.999),
+    st.floats(0.001, 0.999),
+)
 
 
 @given(start=place, bearing_rad=st.floats(0.0, 2.0 * math.pi), length_m=st.floats(20.0, 2500.0))
@@ -44,7 +58,6 @@ def test_verdict_agrees_with_shapely(start, bearing_rad, length_m):
     edge_m = min(line.distance(zone.boundary) for zone in ZONES)
     corner_m = min(line.distance(Point(corner)) for corner in AREA.exterior.coords)
     # the near end is judged with the leg before, and a hair's breadth is nobody's business
-    assume(AREA.contains(Point(start)) and not any(zone.contains(Point(start)) for zone in ZONES))
     assume(AREA.exterior.distance(Point(start)) > 1e-3 and AREA.exterior.distance(Point(end)) > 1e-3)
     assume(abs(disc_m) > 1e-3 and corner_m > 1e-3)
     # nor is a leg along an edge, which is neither in nor out
