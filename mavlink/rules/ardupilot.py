@@ -7,6 +7,7 @@ from collections.abc import Callable
 from typing import Final
 
 from mavlink.encoding.payload import RelayPayload, ServoPayload
+from mavlink.rules import whole_flight
 from mavlink.rules.base import Needs, ParameterFinding, Rule, Values, any_of, camera, check, lands
 from mavlink.rules.flight import bank, corners, l1_period, loiter, speed
 from mavlink.rules.gimbal import ARDUPILOT as GIMBAL
@@ -130,6 +131,7 @@ PLANE: Final[tuple[Rule, ...]] = (
     speed("AIRSPEED_CRUISE"),
     bank("ROLL_LIMIT_DEG"),
     loiter("WP_LOITER_RAD"),
+    *whole_flight.PLANE,
     _AUTOLAND,
     *_FENCE,
     *_PAYLOAD,
@@ -153,4 +155,4 @@ VTOL: Final[tuple[Rule, ...]] = (
         lands,
     ),
 )
-COPTER: Final[tuple[Rule, ...]] = (*_FENCE, *_PAYLOAD, *GIMBAL)
+COPTER: Final[tuple[Rule, ...]] = (*whole_flight.COPTER, *_FENCE, *_PAYLOAD, *GIMBAL)

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Final, Literal
 
 from mavlink.dialects.mission import Mission
 from mavlink.encoding.gimbal import Hold, Protocol, hold_of, protocol_of
 from mavlink.encoding.payload import ActuatorPayload, CameraPayload, ImagePayload, Payload, RelayPayload
+from mavlink.rules.heights import HeightNeeds, heights_of
 from mavlink.wire.geometry import distance_m
 from mavlink.wire.items import Command, Frame
 from planner.plan import Plan
@@ -37,6 +38,7 @@ _ABOVE_SEA: Final = frozenset({Frame.GLOBAL, Frame.GLOBAL_INT})
 OTHER_NAMES: Final[dict[str, tuple[str, float]]] = {
     "ROLL_LIMIT_DEG": ("LIM_ROLL_CD", 100.0),  # ArduPlane before 4.5
     "AIRSPEED_CRUISE": ("TRIM_ARSPD_CM", 100.0),
+    "RTL_ALTITUDE": ("ALT_HOLD_RTL", 100.0),
     "MNT1_TYPE": ("MNT_TYPE", 1.0),  # ArduPilot before 4.3
 }
 
@@ -115,6 +117,7 @@ class Needs:
     highest_m: float = 0.0
     farthest_m: float = 0.0
     gimbal: GimbalNeeds | None = None
+    heights: HeightNeeds = field(default_factory=HeightNeeds)
 
 
 def needs_of(plan: Plan, mission: Mission, payload: Payload, settle_m: float | None = None) -> Needs:
@@ -133,6 +136,7 @@ def needs_of(plan: Plan, mission: Mission, payload: Payload, settle_m: float | N
         highest_m,
         farthest_m,
         _gimbal(plan, mission),
+        heights_of(plan, mission.vehicle),
     )
 
 

@@ -6,6 +6,7 @@ import math
 from typing import Final
 
 from mavlink.encoding.payload import ActuatorPayload, CameraPayload
+from mavlink.rules import whole_flight
 from mavlink.rules.base import Needs, ParameterFinding, Rule, Values, check, lands
 from mavlink.rules.flight import SWITCH_DISTANCE, bank, corners, loiter, speed
 from mavlink.rules.gimbal import PX4 as GIMBAL
@@ -128,6 +129,7 @@ _WINGS: Final = (
     speed("FW_AIRSPD_TRIM"),
     bank("FW_R_LIM"),
     loiter("NAV_LOITER_RAD"),
+    *whole_flight.PX4_WINGS,
     _LANDING,
 )
 _TRANSITION: Final = (
@@ -159,4 +161,4 @@ _TRANSITION: Final = (
 
 FIXED_WING: Final[tuple[Rule, ...]] = (*_WINGS, _SLOPE, *_COMMON)
 VTOL: Final[tuple[Rule, ...]] = (*_WINGS, *_TRANSITION, *_COMMON)
-MULTIROTOR: Final[tuple[Rule, ...]] = (_LANDING, *_COMMON)
+MULTIROTOR: Final[tuple[Rule, ...]] = (*whole_flight.PX4_MULTIROTOR, _LANDING, *_COMMON)

@@ -89,6 +89,9 @@ def _plane(settings: SimSettings) -> dict[str, float]:
         "ROLL_LIMIT_DEG": math.degrees(settings.bank_limit_rad),
         "RTL_ALTITUDE": settings.rtl_altitude_m,
         "RTL_AUTOLAND": 0.0,
+        "RTL_RADIUS": 0.0,
+        "TECS_CLMB_MAX": settings.climb_m_s,
+        "TECS_SINK_MAX": settings.sink_m_s,
         "WP_LOITER_RAD": settings.turn_radius_m,
         "WP_RADIUS": settings.acceptance_m,
     }
@@ -98,7 +101,10 @@ def _copter(settings: SimSettings) -> dict[str, float]:
     # Centimetres and centidegrees.
     return {
         "ANGLE_MAX": 100.0 * math.degrees(settings.bank_limit_rad),
+        "LAND_SPEED": 50.0,
         "RTL_ALT": 100.0 * settings.rtl_altitude_m,
+        "WPNAV_ACCEL": 250.0,
+        "WPNAV_JERK": 1.0,
         "WPNAV_RADIUS": 100.0 * settings.waypoint_radius_m,
         "WPNAV_SPEED": 100.0 * settings.airspeed_m_s,
         "WPNAV_SPEED_DN": 100.0 * settings.sink_m_s,
@@ -140,6 +146,10 @@ def _px4_plane(settings: SimSettings) -> dict[str, float]:
         "NPFG_DAMPING": 0.7,
         "NPFG_SW_DST_MLT": 0.32,
         "FW_R_LIM": math.degrees(settings.bank_limit_rad),
+        "FW_T_CLMB_MAX": settings.climb_m_s,
+        "FW_T_CLMB_R_SP": settings.climb_m_s,
+        "FW_T_SINK_MAX": settings.sink_m_s,
+        "FW_T_SINK_R_SP": settings.sink_m_s,
         "MIS_TKO_LAND_REQ": 2.0,
         "NAV_ACC_RAD": settings.acceptance_m,
         "FW_LND_ANG": 5.0,
@@ -149,8 +159,15 @@ def _px4_plane(settings: SimSettings) -> dict[str, float]:
 def _px4_multirotor(settings: SimSettings) -> dict[str, float]:
     return {
         "MIS_TKO_LAND_REQ": 0.0,
+        "MPC_ACC_HOR": 3.0,
+        "MPC_JERK_AUTO": 4.0,
+        "MPC_LAND_SPEED": 0.7,
         "MPC_TILTMAX_AIR": math.degrees(settings.bank_limit_rad),
+        "MPC_TKO_SPEED": 1.5,
         "MPC_XY_CRUISE": settings.airspeed_m_s,
+        "MPC_XY_VEL_MAX": max(12.0, settings.airspeed_m_s),
+        "MPC_Z_V_AUTO_DN": settings.sink_m_s,
+        "MPC_Z_V_AUTO_UP": settings.climb_m_s,
         "MPC_Z_VEL_MAX_DN": settings.sink_m_s,
         "MPC_Z_VEL_MAX_UP": settings.climb_m_s,
         "NAV_ACC_RAD": settings.waypoint_radius_m,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
@@ -19,8 +20,10 @@ from planner.plan import Plan
 Status = Literal["ok", "warning", "failed"]
 
 #: A vehicle this near to the plan's start stands there; beyond the second it is the wrong place.
-NEAR_M = 200.0
-FAR_M = 2000.0
+NEAR_M = 50.0
+FAR_M = 1000.0
+#: A fixed wing on the ground that points further from where the plan takes off is to be turned.
+TURNED_DEG = 20.0
 #: Less than this times the need is too little battery for comfort.
 RESERVE = 1.2
 #: A charge that is taken as low where nothing says what the flight needs.
@@ -117,6 +120,7 @@ def preflight(
         *_gimbal(plan, scenario, mission, needs),
         _battery(plan, scenario, mission, state),
         _place(plan, state),
+        *_heading(plan, mission, state),
         _gps(state),
         _datum(plan, scenario, state),
         *_circles(mission, state),
@@ -255,6 +259,22 @@ def _place(plan: Plan, state: VehicleState) -> Check:
     return Check("place", "ok", words)
 
 
+def _heading(plan: Plan, mission: Mission, state: VehicleState) -> Iterator[Check]:
+    """A fixed wing takes off the way it points: ArduPlane climbs on so, PX4 swings on its runway."""
+    path = next(path for path in plan.paths if path.vehicle == mission.vehicle)
+    planned_deg, heading_deg = path.take_off_heading_deg, state.heading_deg
+    if mission.vehicle_type != "fixed_wing" or planned_deg is None or state.landed is False:
+        return
+    if heading_deg is None:
+        yield Check("heading", "warning", "the vehicle does not say where it points")
+        return
+    off_deg = abs(math.remainder(heading_deg - planned_deg, 360.0))
+    words = f"it points to {heading_deg:.0f}°, the plan takes off to {planned_deg:.0f}°"
+    if off_deg > TURNED_DEG:
+        words += ": turn it there, or plan with that heading_deg of the start"
+    yield Check("heading", "warning" if off_deg > TURNED_DEG else "ok", words)
+
+
 def _gps(state: VehicleState) -> Check:
     if state.gps_fix is None:
         return Check("gps", "warning", "the vehicle does not say whether it has a fix")
@@ -279,6 +299,9 @@ def _datum(plan: Plan, scenario: Mapping[str, Any], state: VehicleState) -> Chec
         if abs(planned_m - home_m) > HEIGHT_M:
             return Check("altitude", "failed", f"{said}; the plan takes it to be at {planned_m:.0f} m")
         return Check("altitude", "ok", f"{said}, the plan takes it to be at {planned_m:.0f} m")
+    if planned_m is not None and abs(planned_m - home_m) > HEIGHT_M:
+        words = f"{said}; the scenario takes it to be at {planned_m:.0f} m, and its zones with it"
+        return Check("altitude", "warning", words)
     if plan.altitude_reference == "terrain" and not scenario.get("terrain"):
         words = f"{said}; without a terrain raster the ground is taken to be flat at that height"
         return Check("altitude", "warning", words)

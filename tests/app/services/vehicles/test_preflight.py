@@ -17,6 +17,7 @@ from tests.mavlink.plans import make_plan, square_fence
 
 PLAN = make_plan(fence=square_fence(5000.0), finish="return", altitude_reference="home")
 LON_DEG, LAT_DEG = PLAN.home
+HEADING_DEG = PLAN.paths[0].take_off_heading_deg or 0.0
 STATE = VehicleState(
     connected=True,
     autopilot="ardupilot",
@@ -27,6 +28,8 @@ STATE = VehicleState(
     home_lon_deg=LON_DEG,
     home_lat_deg=LAT_DEG,
     home_altitude_amsl_m=40.0,
+    heading_deg=HEADING_DEG,
+    landed=True,
     battery_percent=100.0,
     gps_fix="3d",
     satellites=12,
@@ -74,8 +77,10 @@ def test_all_well_is_ready() -> None:
         ({"battery_percent": 30.0}, "battery", "failed", "30 %"),
         ({"battery_percent": 36.0}, "battery", "warning", "36 %"),
         ({"battery_percent": None}, "battery", "warning", "how full"),
-        ({"lat_deg": LAT_DEG + 0.01}, "place", "warning", "from the plan's start"),
-        ({"lat_deg": LAT_DEG + 0.1}, "place", "failed", "from the plan's start"),
+        ({"lat_deg": LAT_DEG + 0.0006}, "place", "warning", "67 m from the plan's start"),
+        ({"lat_deg": LAT_DEG + 0.0004}, "place", "ok", "44 m from the plan's start"),
+        ({"lat_deg": LAT_DEG + 0.008}, "place", "warning", "from the plan's start"),
+        ({"lat_deg": LAT_DEG + 0.01}, "place", "failed", "from the plan's start"),
         ({"lat_deg": None}, "place", "failed", "where it is"),
         ({"home_lat_deg": LAT_DEG + 0.1}, "place", "warning", "its home"),
         ({"gps_fix": "2d"}, "gps", "failed", "2d"),
@@ -90,6 +95,36 @@ def test_the_vehicles_state(changes: dict[str, Any], name: str, status: str, wor
     check = of_state(**changes)[name]
     assert check.status == status
     assert words in check.detail
+
+
+@pytest.mark.parametrize(
+    ("off_deg", "status"), [(0.0, "ok"), (19.0, "ok"), (-19.0, "ok"), (21.0, "warning"), (-180.0, "warning")]
+)
+def test_a_wing_on_the_ground_points_where_the_plan_takes_off(off_deg: float, status: str) -> None:
+    """Within 20° across north as well; unknown is told, in the air and for what hovers nobody asks."""
+    for planned_deg in (HEADING_DEG, 5.0, 355.0):
+        path = replace(PLAN.paths[0], take_off_heading_deg=planned_deg)
+        state = replace(STATE, heading_deg=(planned_deg + off_deg) % 360.0)
+        seen = Observed(state, {"mission": (), "fence": ()}, VALUES)
+        check = checks(replace(PLAN, paths=(path,)), observed=seen)["heading"]
+        assert check.status == status
+        assert f"takes off to {planned_deg:.0f}°" in check.detail
+    assert of_state(heading_deg=None)["heading"].status == "warning"
+    assert "heading" not in of_state(landed=False)
+    copter = make_plan(fence=square_fence(5000.0), finish="return", vehicle_type="multirotor")
+    assert "heading" not in checks(copter)
+
+
+def test_a_home_at_another_height_than_the_scenario_says() -> None:
+    """Its zones' heights over the sea were placed by the start's: told, whatever the plan counts from."""
+    for height_m, status in ((45.0, "ok"), (80.0, "warning")):
+        start = {
+            "properties": {"role": "start"},
+            "geometry": {"coordinates": [LON_DEG, LAT_DEG, height_m]},
+        }
+        found = checks(scenario={**SCENARIO, "features": [start]})
+        assert found["altitude"].status == status
+    assert "80 m" in found["altitude"].detail
 
 
 def test_violations() -> None:
