@@ -21,7 +21,7 @@ from shapely.geometry import Polygon
 from planner.errors import PlannerError
 from planner.frames import LocalFrame
 from planner.geojson import read_scenario
-from planner.pipeline import make_plan, time_for_bound_s, with_bound
+from planner.pipeline import make_plan, with_bound
 from planner.plan import Plan
 from planner.warm import warm_up
 
@@ -110,8 +110,7 @@ def _row(kind: str, seed: int, compared: bool) -> dict[str, Any]:
     plan = make_plan(scenario, clock=time.perf_counter)
     planned_s = time.perf_counter() - began_s
     bounded = with_bound(scenario, plan, clock=time.perf_counter).metrics
-    until_s = time.perf_counter() + time_for_bound_s(planned_s, None)
-    shared = with_bound(scenario, plan, enough=lambda: time.perf_counter() > until_s).metrics
+    shared = with_bound(scenario, plan, clock=time.perf_counter, share=True).metrics
     lengths = {"auto": _route_m(plan)}
     for name, other in others(document) if compared else ():
         try:
@@ -132,6 +131,7 @@ def _row(kind: str, seed: int, compared: bool) -> dict[str, Any]:
         "lower_bound_m": bounded.lower_bound_m,
         "gap": bounded.gap,
         "gap_in_a_third": shared.gap,
+        "share_s": shared.planning_time_s["bound"],
         "below_collection": bounded.lower_bound_m < plan.metrics.collection_length_m,
         "least_m": lengths[least],
         "least_by": least,

@@ -7,12 +7,14 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 
+from planner.bounds.allowance import Allowance
 from planner.check import judge
 from planner.metrics import measure
 from planner.plan import Plan
 from planner.progress import Progress, Stop, never, silent
 from planner.publish import Chart, assemble, uncovered
 from planner.scenario import Scenario
+from planner.tasks.methods import chosen_methods
 from planner.tasks.registry import task_of
 from planner.tasks.task import Controls
 from planner.version import __version__
@@ -22,9 +24,11 @@ Clock = Callable[[], float]
 #: The search for better routes ends after this part of the scenario's time budget.
 ROUTING_SHARE = 0.6
 
-#: The bound is looked for in this part of the time for plan and bound together; a step begun is ended, which
-#: keeps within a third.
-BOUND_SHARE = 0.25
+#: What planning takes at least, in lines between cells of the bound, half a microsecond each: for a pass or
+#: region by the paper's stages and by the joint routing; by this for each pass beyond visits, up to so many.
+LINES_BY_PAPER, LINES_EACH, LINES_FURTHER, MOST_FURTHER = 30_000, 80_000, 120_000, 15
+#: The bound is looked for in this part of the work for plan and bound together at most.
+BOUND_SHARE = 0.3
 
 
 @dataclass(slots=True)
@@ -118,7 +122,12 @@ def make_plan(
 
 
 def with_bound(
-    scenario: Scenario, plan: Plan, stop: Stop = never, enough: Stop = never, clock: Clock | None = None
+    scenario: Scenario,
+    plan: Plan,
+    stop: Stop = never,
+    enough: Stop = never,
+    clock: Clock | None = None,
+    share: bool = False,
 ) -> Plan:
     """The same plan with what no plan over the regions it sees is shorter than, and how far it is above that.
 
@@ -130,11 +139,15 @@ def with_bound(
         The one cancels; the other ends the search for a better bound.
     clock
         Seconds, for ``metrics.planning_time_s``.
+    share
+        Whether the search ends after its share of the work, counted so that the same scenario and plan have
+        the same bound on any machine; to its end otherwise.
     """
     watch = _Stopwatch(clock)
     route_m = plan.metrics.route_length_m or plan.metrics.length_m
+    allowance = Allowance(lines_for_bound(scenario, plan) if share else math.inf, enough)
     with watch.stage("bound"):
-        bound_m = task_of(scenario.task).bound_m(scenario, plan, stop, enough)
+        bound_m = task_of(scenario.task).bound_m(scenario, plan, stop, allowance)
     return replace(
         plan,
         metrics=replace(
@@ -146,10 +159,19 @@ def with_bound(
     )
 
 
+def lines_for_bound(scenario: Scenario, plan: Plan) -> float:
+    """Lines between cells that the bound may look at, so that it takes no more than its share."""
+    passes, visits = len(plan.collects), sum(region.revisits for region in scenario.regions)
+    planned = LINES_BY_PAPER * max(passes, visits)
+    if chosen_methods(scenario.method)["routing"] == "joint":
+        further = min(max(passes - visits, 0), MOST_FURTHER)
+        planned = LINES_EACH * max(passes, visits) + LINES_FURTHER * further
+    return BOUND_SHARE / (1.0 - BOUND_SHARE) * planned
+
+
 def time_for_bound_s(planned_s: float, budget_s: float | None) -> float:
-    """How long the bound may be looked for after planning that took so long."""
-    spare_s = math.inf if budget_s is None else max(budget_s - planned_s, 0.0)
-    return min(BOUND_SHARE / (1.0 - BOUND_SHARE) * planned_s, spare_s)
+    """What a time budget leaves for the bound after planning that took so long; no end of it without one."""
+    return math.inf if budget_s is None else max(budget_s - planned_s, 0.0)
 
 
 def _budget(clock: Clock | None, budget_s: float | None) -> Stop:

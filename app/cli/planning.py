@@ -130,9 +130,15 @@ def make(
         )
         if bound is not Bound.NONE:
             narrator("bound", 1.0)
-            share_s = time_for_bound_s(time.monotonic() - began_s, scenario.time_budget_s)
-            share = Deadline(share_s if bound is Bound.SHARE else None)
-            plan = with_bound(scenario, plan, enough=lambda: share() or limit(), clock=time.perf_counter)
+            spare_s = time_for_bound_s(time.monotonic() - began_s, scenario.time_budget_s)
+            rest = Deadline(spare_s if bound is Bound.SHARE else None)
+            plan = with_bound(
+                scenario,
+                plan,
+                enough=lambda: rest() or limit(),
+                clock=time.perf_counter,
+                share=bound is Bound.SHARE,
+            )
         return write_plan(plan)
     except errors.ScenarioError as error:
         raise CommandError("the scenario is refused", Exit.BAD_INPUT, error.findings) from error
@@ -186,7 +192,7 @@ def plan(
     bound: Annotated[
         Bound,
         typer.Option(
-            help="What no plan is shorter than: looked for in a third of the time, to the end, or not."
+            help="What no plan is shorter than: looked for with a third of the work, to the end, or not."
         ),
     ] = Bound.SHARE,
     as_json: Json = False,

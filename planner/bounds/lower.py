@@ -27,6 +27,7 @@ from collections.abc import Sequence
 
 from shapely.geometry.base import BaseGeometry
 
+from planner.bounds.allowance import Allowance
 from planner.bounds.nodes import nodes, terminal
 from planner.bounds.search import exact_bound_m
 from planner.bounds.sweeps import MOST_ORDERED, sweeps_bound_m
@@ -58,7 +59,7 @@ def lower_bound_m(
     effort: int | None = None,
     part: float = 1.0,
     stop: Stop = never,
-    enough: Stop = never,
+    allowance: Allowance | None = None,
     *,
     grounds: Sequence[BaseGeometry | None] | None = None,
 ) -> float:
@@ -74,11 +75,12 @@ def lower_bound_m(
         Lines between cells to evaluate, about two million a second.
     part
         Of the effort where it is not given.
-    stop, enough
-        The one cancels; the other ends the search for a better bound.
+    stop, allowance
+        The one cancels; the other is for the search for a better bound.
     grounds
         Of each region what its passes, and those over others near it, see together; None for the region.
     """
+    allowance = allowance or Allowance()
     beside = grounds or [None] * len(sides)
     by_strips = [
         nodes(each, model.settle_m, index, MOST_STRIPS, ground)
@@ -92,15 +94,15 @@ def lower_bound_m(
     joined = any(ground is not None for ground in beside)
     if most_strips > FEW_STRIPS or joined or (most_strips > 1 and len(passes) > EXACT_UP_TO):
         whole = [of_region[0] for of_region in by_strips]
-        best_m = sweeps_bound_m(whole, *between, radius_m, known_m * (1.0 - GAPS[0]), stop, enough)
+        best_m = sweeps_bound_m(whole, *between, radius_m, known_m * (1.0 - GAPS[0]), stop, allowance)
     if len(passes) <= EXACT_UP_TO and best_m < known_m * (1.0 - GAPS[0]):
         targets_m = tuple(known_m * (1.0 - gap) for gap in GAPS)
         most = exact_effort(len(passes))
         work = effort or int(part * (most if most_strips <= FEW_STRIPS else EFFORT_BESIDES))
-        best_m = max(best_m, exact_bound_m(passes, *between, radius_m, targets_m, work, stop, enough))
+        best_m = max(best_m, exact_bound_m(passes, *between, radius_m, targets_m, work, stop, allowance))
     if len(passes) > 1 and best_m < known_m * (1.0 - POOR_GAP) and not by_sweeps:
         work = effort or int(part * EFFORT_TREES * len(passes))
-        best_m = max(best_m, trees_bound_m(passes, *between, radius_m, known_m, work, stop, enough))
+        best_m = max(best_m, trees_bound_m(passes, *between, radius_m, known_m, work, stop, allowance))
     return min(best_m, known_m)
 
 

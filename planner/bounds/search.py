@@ -24,15 +24,17 @@ from planner.bounds import cells_kernels as cells_of
 from planner.bounds import lines_kernels as lines
 from planner.bounds import tables_kernels as tables
 from planner.bounds import tours_kernels as tours
+from planner.bounds.allowance import Allowance
 from planner.bounds.nodes import Node, divided
-from planner.progress import Stop, never, raise_if
+from planner.progress import Stop, raise_if
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
-#: Headings of the first boxes, up to so many nodes and beyond.
-HEADINGS, FEW, HEADINGS_BEYOND = 48, 9, 24
+#: Headings of the first boxes, up to so many nodes and beyond; and where little work is allowed for, so that
+#: the first problem takes no more than this part of it.
+HEADINGS, FEW, HEADINGS_BEYOND, HEADINGS_LEAST, FIRST_PART = 48, 9, 24, 12, 0.5
 #: Directions of a region's two passes are divided once they span this many times its finest cell's.
 WIDE = 16.0
 #: What it takes in lines between cells: a cell; and two cells, as a part, for being there and for each set of
@@ -99,7 +101,7 @@ def exact_bound_m(
     targets_m: tuple[float, ...],
     effort: int,
     stop: Stop,
-    enough: Stop = never,
+    allowance: Allowance | None = None,
     shared: Flags | None = None,
 ) -> float:
     """No tour through one pass of each node is shorter.
@@ -113,12 +115,13 @@ def exact_bound_m(
         less effort than the next.
     effort
         Lines between cells to evaluate, or as much work.
-    stop, enough
-        The one cancels; the other ends the search for a better bound.
+    stop, allowance
+        The one cancels; the other is for the search for a better bound.
     shared
         Of which two regions passes may be parts of one, bool (R, R): a tour then goes from the end of one
         straight on to that of the other. Tours visit nodes in the order of their passes' ends.
     """
+    allowance = allowance or Allowance()
     if shared is None:
         regions = 1 + max(node.region for node in nodes)
         shared = np.zeros((regions, regions), dtype=np.bool_)
@@ -129,10 +132,10 @@ def exact_bound_m(
             # Nothing is known of how it is seen.
             return best_m
     for target_m in targets_m:
-        found_m, spent = _prove(nodes, start, end, radius_m, target_m, effort, stop, enough, shared)
+        found_m, spent = _prove(nodes, start, end, radius_m, target_m, effort, stop, allowance, shared)
         best_m = max(best_m, found_m)
         # The next takes several times as much, or there is hardly more to prove.
-        if found_m < target_m or spent > effort // 8 or enough():
+        if found_m < target_m or spent > effort // 8 or allowance.over:
             break
         effort -= spent
     return best_m
@@ -146,22 +149,23 @@ def _prove(
     target_m: float,
     effort: int,
     stop: Stop,
-    enough: Stop,
+    allowance: Allowance,
     shared: Flags,
 ) -> tuple[float, int]:
     """The bound, at most the target, and the lines evaluated."""
     count = itertools.count()
-    heap = [(0.0, next(count), problem) for problem in _first(nodes)]
+    heap = [(0.0, next(count), problem) for problem in _first(nodes, _headings(nodes, allowance))]
     spent = 0
     while heap and heap[0][0] < target_m and spent + _least_work(heap[0][2]) < effort:
         raise_if(stop)
-        if enough():
+        if _least_work(heap[0][2]) > allowance.left or allowance.over:
             break
         bound_m, _, problem = heapq.heappop(heap)
         solved = _solve(nodes, problem, start, end, radius_m, target_m, shared)
         if solved is None:
             continue
         spent += solved.work
+        allowance.spend(solved.work)
         target_m = min(target_m, (1.0 - CLOSE) * solved.flown_m)
         bound_m = max(bound_m, float(solved.known_m.min()))
         if bound_m >= target_m:
@@ -171,7 +175,18 @@ def _prove(
     return min([target_m, *(item[0] for item in heap[:1])]), spent
 
 
-def _first(nodes: list[Node]) -> Iterator[_Problem]:
+def _headings(nodes: list[Node], allowance: Allowance) -> int:
+    """How many headings the first boxes are of."""
+    headings = HEADINGS if len(nodes) <= FEW else HEADINGS_BEYOND
+    while headings > HEADINGS_LEAST:
+        count = sum(len(node.boxes(headings)) for node in nodes)
+        if _work_on(count, len(nodes)) + count * count <= FIRST_PART * allowance.left:
+            break
+        headings //= 2
+    return headings
+
+
+def _first(nodes: list[Node], headings: int) -> Iterator[_Problem]:
     """A problem for each choice of groups of regions with several nodes, of as many as there is room for."""
     several = sorted({node.region for node in nodes if node.strip})
     groups = {node.region: sorted(set(node.group.tolist())) for node in nodes if node.strip}
@@ -184,7 +199,7 @@ def _first(nodes: list[Node]) -> Iterator[_Problem]:
         of_region = dict(zip(chosen_of, chosen, strict=True))
         boxes = []
         for node in nodes:
-            own = node.boxes(HEADINGS if len(nodes) <= FEW else HEADINGS_BEYOND)
+            own = node.boxes(headings)
             if node.region in of_region:
                 own = own[node.group[own[:, 0].astype(np.int64)] == of_region[node.region]]
             boxes.append(own)
@@ -285,8 +300,11 @@ def _flown_m(
 
 def _least_work(problem: _Problem) -> int:
     """What solving a problem takes besides lines between its cells."""
-    count = sum(len(boxes) for boxes in problem.boxes)
-    sets = 2.0 ** (len(problem.boxes) - 2)
+    return _work_on(sum(len(boxes) for boxes in problem.boxes), len(problem.boxes))
+
+
+def _work_on(count: int, nodes: int) -> int:
+    sets = 2.0 ** (nodes - 2)
     return int(count * WORK_EACH + count * count * (WORK_PAIR + sets * WORK_SET))
 
 

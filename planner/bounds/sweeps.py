@@ -32,8 +32,9 @@ from numpy.typing import NDArray
 
 from planner.bounds import sets_kernels
 from planner.bounds import sweeps_kernels as kernels
+from planner.bounds.allowance import Allowance
 from planner.bounds.nodes import Node
-from planner.progress import Stop, never, raise_if
+from planner.progress import Stop, raise_if
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -48,6 +49,9 @@ MOVED = 0.125
 ROUNDING_RAD, SAME_RAD = 1e-8, 2e-4
 #: Ways between ends of stays to look at.
 EFFORT = 60_000_000
+#: Lines between cells that take as long as a tour and a way looked at, and as the stays at a region of so
+#: many strips: of their square and their cube.
+LINES_EACH, LINES_PER_WAY, LINES_PER_STRIP2, LINES_PER_STRIP3 = 800.0, 0.005, 500.0, 10.0
 #: Regions up to which the order is searched.
 MOST_ORDERED = 12
 
@@ -159,7 +163,7 @@ def sweeps_bound_m(
     radius_m: float,
     target_m: float,
     stop: Stop,
-    enough: Stop = never,
+    allowance: Allowance | None = None,
 ) -> float:
     """No tour that stays at each region at least once, and flies all its strips, is shorter.
 
@@ -174,12 +178,16 @@ def sweeps_bound_m(
         See ``nodes.terminal``.
     target_m
         Nothing better is looked for.
+    allowance
+        For the search for a better bound.
     """
+    allowance = allowance or Allowance()
     per_cell = next((headings for most, headings in PER_CELL.items() if len(nodes) <= most), HEADINGS)
     found = []
     for node in nodes:
         raise_if(stop)
         found.append(_stays(node, radius_m, per_cell))
+        allowance.spend(_lines_of_stays(node))
     looks = max(stays.sets.shape[2] for stays in found)
     sets = np.concatenate([_padded(stays.sets, looks) for stays in found])
     thetas = np.concatenate([stays.thetas for stays in found])
@@ -193,7 +201,8 @@ def sweeps_bound_m(
     count = itertools.count()
     heap = [(ways.least_m(every), next(count), every)]
     spent = _work(every)
-    while heap and heap[0][0] < target_m and spent < EFFORT and not enough():
+    allowance.spend(_lines(spent))
+    while heap and heap[0][0] < target_m and spent < EFFORT and not allowance.over:
         raise_if(stop)
         bound_m, _, cells = heap[0]
         # Of a region seen in one pass nothing is parted.
@@ -204,6 +213,7 @@ def sweeps_bound_m(
         for half in np.array_split(cells[widest], 2):
             part = (*cells[:widest], half, *cells[widest + 1 :])
             spent += _work(part)
+            allowance.spend(_lines(_work(part)))
             heapq.heappush(heap, (max(bound_m, ways.least_m(part)), next(count), part))
     least_m = heap[0][0]
     return least_m if math.isfinite(least_m) else 0.0
@@ -213,6 +223,17 @@ def _work(cells: tuple[Ints, ...]) -> int:
     """What it takes to find the least tour over these cells, about, in ways looked at."""
     ends = 4 * sum(len(own) for own in cells)
     return ends * ends * (2 + (1 << min(len(cells), MOST_ORDERED)) // 4) + 20_000
+
+
+def _lines(work: int) -> float:
+    """Lines between cells that take as long."""
+    return LINES_EACH + work * LINES_PER_WAY
+
+
+def _lines_of_stays(node: Node) -> float:
+    """Lines between cells that take as long as finding all stays at one region."""
+    strips = float(node.families[:, 8].max())
+    return 0.0 if node.seen.one_place else LINES_PER_STRIP2 * strips**2 + LINES_PER_STRIP3 * strips**3
 
 
 def _least_tree_m(apart_m: Floats) -> float:

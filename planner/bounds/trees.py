@@ -23,8 +23,9 @@ from numpy.typing import NDArray
 from planner.bounds import cells_kernels as cells_of
 from planner.bounds import tables_kernels as tables
 from planner.bounds import trees_kernels as kernels
+from planner.bounds.allowance import Allowance
 from planner.bounds.nodes import Node, divided
-from planner.progress import Stop, never, raise_if
+from planner.progress import Stop, raise_if
 from planner.routing import tour
 
 Floats = NDArray[np.float64]
@@ -33,6 +34,8 @@ Flags = NDArray[np.bool_]
 
 #: Headings of the first boxes, and how many cells of a node the tour in order may split them into.
 HEADINGS, MOST_IN_ORDER = 36, 60
+#: Lines that take as long as the tour in order for a node, and as the ascent for a line.
+LINES_IN_ORDER, LINES_ASCENT = 4_000, 1.7
 #: Of the nearest nodes lines are known by cells, of others by how far apart they are.
 NEAREST = 7
 #: Rounds of splitting, the last of which ends the search where it gains less than this part.
@@ -102,7 +105,7 @@ def trees_bound_m(
     known_m: float,
     effort: int,
     stop: Stop,
-    enough: Stop = never,
+    allowance: Allowance | None = None,
 ) -> float:
     """No tour through one pass of each node is shorter.
 
@@ -114,12 +117,16 @@ def trees_bound_m(
         Length of a known tour: sets the steps of the ascent.
     effort
         Lines between cells to evaluate.
+    allowance
+        For the search for a better bound.
     """
+    allowance = allowance or Allowance()
     middles = np.array([node.middle for node in nodes])
     region = np.array([node.region for node in nodes], dtype=np.int64)
     order = np.array(tour.order(middles, tuple(start[:2]), tuple(end[:2]), "exact"), dtype=np.int64)
     cells = _Cells(nodes, HEADINGS)
     _in_order(cells, order, region, start, end, radius_m)
+    allowance.spend(LINES_IN_ORDER * len(nodes))
     gaps_m = np.hypot(*(middles[:, None, :] - middles[None, :, :]).transpose(2, 0, 1))
     pairs = _pairs(gaps_m, order)
     price = np.zeros(len(nodes))
@@ -127,13 +134,15 @@ def trees_bound_m(
     best_m, spent = 0.0, 0
     for _ in range(ROUNDS):
         raise_if(stop)
-        if enough():
+        if allowance.over:
             break
         counts = np.diff(cells.offsets)
         begins = np.concatenate([[0], np.cumsum(counts[pairs[:, 0]] * counts[pairs[:, 1]])]).astype(np.int64)
         spent += int(begins[-1])
-        if spent > effort and best_m > 0.0:
+        work = (1.0 + LINES_ASCENT) * begins[-1]
+        if best_m > 0.0 and (spent > effort or work > allowance.left):
             break
+        allowance.spend(work)
         between = kernels.blocks(cells.values, cells.slopes, cells.offsets, region, pairs, begins, radius_m)
         bound_m, price, cells.potential, back, used, came, went = kernels.ascent(
             between,

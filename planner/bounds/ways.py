@@ -25,6 +25,7 @@ import shapely
 from numpy.typing import NDArray
 from shapely.geometry.base import BaseGeometry
 
+from planner.bounds.allowance import Allowance
 from planner.bounds.lower import EXACT_UP_TO, GAPS, lower_bound_m
 from planner.bounds.nodes import nodes, terminal
 from planner.bounds.search import exact_bound_m
@@ -44,11 +45,14 @@ Flags = NDArray[np.bool_]
 #: The ways to see what is asked for, and the ground of all that passes there may see besides.
 Asked = tuple[Sides, BaseGeometry | None]
 
-#: Units taken in several ways that are told apart.
-MOST_APART = 3
-#: Units and places asked for, where passes are shared, and lines between cells to evaluate of so many.
+#: Units taken in several ways that are told apart, and dividing one takes as long as so many lines.
+MOST_APART, LINES_DIVIDED = 3, 100_000
+#: Units and places asked for, where passes are shared, and lines between cells to evaluate of so many; no
+#: more at first than this part of what is left.
 COUNTS = (1, 2, 3, 5, 8, EXACT_UP_TO)
-EFFORTS_SHARED = (300_000, 2_500_000)
+EFFORTS_SHARED, PART_SHARED = (300_000, 2_500_000), 0.2
+#: Of what is allowed, the first of two bounds takes no more.
+PART_FIRST = 0.6
 
 
 def plan_bound_m(
@@ -57,7 +61,7 @@ def plan_bound_m(
     length_m: float,
     left_out: Collection[str] = (),
     stop: Stop = never,
-    enough: Stop = never,
+    allowance: Allowance | None = None,
 ) -> float:
     """No plan over these regions is shorter, whatever its method.
 
@@ -69,9 +73,10 @@ def plan_bound_m(
         Of a plan.
     left_out
         Names of regions that the plan leaves out.
-    stop, enough
-        The one cancels; the other ends the search for a better bound.
+    stop, allowance
+        The one cancels; the other is for the search for a better bound.
     """
+    allowance = allowance or Allowance()
     best_m = math.dist(ends[0].position, ends[1].position)
     if not all(isinstance(seeing.suite.of(region), SarSensor) for region in seeing.regions):
         # Nothing is known of how other sensors' passes may lie.
@@ -86,12 +91,16 @@ def plan_bound_m(
             # A loop holds a circle (Pestov and Ionin; a corner at its base does not matter).
             best_m = 2.0 * math.pi * seeing.model.turn_radius_m
         linked = near(found, seeing.model.settle_m)
-        best_m = max(best_m, _of_ground_m(seeing, ends, found, linked, stop, enough))
+        best_m = max(best_m, _of_ground_m(seeing, ends, found, linked, stop, allowance))
         # Where nothing is shared the first says most, as a rule, else the second.
-        ways = (_of_shared_m, _of_apart_m) if linked.any() else (_of_apart_m, _of_shared_m)
-        for bound in ways:
-            if best_m < length_m * (1.0 - GAPS[0]) and not enough():
-                best_m = max(best_m, bound(seeing, ends, found, linked, length_m, stop, enough))
+        ways = [_of_shared_m, _of_apart_m] if linked.any() else [_of_apart_m, _of_shared_m]
+        if not linked.any() and all(unit.whole for unit in found):
+            # Nothing can be shared.
+            ways = [_of_apart_m]
+        for k, bound in enumerate(ways, start=1):
+            if best_m < length_m * (1.0 - GAPS[0]) and not allowance.over:
+                part = allowance.part(allowance.left * (1.0 if k == len(ways) else PART_FIRST))
+                best_m = max(best_m, bound(seeing, ends, found, linked, length_m, stop, part))
     return min(best_m, length_m)
 
 
@@ -101,7 +110,7 @@ def _of_ground_m(
     found: Sequence[Unit],
     linked: Flags,
     stop: Stop,
-    enough: Stop,
+    allowance: Allowance,
 ) -> float:
     """Of the ground to be seen alone, and where it lies: known at once."""
     passes = []
@@ -110,7 +119,7 @@ def _of_ground_m(
         node = nodes(found[main].sides, seeing.model.settle_m, k, ground=_ground(found, group))[0]
         passes.append(replace(node, seen=replace(node.seen, one_place=True)))
     between = (terminal(ends[0]), terminal(ends[1]))
-    return sweeps_bound_m(passes, *between, seeing.model.turn_radius_m, math.inf, stop, enough)
+    return sweeps_bound_m(passes, *between, seeing.model.turn_radius_m, math.inf, stop, allowance)
 
 
 def _of_shared_m(
@@ -120,19 +129,18 @@ def _of_shared_m(
     linked: Flags,
     length_m: float,
     stop: Stop,
-    enough: Stop,
+    allowance: Allowance,
 ) -> float:
-    """Of all units, or of as many places as the order can be searched for; 0 where nothing can be shared."""
-    if not linked.any() and all(unit.whole for unit in found):
-        return 0.0
+    """Of all units, or of as many places as the order can be searched for."""
     asked = pieces(found, _in_parts(found, linked), EXACT_UP_TO)
     ends_ = (terminal(ends[0]), terminal(ends[1]))
     targets_m = tuple(length_m * (1.0 - gap) for gap in GAPS)
     best_m = 0.0
     # A little of each at first: of few the bound is soon close.
     for effort, most in itertools.product(EFFORTS_SHARED, sorted({min(n, len(asked)) for n in COUNTS})):
-        if best_m >= targets_m[0] or enough():
+        if best_m >= targets_m[0] or allowance.over:
             break
+        part = allowance.part(PART_SHARED * allowance.left)
         some = asked[:most]
         of = [k for k, _ in some]
         passes = [node for k, (_, each) in enumerate(some) for node in nodes(each, seeing.model.settle_m, k)]
@@ -140,7 +148,7 @@ def _of_shared_m(
         shared = np.array([[a != b or not found[a].whole for b in of] for a in of])
         np.fill_diagonal(shared, False)
         found_m = exact_bound_m(
-            passes, *ends_, seeing.model.turn_radius_m, targets_m, effort, stop, enough, shared
+            passes, *ends_, seeing.model.turn_radius_m, targets_m, effort, stop, part, shared
         )
         best_m = max(best_m, found_m)
     return best_m
@@ -166,7 +174,7 @@ def _of_apart_m(
     linked: Flags,
     length_m: float,
     stop: Stop,
-    enough: Stop,
+    allowance: Allowance,
 ) -> float:
     """Of units none of which is near another."""
     parts = _in_parts(found, linked)
@@ -187,18 +195,19 @@ def _of_apart_m(
                 ways.append([[(unit.place, None)] * unit.visits])
             else:
                 ways.append([[(unit.swept, None)] * unit.visits, *_divided(seeing, unit)])
+                allowance.spend(LINES_DIVIDED)
                 divided += len(ways[-1]) > 1
     every = list(itertools.product(*ways))
     least_m = length_m
-    for taken in every:
-        if enough():
+    for number, taken in enumerate(every):
+        if allowance.over:
             return 0.0
         sides, grounds = zip(*(each for of_unit in taken for each in of_unit), strict=True)
         # Of the next way no more is worth proving than of the worst so far.
         worth_m = min(least_m / (1.0 - GAPS[0]), length_m)
-        part = 1.0 / len(every)
+        part = allowance.part(allowance.left / (len(every) - number))
         proved_m = lower_bound_m(
-            ends, seeing.model, sides, worth_m, None, part, stop, enough, grounds=grounds
+            ends, seeing.model, sides, worth_m, None, 1.0 / len(every), stop, part, grounds=grounds
         )
         least_m = min(least_m, proved_m)
     return least_m

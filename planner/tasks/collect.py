@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 from planner.airspace.threats import acting
+from planner.bounds.allowance import Allowance
 from planner.bounds.ways import plan_bound_m
 from planner.coverage.strips.located import Located, located
 from planner.coverage.strips.room import Room
@@ -91,14 +92,14 @@ def collect(scenario: Scenario, controls: Controls) -> Answer:
     )
 
 
-def bound_m(scenario: Scenario, plan: Plan, stop: Stop, enough: Stop) -> float:
+def bound_m(scenario: Scenario, plan: Plan, stop: Stop, allowance: Allowance) -> float:
     """No plan over the regions that a plan sees is shorter."""
     setting = Setting.of(scenario)
     seen = {name for collect in plan.collects for name in collect.regions}
     left_out = {region.name for region in scenario.regions} - seen
     asked = seeing(scenario, setting)
     route_m = plan.metrics.route_length_m or plan.metrics.length_m
-    return plan_bound_m(asked, setting.ends, route_m, left_out, stop, enough)
+    return plan_bound_m(asked, setting.ends, route_m, left_out, stop, allowance)
 
 
 def _found(asked: Seeing, setting: Setting, methods: dict[str, str], seed: int, controls: Controls) -> Found:

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
 
+from planner.bounds.allowance import Allowance
 from planner.errors import Finding
 from planner.plan import LeftOut, Plan
 from planner.profile.compose import Composed
@@ -79,9 +80,9 @@ class Task:
         Answers it, or raises InfeasibleError with the constraint, the feature and the nearest relaxation, or
         CancelledError once ``stop`` says so.
     bound_m
-        A length that no plan over the regions a plan sees is under. Of its two stops the one cancels, the
-        other ends the search for a better bound.
+        A length that no plan over the regions a plan sees is under; what it takes to look for it is
+        taken off what is allowed.
     """
 
     answer: Callable[[Scenario, Controls], Answer]
-    bound_m: Callable[[Scenario, Plan, Stop, Stop], float]
+    bound_m: Callable[[Scenario, Plan, Stop, Allowance], float]

@@ -79,13 +79,21 @@ def task(scenario_text: str, progress_path: str, *folders: str) -> WorkResult:
 
 
 def bound(scenario_text: str, plan_text: str, wanted_path: str, *folders: str) -> WorkResult | None:
-    """Do what the ``fake_bound`` member says: a bound, ``raise``, or ``slow`` as long as one is wanted."""
+    """Do what the ``fake_bound`` member says: a bound, ``raise``, or ``slow`` as long as one is wanted.
+
+    A path to no file there is: the first time as long as one is wanted, and none then; a bound the next time.
+    """
     wanted = json.loads(scenario_text).get("fake_bound")
     if wanted == "raise":
         raise RuntimeError("a secret of the inside")
     while wanted == "slow" and Path(wanted_path).exists():
         time.sleep(0.02)
     if wanted is None:
+        return None
+    if "/" in wanted and not Path(wanted).exists():
+        Path(wanted).touch()
+        while Path(wanted_path).exists():
+            time.sleep(0.02)
         return None
     plan = json.loads(plan_text)
     plan["metrics"] |= {"lower_bound_m": 0.9, "gap": 0.1}

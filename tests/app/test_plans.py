@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import json
 from collections.abc import AsyncIterator
+from pathlib import Path
 from typing import Any
 
 import httpx
@@ -96,6 +97,26 @@ async def test_plan_without_a_bound_stays_good(client: httpx.AsyncClient, fake: 
     assert (await client.get(place)).json()["state"] == "done"
     place = (await client.post(PLANS, json=scenario(fake_bound="now"))).headers["location"]
     assert [name for name, _ in events_in((await client.get(place + "/events")).text)][-1] == "bound"
+
+
+async def test_a_bound_that_makes_room_comes_later(client: httpx.AsyncClient, tmp_path: Path) -> None:
+    """A search given up for another plan leaves no bound of its own, and is made anew when that is done."""
+    begun = tmp_path / "begun"
+    answer = await client.post(PLANS, json=scenario(fake_bound=str(begun)), params={"wait": 20})
+    place = answer.headers["location"]
+    watched = asyncio.create_task(client.get(place + "/events"))
+    async with asyncio.timeout(20):
+        while not begun.exists():
+            await asyncio.sleep(0.02)
+    # Until the watcher is served: it must not come after the bound.
+    await asyncio.sleep(1.0)
+    other = (await client.post(PLANS, json=scenario(), params={"wait": 20})).json()
+    assert other["state"] == "done"
+    async with asyncio.timeout(20):
+        (first, before), (second, after) = events_in((await watched).text)
+    assert (first, second) == ("done", "bound")
+    assert before["metrics"] == {"length_m": 1.0}
+    assert after["metrics"] == {"length_m": 1.0, "lower_bound_m": 0.9, "gap": 0.1}
 
 
 async def test_deleted_plan_waits_for_no_bound(client: httpx.AsyncClient) -> None:

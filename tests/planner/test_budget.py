@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import itertools
+import json
+import math
+from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import pytest
 
 from planner.coverage.strips import alternatives
-from planner.geojson import read_scenario
-from planner.pipeline import make_plan, time_for_bound_s, with_bound
+from planner.geojson import read_scenario, write_plan
+from planner.pipeline import lines_for_bound, make_plan, time_for_bound_s, with_bound
 from tests.planner.scenarios import case, feature, small
 
 BEND = [[-0.02, -0.01], [-0.01, 0.0], [-0.005, 0.012], [0.005, 0.015], [0.02, 0.01], [0.03, -0.005]]
@@ -59,7 +63,40 @@ def test_the_bound_ends_when_it_is_told_and_says_what_it_has() -> None:
 
 
 def test_plan_and_bound_share_the_budget() -> None:
-    """The bound's time is a part of the plan's, and no more than the budget leaves."""
-    assert time_for_bound_s(9.0, None) <= 9.0 / 2.0
+    """With a budget the bound's time is what it leaves; without one no clock ends it."""
+    assert time_for_bound_s(9.0, None) == math.inf
     assert time_for_bound_s(9.0, 10.0) == 1.0
     assert time_for_bound_s(9.0, 8.0) == 0.0
+
+
+def written(document: dict[str, Any], clock: Callable[[], float]) -> str:
+    """The plan of a scenario with its share of a bound, but for the times."""
+    scenario = read_scenario(document)
+    plan = with_bound(scenario, make_plan(scenario, clock=clock), clock=clock, share=True)
+    out = write_plan(plan)
+    assert out["metrics"].pop("planning_time_s")
+    return json.dumps(out)
+
+
+@pytest.mark.parametrize("number", [1, 3])
+def test_no_clock_changes_a_plan_or_its_bound(number: int) -> None:
+    """One clock stands still, with the other everything takes days: the same bytes."""
+    days, document = itertools.count(), case(number) | {"seed": 3}
+    slow = written(document, lambda: 1e6 * next(days))
+    assert slow == written(document, lambda: 0.0)
+    assert json.loads(slow)["metrics"]["lower_bound_m"] > 0.0
+
+
+def test_the_share_of_the_bound_is_of_work() -> None:
+    """More passes, more work; the paper's stages take less; what is found in it is not far from all."""
+    scenario = read_scenario(case(1))
+    plan = make_plan(scenario)
+    lines = lines_for_bound(scenario, plan)
+    assert 0.0 < lines < lines_for_bound(scenario, replace(plan, collects=2 * plan.collects))
+    by_paper = replace(scenario, method=replace(scenario.method, routing="li2018"))
+    assert lines_for_bound(by_paper, plan) < lines
+    shared = with_bound(scenario, plan, share=True).metrics.lower_bound_m
+    whole = with_bound(scenario, plan).metrics.lower_bound_m
+    assert shared is not None
+    assert whole is not None
+    assert 0.8 * whole < shared <= whole

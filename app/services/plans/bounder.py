@@ -18,7 +18,7 @@ class Bounder:
     Parameters
     ----------
     bound
-        Bounds the plan of an id; ends early, with what it has, once there is no file any more at the path.
+        Bounds the plan of an id, or says False; ends early once there is no file any more at the path.
     told
         Told of each plan that waits for nothing any more.
     room
@@ -27,7 +27,7 @@ class Bounder:
 
     def __init__(
         self,
-        bound: Callable[[str, str], Awaitable[None]],
+        bound: Callable[[str, str], Awaitable[bool]],
         told: Callable[[str], Awaitable[None]],
         room: Callable[[], bool],
     ) -> None:
@@ -66,14 +66,17 @@ class Bounder:
 
     async def _next(self, plan_id: str) -> None:
         with tempfile.TemporaryDirectory(prefix="swathplan-") as folder:
-            self._wanted = Path(folder) / "wanted"
-            self._wanted.touch()
+            wanted = self._wanted = Path(folder) / "wanted"
+            wanted.touch()
             try:
-                await self._bound(plan_id, str(self._wanted))
+                if not await self._bound(plan_id, str(wanted)) and not wanted.exists():
+                    # It made room, and is looked for anew: the same scenario has the same bound.
+                    return
+                self.drop(plan_id)
             except Exception as error:
                 # A plan is good without a bound; the next ones may still get theirs.
                 log.error("plan has no bound", plan_id=plan_id, exc_info=error)
+                self.drop(plan_id)
             finally:
                 self._wanted = None
-                self.drop(plan_id)
         await self._told(plan_id)

@@ -333,16 +333,17 @@ class PlanningService:
         """Whether a worker is free that no plan waits for."""
         return not self._stopping and len(self._running) + self._queue.qsize() < self._workers
 
-    async def _bound(self, plan_id: str, wanted_path: str) -> None:
+    async def _bound(self, plan_id: str, wanted_path: str) -> bool:
         try:
             scenario, plan = await self._store.documents(plan_id)
         except NotFoundError:
-            return
+            return True
         document = json.loads(scenario) if '"terrain"' in scenario else {}
         arguments = (scenario, plan, wanted_path, *self._terrain_of(document))
         result = await self._pool.run(self._bound_task, arguments, self._time_limit_s)
         if result is not None:
             await self._store.bounded(plan_id, result.plan, result.summary)
+        return result is not None
 
     async def _bounded(self, plan_id: str) -> None:
         await self._announce(plan_id)

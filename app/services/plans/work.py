@@ -150,11 +150,13 @@ def bound_plan(
 ) -> WorkResult | None:
     """A plan made of a scenario once more, now with what no plan is shorter than.
 
-    The search ends after its share of the time the plan took, or of what the scenario's budget leaves, and
-    once there is no file any more at ``wanted_path``; it says what it has then, None where it has no time.
+    The search ends after its share of the work, the same on any machine, and where the scenario has a time
+    budget with that. None where that leaves no time, and once there is no file any more at ``wanted_path``:
+    what is found by then hangs on when that was.
     """
     began_s = time.perf_counter()
     from app.services.terrain.rasters import stored_terrain
+    from planner import errors
     from planner.geojson import read_plan, read_scenario, write_plan
     from planner.pipeline import time_for_bound_s, with_bound
 
@@ -164,11 +166,18 @@ def bound_plan(
     limit_s = time_for_bound_s(math.fsum(plan.metrics.planning_time_s.values()), scenario.time_budget_s)
 
     def enough() -> bool:
-        return time.perf_counter() - began_s > limit_s or not Path(wanted_path).exists()
+        return time.perf_counter() - began_s > limit_s
+
+    def unwanted() -> bool:
+        return not Path(wanted_path).exists()
 
     if enough():
         return None
-    return _written(write_plan(with_bound(scenario, plan, enough=enough, clock=time.perf_counter)))
+    try:
+        bounded = with_bound(scenario, plan, unwanted, enough, time.perf_counter, share=True)
+    except errors.CancelledError:
+        return None
+    return _written(write_plan(bounded))
 
 
 def _written(document: dict[str, Any]) -> WorkResult:
