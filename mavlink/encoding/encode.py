@@ -90,6 +90,7 @@ def encode(
         partial(_may_overshoot, task) if task.turns_early_m > 0.0 else None,
         as_turn,
         (task.taken_off_m, task.landing_m),
+        task.near_m,
     )
     home = [home_item(plan.home, options.home_altitude_m)] if task.dialect.home_row else []
     flight = _flight(task, stops, on, off, pointing)

@@ -55,6 +55,7 @@ def stops_along(
     may_overshoot: Callable[[LonLat], bool] | None = None,
     flown_round: Callable[[PathSegment], bool] = lambda _: False,
     between_m: tuple[float, float] = (0.0, math.inf),
+    near_m: float = 0.0,
 ) -> tuple[Stop, ...]:
     """Ends of the straights, points on the arcs, and exactly both ends of each collect, in flight order.
 
@@ -72,6 +73,8 @@ def stops_along(
         aircraft begins its turn where the path does, and the sensor stays on until there.
     flown_round
         Which arcs are flown round their centres.
+    near_m
+        Places where nothing happens are left out so near to others: what hovers would stop there.
     """
     altitude = partial(altitude_along, path)
     stops: list[Stop] = []
@@ -124,7 +127,24 @@ def stops_along(
         or (stop.along_m > from_m and all(abs(stop.along_m - m) > MERGE_M for m in begun_m))
     ]
     merged = _merged(stops, {here(place[:2]) for collect in collects for place in collect.line})
-    return tuple(_left_outwards(merged, local))
+    return tuple(_apart(tuple(_left_outwards(merged, local)), local, near_m))
+
+
+def _apart(stops: Sequence[Stop], local: LocalMap, near_m: float) -> Iterator[Stop]:
+    """Stops without those at which nothing happens, and that lie near the last one kept or a needed one."""
+    kept: Stop | None = None
+    for number, stop in enumerate(stops):
+        last = number == len(stops) - 1
+        needed = stop.on or stop.off or stop.arc or stop.turns or last
+        others = [other for other in (kept, None if last else stops[number + 1]) if other is not None]
+        if not needed and any(
+            math.dist(local.xy(stop.place), local.xy(other.place)) < near_m
+            for other in others
+            if other is kept or other.on or other.off
+        ):
+            continue
+        kept = stop
+        yield stop
 
 
 def _left_outwards(stops: Sequence[Stop], local: LocalMap) -> Iterator[Stop]:

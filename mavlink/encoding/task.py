@@ -55,6 +55,11 @@ class Task:
         return _PX4_TURNS_EARLY_S * self.vehicle.airspeed_m_s if self.is_px4 else 0.0
 
     @property
+    def near_m(self) -> float:
+        """Places nearer to others than this are better not named: PX4's multirotors stop before such ones."""
+        return self.turns_early_m + MERGE_M if self.is_px4 and self.hovers else 0.0
+
+    @property
     def off_delay_m(self) -> float:
         """How far past a collect's end its waypoint lies."""
         delay_m = self.options.off_delay_m

@@ -17,7 +17,7 @@ from planner.profile.flight import Stretch
 from planner.profile.jerks import HALVINGS, change_m, change_s, chords_of
 from planner.vehicle.manners import Manners
 
-#: Places nearer than this are one in a mission.
+#: Places nearer than this and the distance they are taken up early by are one in a mission.
 ONE_PLACE_M = 0.5
 #: Up to this angle off its way it does not hold its speed in for turning (its cosine is 0.98).
 NO_TURN_RAD = math.acos(0.98)
@@ -91,7 +91,7 @@ def smoothed_times(stretches: Sequence[Stretch], speed_m_s: float, manners: Mann
 def _legs(number: int, stretch: Stretch, speed_m_s: float, manners: Manners) -> list[_Leg]:
     """The straights that a stretch is flown by."""
     segment = stretch.segment
-    if segment is None or stretch.ground_m < ONE_PLACE_M:
+    if segment is None or stretch.ground_m < manners.corner_m + ONE_PLACE_M:
         return []
     rise_m = stretch.end_altitude_m - stretch.start_altitude_m
     rate = manners.climb_m_s if rise_m > 0.0 else manners.sink_m_s

@@ -7,23 +7,19 @@ beside it, or named by ``SWATHPLAN_ARDUCOPTER_PARAMS``). ``pytest --log-cli-leve
 from __future__ import annotations
 
 import asyncio
-import json
-import logging
 import os
 from pathlib import Path
-from typing import Any
 
 import pytest
 
-from app.services.flights.phases import flown_phases
 from mavlink.encoding.encode import EncodeOptions, encode
 from mavlink.station.client import VehicleClient
 from planner.geojson import read_scenario
 from planner.pipeline import make_plan
 from tests.flows.arduplane import BINARY, HOME_ALTITUDE_M, aeroplane, arm, fly, in_wind
-from tests.flows.flying import EXAMPLES, WIND, Flight, case_document, store, until_disarmed
+from tests.flows.flying import WIND, Flight, case_document, store, until_disarmed
+from tests.flows.phases import POWER_W, compared, small_case
 
-log = logging.getLogger(__name__)
 pytestmark = pytest.mark.ardupilot
 
 COPTER = os.environ.get("SWATHPLAN_ARDUCOPTER", "")
@@ -34,8 +30,6 @@ SET_MODE, MISSION_START = 176, 300
 LOITER, AUTO = 5.0, 3.0
 #: Until it knows where it is.
 POSITION_TRIES = 400
-#: A shared case drawn so much smaller fits a multirotor.
-SMALL = 0.12
 
 
 @pytest.mark.skipif(not BINARY, reason="SWATHPLAN_ARDUPLANE names no simulator")
@@ -44,14 +38,15 @@ async def test_an_aeroplane_takes_as_long_as_planned(
     tmp_path: Path, wind: tuple[float, float] | None
 ) -> None:
     """From lift-off to touch-down within 3 %; a plan is all that was known before."""
-    document = case_document(1, {"settle_m": 150, "finish": "land"}, MARGINS, wind)
+    vehicle = {"settle_m": 150, "finish": "land", "cruise_power_w": POWER_W}
+    document = case_document(1, vehicle, MARGINS, wind)
     plan = make_plan(read_scenario(document))
     mission = encode(plan, options=EncodeOptions(home_altitude_m=HOME_ALTITUDE_M))
     async with aeroplane(tmp_path, plan.home, 40.0, {**in_wind(wind), **RATES}) as client:
         await store(client, mission)
         flight = await fly(client)
     told = f"8 m/s from {wind[1]:g}°" if wind else "none"
-    assert ratio(flight, plan.paths[0], "ArduPlane", told) == pytest.approx(1.0, abs=0.03)
+    assert compared(flight, plan.paths[0], "ArduPlane", told).share == pytest.approx(1.0, abs=0.03)
 
 
 @pytest.mark.skipif(not COPTER, reason="SWATHPLAN_ARDUCOPTER names no simulator")
@@ -65,30 +60,7 @@ async def test_a_multirotor_takes_as_long_as_planned(tmp_path: Path) -> None:
         await client.wait_for(lambda state: state.home_lat_deg is not None, 60.0)
         await store(client, mission)
         flight = await hovering(client)
-    assert ratio(flight, plan.paths[0], "ArduCopter", "none") == pytest.approx(1.0, abs=0.03)
-
-
-def small_case() -> dict[str, Any]:
-    """Case 1 about its start, an eighth as wide, 80 m up, for a multirotor at 10 m/s."""
-    document: dict[str, Any] = json.loads((EXAMPLES / "sar-case-1.geojson").read_text())
-    start = next(f for f in document["features"] if f["properties"]["role"] == "start")
-    origin = start["geometry"]["coordinates"][:2]
-
-    def drawn(places: Any) -> Any:
-        if isinstance(places[0], list):
-            return [drawn(place) for place in places]
-        return [o + SMALL * (c - o) for o, c in zip(origin, places, strict=False)]
-
-    for feature in document["features"]:
-        feature["geometry"]["coordinates"] = drawn(feature["geometry"]["coordinates"])
-        for name in ("radius_m", "intensity_m"):
-            if name in feature["properties"]:
-                feature["properties"][name] *= SMALL
-    document["altitude_m"] = 80.0
-    document["vehicles"] = [
-        {"name": "uav-1", "type": "multirotor", "airspeed_m_s": 10.0, "finish": "land", "settle_m": 20}
-    ]
-    return document
+    assert compared(flight, plan.paths[0], "ArduCopter", "none").share == pytest.approx(1.0, abs=0.03)
 
 
 async def hovering(client: VehicleClient) -> Flight:
@@ -104,23 +76,3 @@ async def hovering(client: VehicleClient) -> Flight:
     texts = await until_disarmed(client)
     client.stop_recording(recorder)
     return Flight(recorder.track(), texts, client.state)
-
-
-def ratio(flight: Flight, path: Any, name: str, wind: str) -> float:
-    """Flown over planned, all phases together; tells one row of a table."""
-    phases = flown_phases(path, flight.samples())
-    flown = [phase.flown_s for phase in phases]
-    assert None not in flown, phases
-    cells = [f"{phase.kind} {phase.planned_s:.0f} → {phase.flown_s:.0f} s" for phase in phases]
-    whole_s = sum(seconds for seconds in flown if seconds is not None)
-    share = whole_s / path.duration_s
-    log.info(
-        "| %s | %s | %s | %.0f → %.0f s | %.3f |",
-        name,
-        wind,
-        " · ".join(cells),
-        path.duration_s,
-        whole_s,
-        share,
-    )
-    return share

@@ -21,6 +21,8 @@ START, U = Command.DO_LAND_START, Command.NAV_LOITER_UNLIM
 RTL = Command.NAV_RETURN_TO_LAUNCH
 PASS = [W, R, W, R, W, W, R]
 PX4_PASS = [W, A, W, W, A, W, W, A]
+#: The exact end of a collect, 2 m before where the sensor goes off, would be a place to stop at.
+PX4_HOVER_PASS = [W, A, W, A, W, W, A]
 
 
 @pytest.mark.parametrize(
@@ -54,9 +56,9 @@ def test_the_order_of_flight_on_ardupilot(kind: VehicleType, finish: Finish, ord
     [
         ("fixed_wing", "land", [T, S, L, *PX4_PASS, START, L, Command.NAV_LAND]),
         ("vtol", "land", [V, S, L, *PX4_PASS, START, L, Command.NAV_VTOL_LAND]),
-        ("multirotor", "land", [T, S, *PX4_PASS, Command.NAV_LAND]),
-        ("multirotor", "return", [T, S, *PX4_PASS, RTL]),
-        ("multirotor", "loiter", [T, S, *PX4_PASS, U]),
+        ("multirotor", "land", [T, S, *PX4_HOVER_PASS, Command.NAV_LAND]),
+        ("multirotor", "return", [T, S, *PX4_HOVER_PASS, RTL]),
+        ("multirotor", "loiter", [T, S, *PX4_HOVER_PASS, U]),
     ],
 )
 def test_the_order_of_flight_on_px4(kind: VehicleType, finish: Finish, order: list[int]) -> None:

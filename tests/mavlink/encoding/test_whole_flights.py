@@ -180,6 +180,18 @@ def test_the_autopilot_takes_it_and_gives_it_back(flown: Flown) -> None:
     assert differences(mission.mission, held, mission.dialect) == ()
 
 
+@given(flights([("px4", "multirotor")]))
+@settings(max_examples=40, deadline=None)
+def test_px4s_multirotors_have_no_places_to_stop_at(flown: Flown) -> None:
+    """Nearer than its acceptance radius it stops: only where the sensor is switched at both."""
+    items = encode(flown.plan).mission
+    switched = {before.seq for before, after in pairwise(items) if after.command in SWITCHES}
+    places = [item for item in items if item.command == W]
+    for before, item in pairwise(places[:-1]):
+        near = math.dist(local(before), local(item)) < 2.0
+        assert not near or {before.seq, item.seq} <= switched
+
+
 @given(flights([("px4", "fixed_wing")]))
 @settings(max_examples=30, deadline=None)
 def test_px4_fixed_wings_get_what_the_feasibility_check_wants(flown: Flown) -> None:
