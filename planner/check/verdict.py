@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
-from shapely.geometry import LineString, MultiPolygon, Polygon
+from shapely.geometry import MultiPolygon, Polygon
 
 from planner.check.clearance import clearance_violations, place_violations
 from planner.check.continuity import collect_violations, terminal_violations
@@ -25,6 +25,7 @@ from planner.check.kinematics import (
     turn_radius_m,
     turn_violations,
 )
+from planner.check.stretches import Measured
 from planner.check.times import line_s
 from planner.plan import Plan, Violation
 from planner.scenario import Scenario
@@ -68,7 +69,6 @@ def judge(scenario: Scenario, plan: Plan) -> Verdict:
         vehicle = next(v for v in plan.vehicles if v.name == path.vehicle)
         line_m = scenario.frame.to_local([place[:2] for place in path.line])
         altitudes_m = np.array([place[2] for place in path.line])
-        line = LineString(line_m)
         over_m = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(line_m, axis=0).T))])
         reached_m = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(over_m), np.diff(altitudes_m)))])
         lengths_m.append(float(reached_m[-1]))
@@ -92,7 +92,8 @@ def judge(scenario: Scenario, plan: Plan) -> Verdict:
         violations += duration_violations(path, time_s, hovers=hovers)
         violations += limit_violations(aircraft, path, lengths_m[-1], time_s)
         over_ground_m = partial(np.interp, xp=reached_m, fp=over_m)
-        violations += collect_violations(scenario, plan, path, line, over_ground_m, aircraft.settle_m)
+        measured = Measured(line_m)
+        violations += collect_violations(scenario, plan, path, measured, over_ground_m, aircraft.settle_m)
     coverage, unseen, missed = covered(scenario, plan)
     violations += missed
     length_m = math.fsum(lengths_m)
