@@ -13,6 +13,7 @@ from planner.check.clearance import clearance_violations, place_violations
 from planner.check.continuity import collect_violations, terminal_violations
 from planner.check.coverage import covered
 from planner.check.heights import (
+    altitude_violations,
     ground_violations,
     level_violations,
     phase_violations,
@@ -61,7 +62,7 @@ def judge(scenario: Scenario, plan: Plan) -> Verdict:
     violations: list[Violation] = []
     lengths_m: list[float] = []
     tightest_m = math.inf
-    home_ground_m = scenario.altitude_m - scenario.level.height_m
+    home_ground_m = scenario.level.altitude_m - scenario.level.height_m
     for path in plan.paths:
         aircraft = next(a for a in scenario.aircraft if a.name == path.vehicle).in_wind(
             scenario.wind.speed_m_s
@@ -74,7 +75,7 @@ def judge(scenario: Scenario, plan: Plan) -> Verdict:
         lengths_m.append(float(reached_m[-1]))
         radius_m, where = turn_radius_m(line_m)
         tightest_m = min(tightest_m, radius_m)
-        datum_amsl_m = scenario.level.amsl_m - scenario.altitude_m
+        datum_amsl_m = scenario.level.amsl_m - scenario.level.altitude_m
         time_s = line_s(line_m, altitudes_m, aircraft, scenario.wind, datum_amsl_m)
         hovers = vehicle.type == "multirotor"
         circling = (vehicle.name,) if vehicle.finish != "land" and not hovers else ()
@@ -85,6 +86,7 @@ def judge(scenario: Scenario, plan: Plan) -> Verdict:
         violations += slope_violations(path, vehicle, line_m, altitudes_m)
         violations += ground_violations(path, vehicle, altitudes_m, _grounds_m(scenario, home_ground_m))
         violations += level_violations(plan.collects_of(vehicle.name))
+        violations += altitude_violations(scenario, plan.collects_of(vehicle.name))
         violations += phase_violations(path)
         violations += terminal_violations(
             scenario, path, line_m, aircraft.ground_turn_radius_m, circling, returning
@@ -116,5 +118,5 @@ def _grounds_m(scenario: Scenario, home_ground_m: float) -> tuple[float, float]:
     if scenario.terrain is None:
         return home_ground_m, home_ground_m
     end_m = float(scenario.terrain.at(np.array([scenario.end.position]))[0])
-    datum_amsl_m = scenario.level.amsl_m - scenario.altitude_m
+    datum_amsl_m = scenario.level.amsl_m - scenario.level.altitude_m
     return home_ground_m, home_ground_m if math.isnan(end_m) else end_m - datum_amsl_m
