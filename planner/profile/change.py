@@ -82,6 +82,7 @@ def _turned_over(sum_m: float) -> Callable[[Heights], Heights]:
 def _hovered(leg: Path, from_m: float, to_m: float, slope_rad: float) -> Changed:
     """What can stop: along the leg as steeply as it may, else on the spot, between both passes."""
     run_m = 0.0 if slope_rad >= STRAIGHT_UP_RAD else abs(to_m - from_m) / math.tan(slope_rad)
+    knots: tuple[tuple[float, float], ...]
     if not 0.0 < run_m < leg.length_m:
         half_m = 0.5 * leg.length_m
         knots = ((0.0, from_m), (half_m, from_m), (half_m, to_m), (leg.length_m, to_m))
