@@ -136,7 +136,7 @@ def _legs(unit: Unit, axis: LineString) -> list[Unit]:
 
 def alone(region: MergedRegion, area: Polygon) -> MergedRegion:
     """A piece of a region that has to be seen as the region has."""
-    return replace(region, area=area, originals=(area,), owners=region.names[:1], axis=None)
+    return replace(region, area=area, originals=(area,), owners=region.names[:1], axes=())
 
 
 def hull_of(areas: Sequence[Polygon]) -> Polygon:

@@ -54,10 +54,9 @@ class MergedRegion:
         How many visits are asked for.
     visit
         Which of how many visits this is; None for the only one.
-    axis
-        The line a corridor follows; None for other shapes and for merged ones.
-    altitude_m
-        Of its passes, see ``Region``.
+    axes
+        Of each part the line it follows as a corridor, None for others, in step with ``originals``; empty for
+        pieces of what was asked for.
     """
 
     names: tuple[str, ...]
@@ -69,8 +68,12 @@ class MergedRegion:
     required: bool = True
     revisits: int = 1
     visit: tuple[int, int] | None = None
-    axis: LineString | None = None
-    altitude_m: float | None = None
+    axes: tuple[LineString | None, ...] = ()
+
+    @property
+    def axis(self) -> LineString | None:
+        """The line that it follows as a corridor; None for other shapes and for merged ones."""
+        return self.axes[0] if len(self.axes) == 1 else None
 
     @property
     def label(self) -> str:
@@ -86,9 +89,21 @@ class MergedRegion:
     def split(self) -> tuple[MergedRegion, ...]:
         """The parts again, each for itself."""
         return tuple(
-            replace(self, names=(owner,), area=part, originals=(part,), owners=(owner,))
-            for owner, part in zip(self.owners, self.originals, strict=True)
+            replace(
+                self, names=(owner,), area=part, originals=(part,), owners=(owner,), axes=self.axes[k : k + 1]
+            )
+            for k, (owner, part) in enumerate(zip(self.owners, self.originals, strict=True))
         )
+
+    def piece(self, area: Polygon) -> MergedRegion:
+        """A piece of it, under the names of the parts it holds ground of."""
+        owners = [
+            owner
+            for owner, original in zip(self.owners, self.originals, strict=True)
+            if original.intersection(area).area > 0.0
+        ]
+        names = tuple(name for name in self.names if name in owners) or self.names
+        return replace(self, names=names, area=area, originals=(area,) * len(names), owners=names, axes=())
 
 
 def polygons_of(area: BaseGeometry) -> tuple[Polygon, ...]:
@@ -113,8 +128,7 @@ def split_region(region: Region) -> tuple[MergedRegion, ...]:
             region.required,
             region.revisits,
             None,
-            region.axis,
-            region.altitude_m,
+            (region.axis,),
         )
         for part in polygons_of(region.area)
     )
@@ -127,8 +141,8 @@ def merge_regions(
 
     Dilation and erosion by a disk are shapely's buffers by +r and −r. Parts further apart than the filter
     bridges stay apart, also parts of one MultiPolygon: each becomes a region of its own under the same name.
-    Regions merge only where they ask for the same sensor, approach directions, altitude and number of visits,
-    and are both required or both not: otherwise one would lose what it asked for.
+    Regions merge only where they ask for the same sensor, approach directions and number of visits, and are
+    both required or both not: otherwise one would lose what it asked for.
 
     Parameters
     ----------
@@ -149,9 +163,7 @@ def merge_regions(
         limits = None
         if region.approach_rad is not None:
             limits = frozenset(round(math.degrees(angle) % 360.0, 6) % 360.0 for angle in region.approach_rad)
-        key = (
-            region.sensor or default_sensor, limits, region.required, region.revisits, region.altitude_m,
-        )  # fmt: skip
+        key = (region.sensor or default_sensor, limits, region.required, region.revisits)
         groups[key].extend((index, part) for part in split_region(region))
     merged = [found for group in groups.values() for found in _merge_group(group, radius_m)]
     merged.sort(key=lambda item: item[0])
@@ -178,7 +190,7 @@ def _merge_group(parts: list[tuple[int, MergedRegion]], radius_m: float) -> list
             area=components[component],
             originals=originals,
             owners=owners,
-            axis=first.axis if len(group) == 1 else None,
+            axes=tuple(axis for _, part in group for axis in part.axes),
         )
         merged.append((first_index, whole))
     return merged

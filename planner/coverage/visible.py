@@ -70,8 +70,7 @@ class Seeing:
         for index, region in enumerate(merge_regions(self.regions, default_sensor=self.suite.first)):
             sensor_name = by_name[region.names[0]].sensor
             try:
-                level = self.level.of(region)
-                sensor, height_m = self.suite.over(sensor_name, region.area, self.airspace, level)
+                sensor, height_m = self.suite.over(sensor_name, region.area, self.airspace, self.level)
                 family = family_of(sensor)
                 for name in region.names:
                     family.check(by_name[name], sensor, height_m)
@@ -79,7 +78,7 @@ class Seeing:
                     region,
                     sensor,
                     height_m,
-                    self.at(level, around),
+                    around,
                     wide=self.wide,
                     whole=index in whole,
                     enough=enough,
@@ -89,7 +88,7 @@ class Seeing:
                 if error.constraint == "area":
                     error = explained(
                         self.airspace,
-                        level,
+                        self.level,
                         region,
                         refused,
                         partial(self._some_pass, region),
@@ -108,25 +107,17 @@ class Seeing:
         """Which targets may be seen in one pass; the paper's coverage joins none but by its filter."""
         if not self.wide:
             return Apart()
-        together: dict[tuple[str, Level], list[int]] = {}
+        of_kind: dict[str, list[int]] = {}
         for k, target in enumerate(targets):
-            of = (self.suite.named(target.region.sensor).kind, self.level.of(target.region))
-            together.setdefault(of, []).append(k)
+            of_kind.setdefault(self.suite.named(target.region.sensor).kind, []).append(k)
         parts = []
-        for (kind, level), own in together.items():
-            family, over = FAMILIES[kind], partial(self._over, level)
-            there = self.at(level, around)
-            parts.append((tuple(own), family.sharing([targets[k] for k in own], over, there)))
+        for kind, own in of_kind.items():
+            family = FAMILIES[kind]
+            parts.append((tuple(own), family.sharing([targets[k] for k in own], self._over, around)))
         return ByFamily(tuple(parts))
 
-    def _over(self, level: Level, name: str | None, area: Polygon) -> tuple[Sensor, float]:
-        return self.suite.over(name, area, self.airspace, level)
-
-    def at(self, level: Level, around: Surroundings) -> Surroundings:
-        """What passes at one of the levels fly among: ``around`` where it is the only one."""
-        if self.level.depth_m <= 0.0:
-            return around
-        return surroundings(self.airspace, level, self.model, self.objective)
+    def _over(self, name: str | None, area: Polygon) -> tuple[Sensor, float]:
+        return self.suite.over(name, area, self.airspace, self.level)
 
     def _some_pass(self, region: MergedRegion, airspace: Airspace, level: Level) -> bool:
         """Whether a region can be seen among other zones or from another level."""

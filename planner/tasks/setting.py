@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from planner.airspace.airspace import Airspace, Level
 from planner.coverage.visible import Seeing
@@ -21,8 +20,6 @@ class Setting:
     ----------
     ends
         Where it starts and where it ends.
-    altitudes_m
-        Of the passes over each region that has one of its own.
     """
 
     airspace: Airspace
@@ -30,7 +27,6 @@ class Setting:
     model: FlightModel
     suite: Suite
     ends: tuple[Terminal, Terminal]
-    altitudes_m: Mapping[str, float] = field(default_factory=dict)
 
     @classmethod
     def of(cls, scenario: Scenario) -> Setting:
@@ -45,9 +41,7 @@ class Setting:
         suite = scenario.suite
         if scenario.wind.speed_m_s > 0.0:
             suite = suite.in_wind(model.drift, scenario.wind.toward_rad)
-        altitudes_m = {r.name: r.altitude_m for r in scenario.regions if r.altitude_m is not None}
-        ends = (scenario.start, scenario.end)
-        return cls(scenario.airspace, scenario.level, model, suite, ends, altitudes_m)
+        return cls(scenario.airspace, scenario.level, model, suite, (scenario.start, scenario.end))
 
 
 def seeing(scenario: Scenario, setting: Setting) -> Seeing:

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from planner.airspace.surroundings import Surroundings
 from planner.coverage import decompose
 from planner.coverage.merge import MergedRegion, polygons_of
 from planner.coverage.strips.neighbourhood import neighbourhoods
+from planner.coverage.strips.straight import Estimate, straight_parts
 from planner.coverage.strips.sweeps import Side, Sweep, sweeps
 from planner.errors import InfeasibleError
 from planner.progress import Stop, never
@@ -29,10 +31,6 @@ MOST_PARTS = 6
 MOST_LEGS_TO_JOIN = 12
 #: Of the circle's share that each visit has to itself, this part is used: headings of two visits differ.
 SHARE_USED = 0.8
-
-
-#: What seeing all of these parts costs, turns between them included; inf where it cannot be.
-Estimate = Callable[[tuple[MergedRegion, ...]], float]
 
 
 def families(
@@ -73,39 +71,43 @@ def families(
         yield sweeps(region, sensor, height_m, extra=1)
 
 
-def parts_of(region: MergedRegion, estimate: Estimate, enough: Stop = never) -> tuple[MergedRegion, ...]:
+def parts_of(
+    region: MergedRegion,
+    estimate: Estimate,
+    sensor: SarSensor,
+    height_m: float,
+    around: Surroundings,
+    enough: Stop = never,
+) -> tuple[MergedRegion, ...]:
     """The region whole, or the division of it that costs less.
 
-    A corridor is cut at its bends and its legs joined again where one sweep of both is cheaper; merged
-    regions are tried apart; other shapes are cut at reflex corners and beside holes, one cut after the other,
-    as long as that saves and until it is enough: then the best so far is taken, if there is one.
+    A corridor is cut into straight pieces, or at its bends and its legs joined again where one sweep of both
+    is cheaper; merged regions are tried apart; other shapes are cut at reflex corners and beside holes, one
+    cut after the other, as long as that saves and until it is enough: then the best so far is taken, if there
+    is one.
     """
     best: tuple[MergedRegion, ...] = (region,)
     cost_m = estimate(best)
-    starts: list[tuple[MergedRegion, ...]] = []
 
     def over() -> bool:
         return math.isfinite(cost_m) and enough()
 
     if over():
         return best
-    if len(region.originals) > 1:
-        starts.append(region.split())
-    if region.axis is not None and len(region.originals) == 1:
-        pieces = decompose.legs(region.originals[0], region.axis)
-        if pieces is not None:
-            starts.append(_joined(tuple(_part(region, piece) for piece in pieces), estimate, enough))
-    for start in starts:
+    alone = region.split() if len(region.originals) > 1 else (region,)
+    along = tuple(part for each in alone for part in _along(each, estimate, sensor, height_m, around, over))
+    for start in dict.fromkeys((alone, along)):
         if over():
             return best
         trial_m = estimate(start)
         if _saves(trial_m, cost_m):
             best, cost_m = start, trial_m
+    straight = [part for part in along if all(part is not each for each in alone)]
     while len(best) < MOST_PARTS:
         trials = [
-            (*best[:index], *(_part(part, piece) for piece in pieces), *best[index + 1 :])
+            (*best[:index], *(part.piece(piece) for piece in pieces), *best[index + 1 :])
             for index, part in enumerate(best)
-            if not decompose.is_plain(_ground(part))
+            if all(part is not each for each in straight) and not decompose.is_plain(_ground(part))
             for pieces in decompose.cuts(_ground(part))
         ]
         costs = [estimate(trial) for trial in itertools.takewhile(lambda _: not over(), trials)]
@@ -151,6 +153,28 @@ def least_lanes(region: MergedRegion, sensor: SarSensor, height_m: float) -> int
     return int(sweep.lanes(sweep.angles_rad).min())
 
 
+def _along(
+    region: MergedRegion,
+    estimate: Estimate,
+    sensor: SarSensor,
+    height_m: float,
+    around: Surroundings,
+    enough: Stop,
+) -> tuple[MergedRegion, ...]:
+    """A corridor in the straight pieces or legs that cost least; whole where that does, or it is none."""
+    if region.axis is None:
+        return (region,)
+    found: list[tuple[MergedRegion, ...]] = [(region,)]
+    straight = straight_parts(region, region.axis, estimate, sensor, height_m, around, enough)
+    if straight is not None:
+        found.append(straight)
+    legs = decompose.legs(region.originals[0], region.axis)
+    if legs is not None and (len(legs) <= MOST_LEGS_TO_JOIN or straight is None):
+        found.append(_joined(tuple(region.piece(leg) for leg in legs), estimate, enough))
+    costs_m = [estimate(parts) for parts in found]
+    return found[costs_m.index(min(costs_m))]
+
+
 def _joined(parts: tuple[MergedRegion, ...], estimate: Estimate, enough: Stop) -> tuple[MergedRegion, ...]:
     """Neighbouring legs of a corridor as one where that costs less."""
     cost_m = estimate(parts)
@@ -159,7 +183,7 @@ def _joined(parts: tuple[MergedRegion, ...], estimate: Estimate, enough: Stop) -
         for k in range(len(parts) - 1):
             both = decompose.merged((parts[k].area, parts[k + 1].area))
             if both is not None:
-                trials.append((*parts[:k], _part(parts[k], both), *parts[k + 2 :]))
+                trials.append((*parts[:k], parts[k].piece(both), *parts[k + 2 :]))
         costs = [estimate(trial) for trial in itertools.takewhile(lambda _: not enough(), trials)]
         if not costs or min(costs) >= cost_m:
             return parts
@@ -176,17 +200,6 @@ def _ground(region: MergedRegion) -> shapely.Polygon:
     """What really has to be seen where that is one piece: the closing of outlines is the paper's."""
     pieces = polygons_of(shapely.union_all(list(region.originals), grid_size=1e-6))
     return pieces[0] if len(pieces) == 1 else region.area
-
-
-def _part(region: MergedRegion, piece: shapely.Polygon) -> MergedRegion:
-    """One piece of a region, under the names of those it holds ground of."""
-    owners = [
-        owner
-        for owner, original in zip(region.owners, region.originals, strict=True)
-        if original.intersection(piece).area > 0.0
-    ]
-    names = tuple(name for name in region.names if name in owners) or region.names
-    return replace(region, names=names, area=piece, originals=(piece,) * len(names), owners=names, axis=None)
 
 
 def _long_axis_rad(region: MergedRegion) -> float:

@@ -108,7 +108,7 @@ class StripSharing:
             owners=tuple(owner for part in parts for owner in part.owners),
             approach_rad=_common([part.approach_rad for part in parts]),
             required=any(part.required for part in parts),
-            axis=None,
+            axes=(),
         )
 
     def _in_one(self, region: MergedRegion) -> StripTarget | None:

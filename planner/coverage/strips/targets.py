@@ -158,7 +158,7 @@ def targets(
     if wide and (
         undivided is None or (not whole and (bool((_passes(undivided) > 1).all()) or region.axis is not None))
     ):
-        parts = parts_of(region, estimate, enough)
+        parts = parts_of(region, estimate, sensor, height_m, around, enough)
     found = []
     for part in parts:
         for visit in visits(part):
