@@ -6,6 +6,7 @@ from typing import Annotated, cast
 
 from fastapi import Depends, Request
 
+from app.services.desk import Desk
 from app.services.flights.service import FlightService
 from app.services.house import House
 from app.services.plans.planning import PlanningService
@@ -53,8 +54,13 @@ def _terrain(house: Annotated[House, Depends(_house)]) -> TerrainService:
     return house.terrain
 
 
+async def _desk(house: Annotated[House, Depends(_house)]) -> Desk:
+    return house.desk
+
+
 HouseDep = Annotated[House, Depends(_house)]
 SettingsDep = Annotated[Settings, Depends(_settings)]
+DeskDep = Annotated[Desk, Depends(_desk)]
 PlanningDep = Annotated[PlanningService, Depends(_planning)]
 ScenariosDep = Annotated[ScenarioService, Depends(_scenarios)]
 FleetDep = Annotated[Fleet, Depends(_fleet)]

@@ -51,6 +51,10 @@ def limits_of(settings: Settings) -> Limits:
         plan_time_limit_s=settings.plan_time_limit_s,
         max_queued_plans=settings.max_queued_plans,
         track_interval_s=settings.track_interval_s,
+        plan_memory_bytes=settings.plan_memory_bytes,
+        request_workers=settings.request_workers,
+        request_time_limit_s=settings.request_time_limit_s,
+        request_memory_bytes=settings.request_memory_bytes,
         recordings=_recordings_of(settings),
     )
 

@@ -77,6 +77,24 @@ class Settings(BaseSettings):
     max_queued_plans: int = Field(
         default=200, ge=1, description="Plans that may wait; more are refused with 429."
     )
+    plan_memory_bytes: int = Field(
+        default=8_000_000_000, ge=500_000_000, description="Most memory that one plan may take."
+    )
+    request_workers: int = Field(
+        default=2,
+        ge=1,
+        le=64,
+        description="Processes for what requests compute beside plans: validation, imports, rasters, "
+        "exports, reports, what was seen.",
+    )
+    request_time_limit_s: float = Field(
+        default=30.0,
+        gt=0,
+        description="Longest time one such request may take; longer ones are refused.",
+    )
+    request_memory_bytes: int = Field(
+        default=2_000_000_000, ge=200_000_000, description="Most memory one such request may take."
+    )
     max_wait_s: float = Field(
         default=300.0, ge=0, description="Longest `?wait=` of a request; longer ones are cut to it."
     )

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import asyncio
 from typing import Annotated
 
 from fastapi import APIRouter, Query, Response
 
-from app.deps import PlanningDep
+from app.deps import DeskDep, PlanningDep
 from app.problems import responses
 from app.routers.streams import page_answer
-from app.services.plans.missions import AutopilotName, MissionChoice, mission_bytes, plan_of
+from app.services.plans.missions import AutopilotName, MissionChoice, exported
 from app.services.reports.report import write_report
 
 router = APIRouter(prefix="/api/v1/plans/{plan_id}", tags=["artefacts"])
@@ -76,6 +75,7 @@ def _mission_route(form: str, name: str, media_type: str, summary: str, kind: st
     async def mission(
         plan_id: str,
         planning: PlanningDep,
+        desk: DeskDep,
         vehicle: VehicleQuery = None,
         autopilot: AutopilotQuery = None,
         payload: PayloadQuery = None,
@@ -84,7 +84,7 @@ def _mission_route(form: str, name: str, media_type: str, summary: str, kind: st
         """The mission of one vehicle, as a file to save."""
         text = await planning.plan_text(plan_id)
         choice = MissionChoice(vehicle, autopilot, payload, gimbal)
-        body = await asyncio.to_thread(lambda: mission_bytes(plan_of(text), choice, form))
+        body = await desk.run("plan", exported, text, choice, form)
         return Response(
             body,
             media_type=media_type,
@@ -104,9 +104,9 @@ _mission_route("kmz", "mission.kmz", "application/vnd.google-earth.kmz", "KMZ")
     response_class=Response,
     responses=responses(404, 409) | {200: {"content": {"text/html": {"schema": {"type": "string"}}}}},
 )
-async def report(plan_id: str, planning: PlanningDep) -> Response:
+async def report(plan_id: str, planning: PlanningDep, desk: DeskDep) -> Response:
     """Metrics, violations, collects and methods on one page without scripts."""
     record = await planning.get(plan_id)
     plan_text, scenario_text = await planning.plan_text(plan_id), await planning.scenario_text(plan_id)
-    page = await asyncio.to_thread(write_report, record, plan_text, scenario_text)
+    page = await desk.run("plan", write_report, record, plan_text, scenario_text)
     return page_answer(page)

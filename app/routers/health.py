@@ -25,7 +25,10 @@ async def live() -> Health:
 )
 async def ready(house: HouseDep, response: Response) -> Health:
     """200 once the database answers and a planning process is warm."""
-    checks = {"database": await house.database.answers(), "workers": house.pool.ready}
+    checks = {
+        "database": await house.database.answers(),
+        "workers": house.pool.ready and house.desk.pool.ready,
+    }
     ready = all(checks.values())
     response.status_code = 200 if ready else 503
     return Health(status="ok" if ready else "starting", version=VERSION, checks=checks)

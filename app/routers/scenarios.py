@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import asyncio
 import re
 from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Header, Query, Request, Response
 
-from app.deps import PlanningDep, ScenariosDep
+from app.deps import DeskDep, PlanningDep, ScenariosDep
 from app.problems import responses
 from app.routers.bodies import DRAFT_BODY, SCENARIO_BODY
 from app.schemas.base import FindingOut
@@ -179,6 +178,7 @@ Metres = Annotated[float | None, Query(gt=0, description="For shapes that do not
 )
 async def import_regions(
     request: Request,
+    desk: DeskDep,
     form: Annotated[
         Literal["kml", "kmz", "gpx", "shp", "shapefile", "geojson"] | None,
         Query(
@@ -207,8 +207,8 @@ async def import_regions(
     """
     media_type = request.headers.get("content-type", "").split(";")[0].strip().lower()
     options = ImportOptions(role, width_m, radius_m, height_m, crs)
-    found = await asyncio.to_thread(
-        import_file, await request.body(), options, form or FORMAT_OF_MEDIA_TYPE.get(media_type)
+    found = await desk.run(
+        "file", import_file, await request.body(), options, form or FORMAT_OF_MEDIA_TYPE.get(media_type)
     )
     answer = found.collection | {"format": found.format, "notes": list(found.notes)}
     return Response(write_json(answer), media_type="application/geo+json")

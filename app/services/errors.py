@@ -20,12 +20,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 from planner.errors import Finding
 
 
 class ServiceError(Exception):
-    """Base of all errors raised by the services; the text is meant for the client."""
+    """Base of all errors raised by the services; the text is meant for the client.
+
+    They cross from worker processes whole: a class with more than a text says how it is made anew.
+    """
 
 
 class NotFoundError(ServiceError):
@@ -35,6 +39,9 @@ class NotFoundError(ServiceError):
         self.kind = kind
         self.name = name
         super().__init__(f"there is no {kind} {name}")
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self.kind, self.name)
 
 
 class ConflictError(ServiceError):
@@ -56,6 +63,9 @@ class RefusedError(ServiceError):
         self.findings = findings
         super().__init__(detail)
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (str(self), self.findings)
+
 
 class UnsafeError(RefusedError):
     """Sound, but not to be flown without an explicit override."""
@@ -67,6 +77,9 @@ class OverloadedError(ServiceError):
     def __init__(self, detail: str, retry_after_s: int) -> None:
         self.retry_after_s = retry_after_s
         super().__init__(detail)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (str(self), self.retry_after_s)
 
 
 class LinkError(ServiceError):
@@ -90,6 +103,9 @@ class CommandError(ServiceError):
         self.findings = findings
         self.members = members or {}
         super().__init__(detail)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (str(self), self.findings, self.members)
 
 
 class CommandRefusedError(CommandError):

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import structlog
 
+from app.services.desk import Desk
 from app.services.flights.service import FlightService
 from app.services.plans import work
 from app.services.plans.planning import BoundTask, PlanningService, Task
@@ -40,6 +42,10 @@ class Limits:
     plan_time_limit_s: float
     max_queued_plans: int
     track_interval_s: float
+    plan_memory_bytes: int = 8_000_000_000
+    request_workers: int = 2
+    request_time_limit_s: float = 30.0
+    request_memory_bytes: int = 2_000_000_000
     recordings: Recordings | None = None
 
 
@@ -63,13 +69,20 @@ class House:
         times: LinkTimes = DEFAULT_TIMES,
     ) -> None:
         self.database = Database(limits.database)
-        self.pool = pool or WorkerPool(limits.workers, initialiser)
+        self.pool = pool or WorkerPool(
+            limits.workers, partial(work.limited, initialiser, limits.plan_memory_bytes)
+        )
+        request_pool = pool or WorkerPool(
+            limits.request_workers, partial(work.limited, initialiser, limits.request_memory_bytes)
+        )
+        self.desk = Desk(request_pool, limits.request_time_limit_s)
         folder = terrain_folder(limits.database)
-        self.terrain = TerrainService(TerrainStore(self.database), folder)
+        self.terrain = TerrainService(TerrainStore(self.database), folder, self.desk)
         self.scenarios = ScenarioService(ScenarioStore(self.database))
         self.planning = PlanningService(
             PlanStore(self.database),
             self.pool,
+            self.desk,
             workers=limits.workers,
             time_limit_s=limits.plan_time_limit_s,
             max_queued=limits.max_queued_plans,
@@ -79,7 +92,7 @@ class House:
             terrain_folder=folder,
         )
         flights = FlightStore(self.database)
-        self.flights = FlightService(flights, self.planning)
+        self.flights = FlightService(flights, self.planning, self.desk)
         kept = VehicleStore(self.database)
         self.checks = Checks(self.planning)
         self.transfers = Transfers(self.planning, UploadStore(self.database), kept)
@@ -97,6 +110,7 @@ class House:
         """Open the database, start the workers, take up waiting plans."""
         await self.database.open()
         self.pool.warm()
+        self.desk.pool.warm()
         await self.planning.start()
         await self.fleet.open()
 
@@ -104,5 +118,6 @@ class House:
         """Stop everything, in the opposite order."""
         await self.fleet.close()
         await self.planning.stop()
+        await self.desk.pool.stop()
         await self.pool.stop()
         await self.database.close()

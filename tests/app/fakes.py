@@ -9,6 +9,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
+from app.services.errors import NotFoundError, RefusedError
 from app.services.plans.summary import summary_of
 from app.services.plans.work import PipeProgress, WorkResult, plan_scenario
 from app.services.scenarios import validation
@@ -34,6 +35,27 @@ class ThreadPool:
 
     async def stop(self) -> None:
         """Nothing to end."""
+
+
+def endless() -> None:
+    """Never ends, and lets no other thread of its process run for long."""
+    while True:
+        sum(range(10_000_000))
+
+
+def greedy(size_bytes: int) -> int:
+    """Take memory, and touch it."""
+    return len(bytearray(size_bytes))
+
+
+def refusing() -> None:
+    """Refuse with a finding."""
+    raise RefusedError("no", (Finding("R1", "a-rule", "it is wrong", "mend it"),))
+
+
+def missing() -> None:
+    """Miss something."""
+    raise NotFoundError("terrain", "T")
 
 
 def judge(document: Mapping[str, Any], *folders: str) -> Verdict:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-import asyncio
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
+from functools import partial
+from pathlib import Path
 from typing import Any
 
+from app.services.desk import Desk
 from app.services.documents import read_object
 from app.services.errors import ConflictError, NotFoundError
 from app.services.flights.as_flown import SEEN_FRACTION, SLIVER_M, SLIVER_M2, gaps, regions_json, triggers
@@ -19,6 +21,7 @@ from app.services.plans.planning import PlanningService
 from app.services.records import FlightEvent, FlightRecord, TrackSample
 from app.services.reports.report import write_flight_report
 from app.services.store.flights import FlightStore
+from app.services.terrain.rasters import stored_terrain
 from planner.airspace.terrain import Terrains
 from planner.coverage import flown
 from planner.geojson import read_scenario
@@ -32,9 +35,10 @@ from planner.tasks.flown import flown_coverage
 class FlightService:
     """Flights, their tracks, and the ground they saw."""
 
-    def __init__(self, store: FlightStore, planning: PlanningService) -> None:
+    def __init__(self, store: FlightStore, planning: PlanningService, desk: Desk) -> None:
         self._store = store
         self._planning = planning
+        self._desk = desk
 
     async def newest(self, limit: int, offset: int, vehicle_id: str | None) -> tuple[FlightRecord, ...]:
         """Flights, newest first."""
@@ -63,11 +67,11 @@ class FlightService:
         ConflictError
             The flight followed no plan of this service, or the plan has been deleted.
         """
-        return await asyncio.to_thread(_coverage, await self._flown(flight_id))
+        return await self._desk.run("flight", _coverage, await self._flown(flight_id))
 
     async def report(self, flight_id: str) -> str:
         """What was flown and seen, as one printable HTML page; raises as ``coverage``."""
-        return await asyncio.to_thread(_report, await self._flown(flight_id))
+        return await self._desk.run("flight", _report, await self._flown(flight_id))
 
     async def refly(self, flight_id: str, here: tuple[float, float, float | None] | None) -> dict[str, Any]:
         """The scenario of what a flight did not see.
@@ -82,7 +86,7 @@ class FlightService:
         ConflictError
             As ``coverage``, and when nothing worth a pass was missed.
         """
-        return await asyncio.to_thread(_refly, await self._flown(flight_id), here)
+        return await self._desk.run("flight", _refly, await self._flown(flight_id), here)
 
     async def _as_recorded(
         self, record: FlightRecord
@@ -106,7 +110,9 @@ class FlightService:
         except NotFoundError as error:
             raise ConflictError("the flight's plan has been deleted") from error
         samples, photos, events = await self._as_recorded(record)
-        return _Flown(record, plan_text, scenario_text, samples, photos, events, self._planning.terrain)
+        return _Flown(
+            record, plan_text, scenario_text, samples, photos, events, self._planning.terrain_folder
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,7 +125,12 @@ class _Flown:
     samples: tuple[TrackSample, ...]
     photos: tuple[FlightEvent, ...]
     events: tuple[FlightEvent, ...]
-    terrain: Terrains | None
+    terrain_folder: Path | None
+
+    @property
+    def terrain(self) -> Terrains | None:
+        """Uploaded rasters by their ids."""
+        return None if self.terrain_folder is None else partial(stored_terrain, self.terrain_folder)
 
 
 def _feature(geometry: dict[str, Any], **properties: Any) -> dict[str, Any]:

@@ -107,6 +107,11 @@ def mission_bytes(plan: Plan, choice: MissionChoice, form: str) -> bytes:
     return mission_text(plan, choice, form).encode()
 
 
+def exported(text: str, choice: MissionChoice, form: str) -> bytes:
+    """The same of a plan document's text."""
+    return mission_bytes(plan_of(text), choice, form)
+
+
 def _vehicle_of(plan: Plan, name: str | None) -> str:
     if name is None:
         return plan.vehicles[0].name

@@ -13,6 +13,7 @@ from typing import Any
 
 import structlog
 
+from app.services.desk import Desk
 from app.services.documents import name_of, write_json
 from app.services.errors import ConflictError, NotFoundError, OverloadedError, RefusedError
 from app.services.hub import Hub
@@ -24,8 +25,6 @@ from app.services.plans.progress_pipe import progress_pipe
 from app.services.records import PlanRecord
 from app.services.scenarios.validation import Verdict, judge
 from app.services.store.plans import PlanStore
-from app.services.terrain.rasters import stored_terrain
-from planner.airspace.terrain import Terrain
 from planner.geojson import scenario_hash
 
 log = structlog.get_logger(__name__)
@@ -48,6 +47,8 @@ class PlanningService:
         Where they are kept.
     pool
         Where they are made.
+    desk
+        Where scenarios are judged before.
     workers
         How many are made at once.
     time_limit_s
@@ -68,6 +69,7 @@ class PlanningService:
         self,
         store: PlanStore,
         pool: Pool,
+        desk: Desk,
         *,
         workers: int,
         time_limit_s: float,
@@ -79,6 +81,7 @@ class PlanningService:
     ) -> None:
         self._store = store
         self._pool = pool
+        self._desk = desk
         self._workers = workers
         self._time_limit_s = time_limit_s
         self._max_queued = max_queued
@@ -115,11 +118,12 @@ class PlanningService:
 
     async def validate(self, document: Mapping[str, Any]) -> Verdict:
         """Judge a scenario without planning it."""
-        return await asyncio.to_thread(self._judge, document, *self._terrain_of(document))
+        return await self._desk.run("scenario", self._judge, document, *self._terrain_of(document))
 
-    def terrain(self, terrain_id: str) -> Terrain | None:
-        """An uploaded raster by its id; None where there is none."""
-        return None if self._terrain_folder is None else stored_terrain(self._terrain_folder, terrain_id)
+    @property
+    def terrain_folder(self) -> Path | None:
+        """Where uploaded rasters are."""
+        return self._terrain_folder
 
     def _terrain_of(self, document: Mapping[str, Any]) -> tuple[str, ...]:
         """The folder of the rasters, for a scenario that names one."""

@@ -10,7 +10,9 @@ import errno
 import json
 import math
 import os
+import resource
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -18,6 +20,8 @@ from typing import Any
 
 #: Reports closer together than this are dropped unless the stage changes.
 REPORT_INTERVAL_S = 0.05
+#: Its first figure is what RLIMIT_AS limits, in pages (proc(5)).
+STATM = Path("/proc/self/statm")
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,6 +72,19 @@ def initialise() -> None:
     from planner.warm import load
 
     load()
+
+
+def limited(initialiser: Callable[[], None], memory_bytes: int) -> None:
+    """Begin a worker that may take so much memory more than it begins with (RLIMIT_AS)."""
+    initialiser()
+    if not STATM.exists():
+        # Without Linux's figures nobody can tell what it begins with; the limit of time holds all the same.
+        return
+    taken_bytes = int(STATM.read_text().split()[0]) * resource.getpagesize()
+    _, hard = resource.getrlimit(resource.RLIMIT_AS)
+    limit = taken_bytes + memory_bytes
+    limit = limit if hard == resource.RLIM_INFINITY else min(limit, hard)
+    resource.setrlimit(resource.RLIMIT_AS, (limit, hard))
 
 
 def ping() -> int:
@@ -130,6 +147,15 @@ def plan_scenario(scenario_text: str, progress_path: str, terrain_folder: str | 
                         "where": place,
                     }
                 ],
+            }
+        )
+    except MemoryError:
+        return WorkResult(
+            error={
+                "type": "memory-limit",
+                "title": "The memory limit was reached",
+                "detail": "planning takes more memory than a plan may have; send fewer or simpler regions",
+                "errors": [],
             }
         )
     except errors.OutOfBudgetError as error:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import hashlib
 import uuid
 from dataclasses import replace
@@ -10,12 +9,12 @@ from pathlib import Path
 
 import numpy as np
 
+from app.services.desk import Desk
 from app.services.errors import RefusedError
 from app.services.records import TerrainRecord
 from app.services.store.plans import now
 from app.services.store.terrain import TerrainStore
-from app.services.terrain.rasters import VerticalDatum, known_fraction, pack, read_raster, stored_terrain
-from planner.airspace.terrain import Terrain
+from app.services.terrain.rasters import VerticalDatum, known_fraction, pack, read_raster
 from planner.errors import Finding
 
 
@@ -28,11 +27,14 @@ class TerrainService:
         Where their records are.
     folder
         Where their posts are, a file each; made when the first comes.
+    desk
+        Where files are read.
     """
 
-    def __init__(self, store: TerrainStore, folder: Path) -> None:
+    def __init__(self, store: TerrainStore, folder: Path, desk: Desk) -> None:
         self._store = store
         self.folder = folder
+        self._desk = desk
 
     async def add(
         self, content: bytes, filename: str, name: str | None, datum: VerticalDatum | None
@@ -54,7 +56,9 @@ class TerrainService:
         if known is not None and (datum is None or datum == known.datum):
             return known, False
         title = (name or Path(filename).stem or "terrain")[:200]
-        record = await asyncio.to_thread(self._take_in, content, filename, title, sha256, datum)
+        record = await self._desk.run(
+            "terrain", _taken_in, self.folder, content, filename, title, sha256, datum
+        )
         await self._store.add(record)
         return record, True
 
@@ -75,31 +79,29 @@ class TerrainService:
         await self._store.delete(terrain_id)
         (self.folder / f"{terrain_id}.npz").unlink(missing_ok=True)
 
-    def load(self, terrain_id: str) -> Terrain | None:
-        """The raster itself; None where there is none of this id."""
-        return stored_terrain(self.folder, terrain_id)
 
-    def _take_in(
-        self, content: bytes, filename: str, name: str, sha256: str, datum: VerticalDatum | None
-    ) -> TerrainRecord:
-        terrain_id = str(uuid.uuid4())
-        terrain = replace(read_raster(content, filename, name, datum), name=terrain_id)
-        self.folder.mkdir(parents=True, exist_ok=True)
-        partial = self.folder / f".{terrain_id}.partial"
-        partial.write_bytes(pack(terrain))
-        partial.replace(self.folder / f"{terrain_id}.npz")
-        rows, columns = terrain.heights_m.shape
-        return TerrainRecord(
-            id=terrain_id,
-            name=name,
-            bounds_deg=terrain.bounds_deg,
-            resolution_m=terrain.resolution_m,
-            rows=rows,
-            columns=columns,
-            min_m=float(np.nanmin(terrain.heights_m)),
-            max_m=float(np.nanmax(terrain.heights_m)),
-            known_fraction=known_fraction(terrain),
-            datum=terrain.datum,
-            sha256=sha256,
-            created_at=now(),
-        )
+def _taken_in(
+    folder: Path, content: bytes, filename: str, name: str, sha256: str, datum: VerticalDatum | None
+) -> TerrainRecord:
+    """Read a file and keep its posts."""
+    terrain_id = str(uuid.uuid4())
+    terrain = replace(read_raster(content, filename, name, datum), name=terrain_id)
+    folder.mkdir(parents=True, exist_ok=True)
+    partial = folder / f".{terrain_id}.partial"
+    partial.write_bytes(pack(terrain))
+    partial.replace(folder / f"{terrain_id}.npz")
+    rows, columns = terrain.heights_m.shape
+    return TerrainRecord(
+        id=terrain_id,
+        name=name,
+        bounds_deg=terrain.bounds_deg,
+        resolution_m=terrain.resolution_m,
+        rows=rows,
+        columns=columns,
+        min_m=float(np.nanmin(terrain.heights_m)),
+        max_m=float(np.nanmax(terrain.heights_m)),
+        known_fraction=known_fraction(terrain),
+        datum=terrain.datum,
+        sha256=sha256,
+        created_at=now(),
+    )
