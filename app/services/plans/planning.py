@@ -20,11 +20,13 @@ from app.services.hub import Hub
 from app.services.metrics import PLANNING_SECONDS, PLANS_ENDED, PLANS_RUNNING
 from app.services.plans import work
 from app.services.plans.bounder import Bounder
+from app.services.plans.missions import MissionChoice, encoded
 from app.services.plans.pool import Pool, WorkerDiedError
 from app.services.plans.progress_pipe import progress_pipe
 from app.services.records import PlanRecord
 from app.services.scenarios.validation import Verdict, judge
 from app.services.store.plans import PlanStore
+from mavlink.dialects.mission import Mission
 from planner.geojson import scenario_hash
 
 log = structlog.get_logger(__name__)
@@ -198,6 +200,10 @@ class PlanningService:
             reason = f": {record.error['detail']}" if record.error else ""
             raise ConflictError(f"plan {plan_id} is {record.state}, it has no plan{reason}")
         return plan
+
+    async def mission(self, plan_id: str, choice: MissionChoice) -> Mission:
+        """The mission of one vehicle of a plan; raises as ``plan_text`` and ``missions.encode_plan``."""
+        return await self._desk.run("plan", encoded, await self.plan_text(plan_id), choice)
 
     async def events(self, plan_id: str) -> AsyncGenerator[tuple[str, PlanRecord], None]:
         """The plan as it is now, then at every change, to its end and, of a done one, its bound.

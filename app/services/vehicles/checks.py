@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import asyncio
 import json
 from collections.abc import Sequence
 from dataclasses import replace
 
-from app.services.plans.missions import MissionChoice, encode_plan, plan_of
+from app.services.plans.missions import MissionChoice, plan_of
 from app.services.plans.planning import PlanningService
 from app.services.vehicles.inspection import ParameterReport, inspect, mission_needs, read_parameters
 from app.services.vehicles.preflight import Preflight
@@ -29,7 +28,7 @@ class Checks:
         async with vehicle.turns.busy(f"pre-flight check for plan {plan_id}"):
             plan = plan_of(await self._planning.plan_text(plan_id))
             choice = for_vehicle(vehicle, choice)
-            mission = await asyncio.to_thread(encode_plan, plan, choice)
+            mission = await self._planning.mission(plan_id, choice)
             scenario = json.loads(await self._planning.scenario_text(plan_id))
             report = await inspect(vehicle.client, plan_id, plan, scenario, mission, choice)
             if report.mission_held is not None and _as_sent(vehicle, plan_id, mission, choice):
@@ -54,7 +53,7 @@ class Checks:
                 return await read_parameters(vehicle.client, names, None)
             plan = plan_of(await self._planning.plan_text(plan_id))
             choice = for_vehicle(vehicle, choice)
-            mission = await asyncio.to_thread(encode_plan, plan, choice)
+            mission = await self._planning.mission(plan_id, choice)
             scenario = json.loads(await self._planning.scenario_text(plan_id))
             needs = mission_needs(plan, scenario, mission, choice)
             return await read_parameters(vehicle.client, names, (mission, needs))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import contextlib
 import json
 from collections.abc import Sequence
@@ -12,7 +11,7 @@ import structlog
 
 from app.services.errors import ConflictError, LinkError, NotFoundError, RefusedError
 from app.services.metrics import UPLOADS
-from app.services.plans.missions import PARTS, MissionChoice, PartName, encode_plan, plan_of
+from app.services.plans.missions import PARTS, MissionChoice, PartName, plan_of
 from app.services.plans.planning import PlanningService
 from app.services.records import HeldMission, SentMission
 from app.services.store.uploads import UploadStore
@@ -83,7 +82,7 @@ class Transfers:
             stale = (await self._planning.get(plan_id)).stale_reason
             if not vehicle.state.connected:
                 raise LinkError(f"{vehicle.name}: {vehicle.client.absence}")
-            mission = await asyncio.to_thread(encode_plan, plan, for_vehicle(vehicle, choice))
+            mission = await self._planning.mission(plan_id, for_vehicle(vehicle, choice))
             findings = _pointed(plan, scenario, mission, choice) if "mission" in parts else ()
             findings += judge_upload(plan, mission, parts, vehicle.state, override, stale)
             await _bring_home(vehicle, plan)
@@ -154,11 +153,10 @@ class Transfers:
         None when that plan is deleted: nobody can tell.
         """
         try:
-            plan = plan_of(await self._planning.plan_text(held.plan_id))
+            choice = for_vehicle(vehicle, MissionChoice(held.plan_vehicle, None, held.payload, held.gimbal))
+            mission = await self._planning.mission(held.plan_id, choice)
         except (NotFoundError, ConflictError):
             return None
-        choice = for_vehicle(vehicle, MissionChoice(held.plan_vehicle, None, held.payload, held.gimbal))
-        mission = await asyncio.to_thread(encode_plan, plan, choice)
         meant = mission.items_of(PARTS["mission"])
         found = await vehicle.client.download(PARTS["mission"])
         same = not comparing(mission.dialect)(meant, found)
