@@ -1,8 +1,9 @@
-"""Many regions among many threats: seconds, memory, length, bound and gap of whole plans.
+"""Many regions among many threats, and wide ones of many strips: seconds, memory, length, bound and gap.
 
 Each size is planned in a process of its own, so that the peak of memory is that of the one plan (kernels and
 libraries included). Scenarios are random and the same for the same seed: convex regions 250–900 m across, one
-to ten square kilometres, as in the paper's cases; threats and hard zones between them.
+to ten square kilometres, as in the paper's cases; threats and hard zones between them. Ten wide ones without
+threats are 1,000 km² in all and take 200 strips of a swath.
 """
 
 from __future__ import annotations
@@ -16,7 +17,8 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
-from shapely.geometry import MultiPoint, Point, mapping
+from shapely.affinity import rotate, translate
+from shapely.geometry import MultiPoint, Point, box, mapping
 
 from planner.geojson import read_scenario
 from planner.pipeline import make_plan, with_bound
@@ -25,6 +27,8 @@ from planner.warm import warm_up
 #: Regions and threats.
 SIZES = ((12, 12), (20, 30), (50, 60), (100, 100))
 KM2_PER_REGION = 10.0
+#: Wide regions: how many, and how long and wide each is; from how high they are seen.
+WIDE, WIDE_SIDE_M, WIDE_HEIGHT_M = 10, 10_030.0, 450.0
 #: Every so many threats one is a hard zone.
 HARD_EVERY = 5
 LATITUDE_DEG, LONGITUDE_DEG = 33.5, -117.7
@@ -51,9 +55,25 @@ def scenario_document(regions: int, threats: int, seed: int) -> dict[str, Any]:
     ring = [[low, low], [high, low], [high, high], [low, high], [low, low]]
     features.append(_feature("area", _degrees([ring]), "Polygon", role="area"))
     features.append(_feature("start", _degrees([-1500.0, -1500.0]), "Point", role="start"))
+    return _document(f"scale-{regions}-{threats}-{seed}", features, seed)
+
+
+def wide_document() -> dict[str, Any]:
+    """Ten squares of 100 km² as GeoJSON, each turned a little more than the one before."""
+    apart_m = 1.5 * WIDE_SIDE_M
+    features = [_feature("start", _degrees([-apart_m, -apart_m]), "Point", role="start")]
+    for k in range(WIDE):
+        square = box(0.0, 0.0, WIDE_SIDE_M, WIDE_SIDE_M)
+        placed = translate(rotate(square, 7.0 * k), apart_m * (k % 4), apart_m * (k // 4))
+        ring = _degrees(mapping(placed)["coordinates"])
+        features.append(_feature(f"W{k + 1}", ring, "Polygon", role="roi"))
+    return _document("scale-wide", features, 0) | {"altitude_m": WIDE_HEIGHT_M}
+
+
+def _document(name: str, features: list[dict[str, Any]], seed: int) -> dict[str, Any]:
     return {
         "type": "FeatureCollection",
-        "name": f"scale-{regions}-{threats}-{seed}",
+        "name": name,
         "features": features,
         "vehicles": [{"name": "uav", "airspeed_m_s": 20.0, "min_turn_radius_m": 100.0}],
         "sensors": [
@@ -71,19 +91,25 @@ def scenario_document(regions: int, threats: int, seed: int) -> dict[str, Any]:
     }
 
 
-def run(sizes: Any = SIZES, seeds: Any = (0,), repeats: int = 1) -> Iterator[dict[str, Any]]:
-    """One row a scenario; ``seconds`` is the best of ``repeats`` warm plans."""
+def run(
+    sizes: Any = SIZES, seeds: Any = (0,), repeats: int = 1, wide: bool = True
+) -> Iterator[dict[str, Any]]:
+    """One row a scenario, wide regions the last; ``seconds`` is the best of ``repeats`` warm plans."""
     warm_up()
     context = multiprocessing.get_context("spawn")
     for regions, threats in sizes:
         for seed in seeds if isinstance(seeds, (list, tuple)) else (seeds,):
             with context.Pool(1) as pool:
-                yield pool.apply(_row, (regions, threats, seed, repeats))
+                document = scenario_document(regions, threats, seed)
+                yield pool.apply(_row, (document, threats, repeats))
+    if wide:
+        with context.Pool(1) as pool:
+            yield pool.apply(_row, (wide_document(), 0, repeats))
 
 
-def _row(regions: int, threats: int, seed: int, repeats: int) -> dict[str, Any]:
+def _row(document: dict[str, Any], threats: int, repeats: int) -> dict[str, Any]:
     warm_up()
-    scenario = read_scenario(scenario_document(regions, threats, seed))
+    scenario = read_scenario(document)
     seconds = []
     for _ in range(repeats):
         began = time.perf_counter()
@@ -92,9 +118,11 @@ def _row(regions: int, threats: int, seed: int, repeats: int) -> dict[str, Any]:
     plan = with_bound(scenario, plan, clock=time.perf_counter)
     return {
         "bench": "scale",
-        "regions": regions,
+        "regions": len(scenario.regions),
         "threats": threats,
-        "seed": seed,
+        "seed": scenario.seed,
+        "km2": math.fsum(region.area.area for region in scenario.regions) / 1e6,
+        "passes": len(plan.collects),
         "seconds": min(seconds),
         "peak_mb": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0,
         "length_m": plan.metrics.route_length_m,

@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+
+import numpy as np
 
 from planner.airspace.airspace import Airspace, Level
 from planner.airspace.threats import curve_risk
+from planner.airspace.values import Threat
 from planner.dubins.path import MIN_TURN_RAD, Path
 from planner.plan import Metrics
 from planner.profile.flight import Flight
@@ -16,6 +20,8 @@ from planner.vehicle.model import FlightModel
 
 #: Distance between dividing points when risk is summed along the line (section 5.2, Li et al. 2018).
 DIVIDING_M = 100.0
+#: Points of a curve are this far apart.
+SAMPLE_M = 5.0
 
 
 def measure(
@@ -42,8 +48,7 @@ def measure(
     (start_m, start_s), (end_m, end_s) = flight.along(from_m), flight.along(until_m)
     length_m = end_m - start_m
     collection_m = math.fsum(collect.length_m for collect in passes)
-    points = flight.path.sample(5.0)[:, :2]
-    missile, radar = curve_risk(points, airspace.threats, DIVIDING_M, level.height_m)
+    missile, radar = risks(flight, 0.0, flight.path.length_m, airspace.threats, level)
     return Metrics(
         length_m=length_m,
         collection_length_m=collection_m,
@@ -60,6 +65,27 @@ def measure(
         flight_duration_s=flight.duration_s,
         route_length_m=flight.path.length_m - flight.inserted_m,
     )
+
+
+def risks(
+    flight: Flight, from_m: float, until_m: float, threats: Sequence[Threat], level: Level
+) -> tuple[float, float]:
+    """Risk of kill and of detection between two distances over the ground.
+
+    A threat that ends at some height counts where the line is not above it.
+    """
+    sampled = cut(flight.path, from_m, until_m).sample(SAMPLE_M)
+    points = sampled[:, :2]
+    over_home_m = flight.heights.at(from_m + sampled[:, 3]) - (level.altitude_m - level.height_m)
+    missile, radar = curve_risk(points, threats, DIVIDING_M, float(over_home_m.max()))
+    for threat in threats:
+        if not over_home_m.min() <= threat.height_m < over_home_m.max():
+            continue
+        under = np.flatnonzero(over_home_m <= threat.height_m)
+        for run in np.split(under, np.flatnonzero(np.diff(under) > 1) + 1):
+            more_missile, more_radar = curve_risk(points[run], [threat], DIVIDING_M)
+            missile, radar = missile + more_missile, radar + more_radar
+    return missile, radar
 
 
 def used(flight: Flight, model: FlightModel) -> Use:

@@ -14,11 +14,10 @@ from shapely.geometry import LinearRing, MultiPolygon, Polygon
 from planner.airspace.airspace import Airspace, Level
 from planner.airspace.shapes import DiscShape, banded_shapes
 from planner.airspace.terrain import Ground
-from planner.airspace.threats import curve_risk
 from planner.airspace.zones import keep_out
 from planner.flown import flown_path, line_between
 from planner.frames import LocalFrame
-from planner.metrics import DIVIDING_M
+from planner.metrics import risks
 from planner.plan import (
     Collect,
     Fence,
@@ -119,7 +118,7 @@ def collects_and_transits(
     zones = replace(keep_out(airspace, level, soft=False), area=None)
     for seq, (leg, (from_m, until_m)) in enumerate(zip(legs, composed.legs_m, strict=True), start=1):
         path = cut(flight.path, from_m, until_m)
-        missile, radar = curve_risk(path.sample(5.0)[:, :2], airspace.threats, DIVIDING_M, level.height_m)
+        missile, radar = risks(flight, from_m, until_m, airspace.threats, level)
         line = line_between(flight, from_m, until_m, chart.lonlats, chart.straight_edge_m)
         length_m = flight.along(until_m)[0] - flight.along(from_m)[0]
         transits.append(
@@ -133,16 +132,18 @@ def collects_and_transits(
         (lon0, lat0), (lon1, lat1) = chart.lonlats([collect.start, collect.end])
         middle = ((collect.start[0] + collect.end[0]) / 2.0, (collect.start[1] + collect.end[1]) / 2.0)
         (start_m, start_s), (end_m, end_s) = flight.along(from_m), flight.along(until_m)
+        altitude_m = float(flight.heights.at(0.5 * (from_m + until_m)))
         collects.append(
             Collect(
                 model.name, seq, name, collect.regions, collect.sensor, collect.look,
-                ((lon0, lat0, level.altitude_m), (lon1, lat1, level.altitude_m)),
+                ((lon0, lat0, altitude_m), (lon1, lat1, altitude_m)),
                 chart.frame.true_heading_deg(*middle, collect.angle_rad),
                 start_m, end_m, start_s, end_s,
             )
         )  # fmt: skip
-        sensor = suite.named(collect.sensor)
-        footprints.extend(_footprints(chart, airspace.terrain, model.name, seq, name, collect, sensor))
+        sensor, ground = suite.named(collect.sensor), airspace.terrain
+        there = level.at(altitude_m)
+        footprints.extend(_footprints(chart, ground, model.name, seq, name, collect, sensor, there))
     return tuple(collects), tuple(transits), tuple(footprints)
 
 
@@ -154,6 +155,7 @@ def _footprints(
     name: str,
     collect: CollectPass,
     sensor: Sensor,
+    level: Level,
 ) -> Iterator[Footprint]:
     """The ground seen: the pass's own footprint, on terrain one for each part really seen."""
     if ground is None:
@@ -161,7 +163,7 @@ def _footprints(
         yield Footprint(vehicle, seq, name, collect.sensor, ring, sensor.resolution_m)
         return
     line_m = (collect.start, collect.end)
-    seen = seen_from(sensor, line_m, collect.look, chart.level.amsl_m, ground)
+    seen = seen_from(sensor, line_m, collect.look, level.amsl_m, ground)
     # Specks of a cell or two say nothing on a map.
     tidy = seen.area.simplify(ground.step_m / 20.0)
     parts = [part for part in shapely.get_parts(tidy) if part.area > ground.step_m**2 / 10.0]

@@ -6,7 +6,7 @@ east; altitudes are metres over the datum named by ``altitude_reference``.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from shapely.geometry import Polygon
 
@@ -65,12 +65,17 @@ class Scenario:
 
     @property
     def level(self) -> Level:
-        """The level of ``altitude_m``."""
-        return self.airspace.level(self.altitude_m, self.altitude_reference)
+        """The highest level that regions are seen from, and how far below it the lowest lies."""
+        altitudes_m = [
+            self.altitude_m if region.altitude_m is None else region.altitude_m for region in self.regions
+        ] or [self.altitude_m]
+        top_m = max(altitudes_m)
+        level = self.airspace.level(top_m, self.altitude_reference)
+        return replace(level, depth_m=top_m - min(altitudes_m))
 
     @property
     def height_m(self) -> float:
-        """Flight height over the ground, which is flat at the height of home."""
+        """Flight height over the ground, which is flat at the height of home: the greatest of several."""
         return self.level.height_m
 
     @property

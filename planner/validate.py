@@ -95,7 +95,7 @@ def laborious(scenario: Scenario) -> tuple[Finding, ...]:
 
 
 def _over(scenario: Scenario, region: Region) -> tuple[Sensor, float]:
-    return scenario.suite.over(region.sensor, region.area, scenario.airspace, scenario.level)
+    return scenario.suite.over(region.sensor, region.area, scenario.airspace, scenario.level.of(region))
 
 
 _HIGHER = "Fly higher (altitude_m), widen the beam, or cut the regions"

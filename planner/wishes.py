@@ -13,7 +13,8 @@ class Region:
 
     A corridor (LineString with width) and a target (Point with radius) arrive here as the area they mean.
     ``approach_rad`` holds the allowed flight directions, None for any; ``revisits`` how often it is to be
-    seen, on separate occasions; ``axis`` the line a corridor follows.
+    seen, on separate occasions; ``axis`` the line a corridor follows; ``altitude_m`` is that of its passes
+    over the scenario's datum, None for the route's.
     """
 
     name: str
@@ -25,6 +26,7 @@ class Region:
     approach_rad: tuple[float, ...] | None = None
     revisits: int = 1
     axis: LineString | None = None
+    altitude_m: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import takewhile
 
 from mavlink.dialects.mission import placed, unplaced
 from mavlink.encoding.arcs import circle_item
@@ -38,7 +39,7 @@ def beginning(task: Task) -> End:
 
 def _takeoff(task: Task) -> MissionItem:
     """What takes it to where the plan's take-off ends; straight up as far as the plan goes straight up."""
-    lifted = [segment for segment in task.path.segments if segment.kind == "vertical"]
+    lifted = list(takewhile(lambda segment: segment.kind == "vertical", task.path.segments))
     up_m = max((segment.end_altitude_m for segment in lifted), default=task.path.line[0][2])
     parameters = (0.0, 0.0, 0.0, task.any_yaw)
     relative = Frame.GLOBAL_RELATIVE_ALT

@@ -101,6 +101,11 @@ def stops_along(
         if segment.start_m < from_m - MERGE_M or segment.start_m > until_m - MERGE_M:
             continue
         if segment.kind == "vertical":
+            # What climbs at the take-off or lands is an item of its own; between passes it is two waypoints.
+            if from_m + MERGE_M < segment.start_m:
+                end_m = segment.start_m + segment.length_m
+                stops.append(Stop(segment.start_m, here(segment.start), segment.start_altitude_m))
+                stops.append(Stop(end_m, here(segment.start), segment.end_altitude_m))
             continue
         if is_whole_turns(segment):
             stops.append(Stop(segment.start_m, here(segment.start), segment.end_altitude_m, turns=segment))

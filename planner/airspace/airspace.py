@@ -2,12 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from typing import Protocol
 
 from shapely.geometry import Polygon
 
 from planner.airspace.terrain import Ground
 from planner.airspace.values import STILL_AIR, AltitudeReference, NoFlyZone, Obstacle, Threat, Wind
+
+
+class HasAltitude(Protocol):
+    """A region, or several merged."""
+
+    @property
+    def altitude_m(self) -> float | None:
+        """Of its passes, over the reference; None where it asks for none."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,23 +31,36 @@ class Level:
         Over mean sea level.
     reference
         What its altitude is told over.
+    depth_m
+        So far below it lies the lowest of the levels that a route with passes at several heights is flown at;
+        0 where it is the only one.
     """
 
     height_m: float
     amsl_m: float
     reference: AltitudeReference = "terrain"
+    depth_m: float = 0.0
 
     @property
     def altitude_m(self) -> float:
         """Over the reference."""
         return self.amsl_m if self.reference == "amsl" else self.height_m
 
+    @property
+    def lowest(self) -> Level:
+        """The lowest of the levels flown."""
+        return self.at(self.altitude_m - self.depth_m)
+
     def at(self, altitude_m: float) -> Level:
-        """The level of another altitude over the same reference."""
+        """The level of another altitude over the same reference, by itself."""
         change_m = altitude_m - self.altitude_m
         if self.reference == "amsl":
-            return replace(self, height_m=self.height_m + change_m, amsl_m=altitude_m)
-        return replace(self, height_m=altitude_m, amsl_m=self.amsl_m + change_m)
+            return Level(self.height_m + change_m, altitude_m, self.reference)
+        return Level(altitude_m, self.amsl_m + change_m, self.reference)
+
+    def of(self, region: HasAltitude) -> Level:
+        """The level of a region's passes: its own, else this one."""
+        return self if region.altitude_m is None else self.at(region.altitude_m)
 
 
 @dataclass(frozen=True, slots=True)

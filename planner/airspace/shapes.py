@@ -92,12 +92,15 @@ def banded_shapes(airspace: Airspace, home_amsl_m: float | None) -> Iterator[Ban
 
 
 def hard_shapes(airspace: Airspace, level: Level) -> Iterator[DiscShape | PolygonShape]:
-    """Hard threats, no-fly zones and obstacles that reach a level, clearance included."""
+    """Hard threats, no-fly zones and obstacles that reach a level, clearance included.
+
+    Of several levels flown: those that count at all of them. What counts at some is kept clear leg by leg.
+    """
     for threat in airspace.threats:
         if threat.hard and acts(threat, level.height_m):
             yield DiscShape(threat.name, threat.centre, threat.radius_m)
     for zone in airspace.no_fly:
-        if zone.floor_m <= level.amsl_m <= zone.ceiling_m:
+        if zone.floor_m <= level.lowest.amsl_m and level.amsl_m <= zone.ceiling_m:
             if zone.area is not None:
                 yield PolygonShape(zone.name, zone.area)
             elif zone.centre is not None and zone.radius_m is not None:

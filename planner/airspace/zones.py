@@ -231,7 +231,8 @@ def keep_out(
     ----------
     level
         Decides which zones count: threats up to their ``height_m`` (a cylinder), obstacles whose top with
-        clearance reaches it, no-fly zones whose band holds it.
+        clearance reaches it, no-fly zones whose band holds it. Of several levels flown: zones that count
+        at all of them.
     margin_m
         Every zone grows and the area shrinks by this much, besides the clearance of obstacles.
     soft
@@ -240,14 +241,14 @@ def keep_out(
         The lower level; None for the one level alone.
     """
     clearance_m = airspace.clearance_m
-    lowest = lowest or level
+    lowest, floor_to_m = (level, level.lowest.amsl_m) if lowest is None else (lowest, level.amsl_m)
     discs: list[Disc] = []
     polygons: list[PolygonZone] = []
     for threat in airspace.threats:
         if (threat.hard or soft) and lowest.height_m <= threat.height_m:
             discs.append(Disc(threat.name, *threat.centre, threat.radius_m + margin_m, threat.hard))
     for zone in airspace.no_fly:
-        if zone.floor_m > level.amsl_m or zone.ceiling_m < lowest.amsl_m:
+        if zone.floor_m > floor_to_m or zone.ceiling_m < lowest.amsl_m:
             continue
         if zone.centre is not None and zone.radius_m is not None:
             discs.append(Disc(zone.name, *zone.centre, zone.radius_m + margin_m, True))

@@ -229,6 +229,6 @@ def _divided(seeing: Seeing, unit: Unit) -> list[list[Asked]]:
 
 
 def _sensing(seeing: Seeing, region: MergedRegion) -> tuple[SarSensor, float]:
-    sensor, height_m = seeing.suite.over(region.sensor, region.area, seeing.airspace, seeing.level)
+    sensor, height_m = seeing.suite.over(region.sensor, region.area, seeing.airspace, seeing.level.of(region))
     assert isinstance(sensor, SarSensor)
     return sensor, height_m

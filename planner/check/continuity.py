@@ -9,10 +9,10 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 from shapely.geometry import LineString, Point
-from shapely.ops import substring
 
 from planner.check.kinematics import LENGTH_TOLERANCE, MAX_ARC_EDGE_M
 from planner.check.places import PLACE_TOLERANCE_M, lonlat
+from planner.check.stretches import Measured
 from planner.check.times import SPOT_M
 from planner.plan import FlownPath, Plan, Violation
 from planner.scenario import Scenario
@@ -98,7 +98,7 @@ def collect_violations(
     scenario: Scenario,
     plan: Plan,
     path: FlownPath,
-    line: LineString,
+    line: Measured,
     over_ground_m: Callable[[float], float],
     settle_m: float,
 ) -> Iterator[Violation]:
@@ -116,11 +116,8 @@ def collect_violations(
         # many turns a collect begins some metres sooner on the line than it says.
         start_m, end_m = over_ground_m(collect.start_m), over_ground_m(collect.end_m)
         allowed_m = PLACE_TOLERANCE_M + LENGTH_TOLERANCE * start_m
-        from_m = min(max(start_m - allowed_m, 0.0), line.length)
-        near = substring(line, from_m, end_m + allowed_m)
-        if isinstance(near, LineString):
-            from_m += near.project(Point(east0, north0))
-        flown = np.asarray(substring(line, from_m, from_m + length_m).coords)
+        from_m = line.nearest_m((east0, north0), start_m - allowed_m, end_m + allowed_m)
+        flown = line.between(from_m, from_m + length_m)
         along = np.array([east1 - east0, north1 - north0]) / length_m
         offset = flown - np.array([east0, north0])
         across_m = np.abs(offset[:, 0] * along[1] - offset[:, 1] * along[0])
@@ -148,10 +145,10 @@ def collect_violations(
 
 
 def _straight_before_m(
-    line: LineString, at_m: float, place: tuple[float, float], along: NDArray[np.float64]
+    line: Measured, at_m: float, place: tuple[float, float], along: NDArray[np.float64]
 ) -> float:
     """How far back from a place on it a line is flown straight in a direction."""
-    before = np.asarray(substring(line, 0.0, at_m).coords)[::-1]
+    before = line.between(0.0, at_m)[::-1]
     offset = before - np.array(place)
     behind_m = -(offset @ along)
     across_m = np.abs(offset[:, 0] * along[1] - offset[:, 1] * along[0])

@@ -12,6 +12,7 @@ from shapely.geometry import MultiPolygon, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from planner.check.footprints import footprint
+from planner.check.heights import HEIGHT_TOLERANCE_M
 from planner.check.places import middle
 from planner.plan import Collect, Plan, Violation
 from planner.scenario import Scenario
@@ -90,9 +91,12 @@ def _same(one: Any, other: Any) -> bool:
 
 
 def _counts(scenario: Scenario, region: Region, collect: Collect) -> bool:
-    """Whether a collect sees with a sensor, a resolution and a direction that the region allows."""
+    """Whether a collect sees with a sensor, a resolution, a height and a direction that the region allows."""
     sensor = next(s for s in scenario.sensors if s.name == collect.sensor)
     if not _same(sensor, scenario.sensor_for(region)):
+        return False
+    asked_m = scenario.altitude_m if region.altitude_m is None else region.altitude_m
+    if abs(collect.line[0][2] - asked_m) > HEIGHT_TOLERANCE_M:
         return False
     if region.min_resolution_m is not None and (
         sensor.resolution_m is None or sensor.resolution_m > region.min_resolution_m

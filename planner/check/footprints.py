@@ -44,8 +44,9 @@ def footprint(scenario: Scenario, collect: Collect) -> Polygon | MultiPolygon:
     sensor = scenario.suite.named(collect.sensor)
     line_m = scenario.frame.to_local([place[:2] for place in collect.line])
     airspeed_m_s = next(a.airspeed_m_s for a in scenario.aircraft if a.name == collect.vehicle)
-    where = (scenario.airspace, scenario.level)
-    return FOOTPRINTS[sensor.kind](sensor, line_m, collect.look, collect.line[0][2], airspeed_m_s, *where)
+    altitude_m = collect.line[0][2]
+    where = (scenario.airspace, scenario.level.at(altitude_m))
+    return FOOTPRINTS[sensor.kind](sensor, line_m, collect.look, altitude_m, airspeed_m_s, *where)
 
 
 def sar_footprint(

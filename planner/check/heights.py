@@ -12,6 +12,7 @@ from shapely.geometry import LineString, MultiLineString
 
 from planner.check.times import SPOT_M
 from planner.plan import Collect, FlownPath, PlanVehicle, Violation
+from planner.scenario import Scenario
 
 #: Rounding of coordinates makes a short edge look steeper than it is.
 SLOPE_TOLERANCE_DEG = 0.05
@@ -86,6 +87,25 @@ def level_violations(collects: tuple[Collect, ...]) -> Iterator[Violation]:
                 collect.roi,
                 f"collect {collect.seq} rises or falls by {rise_m:.2f} m",
                 rise_m,
+                "m",
+                collect.line[0][:2],
+            )
+
+
+def altitude_violations(scenario: Scenario, collects: tuple[Collect, ...]) -> Iterator[Violation]:
+    """Collects are flown at the altitude that their regions ask for, else at the scenario's."""
+    asked_m = {
+        region.name: scenario.altitude_m if region.altitude_m is None else region.altitude_m
+        for region in scenario.regions
+    }
+    for collect in collects:
+        off_m = max(abs(collect.line[0][2] - asked_m[name]) for name in collect.regions)
+        if off_m > HEIGHT_TOLERANCE_M:
+            yield Violation(
+                "collect-altitude",
+                collect.roi,
+                f"collect {collect.seq} is flown {off_m:.1f} m off the altitude asked for",
+                off_m,
                 "m",
                 collect.line[0][:2],
             )

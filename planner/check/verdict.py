@@ -7,12 +7,13 @@ from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
-from shapely.geometry import LineString, MultiPolygon, Polygon
+from shapely.geometry import MultiPolygon, Polygon
 
 from planner.check.clearance import clearance_violations, place_violations
 from planner.check.continuity import collect_violations, terminal_violations
 from planner.check.coverage import covered
 from planner.check.heights import (
+    altitude_violations,
     ground_violations,
     level_violations,
     phase_violations,
@@ -25,6 +26,7 @@ from planner.check.kinematics import (
     turn_radius_m,
     turn_violations,
 )
+from planner.check.stretches import Measured
 from planner.check.times import line_s
 from planner.plan import Plan, Violation
 from planner.scenario import Scenario
@@ -60,7 +62,7 @@ def judge(scenario: Scenario, plan: Plan) -> Verdict:
     violations: list[Violation] = []
     lengths_m: list[float] = []
     tightest_m = math.inf
-    home_ground_m = scenario.altitude_m - scenario.level.height_m
+    home_ground_m = scenario.level.altitude_m - scenario.level.height_m
     for path in plan.paths:
         aircraft = next(a for a in scenario.aircraft if a.name == path.vehicle).in_wind(
             scenario.wind.speed_m_s
@@ -68,13 +70,12 @@ def judge(scenario: Scenario, plan: Plan) -> Verdict:
         vehicle = next(v for v in plan.vehicles if v.name == path.vehicle)
         line_m = scenario.frame.to_local([place[:2] for place in path.line])
         altitudes_m = np.array([place[2] for place in path.line])
-        line = LineString(line_m)
         over_m = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(line_m, axis=0).T))])
         reached_m = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(over_m), np.diff(altitudes_m)))])
         lengths_m.append(float(reached_m[-1]))
         radius_m, where = turn_radius_m(line_m)
         tightest_m = min(tightest_m, radius_m)
-        datum_amsl_m = scenario.level.amsl_m - scenario.altitude_m
+        datum_amsl_m = scenario.level.amsl_m - scenario.level.altitude_m
         time_s = line_s(line_m, altitudes_m, aircraft, scenario.wind, datum_amsl_m)
         hovers = vehicle.type == "multirotor"
         circling = (vehicle.name,) if vehicle.finish != "land" and not hovers else ()
@@ -85,6 +86,7 @@ def judge(scenario: Scenario, plan: Plan) -> Verdict:
         violations += slope_violations(path, vehicle, line_m, altitudes_m)
         violations += ground_violations(path, vehicle, altitudes_m, _grounds_m(scenario, home_ground_m))
         violations += level_violations(plan.collects_of(vehicle.name))
+        violations += altitude_violations(scenario, plan.collects_of(vehicle.name))
         violations += phase_violations(path)
         violations += terminal_violations(
             scenario, path, line_m, aircraft.ground_turn_radius_m, circling, returning
@@ -92,7 +94,8 @@ def judge(scenario: Scenario, plan: Plan) -> Verdict:
         violations += duration_violations(path, time_s, hovers=hovers)
         violations += limit_violations(aircraft, path, lengths_m[-1], time_s)
         over_ground_m = partial(np.interp, xp=reached_m, fp=over_m)
-        violations += collect_violations(scenario, plan, path, line, over_ground_m, aircraft.settle_m)
+        measured = Measured(line_m)
+        violations += collect_violations(scenario, plan, path, measured, over_ground_m, aircraft.settle_m)
     coverage, unseen, missed = covered(scenario, plan)
     violations += missed
     length_m = math.fsum(lengths_m)
@@ -115,5 +118,5 @@ def _grounds_m(scenario: Scenario, home_ground_m: float) -> tuple[float, float]:
     if scenario.terrain is None:
         return home_ground_m, home_ground_m
     end_m = float(scenario.terrain.at(np.array([scenario.end.position]))[0])
-    datum_amsl_m = scenario.level.amsl_m - scenario.altitude_m
+    datum_amsl_m = scenario.level.amsl_m - scenario.level.altitude_m
     return home_ground_m, home_ground_m if math.isnan(end_m) else end_m - datum_amsl_m

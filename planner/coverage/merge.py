@@ -57,6 +57,8 @@ class MergedRegion:
     axes
         Of each part the line it follows as a corridor, None for others, in step with ``originals``; empty for
         pieces of what was asked for.
+    altitude_m
+        Of its passes, see ``Region``.
     """
 
     names: tuple[str, ...]
@@ -69,6 +71,7 @@ class MergedRegion:
     revisits: int = 1
     visit: tuple[int, int] | None = None
     axes: tuple[LineString | None, ...] = ()
+    altitude_m: float | None = None
 
     @property
     def axis(self) -> LineString | None:
@@ -129,6 +132,7 @@ def split_region(region: Region) -> tuple[MergedRegion, ...]:
             region.revisits,
             None,
             (region.axis,),
+            region.altitude_m,
         )
         for part in polygons_of(region.area)
     )
@@ -141,8 +145,8 @@ def merge_regions(
 
     Dilation and erosion by a disk are shapely's buffers by +r and −r. Parts further apart than the filter
     bridges stay apart, also parts of one MultiPolygon: each becomes a region of its own under the same name.
-    Regions merge only where they ask for the same sensor, approach directions and number of visits, and are
-    both required or both not: otherwise one would lose what it asked for.
+    Regions merge only where they ask for the same sensor, approach directions, altitude and number of visits,
+    and are both required or both not: otherwise one would lose what it asked for.
 
     Parameters
     ----------
@@ -163,7 +167,9 @@ def merge_regions(
         limits = None
         if region.approach_rad is not None:
             limits = frozenset(round(math.degrees(angle) % 360.0, 6) % 360.0 for angle in region.approach_rad)
-        key = (region.sensor or default_sensor, limits, region.required, region.revisits)
+        key = (
+            region.sensor or default_sensor, limits, region.required, region.revisits, region.altitude_m,
+        )  # fmt: skip
         groups[key].extend((index, part) for part in split_region(region))
     merged = [found for group in groups.values() for found in _merge_group(group, radius_m)]
     merged.sort(key=lambda item: item[0])

@@ -70,7 +70,8 @@ class Seeing:
         for index, region in enumerate(merge_regions(self.regions, default_sensor=self.suite.first)):
             sensor_name = by_name[region.names[0]].sensor
             try:
-                sensor, height_m = self.suite.over(sensor_name, region.area, self.airspace, self.level)
+                level = self.level.of(region)
+                sensor, height_m = self.suite.over(sensor_name, region.area, self.airspace, level)
                 family = family_of(sensor)
                 for name in region.names:
                     family.check(by_name[name], sensor, height_m)
@@ -78,7 +79,7 @@ class Seeing:
                     region,
                     sensor,
                     height_m,
-                    around,
+                    self.at(level, around),
                     wide=self.wide,
                     whole=index in whole,
                     enough=enough,
@@ -88,7 +89,7 @@ class Seeing:
                 if error.constraint == "area":
                     error = explained(
                         self.airspace,
-                        self.level,
+                        level,
                         region,
                         refused,
                         partial(self._some_pass, region),
@@ -107,17 +108,25 @@ class Seeing:
         """Which targets may be seen in one pass; the paper's coverage joins none but by its filter."""
         if not self.wide:
             return Apart()
-        of_kind: dict[str, list[int]] = {}
+        together: dict[tuple[str, Level], list[int]] = {}
         for k, target in enumerate(targets):
-            of_kind.setdefault(self.suite.named(target.region.sensor).kind, []).append(k)
+            of = (self.suite.named(target.region.sensor).kind, self.level.of(target.region))
+            together.setdefault(of, []).append(k)
         parts = []
-        for kind, own in of_kind.items():
-            family = FAMILIES[kind]
-            parts.append((tuple(own), family.sharing([targets[k] for k in own], self._over, around)))
+        for (kind, level), own in together.items():
+            family, over = FAMILIES[kind], partial(self._over, level)
+            there = self.at(level, around)
+            parts.append((tuple(own), family.sharing([targets[k] for k in own], over, there)))
         return ByFamily(tuple(parts))
 
-    def _over(self, name: str | None, area: Polygon) -> tuple[Sensor, float]:
-        return self.suite.over(name, area, self.airspace, self.level)
+    def _over(self, level: Level, name: str | None, area: Polygon) -> tuple[Sensor, float]:
+        return self.suite.over(name, area, self.airspace, level)
+
+    def at(self, level: Level, around: Surroundings) -> Surroundings:
+        """What passes at one of the levels fly among: ``around`` where it is the only one."""
+        if self.level.depth_m <= 0.0:
+            return around
+        return surroundings(self.airspace, level, self.model, self.objective)
 
     def _some_pass(self, region: MergedRegion, airspace: Airspace, level: Level) -> bool:
         """Whether a region can be seen among other zones or from another level."""

@@ -1,15 +1,17 @@
 """A scenario set on its terrain.
 
-Flights over terrain are level. With ``altitude_reference: terrain`` the level is ``altitude_m`` over the
-highest ground of the regions; ground that comes within ``clearance_m`` of the level is a no-fly zone, flown
-round like any other. What stands on the ground, threats and obstacles, is lifted or lowered to its ground, so
-that every height in the scenario counts from home.
+Passes over terrain are level. With ``altitude_reference: terrain`` their level is ``altitude_m`` over the
+highest ground of the regions, a region's own over its own highest ground. Ground that comes within
+``clearance_m`` of a level is a no-fly zone there, flown round like any other. What stands on the ground,
+threats threats and obstacles, is lifted or lowered to its ground, so that all heights in the scenario count
+from home.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import replace
+from itertools import pairwise
 
 import shapely
 from shapely.geometry.base import BaseGeometry
@@ -18,6 +20,7 @@ from planner.airspace.terrain import Ground, Terrain, local_ground
 from planner.airspace.values import NoFlyZone, Obstacle, Threat
 from planner.geojson.fields import Findings
 from planner.scenario import Scenario
+from planner.wishes import Region
 
 #: Kept over the ground where the scenario names no ``clearance_m``.
 DEFAULT_CLEARANCE_M = 30.0
@@ -41,8 +44,8 @@ def set_on_terrain(
     """
     ground = local_ground(terrain, scenario.frame, _bounds(scenario))
     home_amsl_m = float(ground.at(scenario.start.position))
-    highest_m = _highest(scenario, ground, findings)
-    if highest_m is None:
+    tops_m = _tops(scenario, ground, findings)
+    if tops_m is None:
         return scenario
     if ground.step_m > 1.5 * terrain.resolution_m and ground.step_m > 1.5:
         findings.warning(
@@ -59,45 +62,64 @@ def set_on_terrain(
             f"has heights over {terrain.datum}, taken for heights over mean sea level",
             "Check them against a known height.",
         )
-    reference_m = {"amsl": 0.0, "home": home_amsl_m, "terrain": highest_m}[scenario.altitude_reference]
-    level_m = scenario.altitude_m + reference_m
     clearance_m = scenario.clearance_m if clearance_given else DEFAULT_CLEARANCE_M
-    if level_m <= highest_m:
-        findings.error(
-            "scenario",
-            "altitude-below-ground",
-            f"the flight at {level_m:.0f} m amsl is not above the regions' ground, up to {highest_m:.0f} m",
-            "Raise altitude_m.",
-        )
-        return scenario
-    if scenario.altitude_reference == "terrain":
-        findings.warning(
-            "scenario",
-            "terrain-level",
-            f"the flight is level at {level_m:.1f} m amsl: {scenario.altitude_m:g} m over the highest ground "
-            f"of the regions, {highest_m:.1f} m",
-            "Give altitude_reference amsl for another level.",
-        )
-    else:
-        clear_m = level_m - highest_m
-        if clear_m < clearance_m:
+    reference = scenario.altitude_reference
+    highest_m = max(tops_m.values())
+    level_m = scenario.altitude_m + {"amsl": 0.0, "home": home_amsl_m, "terrain": highest_m}[reference]
+    regions: list[Region] = []
+    for region in scenario.regions:
+        if region.altitude_m is None:
+            regions.append(region)
+            continue
+        over_m = {"amsl": 0.0, "home": home_amsl_m, "terrain": tops_m[region.name]}[reference]
+        regions.append(replace(region, altitude_m=region.altitude_m + over_m))
+        if not _above(region.name, region.altitude_m + over_m, tops_m[region.name], clearance_m, findings):
+            return scenario
+    of_route = [tops_m[region.name] for region in regions if region.altitude_m is None]
+    if of_route:
+        if not _above("scenario", level_m, max(of_route), clearance_m, findings):
+            return scenario
+        if reference == "terrain":
             findings.warning(
                 "scenario",
-                "low-over-region",
-                f"the flight is only {clear_m:.0f} m over the highest ground of the regions",
-                "Raise altitude_m.",
+                "terrain-level",
+                f"the flight is level at {level_m:.1f} m amsl: {scenario.altitude_m:g} m over the highest "
+                f"ground of the regions, {highest_m:.1f} m",
+                "Give altitude_reference amsl for another level.",
             )
+    levels_m = sorted({level_m if region.altitude_m is None else region.altitude_m for region in regions})
     return replace(
         scenario,
+        regions=tuple(regions),
         altitude_m=level_m,
         altitude_reference="amsl",
         home_amsl_m=home_amsl_m,
         clearance_m=clearance_m,
         terrain=ground,
-        no_fly=scenario.no_fly + _high_ground(scenario, ground, level_m - clearance_m),
+        no_fly=scenario.no_fly + _high_ground(scenario, ground, levels_m, clearance_m),
         threats=tuple(_raised_threat(threat, ground, home_amsl_m) for threat in scenario.threats),
         obstacles=tuple(_raised_obstacle(obstacle, ground, home_amsl_m) for obstacle in scenario.obstacles),
     )
+
+
+def _above(name: str, level_m: float, top_m: float, clearance_m: float, findings: Findings) -> bool:
+    """Whether a level is above the ground seen from it; a warning where it is by less than is kept."""
+    if level_m <= top_m:
+        findings.error(
+            name,
+            "altitude-below-ground",
+            f"the flight at {level_m:.0f} m amsl is not above the ground seen from it, up to {top_m:.0f} m",
+            "Raise altitude_m.",
+        )
+        return False
+    if level_m - top_m < clearance_m:
+        findings.warning(
+            name,
+            "low-over-region",
+            f"the flight is only {level_m - top_m:.0f} m over the highest ground of the regions",
+            "Raise altitude_m.",
+        )
+    return True
 
 
 def _bounds(scenario: Scenario) -> tuple[float, float, float, float]:
@@ -111,9 +133,9 @@ def _bounds(scenario: Scenario) -> tuple[float, float, float, float]:
     return (west - margin_m, south - margin_m, east + margin_m, north + margin_m)
 
 
-def _highest(scenario: Scenario, ground: Ground, findings: Findings) -> float | None:
-    """Highest ground of all regions; None after a finding where some ground that must be known is not."""
-    highest_m = -math.inf
+def _tops(scenario: Scenario, ground: Ground, findings: Findings) -> dict[str, float] | None:
+    """Highest ground of each region; None after a finding where some ground that must be known is not."""
+    tops_m: dict[str, float] = {}
     known = True
     ends = {end.name: shapely.Point(end.position).buffer(1.0) for end in (scenario.start, scenario.end)}
     for name, area in [(region.name, region.area) for region in scenario.regions] + list(ends.items()):
@@ -127,19 +149,30 @@ def _highest(scenario: Scenario, ground: Ground, findings: Findings) -> float | 
                 "Use a raster that covers it, or fill the gap.",
             )
         elif name not in ends:
-            highest_m = max(highest_m, top_m)
-    return highest_m if known else None
+            tops_m[name] = top_m
+    return tops_m if known else None
 
 
-def _high_ground(scenario: Scenario, ground: Ground, height_m: float) -> tuple[NoFlyZone, ...]:
-    """Ground above a height, and ground unknown, as zones; the judge measures the clearance itself."""
+def _high_ground(
+    scenario: Scenario, ground: Ground, levels_m: list[float], clearance_m: float
+) -> tuple[NoFlyZone, ...]:
+    """Ground that comes too near to a level, and ground unknown, as zones up to below the next level.
+
+    The judge measures the clearance itself.
+    """
     west, south, east, north = _bounds(scenario)
     within = shapely.box(west, south, east, north) if scenario.area is None else scenario.area
-    parts = [part for zone in ground.above(height_m, within) for part in _without_holes(zone)]
-    parts.sort(key=lambda polygon: -polygon.area)
-    return tuple(
-        NoFlyZone(f"terrain-{number}", part) for number, part in enumerate(parts[:MAX_ZONES], start=1)
-    )
+    zones: list[NoFlyZone] = []
+    for level_m, next_m in pairwise([*levels_m, math.inf]):
+        high = ground.above(level_m - clearance_m, within)
+        parts = [part for zone in high for part in _without_holes(zone)]
+        parts.sort(key=lambda polygon: -polygon.area)
+        ceiling_m = math.nextafter(next_m, -math.inf) if math.isfinite(next_m) else math.inf
+        zones += [
+            NoFlyZone(f"terrain-{len(zones) + number}", part, ceiling_m=ceiling_m)
+            for number, part in enumerate(parts[:MAX_ZONES], start=1)
+        ]
+    return tuple(zones)
 
 
 def _without_holes(zone: shapely.Polygon) -> list[shapely.Polygon]:

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import itertools
+
 from shapely.geometry import Point
 
+from planner.airspace.airspace import Level
 from planner.airspace.shapes import hard_shapes
 from planner.geojson.fields import Findings
 from planner.route import Terminal
@@ -40,25 +43,37 @@ def _names(scenario: Scenario, findings: Findings) -> None:
                 f"asks for the sensor {region.sensor!r}",
                 f"Use one of: {', '.join(sorted(sensors))}.",
             )
-    if scenario.height_m <= 0.0:
-        findings.error(
-            "scenario",
-            "altitude-below-ground",
-            f"altitude_m {scenario.altitude_m:g} is not above home, {scenario.home_amsl_m or 0.0:g} m amsl",
-            "Raise altitude_m.",
-        )
+    for name, level in _levels(scenario):
+        if level.height_m <= 0.0:
+            findings.error(
+                name,
+                "altitude-below-ground",
+                f"altitude_m {level.altitude_m:g} is not above home, {scenario.home_amsl_m or 0.0:g} m amsl",
+                "Raise altitude_m.",
+            )
+
+
+def _levels(scenario: Scenario) -> list[tuple[str, Level]]:
+    """Each level that regions are seen from, and what asks for it: the scenario, or a region."""
+    if scenario.level.depth_m <= 0.0 and scenario.level.altitude_m == scenario.altitude_m:
+        return [("scenario", scenario.level)]
+    found: dict[Level, str] = {}
+    for region in scenario.regions:
+        found.setdefault(scenario.level.of(region), region.name)
+    return [(name, level) for level, name in found.items()]
 
 
 def _swaths(scenario: Scenario, findings: Findings) -> None:
-    if scenario.terrain is not None or scenario.height_m <= 0.0:
+    heights_m = [level.height_m for _, level in _levels(scenario)]
+    if scenario.terrain is not None or min(heights_m) <= 0.0:
         return
-    for sensor in scenario.sensors:
-        if sensor.swath_m(scenario.height_m) <= 0.0:
+    for sensor, height_m in itertools.product(scenario.sensors, heights_m):
+        if sensor.swath_m(height_m) <= 0.0:
             findings.error(
                 f"sensor {sensor.name}",
                 "swath-not-positive",
                 f"has margins that leave nothing of its swath of "
-                f"{sensor.whole().swath_m(scenario.height_m):.0f} m from {scenario.height_m:.0f} m",
+                f"{sensor.whole().swath_m(height_m):.0f} m from {height_m:.0f} m",
                 "Lower position_margin_m or pointing_margin_deg, or raise altitude_m.",
             )
 

@@ -21,6 +21,7 @@ from planner.geojson.rules import check_together
 from planner.route import Terminal
 from planner.scenario import Scenario
 from planner.tasks.registry import TASKS
+from planner.wishes import Region
 
 #: Tasks that scenarios may name and this version does not plan.
 NOT_YET = ("search",)
@@ -128,7 +129,7 @@ def _read(document: Any, findings: Findings, terrains: Terrains | None) -> Scena
             "scenario", "not-supported", f"has {len(aircraft)} vehicles; this version plans for one",
             "Send one scenario a vehicle.",
         )  # fmt: skip
-    altitude_m = top.number("altitude_m", above=0.0, maximum=30_000.0)
+    altitude_m = top.number("altitude_m", above=0.0, maximum=features.HIGHEST_M)
     reference: Any = top.choice("altitude_reference", ("amsl", "home", "terrain"), "terrain")
     task = top.choice("task", (*TASKS, *(name for name in NOT_YET if name not in TASKS)), "collect")
     if task is not None and task not in TASKS:
@@ -187,8 +188,18 @@ def _read(document: Any, findings: Findings, terrains: Terrains | None) -> Scena
         scenario = set_on_terrain(scenario, terrain, "clearance_m" in top, findings)
     else:
         scenario = kept_clear(scenario, findings)
+    scenario = replace(scenario, regions=_at_their_altitudes(scenario.regions, scenario.altitude_m))
     check_together(scenario, findings)
     return replace(scenario, warnings=findings.warnings)
+
+
+def _at_their_altitudes(regions: tuple[Region, ...], altitude_m: float) -> tuple[Region, ...]:
+    """Where one region has an altitude of its own, every region has one."""
+    if all(region.altitude_m in (None, altitude_m) for region in regions):
+        return tuple(replace(region, altitude_m=None) for region in regions)
+    return tuple(
+        replace(region, altitude_m=altitude_m) if region.altitude_m is None else region for region in regions
+    )
 
 
 def _check_crs(crs: Any, findings: Findings) -> None:

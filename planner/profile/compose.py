@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 
 from planner.dubins.path import Path, Segment, join
+from planner.profile.change import Changed
 from planner.profile.flight import Flight, Times, whole_flight
 from planner.profile.heights import Heights, level
 from planner.profile.rise import Rise
@@ -33,10 +35,9 @@ class Composed:
 
 def compose(
     up: Rise,
-    between: Sequence[Path],
-    passes: Sequence[CollectPass | None],
+    between: Sequence[Changed],
+    passes: Sequence[tuple[CollectPass | None, float]],
     down: Rise,
-    top_m: float,
     times: Times,
 ) -> Composed:
     """Put a flight together.
@@ -48,31 +49,30 @@ def compose(
     between
         From each station to the next.
     passes
-        The pass of each station; None where one is only flown over.
-    top_m
-        Altitude of the passes, and of what lies between them.
+        The pass of each station, None where one is only flown over, and its altitude.
     """
     pieces: list[Path] = [up.path]
     heights: Heights = up.heights
     legs_m: list[Span] = [(up.turns_m, up.path.length_m)]
     passes_m: list[Span] = []
-    for k, collect in enumerate(passes):
+    for k, (collect, altitude_m) in enumerate(passes):
         at_m = heights.length_m
         if collect is not None:
             passes_m.append((at_m, at_m + collect.length_m))
             pieces.append(Path((Segment("straight", collect.entry, collect.length_m),)))
-            heights = heights.then(level(collect.length_m, top_m))
+            heights = heights.then(level(collect.length_m, altitude_m))
         if k < len(between):
-            legs_m.append((heights.length_m, heights.length_m + between[k].length_m))
-            pieces.append(between[k])
-            heights = heights.then(level(between[k].length_m, top_m))
+            leg = between[k]
+            legs_m.append((heights.length_m, heights.length_m + leg.path.length_m))
+            pieces.append(leg.path)
+            heights = heights.then(leg.heights)
     begun_m = heights.length_m
     pieces.append(down.path)
     heights = heights.then(down.heights)
     whole_m = heights.length_m
     legs_m.append((begun_m, whole_m - down.turns_m))
     bounds_m = (up.run_m, up.turns_m, whole_m - down.turns_m, whole_m - down.run_m)
-    inserted_m = up.inserted_m + down.inserted_m
+    inserted_m = up.inserted_m + math.fsum(leg.inserted_m for leg in between) + down.inserted_m
     flight = whole_flight(join(*pieces), heights, bounds_m, inserted_m, times, LIFT_OFF_HEIGHT_M)
     return Composed(flight, tuple(legs_m), tuple(passes_m))
 

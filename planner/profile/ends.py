@@ -79,7 +79,7 @@ def up(start: Terminal, ground_m: float, goal: Anchor, model: FlightModel, aroun
         rise_m = min(manners.TAKE_OFF_HEIGHT_M, height_m)
         run_m = rise_m / math.tan(slope_rad)
     foot = Foot(start.position, start.angle_rad, ground_m, lift_m, run_m, rise_m, _into_rad(model))
-    return rise(foot, goal, _terms(around, slope_rad, model))
+    return rise(foot, goal, terms_of(around, slope_rad, model))
 
 
 def down(
@@ -104,7 +104,7 @@ def down(
         Its ``run_m`` and ``turns_m`` count from the end, backwards.
     """
     slope_rad = sink_slope_rad(model)
-    terms = _terms(around, slope_rad, model)
+    terms = terms_of(around, slope_rad, model)
     aircraft = model.aircraft
     if aircraft.type != "multirotor" and finish != "land":
         # The route ends over its end; the circle follows.
@@ -162,7 +162,9 @@ def _into_rad(model: FlightModel) -> float | None:
     return model.wind.toward_rad + math.pi
 
 
-def _terms(around: Surround, slope_rad: float, model: FlightModel) -> Terms:
+def terms_of(around: Surround, slope_rad: float, model: FlightModel) -> Terms:
+    """What a climb, or a descent, of an aircraft keeps to."""
+
     def too_low(path: Path, heights: Heights) -> bool:
         ground = around.ground
         if ground is None:

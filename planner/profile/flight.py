@@ -139,6 +139,7 @@ def whole_flight(
     stretches: list[Stretch] = []
     stretches += _up(path.start, heights.knots, take_off_m, lift_off_m)
     marks = sorted({at_m for at_m, _ in heights.knots} | {m for m in bounds_m if m < path.length_m})
+    jumps = _jumps(heights.knots, path.length_m)
     at_m = 0.0
     for segment in path.segments:
         end_m = at_m + segment.length_m
@@ -148,6 +149,9 @@ def whole_flight(
             piece = replace(segment, start=pose, length_m=last_m - first_m)
             middle_m = 0.5 * (first_m + last_m)
             kind = next(kind for kind, until_m in kinds if middle_m < until_m)
+            while jumps and jumps[0][0] < middle_m:
+                there_m, *both_m = jumps.pop(0)
+                stretches.append(Stretch(kind, pose, None, there_m, *both_m))
             # From within: at a place where it climbs on the spot the height is not one.
             low_m, high_m = heights.at([first_m + 2.0 * SAME_M, last_m - 2.0 * SAME_M])
             stretches.append(Stretch(kind, pose, piece, first_m, float(low_m), float(high_m)))
@@ -160,6 +164,15 @@ def whole_flight(
     return Flight(
         path, heights, tuple(stretches), tuple(starts_m), tuple(starts_s), (climbed_m, mission_m), inserted_m
     )
+
+
+def _jumps(knots: tuple[tuple[float, float], ...], length_m: float) -> list[tuple[float, float, float]]:
+    """Where between both ends a height is changed on the spot: at which distance, from and to where."""
+    return [
+        (at_m, from_m, to_m)
+        for (at_m, from_m), (next_m, to_m) in pairwise(knots)
+        if SAME_M < at_m < length_m - SAME_M and next_m - at_m <= SAME_M and abs(to_m - from_m) > SAME_M
+    ]
 
 
 def _up(

@@ -120,7 +120,7 @@ def rise(foot: Foot, goal: Anchor, terms: Terms) -> Rise:
             failed = error
             continue
         run = _run(foot, leg.start)
-        hard, soft = _conflicts(run, terms.zones)
+        hard, soft = conflicts(run, terms.zones)
         if foot.run_m > 0.0:
             low_m = foot.ground_m + foot.lift_m
             hard += terms.too_low(run, Heights(((0.0, low_m), (foot.run_m, foot.altitude_m))))
@@ -130,7 +130,7 @@ def rise(foot: Foot, goal: Anchor, terms: Terms) -> Rise:
     if best is None:
         raise failed or InfeasibleError("take-off", "start", "no way leads from it", "Move the start.")
     _, leg, _ = best
-    climbed, heights, turns_m = _climbed(foot, leg, terms)
+    climbed, heights, turns_m = climbed_leg(foot.altitude_m, leg, terms)
     run = _run(foot, climbed.start)
     knots = [(0.0, foot.ground_m)]
     if foot.lift_m > 0.0:
@@ -175,7 +175,7 @@ def _natural_rad(foot: Foot, goal: Anchor, terms: Terms) -> float:
         return math.atan2(goal.north_m - foot.position[1], goal.east_m - foot.position[0])
 
 
-def _conflicts(path: Path, zones: KeepOut) -> tuple[int, int]:
+def conflicts(path: Path, zones: KeepOut) -> tuple[int, int]:
     """Hard and other zones that a line enters."""
     if path.length_m <= 0.0 or zones.clear(path):
         return 0, 0
@@ -183,21 +183,27 @@ def _conflicts(path: Path, zones: KeepOut) -> tuple[int, int]:
     return sum(c.hard for c in found), sum(not c.hard for c in found)
 
 
-def _climbed(foot: Foot, leg: Path, terms: Terms) -> tuple[Path, Heights, float]:
-    """The leg with its climb, and where on it climbing turns end (0 without any)."""
-    needed_m = terms.run_for_m(terms.top_m - foot.altitude_m)
+def climbed_leg(low_m: float, leg: Path, terms: Terms) -> tuple[Path, Heights, float]:
+    """A leg with its climb from an altitude to the top, and where on it climbing turns end (0 without any).
+
+    Raises
+    ------
+    InfeasibleError
+        Where there is no place for turns.
+    """
+    needed_m = terms.run_for_m(terms.top_m - low_m)
     if needed_m <= max(leg.length_m - terms.level_off_m, 0.0):
-        plain = Heights(tidy(((0.0, foot.altitude_m), (needed_m, terms.top_m), (leg.length_m, terms.top_m))))
-        hard, soft = _conflicts(cut(leg, 0.0, needed_m), terms.zones)
+        plain = Heights(tidy(((0.0, low_m), (needed_m, terms.top_m), (leg.length_m, terms.top_m))))
+        hard, soft = conflicts(cut(leg, 0.0, needed_m), terms.zones)
         rank = (hard + terms.too_low(leg, plain), soft, 0.0)
         if rank[:2] == (0, 0):
             return leg, plain, 0.0
-        found = _turning(foot, leg, terms)
+        found = _turning(low_m, leg, terms)
         return found[1:] if found is not None and found[0] < rank else (leg, plain, 0.0)
-    found = _turning(foot, leg, terms)
+    found = _turning(low_m, leg, terms)
     if found is not None and found[0][:2] == (0, 0):
         return found[1:]
-    beside = _beside(foot, leg, terms)
+    beside = _beside(low_m, leg, terms)
     choices = [choice for choice in (found, beside) if choice is not None]
     if not choices:
         raise InfeasibleError(
@@ -212,12 +218,12 @@ def _climbed(foot: Foot, leg: Path, terms: Terms) -> tuple[Path, Heights, float]
 _Choice = tuple[_Rank, Path, Heights, float]
 
 
-def _turning(foot: Foot, leg: Path, terms: Terms) -> _Choice | None:
+def _turning(low_m: float, leg: Path, terms: Terms) -> _Choice | None:
     """Climbing turns on a circle that touches the leg; the best there is, clear or not."""
     best: _Choice | None = None
     for at_m in straights(leg, 2.0 * terms.radius_m):
         raise_if(terms.stop)
-        for choice in _turns_at(foot, leg, at_m, terms):
+        for choice in _turns_at(low_m, leg, at_m, terms):
             if best is None or choice[0] < best[0]:
                 best = choice
         if best is not None and best[0][:2] == (0, 0):
@@ -226,10 +232,10 @@ def _turning(foot: Foot, leg: Path, terms: Terms) -> _Choice | None:
     return best
 
 
-def _turns_at(foot: Foot, leg: Path, at_m: float, terms: Terms) -> Iterator[_Choice]:
+def _turns_at(low_m: float, leg: Path, at_m: float, terms: Terms) -> Iterator[_Choice]:
     """Turns at one place: as many as the leg behind needs, or all of the height there."""
     slope = math.tan(terms.slope_rad)
-    in_m = min(terms.top_m, foot.altitude_m + at_m * slope)
+    in_m = min(terms.top_m, low_m + at_m * slope)
     round_m = math.tau * terms.radius_m
     ahead_m = max(leg.length_m - at_m - terms.level_off_m, 0.0)
     counts = {
@@ -245,12 +251,12 @@ def _turns_at(foot: Foot, leg: Path, at_m: float, terms: Terms) -> Iterator[_Cho
             hard, soft = (
                 sum(many)
                 for many in zip(
-                    *(_conflicts(piece, terms.zones) for piece in (*flown, cut(leg, at_m, at_m + rest_m))),
+                    *(conflicts(piece, terms.zones) for piece in (*flown, cut(leg, at_m, at_m + rest_m))),
                     strict=True,
                 )
             )
             knots = (
-                (0.0, foot.altitude_m),
+                (0.0, low_m),
                 (at_m, in_m),
                 (at_m + turns.length_m, out_m),
                 (at_m + turns.length_m + rest_m, terms.top_m),
@@ -261,7 +267,7 @@ def _turns_at(foot: Foot, leg: Path, at_m: float, terms: Terms) -> Iterator[_Cho
             yield (hard, soft, turns.length_m), line, heights, at_m + turns.length_m
 
 
-def _beside(foot: Foot, leg: Path, terms: Terms) -> _Choice | None:
+def _beside(low_m: float, leg: Path, terms: Terms) -> _Choice | None:
     """All of the height on a circle beside the leg's beginning, with lines to it and on from it."""
     best: _Choice | None = None
     begin = Anchor(*leg.start.position, leg.start.angle_rad)
@@ -280,7 +286,7 @@ def _beside(foot: Foot, leg: Path, terms: Terms) -> _Choice | None:
                 if not terms.zones.clear(_ring(centre, 0.0, side, terms.radius_m)):
                     continue
                 tried += 1
-                choice = _round(foot, begin, goal, centre, side, terms)
+                choice = _round(low_m, begin, goal, centre, side, terms)
                 if choice is not None and (best is None or choice[0] < best[0]):
                     best = choice
     return best
@@ -294,7 +300,7 @@ def _ring(centre: tuple[float, float], at_rad: float, side: SegmentKind, radius_
 
 
 def _round(
-    foot: Foot, begin: Anchor, goal: Anchor, centre: tuple[float, float], side: SegmentKind, terms: Terms
+    low_m: float, begin: Anchor, goal: Anchor, centre: tuple[float, float], side: SegmentKind, terms: Terms
 ) -> _Choice | None:
     """The cheapest of the ways by a circle: to it, round it until high enough, and on."""
     best: _Choice | None = None
@@ -307,7 +313,7 @@ def _round(
             there_m = terms.connect(begin, pose).length_m
         except InfeasibleError:
             continue
-        for choice in _turns_at(foot, through, there_m, terms):
+        for choice in _turns_at(low_m, through, there_m, terms):
             rank = (*choice[0][:2], choice[0][2] + terms.cost_m(through))
             if best is None or rank < best[0]:
                 best = (rank, *choice[1:])

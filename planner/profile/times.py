@@ -49,16 +49,17 @@ def _spots_s(stretches: Sequence[Stretch], manners: Manners) -> list[float]:
     for on_the_spot, run in groupby(stretches, key=lambda s: s.segment is None):
         together = list(run)
         rise_m = together[-1].end_altitude_m - together[0].start_altitude_m
-        total_s = spot_s(rise_m, manners) if on_the_spot else 0.0
+        lands = together[-1].phase == "landing"
+        total_s = spot_s(rise_m, manners, lands=lands) if on_the_spot else 0.0
         found += [total_s * s.length_m / abs(rise_m) if on_the_spot else 0.0 for s in together]
     return found
 
 
-def spot_s(rise_m: float, manners: Manners) -> float:
-    """Seconds of a climb or descent on the spot, from rest to rest, the last metres at landing speed."""
+def spot_s(rise_m: float, manners: Manners, *, lands: bool = True) -> float:
+    """Seconds of a climb or descent on the spot, from rest to rest; a landing ends at landing speed."""
     if rise_m >= 0.0:
         return rest_to_rest_s(rise_m, manners.climb_m_s, manners.vertical_accel_m_s2)
-    slow_m = min(manners.land_below_m, -rise_m)
+    slow_m = min(manners.land_below_m, -rise_m) if lands else 0.0
     slow_s = slow_m / manners.land_m_s if manners.land_m_s > 0.0 else 0.0
     return rest_to_rest_s(-rise_m - slow_m, manners.sink_m_s, manners.vertical_accel_m_s2) + slow_s
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import partial
 
+from planner.airspace.airspace import Level
 from planner.airspace.threats import acting
 from planner.bounds.allowance import Allowance
 from planner.bounds.ways import plan_bound_m
@@ -120,7 +121,8 @@ def _joint(asked: Seeing, setting: Setting, seed: int, sight: Sight | None, cont
     def complete(passes: Passes, legs: Legs) -> Passes:
         if sight is None:
             return passes
-        return see_hidden(sight, around, setting.ends, passes, legs, controls.stop)
+        at = partial(asked.at, around=around)
+        return see_hidden(sight, at, setting.ends, passes, legs, controls.stop)
 
     watched = (controls.progress, controls.stop, controls.enough)
     search = Search(setting.ends, around, legs, seed, complete, *watched)
@@ -139,9 +141,17 @@ def paper_choices(asked: Seeing, progress: Progress, stop: Stop, *, threat_aware
         Also leave out, wherever there is another, choices whose line enters a soft threat or that leave no
         room to turn outside of one. The paper leaves threats out here (its section 6, relaxation 4).
     """
+    rooms: dict[Level, Room] = {}
+
+    def room_at(level: Level) -> Room:
+        if level not in rooms:
+            rooms[level] = Room.of(
+                asked.airspace, level, asked.model, asked.objective, threat_aware=threat_aware
+            )
+        return rooms[level]
+
     where = (asked.airspace, asked.level)
-    room = Room.of(*where, asked.model, asked.objective, threat_aware=threat_aware)
-    return located(asked.regions, asked.suite, *where, room, part_of(progress, 0.0, 0.8), stop)
+    return located(asked.regions, asked.suite, *where, room_at, part_of(progress, 0.0, 0.8), stop)
 
 
 def _greedy(

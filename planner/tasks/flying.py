@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import pairwise
 from typing import TypeVar
@@ -15,6 +15,7 @@ from planner.airspace.airspace import Airspace, Level
 from planner.airspace.zones import TRANSIT_MARGIN_M, KeepOut, keep_out
 from planner.dubins.path import Path, Segment, join
 from planner.errors import InfeasibleError
+from planner.profile.change import Changed, changed, kept
 from planner.profile.compose import Composed, compose, times_of
 from planner.profile.ends import Surround, climb_slope_rad, down, sink_slope_rad, up
 from planner.profile.finish import finish_of
@@ -47,34 +48,43 @@ class Station:
         Where the leg ends: before the settling run of a pass.
     collect
         The pass; None where there is none.
+    altitude_m
+        Its own, over the flight's datum; None for the route's.
     """
 
     name: str
     arrive: Anchor
     collect: CollectPass | None = None
+    altitude_m: float | None = None
 
     @classmethod
-    def of(cls, collect: CollectPass, settle_m: float) -> Station:
+    def of(cls, collect: CollectPass, settle_m: float, altitude_m: float | None = None) -> Station:
         """That of a pass with so much straight flight before it."""
         pose = collect.settling(settle_m)
-        return cls("+".join(collect.regions), Anchor(*pose.position, pose.angle_rad), collect)
+        return cls("+".join(collect.regions), Anchor(*pose.position, pose.angle_rad), collect, altitude_m)
 
 
 @dataclass(frozen=True, slots=True)
 class FlightLevels:
-    """The flight's heights.
+    """The flight's heights: one level of it, and what lies under it.
 
     Parameters
     ----------
     airspace, level
-        Where the route is flown.
-    altitude_m
-        Of the route, over the flight's datum.
+        Where it is flown.
     """
 
     airspace: Airspace
     level: Level
-    altitude_m: float
+
+    @property
+    def altitude_m(self) -> float:
+        """Of the level, over the flight's datum."""
+        return self.level.altitude_m
+
+    def at(self, altitude_m: float | None) -> FlightLevels:
+        """Another level of the same flight; this one where no altitude is given."""
+        return self if altitude_m is None else replace(self, level=self.level.at(altitude_m))
 
     @property
     def home_ground_m(self) -> float:
@@ -94,10 +104,14 @@ class FlightLevels:
         there_m = float(ground.at(np.array([place]))[0])
         return self.home_ground_m if math.isnan(there_m) else there_m - self.datum_amsl_m
 
-    def zones(self, margin_m: float, *, low: bool) -> KeepOut:
-        """What is to be kept out of at the route's level, or, ``low``, anywhere from the ground up to it."""
-        lowest = Level(0.0, self.level.amsl_m - self.level.height_m) if low else None
+    def zones(self, margin_m: float, lowest: Level | None = None) -> KeepOut:
+        """What is to be kept out of at the level, or anywhere from a lower one up to it."""
         return keep_out(self.airspace, self.level, margin_m, lowest=lowest)
+
+    @property
+    def ground(self) -> Level:
+        """That of home's ground."""
+        return Level(0.0, self.level.amsl_m - self.level.height_m)
 
 
 def fly_whole(
@@ -133,21 +147,8 @@ def fly_whole(
     """
     start, end = ends
     names = [start.name, *(station.name for station in stations), end.name]
-    zones = levels.zones(TRANSIT_MARGIN_M, low=False)
-    low_zones = levels.zones(TRANSIT_MARGIN_M, low=True)
-    manoeuvre_zones = levels.zones(MANOEUVRE_MARGIN_M, low=True).without(unminded)
     legs: list[Leg] = []
     notes: list[str] = []
-
-    def connect(connector: Connector, low: Low, here: Anchor, there: Anchor) -> Path:
-        path = connector(here, there, zones)
-        if low_zones == zones or low_zones.clear(low(path)):
-            return path
-        try:
-            return connector(here, there, low_zones)
-        except InfeasibleError:
-            # Not every way is barred: how it climbs is looked at by itself.
-            return path
 
     def made(make: Callable[[Connector], Made]) -> Made:
         ends_of_leg = (names[len(legs)], names[len(legs) + 1])
@@ -165,37 +166,35 @@ def fly_whole(
         legs.append(Leg(*ends_of_leg, last))
         return found
 
-    def around(connector: Connector, low: Low) -> Surround:
-        airspace = levels.airspace
-        return Surround(
-            levels.altitude_m,
-            manoeuvre_zones,
-            partial(connect, connector, low),
-            cost_m,
-            airspace.terrain,
-            airspace.clearance_m,
-            stop,
-        )
-
     progress("transit", 0.0)
-    first, goal = stations[0], stations[0].arrive
-    climb_m = levels.level.height_m / math.tan(climb_slope_rad(model))
-    sink_m = levels.level.height_m / math.tan(sink_slope_rad(model))
+    layers = _Layers(levels, unminded, cost_m, stop)
+    first, goal, top = stations[0], stations[0].arrive, levels.at(stations[0].altitude_m)
+    climb_m = top.level.height_m / math.tan(climb_slope_rad(model))
     rising = made(
         lambda connector: up(
-            start, levels.home_ground_m, goal, model, around(connector, lambda path: cut(path, 0.0, climb_m))
+            start,
+            top.home_ground_m,
+            goal,
+            model,
+            layers.around(top, top.ground, connector, lambda path: cut(path, 0.0, climb_m)),
         )
     )
-    rising = _settled(rising, first.collect, levels.altitude_m)
+    rising = _settled(rising, first.collect, top.altitude_m)
     arrived, between = rising.path, []
     for here, there in pairwise(stations):
         raise_if(stop)
         progress("transit", len(legs) / (len(stations) + 1))
-        leg = made(partial(_leg, _leaves(here, arrived), there.arrive, zones))
-        arrived = _straight_on(leg, there.collect)
-        between.append(arrived)
-    origin = _leaves(stations[-1], arrived)
-    grounds_m = (levels.home_ground_m, levels.ground_m(end.position))
+        pair = (levels.at(here.altitude_m), levels.at(there.altitude_m))
+        leg = made(partial(_changed, _leaves(here, arrived), there.arrive, pair, model, layers))
+        arrived = _straight_on(leg.path, there.collect)
+        settled_m = arrived.length_m - leg.path.length_m
+        if settled_m > 0.0:
+            settled = leg.heights.then(level_heights(settled_m, pair[1].altitude_m))
+            leg = replace(leg, path=arrived, heights=settled)
+        between.append(leg)
+    origin, top = _leaves(stations[-1], arrived), levels.at(stations[-1].altitude_m)
+    sink_m = top.level.height_m / math.tan(sink_slope_rad(model))
+    grounds_m = (top.home_ground_m, top.ground_m(end.position))
     finish = finish_of(model.aircraft, start, end)
     falling = made(
         lambda connector: down(
@@ -204,24 +203,96 @@ def fly_whole(
             grounds_m,
             origin,
             model,
-            around(connector, lambda path: cut(path, path.length_m - sink_m, path.length_m)),
+            layers.around(
+                top, top.ground, connector, lambda path: cut(path, path.length_m - sink_m, path.length_m)
+            ),
             finish,
         )
     )
     times = times_of(model, levels.datum_amsl_m)
-    passes = [station.collect for station in stations]
-    composed = compose(rising, between, passes, falling, levels.altitude_m, times)
+    passes = [(station.collect, levels.at(station.altitude_m).altitude_m) for station in stations]
+    composed = compose(rising, between, passes, falling, times)
     return composed, tuple(legs), tuple(notes)
+
+
+@dataclass(slots=True)
+class _Layers:
+    """What is kept out of between two levels of one flight, found once for each pair."""
+
+    levels: FlightLevels
+    unminded: Collection[str]
+    cost_m: Callable[[Path], float]
+    stop: Stop
+    _known: dict[tuple[Level, Level | None, float], KeepOut] = field(default_factory=dict)
+
+    def zones(self, top: FlightLevels, lowest: Level | None, margin_m: float) -> KeepOut:
+        """At a level, or anywhere from a lower one up to it."""
+        key = (top.level, lowest, margin_m)
+        if key not in self._known:
+            self._known[key] = top.zones(margin_m, lowest)
+        return self._known[key]
+
+    def around(self, top: FlightLevels, lowest: Level, connector: Connector, low: Low) -> Surround:
+        """What a change of height up to a level, or down from it, is placed in.
+
+        Parameters
+        ----------
+        low
+            The part of a line that is flown below the top.
+        """
+        zones, low_zones = self.zones(top, None, TRANSIT_MARGIN_M), self.zones(top, lowest, TRANSIT_MARGIN_M)
+
+        def connect(here: Anchor, there: Anchor) -> Path:
+            path = connector(here, there, zones)
+            if low_zones == zones or low_zones.clear(low(path)):
+                return path
+            try:
+                return connector(here, there, low_zones)
+            except InfeasibleError:
+                # Not every way is barred: how it climbs is looked at by itself.
+                return path
+
+        airspace = top.airspace
+        return Surround(
+            top.altitude_m,
+            self.zones(top, lowest, MANOEUVRE_MARGIN_M).without(self.unminded),
+            connect,
+            self.cost_m,
+            airspace.terrain,
+            airspace.clearance_m,
+            self.stop,
+        )
+
+
+def _changed(
+    start: Anchor,
+    goal: Anchor,
+    pair: tuple[FlightLevels, FlightLevels],
+    model: FlightModel,
+    layers: _Layers,
+    connector: Connector,
+) -> Changed:
+    """A leg from one pass to the next, each at its height."""
+    here, there = pair
+    if here.altitude_m == there.altitude_m:
+        leg = connector(start, goal, layers.zones(here, None, TRANSIT_MARGIN_M))
+        return kept(leg, here.altitude_m)
+    climbs = here.altitude_m < there.altitude_m
+    bottom, top = (here, there) if climbs else (there, here)
+    slope_rad = climb_slope_rad(model) if climbs else sink_slope_rad(model)
+    run_m = abs(there.altitude_m - here.altitude_m) / math.tan(slope_rad)
+
+    def low(path: Path) -> Path:
+        return cut(path, 0.0, run_m) if climbs else cut(path, path.length_m - run_m, path.length_m)
+
+    around = layers.around(top, bottom.level, connector, low)
+    return changed(around.connect(start, goal), here.altitude_m, there.altitude_m, model, around)
 
 
 def _leaves(station: Station, arrived: Path) -> Anchor:
     """Where the next leg begins: behind the pass, or where the last leg has come to."""
     pose = arrived.end if station.collect is None else station.collect.exit
     return Anchor(*pose.position, pose.angle_rad)
-
-
-def _leg(start: Anchor, goal: Anchor, zones: KeepOut, connector: Connector) -> Path:
-    return connector(start, goal, zones)
 
 
 def _settled(rising: Rise, collect: CollectPass | None, top_m: float) -> Rise:

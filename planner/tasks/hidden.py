@@ -8,7 +8,7 @@ costs least. What no direction sees is left, and said.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -83,11 +83,16 @@ class Sight:
 
     def seen(self, collect: CollectPass) -> BaseGeometry:
         """The ground one pass sees."""
-        key = (collect.sensor, collect.look, collect.start, collect.end)
+        key = (collect.sensor, collect.look, collect.start, collect.end, collect.regions[0])
         if key not in self._known:
             line_m, sensor = (collect.start, collect.end), self.suite.named(collect.sensor)
-            self._known[key] = seen(sensor, line_m, collect.look, self.level.amsl_m, self.ground).area
+            level = self.level_of(collect.regions[0])
+            self._known[key] = seen(sensor, line_m, collect.look, level.amsl_m, self.ground).area
         return self._known[key]
+
+    def level_of(self, name: str) -> Level:
+        """The level that a region is seen from."""
+        return next(self.level.of(region) for region in self.regions if region.name == name)
 
     def useful(self, collect: CollectPass) -> BaseGeometry:
         """What one pass sees of the regions it counts for."""
@@ -111,8 +116,10 @@ class Sight:
         return left
 
     def counts(self, region: Region, collect: CollectPass) -> bool:
-        """Whether a pass is of the region's sensor and in a direction it allows."""
+        """Whether a pass is of the region's sensor, at its height and in a direction it allows."""
         if self.suite.of(region).name != collect.sensor:
+            return False
+        if self.level_of(collect.regions[0]) != self.level.of(region):
             return False
         return region.approach_rad is None or any(
             abs(math.remainder(collect.angle_rad - allowed, math.tau)) < math.radians(1.0)
@@ -122,13 +129,15 @@ class Sight:
 
 def see_hidden(
     sight: Sight,
-    around: Surroundings,
+    around: Callable[[Level], Surroundings],
     ends: tuple[Terminal, Terminal],
     passes: Passes,
     legs: Legs,
     stop: Stop = never,
 ) -> Passes:
     """The tour with passes besides for ground that terrain hides from those it has.
+
+    ``around`` is what passes at a level fly among.
 
     A pass that sees little of what was hidden is not flown, and one that has become needless no longer.
     """
@@ -143,7 +152,8 @@ def see_hidden(
             if region.name not in left:
                 continue
             raise_if(stop)
-            better = _with_more(sight, around, ends, region, left[region.name], passes, legs)
+            level = sight.level.of(region)
+            better = _with_more(sight, around(level), ends, region, left[region.name], passes, legs)
             if better is None:
                 given_up.add(region.name)
             else:
@@ -184,7 +194,7 @@ def _with_more(
     legs: Legs,
 ) -> Passes | None:
     """The tour with passes that see what is left of a region; None where none sees enough of it."""
-    together_m = TOGETHER * sight.suite.of(region).swath_m(sight.level.height_m)
+    together_m = TOGETHER * sight.suite.of(region).swath_m(sight.level.of(region).height_m)
     improved = None
     for part in _clusters(region, rest, together_m, sight.ground.step_m / 2.0):
         hidden = shapely.union_all(part.originals, grid_size=GRID_M)
@@ -235,7 +245,8 @@ def _trials(
     passes: Passes,
 ) -> list[_Trial]:
     """Ways to see a part, each at the best place of the tour by estimate; the cheapest first."""
-    sensor, height_m = sight.suite.over(part.sensor, part.area, sight.airspace, sight.level)
+    level = sight.level.of(part)
+    sensor, height_m = sight.suite.over(part.sensor, part.area, sight.airspace, level)
     angles_rad = np.arange(-math.pi, math.pi - 1e-9, STEP_RAD, dtype=np.float64)
     if part.approach_rad is not None:
         angles_rad = np.asarray(part.approach_rad, dtype=np.float64)

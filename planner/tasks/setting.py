@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 from planner.airspace.airspace import Airspace, Level
 from planner.coverage.visible import Seeing
@@ -20,6 +21,8 @@ class Setting:
     ----------
     ends
         Where it starts and where it ends.
+    altitudes_m
+        Of the passes over each region that has one of its own.
     """
 
     airspace: Airspace
@@ -27,6 +30,7 @@ class Setting:
     model: FlightModel
     suite: Suite
     ends: tuple[Terminal, Terminal]
+    altitudes_m: Mapping[str, float] = field(default_factory=dict)
 
     @classmethod
     def of(cls, scenario: Scenario) -> Setting:
@@ -41,7 +45,9 @@ class Setting:
         suite = scenario.suite
         if scenario.wind.speed_m_s > 0.0:
             suite = suite.in_wind(model.drift, scenario.wind.toward_rad)
-        return cls(scenario.airspace, scenario.level, model, suite, (scenario.start, scenario.end))
+        altitudes_m = {r.name: r.altitude_m for r in scenario.regions if r.altitude_m is not None}
+        ends = (scenario.start, scenario.end)
+        return cls(scenario.airspace, scenario.level, model, suite, ends, altitudes_m)
 
 
 def seeing(scenario: Scenario, setting: Setting) -> Seeing:

@@ -38,7 +38,7 @@ class Transits:
     @classmethod
     def of(cls, setting: Setting, objective: Objective, methods: dict[str, str]) -> Transits:
         """Round what the setting's level meets."""
-        risk = Risk.of(setting.airspace.threats, objective, setting.level.height_m)
+        risk = Risk.of(setting.airspace.threats, objective, setting.level.lowest.height_m)
         return cls(setting, objective, methods, risk)
 
     def through(
@@ -46,14 +46,16 @@ class Transits:
     ) -> tuple[Composed, tuple[Leg, ...], tuple[str, ...]]:
         """The flight through all collects, its legs, and what is to be said of them."""
         settle_m = self.setting.model.settle_m
-        return self.by([Station.of(collect, settle_m) for collect in passes], progress, stop)
+        own_m = self.setting.altitudes_m
+        stations = [Station.of(each, settle_m, own_m.get(each.regions[0])) for each in passes]
+        return self.by(stations, progress, stop)
 
     def by(
         self, stations: Sequence[Station], progress: Progress, stop: Stop
     ) -> tuple[Composed, tuple[Leg, ...], tuple[str, ...]]:
         """The flight by all stations, its legs, and what is to be said of them."""
         setting = self.setting
-        levels = FlightLevels(setting.airspace, setting.level, setting.level.altitude_m)
+        levels = FlightLevels(setting.airspace, setting.level)
         weights = {"missile": self.objective.missile, "radar": self.objective.radar}
         unminded = [t.name for t in setting.airspace.threats if not t.hard and weights[t.model] <= 0.0]
         return fly_whole(
@@ -84,7 +86,7 @@ class Transits:
 
     def _ssas(self, start: Anchor, goal: Anchor, zones: KeepOut, other: Connector, stop: Stop) -> Path:
         """SSAS's line; none where it leads through threats and costs more than another."""
-        threats, height_m = self.setting.airspace.threats, self.setting.level.height_m
+        threats, height_m = self.setting.airspace.threats, self.setting.level.lowest.height_m
         smoothing: Literal["fillet", "shortcut"] = (
             "shortcut" if self.methods["smoothing"] == "shortcut" else "fillet"
         )

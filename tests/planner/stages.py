@@ -91,7 +91,7 @@ def see_hidden(
     sight = sight_of(scenario)
     if sight is None:
         return passes
-    return hidden.see_hidden(sight, around, ends_of(scenario), passes, legs, stop)
+    return hidden.see_hidden(sight, lambda level: around, ends_of(scenario), passes, legs, stop)
 
 
 def sight_of(scenario: Scenario) -> hidden.Sight | None:
@@ -120,7 +120,7 @@ def greedy(
     where = (asked.airspace, asked.level)
     room = Room.of(*where, asked.model, asked.objective, threat_aware=threat_aware)
     sights = part_of(progress, 0.0, 0.8)
-    found = located(asked.regions, asked.suite, *where, room, sights, stop, **options)
+    found = located(asked.regions, asked.suite, *where, lambda level: room, sights, stop, **options)
     threats = tuple(t for t in scenario.threats if scenario.height_m <= t.height_m)
     controls = (scenario.seed, part_of(progress, 0.8, 1.0), stop)
     route, order = paper_route(

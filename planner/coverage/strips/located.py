@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from planner.airspace.airspace import Airspace, Level
@@ -30,7 +31,7 @@ def located(
     suite: Suite,
     airspace: Airspace,
     level: Level,
-    room: Room,
+    room_at: Callable[[Level], Room],
     progress: Progress,
     stop: Stop,
     *,
@@ -40,6 +41,8 @@ def located(
 
     Parameters
     ----------
+    room_at
+        The room there is at a level.
     progress
         Gets ``"coverage"`` with the fraction done.
     radius_m
@@ -58,8 +61,9 @@ def located(
     for number, region in enumerate(merged):
         raise_if(stop)
         progress("coverage", number / len(merged))
-        sensor, height_m = _strips(region.label, *suite.over(region.sensor, region.area, airspace, level))
-        choices_of, failed = _locate(region, sensor, height_m, room)
+        own = level.of(region)
+        sensor, height_m = _strips(region.label, *suite.over(region.sensor, region.area, airspace, own))
+        choices_of, failed = _locate(region, sensor, height_m, room_at(own))
         found.extend(choices_of)
         dropped.extend(failed)
     return Located(tuple(found), tuple(dropped))
@@ -73,9 +77,8 @@ def _sharp_enough(
     dropped: list[InfeasibleError] = []
     for region in regions:
         try:
-            check_sensor(
-                region, *_strips(region.name, *suite.over(region.sensor, region.area, airspace, level))
-            )
+            over = suite.over(region.sensor, region.area, airspace, level.of(region))
+            check_sensor(region, *_strips(region.name, *over))
         except InfeasibleError as reason:
             if region.required:
                 raise

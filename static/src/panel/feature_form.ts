@@ -85,6 +85,7 @@ function roleFields(name: string, role: string, geometryType: string, model: unk
           ? [choiceField({ id: "f-sensor", label: "Sensor", choices: [["", "the first"], ...sensors.map((s) => [s, s] as const)], get: get<string>("sensor"), set: (v) => scenarios.setProperty(name, "sensor", v || undefined) })]
           : []),
         number("min_resolution_m", "Resolution wanted", "m", { min: 0, placeholder: "any" }),
+        number("altitude_m", "Altitude", "m", { min: 0, placeholder: "the flight's" }),
         number("revisits", "Times to be seen", "", { min: 1, max: 50, placeholder: "1" }),
         ...(geometryType === "LineString" ? [number("width_m", "Width", "m", { min: 0, required: true })] : []),
         ...(geometryType === "Point" ? [number("radius_m", "Radius", "m", { min: 0, placeholder: "0" })] : []),

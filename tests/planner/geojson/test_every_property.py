@@ -201,6 +201,7 @@ PROOFS: dict[tuple[str, str], tuple[Document, Document]] = {
     ("roi", "min_resolution_m"): (small(), of_feature("A", min_resolution_m=1.0)),
     ("roi", "approach_deg"): (small(), of_feature("A", approach_deg=[80.0])),
     ("roi", "revisits"): (small(), of_feature("A", revisits=2)),
+    ("roi", "altitude_m"): (small(), of_feature("A", altitude_m=320.0)),
     ("roi", "width_m"): (with_features(line()), with_features(line(width_m=250.0))),
     ("roi", "radius_m"): (with_features(target()), with_features(target(radius_m=150.0))),
     ("roi", "time_window_s"): (small(), of_feature("A", time_window_s=[0, 600])),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import pytest
 from hypothesis import given, settings
@@ -27,7 +28,13 @@ def straight(length_m: float, rise_m: float = 0.0, low_m: float = 0.0) -> Stretc
 
 
 def lift(from_m: float, to_m: float) -> Stretch:
-    return Stretch("climb", ORIGIN, None, 0.0, from_m, to_m)
+    return Stretch("climb" if to_m > from_m else "landing", ORIGIN, None, 0.0, from_m, to_m)
+
+
+def test_a_descent_between_passes_does_not_land() -> None:
+    """On the spot from one pass's height to the next one's it sinks as fast all the way."""
+    down = replace(lift(80.0, 10.0), phase="mission")
+    assert rotor_times([down], 12.0, ROTOR)[0] == pytest.approx(70.0 / 1.5 + 1.5 / 1.0)
 
 
 def integrated_s(distance_m: float, speed_m_s: float, accel_m_s2: float) -> float:
