@@ -11,8 +11,8 @@ import pytest
 from app.routers.bodies import EXAMPLE
 from mavlink.encoding.encode import encode
 from mavlink.formats import read_plan, read_waypoints, write_plan, write_waypoints
+from tests.app.cli.conftest import Command, swathplan
 from tests.app.imports.samples import GPX, RING, kml, line, placemark, polygon, shapefiles
-from tests.app.test_cli import Command, swathplan
 from tests.mavlink.formats.test_qgc_complex import LANDING, SURVEY, plan_of, simple
 from tests.mavlink.plans import make_plan
 from tests.mavlink.strategies import same

@@ -1,0 +1,124 @@
+"""Export, upload, download and the demo: results, messages, exit codes."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from app.routers.bodies import EXAMPLE
+from mavlink.formats import qgc_plan, waypoints
+from mavlink.wire import items
+from tests.app.cli.conftest import Command
+
+
+def test_export_writes_what_readers_read(swathplan: Command, plan_file: Path) -> None:
+    """Each format can be exported; .plan and .waypoints hold the same items."""
+    plan = qgc_plan.read_plan(swathplan("export", str(plan_file)).out)
+    rows = waypoints.read_waypoints(swathplan("export", str(plan_file), "--format", "waypoints").out)
+    assert [item.command for item in plan.mission] == [item.command for item in rows.mission]
+    assert "<kml" in swathplan("export", str(plan_file), "--format", "kml").out
+    assert swathplan("export", str(plan_file), "--payload", "laser").code == 2
+    assert swathplan("export", str(plan_file), "--gimbal", "crane").code == 2
+    pointed = qgc_plan.read_plan(swathplan("export", str(plan_file), "--gimbal", "manager:tilt=45").out)
+    assert items.Command.DO_GIMBAL_MANAGER_PITCHYAW in {item.command for item in pointed.mission}
+    assert swathplan("export", str(plan_file), "--vehicle", "nobody").code == 2
+
+
+def test_upload_reads_back_and_tells(swathplan: Command, plan_file: Path) -> None:
+    """An upload ends with the comparison; one the aircraft alters exits with 1."""
+    ended = swathplan(
+        "upload", str(plan_file), "--to", "sim:", "--part", "mission", "--part", "fence", "--json"
+    )
+    report = json.loads(ended.out)
+    assert (ended.code, report["outcome"], report["verified"]) == (0, "accepted", True)
+    assert "read back equal" in ended.err
+    altered = swathplan("upload", str(plan_file), "--to", "sim:?fault=altered_item")
+    assert altered.code == 1
+    assert "1 differences" in altered.err
+
+
+def test_a_mission_over_the_limit_is_refused_with_number_limit_and_fix(
+    swathplan: Command, plan_file: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The command line says how many items there are, how many are held, and what to do."""
+    monkeypatch.setattr("mavlink.dialects.px4.DEFAULT_MISSION_LIMIT", 9)
+    refused = swathplan("upload", str(plan_file), "--to", "sim:?autopilot=px4", "--override", "a test")
+    assert refused.code == 2
+    assert "items, the vehicle holds 9" in refused.err
+    assert "sorties: plan each with a part of the regions" in refused.err
+
+
+def test_upload_of_a_violating_plan_needs_a_reason(
+    swathplan: Command, plan_file: Path, tmp_path: Path
+) -> None:
+    """Hard violations stop an upload unless a reason is given."""
+    plan = json.loads(plan_file.read_text())
+    violation = {"constraint": "hard-zone", "feature": "site", "message": "flown through", "amount": 1.0}
+    plan["violations"] = [violation | {"unit": "m", "where": None, "hard": True}]
+    path = tmp_path / "violating.geojson"
+    path.write_text(json.dumps(plan))
+    refused = swathplan("upload", str(path), "--to", "sim:")
+    assert refused.code == 1
+    assert "flown through" in refused.err
+    assert swathplan("upload", str(path), "--to", "sim:", "--override", "zone is cold").code == 0
+
+
+def test_upload_of_a_plan_of_another_scenario_needs_a_reason(
+    swathplan: Command, plan_file: Path, scenario_file: Path, tmp_path: Path
+) -> None:
+    """Held against the scenario as it is now: the same goes up, a changed one only with a reason."""
+    same = swathplan("upload", str(plan_file), "--to", "sim:", "--scenario", str(scenario_file))
+    assert same.code == 0, same.err
+    changed = tmp_path / "changed.geojson"
+    changed.write_text(json.dumps(EXAMPLE | {"seed": 1}))
+    stale = ("upload", str(plan_file), "--to", "sim:", "--scenario", str(changed))
+    refused = swathplan(*stale)
+    assert refused.code == 1
+    assert "plan-stale" in refused.err
+    assert swathplan(*stale, "--override", "only the seed differs").code == 0
+
+
+def test_download_from_an_empty_vehicle(swathplan: Command) -> None:
+    """What a fresh aircraft holds can be saved in each form."""
+    held = json.loads(swathplan("download", "--from", "sim:", "--json").out)
+    assert set(held) == {"mission", "fence", "rally"}
+    assert held["fence"] == held["rally"] == []
+
+
+def test_demo_flies_what_it_planned(swathplan: Command, scenario_file: Path) -> None:
+    """The whole journey, told as JSON: planned, uploaded, read back, flown, seen."""
+    ended = swathplan("demo", str(scenario_file), "--speedup", "500", "--json")
+    told = json.loads(ended.out)
+    assert ended.code == 0, ended.err
+    assert told["read_back_equal"]
+    assert told["cross_track_max_m"] < 10.0
+    assert min(told["seen"].values()) > 0.99
+
+
+@pytest.mark.parametrize("autopilot", ["ardupilot", "px4"])
+def test_demo_flies_a_multirotor_where_the_plan_has_one(
+    swathplan: Command, scenario_file: Path, autopilot: str
+) -> None:
+    """What is simulated is the plan's vehicle: lines within a metre, all of the regions seen."""
+    scenario = json.loads(scenario_file.read_text())
+    scenario["vehicles"][0] |= {"type": "multirotor", "autopilot": autopilot, "min_turn_radius_m": 60}
+    scenario_file.write_text(json.dumps(scenario))
+    ended = swathplan("demo", str(scenario_file), "--speedup", "500", "--json")
+    assert ended.code == 0, ended.err
+    told = json.loads(ended.out)
+    assert told["violations"] == []
+    assert told["read_back_equal"]
+    assert told["cross_track_max_m"] < 1.5
+    assert min(told["seen"].values()) > 0.9999
+
+
+def test_demo_says_why_it_flies_no_vtol(swathplan: Command, scenario_file: Path) -> None:
+    """Exit code 2 and the reason."""
+    scenario = json.loads(scenario_file.read_text())
+    scenario["vehicles"][0]["type"] = "vtol"
+    scenario_file.write_text(json.dumps(scenario))
+    ended = swathplan("demo", str(scenario_file))
+    assert ended.code == 2
+    assert "no vtol is simulated" in ended.err

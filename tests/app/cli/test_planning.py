@@ -1,0 +1,49 @@
+"""Plan and validate: results, messages, exit codes."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from app.routers.bodies import EXAMPLE
+from tests.app.cli.conftest import Command, broken
+
+
+def test_plan_from_file_to_file(swathplan: Command, scenario_file: Path, tmp_path: Path) -> None:
+    """The plan goes to the file, its figures to standard output, messages to standard error."""
+    output = tmp_path / "plan.geojson"
+    ended = swathplan("plan", str(scenario_file), "-o", str(output), "--json")
+    plan = json.loads(output.read_text())
+    summary = json.loads(ended.out)
+    assert ended.code == 0
+    assert summary["metrics"] == plan["metrics"]
+    assert min(plan["metrics"]["coverage"].values()) >= 0.9999
+    assert "2 of 2 regions covered" in ended.err
+    assert [path.name for path in tmp_path.iterdir() if "partial" in path.name] == []
+
+
+def test_plan_through_pipes_is_repeatable(swathplan: Command) -> None:
+    """``-`` is standard input, the plan comes on standard output; times aside it is the same each time."""
+    first, second = (swathplan("plan", "-", "--seed", "3", stdin=json.dumps(EXAMPLE)) for _ in range(2))
+    plans = [json.loads(ended.out) for ended in (first, second)]
+    for plan in plans:
+        plan["metrics"].pop("planning_time_s")
+    assert plans[0] == plans[1]
+    assert plans[0]["seed"] == 3
+
+
+@pytest.mark.parametrize("command", ["plan", "validate"])
+def test_refused_scenario_exits_2_with_every_finding(swathplan: Command, command: str) -> None:
+    """A refused scenario is told rule by rule, as text and as JSON, never as a traceback."""
+    text = swathplan(command, "-", stdin=json.dumps(broken()))
+    as_json = swathplan(command, "-", "--json", stdin=json.dumps(broken()))
+    assert (text.code, as_json.code) == (2, 2)
+    told = text.out + text.err
+    assert "harbour" in told
+    assert "altitude_m" in told
+    assert "Traceback" not in told
+    body = json.loads(as_json.out or as_json.err)
+    findings = body.get("errors") or body["findings"]
+    assert {"harbour", "scenario"} <= {finding["feature"] for finding in findings}
