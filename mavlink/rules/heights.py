@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
-from planner.plan import FlownPath, Plan, ZoneCircle, ZonePolygon
+from planner.plan import PathSegment, Plan, ZoneCircle, ZonePolygon
 
 _NOTHING_BELOW = (0.0, "")
+#: From so much on an arc is whole turns; rounding may have taken a little.
+_WHOLE_TURN_DEG = 359.9
 
 
 @dataclass(frozen=True, slots=True)
@@ -17,6 +20,8 @@ class HeightNeeds:
     ----------
     climb_m_s, sink_m_s
         Fastest that the plan climbs and descends on wings, at its airspeed; 0 where it does not.
+    turning_up_m_s, turning_down_m_s
+        The same of its whole turns alone.
     lowest_m
         Of its passes; of its highest place where it has none.
     ground_rises
@@ -29,6 +34,8 @@ class HeightNeeds:
 
     climb_m_s: float = 0.0
     sink_m_s: float = 0.0
+    turning_up_m_s: float = 0.0
+    turning_down_m_s: float = 0.0
     lowest_m: float = 0.0
     ground_rises: bool = False
     return_m: float | None = None
@@ -44,9 +51,13 @@ def heights_of(plan: Plan, name: str) -> HeightNeeds:
     passes_m = [place[2] for collect in plan.collects_of(name) for place in collect.line]
     returns = vehicle.finish == "return" and vehicle.type != "multirotor"
     zones: list[ZonePolygon | ZoneCircle] = [*plan.fence.exclusion, *plan.fence.exclusion_circles]
+    sloped = [s for s in path.segments if s.kind != "vertical" and s.length_m > 0.0]
+    turns = [s for s in sloped if (s.turn_deg or 0.0) >= _WHOLE_TURN_DEG]
     return HeightNeeds(
-        vehicle.airspeed_m_s * _steepest(path, 1.0),
-        vehicle.airspeed_m_s * _steepest(path, -1.0),
+        vehicle.airspeed_m_s * _steepest(sloped, 1.0),
+        vehicle.airspeed_m_s * _steepest(sloped, -1.0),
+        vehicle.airspeed_m_s * _steepest(turns, 1.0),
+        vehicle.airspeed_m_s * _steepest(turns, -1.0),
         min(passes_m or [max(place[2] for place in path.line)]) - home_m,
         plan.altitude_reference == "amsl",
         path.line[-1][2] - home_m if returns else None,
@@ -55,13 +66,7 @@ def heights_of(plan: Plan, name: str) -> HeightNeeds:
     )
 
 
-def _steepest(path: FlownPath, sign: float) -> float:
-    """Sine of the steepest slope up (1) or down (-1) that is not flown on the spot."""
-    return max(
-        0.0,
-        *(
-            sign * (segment.end_altitude_m - segment.start_altitude_m) / segment.length_m
-            for segment in path.segments
-            if segment.kind != "vertical" and segment.length_m > 0.0
-        ),
-    )
+def _steepest(segments: Sequence[PathSegment], sign: float) -> float:
+    """Sine of the steepest slope up (1) or down (-1)."""
+    rises = (sign * (s.end_altitude_m - s.start_altitude_m) / s.length_m for s in segments)
+    return max(0.0, *rises, 0.0)

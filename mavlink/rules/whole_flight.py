@@ -15,6 +15,8 @@ from mavlink.rules.base import OTHER_NAMES, Needs, ParameterFinding, Rule, Value
 #: A rate may be so much of the plan's, and height differ so much from a return's.
 _RATE_PART: Final = 0.95
 _SAME_HEIGHT_M: Final = 10.0
+#: Circles are climbed and descended in at the vehicle's own rate: so much more than planned is steeper.
+_FASTER_PART: Final = 1.25
 #: A circle this much wider than the plan's is another one.
 _WIDER_PART, _WIDER_M = 1.05, 5.0
 #: What multirotors count on may differ by a quarter either way.
@@ -52,6 +54,34 @@ def sinks(name: str) -> Rule:
             " slower, the vehicle comes in high; or plan with a smaller max_climb_deg"
         ),
         lambda needs: _tenths(needs.heights.sink_m_s),
+    )
+
+
+def turns_up(name: str) -> Rule:
+    """In circles it climbs no steeper than the plan, which keeps ``max_climb_deg``."""
+    return check(
+        name,
+        lambda value, needs: value <= _FASTER_PART * needs.heights.turning_up_m_s,
+        lambda needs: (
+            f"circles are climbed in at this rate, in the plan at {needs.heights.turning_up_m_s:.1f} m/s:"
+            " steeper than its max_climb_deg, and done earlier than planned"
+        ),
+        lambda needs: _tenths(needs.heights.climb_m_s),
+        applies=lambda needs: needs.heights.turning_up_m_s > 0.0,
+    )
+
+
+def turns_down(name: str) -> Rule:
+    """In circles it comes down no steeper than the plan."""
+    return check(
+        name,
+        lambda value, needs: value <= _FASTER_PART * needs.heights.turning_down_m_s,
+        lambda needs: (
+            f"circles are descended in at this rate, in the plan at {needs.heights.turning_down_m_s:.1f} m/s:"
+            " steeper than its max_climb_deg, and done earlier than planned"
+        ),
+        lambda needs: _tenths(needs.heights.sink_m_s),
+        applies=lambda needs: needs.heights.turning_down_m_s > 0.0,
     )
 
 
@@ -150,7 +180,14 @@ def fast_enough(name: str) -> Rule:
     )
 
 
-PLANE: Final = (climbs("TECS_CLMB_MAX"), sinks("TECS_SINK_MAX"), PLANE_RETURN, PLANE_CIRCLE)
+PLANE: Final = (
+    climbs("TECS_CLMB_MAX"),
+    turns_up("TECS_CLMB_MAX"),
+    sinks("TECS_SINK_MAX"),
+    turns_down("TECS_SINK_MAX"),
+    PLANE_RETURN,
+    PLANE_CIRCLE,
+)
 COPTER: Final = (
     counted("WPNAV_SPEED", lambda needs: needs.airspeed_m_s, _ASKED, _CENTI),
     counted("WPNAV_SPEED_UP", 2.5, "m/s up", _CENTI),
@@ -162,8 +199,10 @@ COPTER: Final = (
 )
 PX4_WINGS: Final = (
     climbs("FW_T_CLMB_R_SP"),
+    turns_up("FW_T_CLMB_R_SP"),
     climbs("FW_T_CLMB_MAX"),
     sinks("FW_T_SINK_R_SP"),
+    turns_down("FW_T_SINK_R_SP"),
     sinks("FW_T_SINK_MAX"),
     returns_under("RTL_RETURN_ALT"),
 )

@@ -24,7 +24,7 @@ from planner.vehicle.manners import manners_of
 from tests.mavlink.plans import CIRCLE_M, SPEED_M_S, make_plan
 from tests.mavlink.sim.helpers import Station, from_ground
 
-HEIGHTS = HeightNeeds(2.8, 1.9, 300.0, False, None, None)
+HEIGHTS = HeightNeeds(2.8, 1.9, lowest_m=300.0)
 NEEDS = Needs(
     20.0, 100.0, None, RelayPayload(0), frozenset({22, 16, 21}), False, 320.0, 4000.0, None, HEIGHTS
 )
@@ -65,6 +65,19 @@ def test_wings_that_climb_or_sink_slower_than_planned(
                 finding = found(autopilot, kind, NEEDS, {name: 0.8 * least})[name]
                 assert finding.severity == severity
                 assert f"{least:.1f} m/s" in finding.reason
+
+
+@pytest.mark.parametrize(
+    ("autopilot", "up", "down"),
+    [("ardupilot", "TECS_CLMB_MAX", "TECS_SINK_MAX"), ("px4", "FW_T_CLMB_R_SP", "FW_T_SINK_R_SP")],
+)
+def test_circles_that_are_climbed_in_steeper_than_planned(autopilot: Autopilot, up: str, down: str) -> None:
+    """The vehicle's rate alone decides there: a warning, at more than a quarter over the plan's."""
+    turning = replace(NEEDS, heights=replace(HEIGHTS, turning_up_m_s=2.8, turning_down_m_s=1.9))
+    assert not found(autopilot, "fixed_wing", turning, {up: 3.4, down: 2.3})
+    findings = found(autopilot, "fixed_wing", turning, {up: 5.0, down: 5.0})
+    assert {(f.name, f.severity) for f in findings.values()} == {(up, "warning"), (down, "warning")}
+    assert all("max_climb_deg" in finding.reason for finding in findings.values())
 
 
 @pytest.mark.parametrize(
@@ -227,6 +240,10 @@ def test_needs_of_heights_are_the_plans(
     for rate_m_s, sign in ((heights.climb_m_s, 1.0), (heights.sink_m_s, -1.0)):
         slopes = [sign * (s.end_altitude_m - s.start_altitude_m) / s.length_m for s in segments]
         assert rate_m_s == pytest.approx(max(0.0, *slopes) * SPEED_M_S)
+    turns = [s for s in segments if (s.turn_deg or 0.0) > 359.0]
+    for rate_m_s, sign in ((heights.turning_up_m_s, 1.0), (heights.turning_down_m_s, -1.0)):
+        slopes = [sign * (s.end_altitude_m - s.start_altitude_m) / s.length_m for s in turns]
+        assert rate_m_s == pytest.approx(max(0.0, 0.0, *slopes) * SPEED_M_S)
     assert heights.lowest_m == pytest.approx(top_m)
     assert heights.flown_over == ((ceiling_m, "mast") if ceiling_m is not None else (0.0, ""))
     if finish == "return" and kind != "multirotor":
