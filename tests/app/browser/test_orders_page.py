@@ -1,0 +1,65 @@
+"""Orders in flight, given on the page and carried out: hold, sensor off, resume, land; in this order."""
+
+from __future__ import annotations
+
+import httpx
+import pytest
+from playwright.sync_api import Page, expect
+
+from tests.app.browser.air import vehicles_of
+from tests.app.browser.conftest import EXAMPLES, Service
+from tests.app.browser.helpers import ask, await_hook, open_scenario
+from tests.app.browser.test_truth_page import cell, go_to
+
+pytestmark = pytest.mark.browser
+
+LIMIT_S = 90.0
+LIMIT_MS = LIMIT_S * 1000.0
+
+
+def give(page: Page, command: str) -> None:
+    """Press a command's button and confirm it."""
+    page.click(f"[data-command={command}]")
+    page.click("#dialog-go")
+
+
+@pytest.fixture(scope="module")
+def collecting(page: Page, service: Service) -> None:
+    """The aircraft in its first pass, with the sensor on."""
+    httpx.delete(vehicles_of(service)["sim-1"] + "/mission", timeout=20.0)
+    open_scenario(page, EXAMPLES / "sar-case-1.geojson")
+    go_to(page, "Plan")
+    page.click("#plan-start")
+    await_hook(page, "plan() !== null", 60.0)
+    go_to(page, "Fly")
+    page.click("#upload")
+    page.wait_for_selector("#upload-result [data-outcome=accepted][data-verified=true]")
+    give(page, "arm")
+    await_hook(page, "vehicle().armed")
+    give(page, "start")
+    await_hook(page, "vehicle().sensor_on", LIMIT_S)
+
+
+def test_hold_stops_the_mission_and_the_sensor(page: Page, collecting: None) -> None:
+    """The aircraft circles where it is; out of the pass its sensor is switched off, and the page shows it."""
+    give(page, "hold")
+    expect(cell(page, "mode")).to_have_text("LOITER", timeout=LIMIT_MS)
+    expect(cell(page, "sensor")).to_have_text("off", timeout=LIMIT_MS)
+    assert ask(page, "vehicle()")["armed"] is True
+
+
+def test_a_sensor_is_switched_off_by_its_button(page: Page, collecting: None) -> None:
+    """Back in the mission the sensor comes on again; the button switches it off and the flight goes on."""
+    give(page, "resume")
+    expect(cell(page, "mode")).to_have_text("AUTO", timeout=LIMIT_MS)
+    await_hook(page, "vehicle().sensor_on", LIMIT_S)
+    give(page, "sensor_off")
+    expect(cell(page, "sensor")).to_have_text("off", timeout=LIMIT_MS)
+    expect(cell(page, "mode")).to_have_text("AUTO")
+
+
+def test_land_brings_it_down(page: Page, collecting: None) -> None:
+    """A fixed wing goes over to its mission's landing, and stands disarmed at its end."""
+    give(page, "land")
+    await_hook(page, "vehicle().armed === false", LIMIT_S)
+    expect(cell(page, "flying")).to_have_text("on the ground", timeout=LIMIT_MS)
