@@ -71,7 +71,7 @@ def read_role(name: str, feature: Mapping[str, Any], findings: Findings) -> RawF
     fields = Fields(name, properties, findings)
     fields.raw("name")
     role = fields.raw("role")
-    if role not in GEOMETRIES:
+    if not isinstance(role, str) or role not in GEOMETRIES:
         findings.error(
             name,
             "unknown-role",

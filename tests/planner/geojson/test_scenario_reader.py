@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from pyproj import Geod
 
@@ -238,33 +238,45 @@ JSON = st.recursive(
     lambda inner: st.lists(inner, max_size=4) | st.dictionaries(st.text(max_size=4), inner, max_size=3),
     max_leaves=8,
 )
-SPOTS = [
-    "features.0.geometry",
-    "features.0.geometry.coordinates",
-    "features.0.properties",
-    "features.2",
-    "vehicles",
-    "vehicles.0",
-    "sensors.0",
-    "wind",
-    "objective",
-    "method",
-    "seed",
-    "time_budget_s",
-    "clearance_m",
-    "features.3.geometry.coordinates",
-]
+
+
+def whole() -> dict[str, Any]:
+    """A scenario with something of every kind."""
+    return small(
+        feature("T", "threat", "Point", [0.012, 0.004], model="radar", radius_m=300.0, intensity_m=90.0),
+        feature("N", "no_fly", "Polygon", square(0.02, 0.02, 0.001), floor_m=0.0, ceiling_m=90.0),
+        feature("O", "obstacle", "Polygon", square(0.02, 0.03, 0.001), height_m=80.0),
+        feature("E", "end", "Point", [-0.004, -0.004], heading_deg=20.0),
+        wind={"speed_m_s": 3.0, "from_deg": 20.0},
+        objective={"length": 1.0},
+        method={"routing": "auto"},
+        seed=1,
+        time_budget_s=20.0,
+        clearance_m=10.0,
+    )
+
+
+def spots(value: Any, path: tuple[str | int, ...] = ()) -> Iterator[tuple[str | int, ...]]:
+    """The way to everything in a document."""
+    inner = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
+    for key, child in inner:
+        yield (*path, key)
+        yield from spots(child, (*path, key))
+
+
+SPOTS = tuple(spots(whole()))
 
 
 @given(spot=st.sampled_from(SPOTS), junk=JSON)
-def test_junk_anywhere_is_a_finding_or_fine(spot: str, junk: Any) -> None:
+@settings(max_examples=300)
+def test_junk_anywhere_is_a_finding_or_fine(spot: tuple[str | int, ...], junk: Any) -> None:
     """Whatever JSON stands in any place, reading ends with a scenario or a ScenarioError."""
-    document = small()
-    *path, last = spot.split(".")
+    document = whole()
+    *path, last = spot
     target: Any = document
     for key in path:
-        target = target[int(key)] if isinstance(target, list) else target[key]
-    target[int(last) if isinstance(target, list) else last] = junk
+        target = target[key]
+    target[last] = junk
     found = findings(document)
     assert all(f.message and f.fix for f in found)
 
