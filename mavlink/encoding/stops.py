@@ -143,13 +143,16 @@ def _apart(stops: Sequence[Stop], local: LocalMap, near_m: float) -> Iterator[St
         needed = stop.on or stop.off or stop.arc or stop.turns or last
         others = [other for other in (kept, None if last else stops[number + 1]) if other is not None]
         if not needed and any(
-            math.dist(local.xy(stop.place), local.xy(other.place)) < near_m
-            for other in others
-            if other is kept or other.on or other.off
+            _away_m(stop, other, local) < near_m for other in others if other is kept or other.on or other.off
         ):
             continue
         kept = stop
         yield stop
+
+
+def _away_m(stop: Stop, other: Stop, local: LocalMap) -> float:
+    over_m = math.dist(local.xy(stop.place), local.xy(other.place))
+    return math.hypot(over_m, stop.altitude_m - other.altitude_m)
 
 
 def _left_outwards(stops: Sequence[Stop], local: LocalMap) -> Iterator[Stop]:

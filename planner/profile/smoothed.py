@@ -71,11 +71,22 @@ class Braking:
 
 
 def smoothed_times(stretches: Sequence[Stretch], speed_m_s: float, manners: Manners) -> list[float]:
-    """Seconds of each stretch: at rest where what is flown over the ground begins, and where it ends."""
+    """Seconds of each stretch: at rest before and behind every climb and descent on the spot."""
     found = _spots_s(stretches, manners)
-    legs = [leg for k, s in enumerate(stretches) for leg in _legs(k, s, speed_m_s, manners)]
+    numbered = enumerate(stretches)
+    for on_the_spot, run in groupby(numbered, key=lambda pair: pair[1].segment is None):
+        if not on_the_spot:
+            legs = [leg for k, s in run for leg in _legs(k, s, speed_m_s, manners)]
+            for leg, time_s in zip(legs, _legs_s(legs, manners), strict=True):
+                found[leg.number] += time_s
+    return found
+
+
+def _legs_s(legs: Sequence[_Leg], manners: Manners) -> list[float]:
+    """Seconds of legs that follow each other, from rest to a stop."""
     braking = Braking(manners.accel_m_s2, manners.jerk_m_s3, manners.corner_m)
     corners = [_corner_m_s(here, behind, braking, manners) for here, behind in pairwise(legs)]
+    found: list[float] = []
     passed_m_s, turn_m = 0.0, 0.0
     for k, leg in enumerate(legs):
         last = k == len(legs) - 1
@@ -83,7 +94,7 @@ def smoothed_times(stretches: Sequence[Stretch], speed_m_s: float, manners: Mann
         # Places are taken up early: only the first leg is the shorter for it.
         length_m = max(leg.length_m - (braking.short_m if k == 0 else 0.0), 0.0)
         time_s, passed_m_s = _leg_s(length_m, passed_m_s, end_m_s, turn_m, leg.most_m_s, braking)
-        found[leg.number] += time_s
+        found.append(time_s)
         turn_m = 0.0 if last else _turn_m(_turned_rad(leg, legs[k + 1]), braking.short_m)
     return found
 
@@ -164,6 +175,9 @@ def _spots_s(stretches: Sequence[Stretch], manners: Manners) -> list[float]:
         for s in together:
             if not on_the_spot:
                 found.append(0.0)
+            elif {"take_off", "landing"}.isdisjoint({together[0].phase, together[-1].phase}):
+                share = s.length_m / abs(top_m - foot_m)
+                found.append(share * change_of_height_s(top_m - foot_m, manners))
             elif top_m > foot_m:
                 heights_m = (s.start_altitude_m - foot_m, s.end_altitude_m - foot_m)
                 begun_s, ended_s = (climb_s(height_m, top_m - foot_m, manners) for height_m in heights_m)
@@ -171,6 +185,14 @@ def _spots_s(stretches: Sequence[Stretch], manners: Manners) -> list[float]:
             else:
                 found.append(descent_s(foot_m - top_m, manners) * s.length_m / (foot_m - top_m))
     return found
+
+
+def change_of_height_s(rise_m: float, manners: Manners) -> float:
+    """Seconds of a climb or descent on the spot in flight, until the height counts as reached."""
+    rate = manners.climb_m_s if rise_m > 0.0 else manners.sink_m_s
+    braking = Braking(manners.vertical_accel_m_s2, manners.jerk_m_s3, manners.height_reached_m)
+    length_m = max(abs(rise_m) - manners.height_reached_m, 0.0)
+    return _leg_s(length_m, 0.0, 0.0, 0.0, rate, braking)[0] if length_m > 0.0 else 0.0
 
 
 def climb_s(height_m: float, top_m: float, manners: Manners) -> float:

@@ -33,12 +33,16 @@ START = Pose(0.0, 0.0, 0.4)
 
 @dataclass(frozen=True, slots=True)
 class Leg:
-    """A piece of a path: a straight of ``length_m``, or an arc of ``turn_deg`` to the left (> 0) or right."""
+    """A piece of a path: a straight of ``length_m``, or an arc of ``turn_deg`` to the left (> 0) or right.
+
+    ``climb_m`` is climbed on the spot behind it, by what hovers.
+    """
 
     length_m: float = 0.0
     turn_deg: float = 0.0
     radius_m: float = 100.0
     collect_m: tuple[float, float] | None = None
+    climb_m: float = 0.0
 
 
 LEGS = (
@@ -133,6 +137,9 @@ def flight_of(
             pieces.append(Piece("mission", climb, climb.start, run_end_m, top_m))
     for leg, segment in zip(legs, path.segments, strict=True):
         pieces.append(Piece("mission", segment, segment.start, top_m, top_m, leg.collect_m))
+        if leg.climb_m:
+            pieces.append(Piece("mission", None, segment.end, top_m, top_m + leg.climb_m))
+            top_m += leg.climb_m
     end = path.end
     if hovers:
         down_m = top_m if finish == "loiter" else ground_m

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from itertools import pairwise
 
 import pytest
 
@@ -158,3 +159,20 @@ def test_a_landing_straight_in_begins_at_a_place_of_its_own(
     (collect,) = plan.collects
     assert math.dist(local(ends), FRAME.to_local(collect.line[1][:2])) < 0.05
     assert offs[2] > offs[1]
+
+
+@pytest.mark.parametrize("autopilot", ["ardupilot", "px4"])
+@pytest.mark.parametrize("climb_m", [40.0, -40.0])
+def test_a_height_changed_on_the_spot_is_two_places_over_each_other(autopilot: str, climb_m: float) -> None:
+    """Both are named, though PX4's multirotors are else named no places so near to each other."""
+    legs = (Leg(length_m=600.0, climb_m=climb_m), Leg(length_m=500.0))
+    items = [
+        i for i in encode(make_plan(legs, autopilot=autopilot, vehicle_type="multirotor")).mission if i.x
+    ]
+    (at,) = [
+        k
+        for k, (before, item) in enumerate(pairwise(items))
+        if before.command == item.command == W and math.dist(local(before), local(item)) < 0.1
+    ]
+    assert (items[at].z, items[at + 1].z) == (300.0, 300.0 + climb_m)
+    assert items[at + 2].z == pytest.approx(300.0 + climb_m)

@@ -123,6 +123,21 @@ def test_down_at_one_speed_then_slowing_to_touch_down() -> None:
     assert descent_s(4.0, PX4) == pytest.approx(4.0 / 0.7, abs=1.0)
 
 
+def test_heights_change_on_the_spot_in_flight_from_rest_to_rest() -> None:
+    """Between two ways neither a take-off's slow beginning nor a landing's slow end; both ways stop there."""
+    first, second = stretches((150.0, 0.0)), stretches((200.0, 0.0))
+    for low_m, high_m, rate_m_s in ((80.0, 120.0, 3.0), (120.0, 60.0, 1.5)):
+        spot = [Stretch("mission", ORIGIN, None, 150.0, low_m, high_m)]
+        times_s = smoothed_times([*first, *spot, *second], 10.0, PX4)
+        assert times_s[0] == pytest.approx(smoothed_times(first, 10.0, PX4)[0])
+        assert times_s[2] == pytest.approx(smoothed_times(second, 10.0, PX4)[0])
+        rise_m = abs(high_m - low_m)
+        assert rise_m / rate_m_s < times_s[1] < rise_m / rate_m_s + 5.0
+        twice = [Stretch("mission", ORIGIN, None, 150.0, low_m, 2.0 * high_m - low_m)]
+        longer_s = smoothed_times([*first, *twice, *second], 10.0, PX4)[1] - times_s[1]
+        assert longer_s == pytest.approx(rise_m / rate_m_s)
+
+
 def test_times_of_climbs_and_of_the_way_add_up() -> None:
     """On the spot, over the ground and on the spot: each stretch has its own share."""
     up = [Stretch("take_off", ORIGIN, None, 0.0, 0.0, 10.0), Stretch("climb", ORIGIN, None, 0.0, 10.0, 80.0)]
