@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import json
 import math
+import statistics
 import time
 from collections.abc import Iterator
 from typing import Any
@@ -88,7 +89,7 @@ def others(document: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
 def run(
     seeds: Any = 3, kinds: Any = KINDS, compared: bool = False, first: int = 0
 ) -> Iterator[dict[str, Any]]:
-    """One row a scenario.
+    """One row a scenario, and the last of them all.
 
     Parameters
     ----------
@@ -98,9 +99,30 @@ def run(
         Whether plans of the same task put otherwise are made as well.
     """
     warm_up()
+    rows = []
     for seed in range(first, first + seeds):
         for kind in [kinds] if isinstance(kinds, str) else kinds:
-            yield _row(kind, seed, compared)
+            rows.append(_row(kind, seed, compared))
+            yield rows[-1]
+    yield _all_of(rows)
+
+
+def _all_of(rows: list[dict[str, Any]]) -> dict[str, Any]:
+    """What all rows say together."""
+    parts = [row["share_s"] / (row["planned_s"] + row["share_s"]) for row in rows]
+    return {
+        "bench": "bound",
+        "kind": "all",
+        "scenarios": len(rows),
+        "gap": statistics.median(row["gap"] for row in rows),
+        "gap_in_a_third": statistics.median(row["gap_in_a_third"] for row in rows),
+        "over_half": sum(row["gap"] > 0.5 for row in rows),
+        "over_half_in_a_third": sum(row["gap_in_a_third"] > 0.5 for row in rows),
+        "below_collection": sum(row["below_collection"] for row in rows),
+        "are_bounds": all(row["is_a_bound"] for row in rows),
+        "part_of_time": statistics.median(parts),
+        "most_of_time": max(parts),
+    }
 
 
 def _row(kind: str, seed: int, compared: bool) -> dict[str, Any]:

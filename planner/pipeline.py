@@ -147,13 +147,14 @@ def with_bound(
     route_m = plan.metrics.route_length_m or plan.metrics.length_m
     allowance = Allowance(lines_for_bound(scenario, plan) if share else math.inf, enough)
     with watch.stage("bound"):
-        bound_m = task_of(scenario.task).bound_m(scenario, plan, stop, allowance)
+        proved_m = task_of(scenario.task).bound_m(scenario, plan, stop, allowance)
     return replace(
         plan,
         metrics=replace(
             plan.metrics,
-            lower_bound_m=bound_m,
-            gap=1.0 - bound_m / route_m,
+            # Said no longer than the mission phase, which of a short route may be a smaller part.
+            lower_bound_m=min(proved_m, plan.metrics.length_m),
+            gap=1.0 - proved_m / route_m,
             planning_time_s=plan.metrics.planning_time_s | watch.seconds,
         ),
     )

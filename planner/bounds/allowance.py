@@ -32,7 +32,12 @@ class Allowance:
     @property
     def over(self) -> bool:
         """Whether nothing more is to be begun."""
-        return self.left <= 0.0 or self._enough()
+        return self.left <= 0.0 or self.told
+
+    @property
+    def told(self) -> bool:
+        """Whether it is enough, whatever is left."""
+        return self._enough()
 
     def part(self, lines: float) -> Allowance:
         """So much of it at most, to be spent of both."""

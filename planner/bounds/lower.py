@@ -92,15 +92,15 @@ def lower_bound_m(
     best_m, most_strips = 0.0, max(len(of_region) for of_region in by_strips)
     by_sweeps = most_strips > FEW_STRIPS and len(by_strips) <= MOST_ORDERED
     joined = any(ground is not None for ground in beside)
-    if most_strips > FEW_STRIPS or joined or (most_strips > 1 and len(passes) > EXACT_UP_TO):
+    if most_strips > 1 or joined:
         whole = [of_region[0] for of_region in by_strips]
         best_m = sweeps_bound_m(whole, *between, radius_m, known_m * (1.0 - GAPS[0]), stop, allowance)
-    if len(passes) <= EXACT_UP_TO and best_m < known_m * (1.0 - GAPS[0]):
+    if len(passes) <= EXACT_UP_TO and best_m < known_m * (1.0 - GAPS[0]) and not allowance.over:
         targets_m = tuple(known_m * (1.0 - gap) for gap in GAPS)
         most = exact_effort(len(passes))
         work = effort or int(part * (most if most_strips <= FEW_STRIPS else EFFORT_BESIDES))
         best_m = max(best_m, exact_bound_m(passes, *between, radius_m, targets_m, work, stop, allowance))
-    if len(passes) > 1 and best_m < known_m * (1.0 - POOR_GAP) and not by_sweeps:
+    if len(passes) > 1 and best_m < known_m * (1.0 - POOR_GAP) and not by_sweeps and not allowance.over:
         work = effort or int(part * EFFORT_TREES * len(passes))
         best_m = max(best_m, trees_bound_m(passes, *between, radius_m, known_m, work, stop, allowance))
     return min(best_m, known_m)

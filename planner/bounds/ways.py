@@ -47,12 +47,12 @@ Asked = tuple[Sides, BaseGeometry | None]
 
 #: Units taken in several ways that are told apart, and dividing one takes as long as so many lines.
 MOST_APART, LINES_DIVIDED = 3, 100_000
-#: Units and places asked for, where passes are shared, and lines between cells to evaluate of so many; no
-#: more at first than this part of what is left.
-COUNTS = (1, 2, 3, 5, 8, EXACT_UP_TO)
-EFFORTS_SHARED, PART_SHARED = (300_000, 2_500_000), 0.2
+#: Units and places asked for, where passes are shared, and lines between cells to evaluate of them: at first
+#: and then, no more than a part of what is left. More are asked for until so many say less.
+COUNTS = {1: 0.05, 2: 0.1, 3: 0.15, 5: 0.4, 8: 0.5, EXACT_UP_TO: 0.5}
+EFFORTS_SHARED, PART_THEN, FALLS = (300_000, 2_500_000), 0.6, 2
 #: Of what is allowed, the first of two bounds takes no more.
-PART_FIRST = 0.6
+PART_FIRST = 0.7
 
 
 def plan_bound_m(
@@ -135,22 +135,34 @@ def _of_shared_m(
     asked = pieces(found, _in_parts(found, linked), EXACT_UP_TO)
     ends_ = (terminal(ends[0]), terminal(ends[1]))
     targets_m = tuple(length_m * (1.0 - gap) for gap in GAPS)
-    best_m = 0.0
-    # A little of each at first: of few the bound is soon close.
-    for effort, most in itertools.product(EFFORTS_SHARED, sorted({min(n, len(asked)) for n in COUNTS})):
-        if best_m >= targets_m[0] or allowance.over:
-            break
-        part = allowance.part(PART_SHARED * allowance.left)
+
+    def bound_of_m(most: int, effort: int, part: float) -> float:
+        if allowance.over:
+            return 0.0
         some = asked[:most]
         of = [k for k, _ in some]
         passes = [node for k, (_, each) in enumerate(some) for node in nodes(each, seeing.model.settle_m, k)]
         # Of one wide unit two places may be seen by one pass; two visits are two passes.
         shared = np.array([[a != b or not found[a].whole for b in of] for a in of])
         np.fill_diagonal(shared, False)
-        found_m = exact_bound_m(
-            passes, *ends_, seeing.model.turn_radius_m, targets_m, effort, stop, part, shared
+        within = allowance.part(part * allowance.left)
+        return exact_bound_m(
+            passes, *ends_, seeing.model.turn_radius_m, targets_m, effort, stop, within, shared
         )
-        best_m = max(best_m, found_m)
+
+    # A little of each at first: of few the bound is soon close.
+    counts = sorted({min(n, len(asked)) for n in COUNTS})
+    bounds_m: list[float] = []
+    for most in counts:
+        part = next(part for count, part in COUNTS.items() if most <= count)
+        bounds_m.append(bound_of_m(most, EFFORTS_SHARED[0], part))
+        best = int(np.argmax(bounds_m))
+        if bounds_m[best] >= targets_m[0] or len(bounds_m) - 1 - best == FALLS:
+            break
+    best_m = bounds_m[best]
+    for most in counts[best : best + 1 + FALLS]:
+        if best_m < targets_m[0]:
+            best_m = max(best_m, bound_of_m(most, EFFORTS_SHARED[1], PART_THEN))
     return best_m
 
 
@@ -184,6 +196,10 @@ def _of_apart_m(
         main = max(group, key=lambda k: found[k].flown_m)
         if len(group) > 1 and not found[main].whole:
             ways.append([[(found[main].swept, _ground(found, group))] * found[main].visits])
+            if not decompose.is_plain(found[main].region.area):
+                # Divided it is seen along several headings; those near it are left out then.
+                ways[-1] += _divided(seeing, found[main])
+                allowance.spend(LINES_DIVIDED)
             continue
         for k in [group[j] for j in apart([found[k] for k in group], linked[np.ix_(group, group)])]:
             unit = found[k]
@@ -200,7 +216,7 @@ def _of_apart_m(
     every = list(itertools.product(*ways))
     least_m = length_m
     for number, taken in enumerate(every):
-        if allowance.over:
+        if allowance.told:
             return 0.0
         sides, grounds = zip(*(each for of_unit in taken for each in of_unit), strict=True)
         # Of the next way no more is worth proving than of the worst so far.

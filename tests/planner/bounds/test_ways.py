@@ -23,6 +23,16 @@ METHODS: list[dict[str, str]] = [
 ELL = [
     [[0.04, 0.03], [0.05, 0.03], [0.05, 0.034], [0.044, 0.034], [0.044, 0.042], [0.04, 0.042], [0.04, 0.03]]
 ]
+#: An L with arms three to four swaths wide.
+BENT = [
+    (0.02, 0.02),
+    (0.045, 0.02),
+    (0.045, 0.032),
+    (0.032, 0.032),
+    (0.032, 0.05),
+    (0.02, 0.05),
+    (0.02, 0.02),
+]
 
 
 def twins() -> list[dict[str, Any]]:
@@ -98,3 +108,40 @@ def test_with_nothing_known_of_its_regions_a_plan_is_as_long_as_straight_on() ->
     assert bound == pytest.approx(np.hypot(*np.subtract(scenario.start.position, scenario.end.position)))
     apart = replace(scenario, start=scenario.end)
     assert plan_bound_m(apart, 50_000.0, names) == 0.0
+
+
+def test_the_bound_is_below_the_mission_and_the_gap_is_of_the_route() -> None:
+    """Of a short route much is flown before and after the mission phase: neither is below the bound."""
+    near = feature("P", "roi", "Point", [0.004, 0.003])
+    start = feature("start", "start", "Point", [0.0, 0.0])
+    document = small(start, near)
+    document["features"] = [start, near]
+    scenario = read_scenario(document)
+    metrics = with_bound(scenario, make_plan(scenario)).metrics
+    assert metrics.lower_bound_m is not None
+    assert metrics.gap is not None
+    assert metrics.route_length_m is not None
+    assert metrics.length_m < 0.95 * metrics.route_length_m
+    assert metrics.lower_bound_m == metrics.length_m
+    # What is proved is more, and the gap says so.
+    assert 0.0 <= metrics.gap < 1.0 - metrics.lower_bound_m / metrics.route_length_m
+
+
+def test_of_a_bent_region_near_another_the_division_counts() -> None:
+    """Beside another region it may be divided as well as alone: no method's plan is below any bound."""
+    ell = feature("L", "roi", "Polygon", [[[x, y] for x, y in BENT]])
+    beside = feature("Q", "roi", "Polygon", square(0.052, 0.03, 0.012))
+    lengths, bounds = [], []
+    for method in METHODS:
+        document = small(ell, beside, method=method)
+        document["features"] = [f for f in document["features"] if f["id"] not in ("A", "B")]
+        scenario = read_scenario(document)
+        try:
+            plan = with_bound(scenario, make_plan(scenario))
+        except InfeasibleError:
+            continue
+        assert plan.metrics.lower_bound_m is not None
+        lengths.append(plan.metrics.route_length_m)
+        bounds.append(plan.metrics.lower_bound_m)
+    bounds.append(plan_bound_m(scenario, 1.3 * min(lengths)))
+    assert 0.4 * min(lengths) < max(bounds) <= min(lengths) + 1e-6
