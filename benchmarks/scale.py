@@ -100,14 +100,17 @@ def run(
     for regions, threats in sizes:
         for seed in seeds if isinstance(seeds, (list, tuple)) else (seeds,):
             with context.Pool(1) as pool:
-                document = scenario_document(regions, threats, seed)
-                yield pool.apply(_row, (document, threats, repeats))
+                yield pool.apply(_row, (regions, threats, seed, repeats))
     if wide:
         with context.Pool(1) as pool:
-            yield pool.apply(_row, (wide_document(), 0, repeats))
+            yield pool.apply(_row_of, (wide_document(), 0, repeats))
 
 
-def _row(document: dict[str, Any], threats: int, repeats: int) -> dict[str, Any]:
+def _row(regions: int, threats: int, seed: int, repeats: int) -> dict[str, Any]:
+    return _row_of(scenario_document(regions, threats, seed), threats, repeats)
+
+
+def _row_of(document: dict[str, Any], threats: int, repeats: int) -> dict[str, Any]:
     warm_up()
     scenario = read_scenario(document)
     seconds = []
