@@ -1,8 +1,8 @@
 """Whole flights in PX4's simulated aeroplane and multirotor take as long as planned.
 
 Skipped unless ``SWATHPLAN_PX4`` names the simulator's binary and ``SWATHPLAN_PX4_ROMFS`` its ``etc`` folder;
-see ``px4.py``. In still air: the model of v1.16 has no wind. ``pytest --log-cli-level=INFO`` shows a row for
-each.
+see ``px4.py``. In wind where the simulator has one (SIH_WIND_N, SIH_WIND_E), which v1.16 has not.
+``pytest --log-cli-level=INFO`` shows a row for each.
 """
 
 from __future__ import annotations
@@ -15,9 +15,19 @@ import pytest
 from mavlink.encoding.encode import encode
 from planner.geojson import read_scenario
 from planner.pipeline import make_plan
-from tests.flows.flying import case_document, store
+from tests.flows.flying import WIND, case_document, store
 from tests.flows.phases import POWER_W, compared, small_case
-from tests.flows.px4 import AEROPLANE, BINARY, MULTIROTOR, PARAMETERS, ROMFS, fly, simulated
+from tests.flows.px4 import (
+    AEROPLANE,
+    BINARY,
+    MULTIROTOR,
+    PARAMETERS,
+    ROMFS,
+    fly,
+    has_parameter,
+    simulated,
+    wind,
+)
 
 pytestmark = [
     pytest.mark.px4,
@@ -64,6 +74,30 @@ async def test_an_aeroplane_takes_as_long_as_planned(tmp_path: Path, case: int) 
     # PX4 climbs out steeper than planned: it is high enough before the place where the take-off ends.
     assert found.share_of("take_off", "climb") == pytest.approx(1.0, abs=0.05)
     assert found.share_of("landing") == pytest.approx(1.0, abs=0.05)
+
+
+@pytest.mark.skipif(
+    bool(BINARY and ROMFS) and not has_parameter("SIH_WIND_E"),
+    reason="the simulator has no wind (SIH_WIND_N, SIH_WIND_E: PX4 after v1.17)",
+)
+async def test_in_wind_an_aeroplane_takes_as_long_as_planned(tmp_path: Path) -> None:
+    """With twice the thrust at 16 m/s in 8: the whole flight and the mission within 3 %."""
+    speed_m_s = 16.0
+    # Slopes that PX4's rates allow with the wind behind, flown at the airspeed.
+    part = speed_m_s / (speed_m_s + WIND[0])
+    faster = dict.fromkeys(("FW_AIRSPD_TRIM", "FW_TKO_AIRSPD", "FW_LND_AIRSPD"), speed_m_s)
+    rates = {"FW_T_CLMB_R_SP": 3.0 * part, "FW_T_SINK_R_SP": 2.0 * part}
+    parameters = {**PARAMETERS, **faster, **rates, "SIH_T_MAX": 12.0, "FW_THR_TRIM": 0.6}
+    vehicle = {**VEHICLE, "airspeed_m_s": speed_m_s}
+    plan = make_plan(read_scenario(case_document(1, vehicle, MARGINS, WIND)))
+    mission = encode(plan)
+    async with simulated(tmp_path, plan.home, 12.0, parameters, AEROPLANE) as client:
+        await store(client, mission)
+        async with wind(client, *WIND):
+            flight = await fly(client)
+    found = compared(flight, plan.paths[0], "PX4, wing, case 1", f"{WIND[0]:g} m/s from {WIND[1]:g}°")
+    assert found.share == pytest.approx(1.0, abs=WITHIN)
+    assert found.share_of("mission") == pytest.approx(1.0, abs=WITHIN)
 
 
 async def test_a_multirotor_takes_as_long_as_planned(tmp_path: Path) -> None:
