@@ -167,12 +167,24 @@ def _high_ground(
         high = ground.above(level_m - clearance_m, within)
         parts = [part for zone in high for part in _without_holes(zone)]
         parts.sort(key=lambda polygon: -polygon.area)
-        ceiling_m = math.nextafter(next_m, -math.inf) if math.isfinite(next_m) else math.inf
         zones += [
-            NoFlyZone(f"terrain-{len(zones) + number}", part, ceiling_m=ceiling_m)
+            NoFlyZone(
+                f"terrain-{len(zones) + number}",
+                part,
+                ceiling_m=_ceiling_m(part, ground, next_m, clearance_m),
+            )
             for number, part in enumerate(parts[:MAX_ZONES], start=1)
         ]
     return tuple(zones)
+
+
+def _ceiling_m(part: shapely.Polygon, ground: Ground, next_m: float, clearance_m: float) -> float:
+    """Where it is high enough over the highest of it; under the next level, which has zones of its own."""
+    if math.isinf(next_m):
+        return math.inf
+    below_m = math.nextafter(next_m, -math.inf)
+    top_m = ground.range_over(part)[1]
+    return below_m if math.isnan(top_m) else min(below_m, top_m + clearance_m)
 
 
 def _without_holes(zone: shapely.Polygon) -> list[shapely.Polygon]:

@@ -149,15 +149,16 @@ def fall(foot: Foot, origin: Anchor, terms: Terms) -> Rise:
     ``foot.angle_rad`` is the direction in which the aircraft arrives. ``run_m`` and ``turns_m`` of what is
     given count from the ground, backwards.
     """
-    backwards = replace(terms, connect=lambda a, b: terms.connect(_turned(b), _turned(a)).reverse())
+    backwards = replace(terms, connect=lambda a, b: terms.connect(turned(b), turned(a)).reverse())
     back = None if foot.angle_rad is None else foot.angle_rad + math.pi
     # With the wind ahead at the landing it is behind on the line flown backwards.
     into = None if foot.into_rad is None else foot.into_rad + math.pi
-    up = rise(replace(foot, angle_rad=back, into_rad=into), _turned(origin), backwards)
+    up = rise(replace(foot, angle_rad=back, into_rad=into), turned(origin), backwards)
     return Rise(up.path.reverse(), up.heights.reverse(), up.run_m, up.turns_m)
 
 
-def _turned(anchor: Anchor) -> Anchor:
+def turned(anchor: Anchor) -> Anchor:
+    """The same place, flown over the other way."""
     angle_rad = None if anchor.angle_rad is None else anchor.angle_rad + math.pi
     return Anchor(anchor.east_m, anchor.north_m, angle_rad)
 

@@ -15,7 +15,7 @@ from planner.airspace.airspace import Airspace, Level
 from planner.airspace.zones import TRANSIT_MARGIN_M, KeepOut, keep_out
 from planner.dubins.path import Path, Segment, join
 from planner.errors import InfeasibleError
-from planner.profile.change import Changed, changed, kept
+from planner.profile.change import Changed, Layers, changed, kept
 from planner.profile.compose import Composed, compose, times_of
 from planner.profile.ends import Surround, climb_slope_rad, down, sink_slope_rad, up
 from planner.profile.finish import finish_of
@@ -277,16 +277,15 @@ def _changed(
     if here.altitude_m == there.altitude_m:
         leg = connector(start, goal, layers.zones(here, None, TRANSIT_MARGIN_M))
         return kept(leg, here.altitude_m)
-    climbs = here.altitude_m < there.altitude_m
-    bottom, top = (here, there) if climbs else (there, here)
-    slope_rad = climb_slope_rad(model) if climbs else sink_slope_rad(model)
-    run_m = abs(there.altitude_m - here.altitude_m) / math.tan(slope_rad)
-
-    def low(path: Path) -> Path:
-        return cut(path, 0.0, run_m) if climbs else cut(path, path.length_m - run_m, path.length_m)
-
-    around = layers.around(top, bottom.level, connector, low)
-    return changed(around.connect(start, goal), here.altitude_m, there.altitude_m, model, around)
+    bottom, top = sorted(pair, key=lambda levels: levels.altitude_m)
+    around = layers.around(top, bottom.level, connector, lambda path: path)
+    of_heights = Layers(
+        layers.zones(bottom, None, TRANSIT_MARGIN_M),
+        layers.zones(top, None, TRANSIT_MARGIN_M),
+        layers.zones(top, bottom.level, TRANSIT_MARGIN_M),
+    )
+    line = partial(connector, start, goal)
+    return changed(line, here.altitude_m, there.altitude_m, model, around, of_heights)
 
 
 def _leaves(station: Station, arrived: Path) -> Anchor:

@@ -111,6 +111,42 @@ def test_zones_count_where_they_are() -> None:
     assert min(crossed) > 400.0
 
 
+WALL = square(0.018, -0.012, 0.002)
+WALL[0][2:4] = [[0.020, 0.020], [0.018, 0.020]]
+SHELF = square(0.022, -0.014, 0.034)
+BARS = {"wall": (WALL, {"ceiling_m": 350.0}), "shelf": (SHELF, {"floor_m": 350.0, "ceiling_m": 3000.0})}
+
+
+@pytest.mark.parametrize("kind", TYPES)
+@pytest.mark.parametrize("bar", BARS)
+@pytest.mark.parametrize("back", [False, True])
+def test_heights_are_changed_where_zones_leave_room(kind: str, bar: str, back: bool) -> None:
+    """From high to low beside a wall, and to low under an airspace, either way round: nothing is entered."""
+    document = three((600.0, 150.0), kind, altitude_reference="amsl")
+    ring, band = BARS[bar]
+    document["features"].append(feature("N", "no_fly", "Polygon", ring, **band))
+    start = next(f for f in document["features"] if f["properties"]["role"] == "start")
+    if back:
+        document["features"].append(feature("E", "end", "Point", start["geometry"]["coordinates"][:2]))
+        start["geometry"]["coordinates"] = [0.055, 0.006]
+    start["geometry"]["coordinates"] = [*start["geometry"]["coordinates"][:2], 0.0]
+    plan = plan_of(document)
+    assert plan.violations == ()
+    assert set(plan.metrics.coverage.values()) == {1.0}
+
+
+@pytest.mark.parametrize("kind", TYPES)
+def test_heights_are_changed_clear_of_the_ground(kind: str) -> None:
+    """A ridge between a high and a low region is flown over before it goes down, without false zones."""
+    document = three((600.0, 150.0), kind, terrain="ridge", altitude_reference="amsl")
+    document["features"].append(feature("E", "end", "Point", [0.055, 0.006]))
+    frame = read_scenario(three((None, None))).frame
+    at_m = float(frame.to_local([(0.021, 0.006)])[0][0])
+    ridge = raster(lambda e, n: 5.0 + 300.0 * np.exp(-(((e - at_m) / 250.0) ** 2)), frame)
+    plan = plan_of(document, ridge=ridge)
+    assert plan.violations == ()
+
+
 def test_each_region_has_its_height_over_its_own_ground() -> None:
     """On terrain an altitude of a region's own counts over its own highest ground."""
     document = three((150.0, None, 150.0), terrain="hill", altitude_reference="terrain", altitude_m=400.0)
