@@ -102,7 +102,7 @@ async def test_in_wind_an_aeroplane_takes_as_long_as_planned(tmp_path: Path) -> 
 
 async def test_a_multirotor_takes_as_long_as_planned(tmp_path: Path) -> None:
     """Its corners, short legs and climbs are in the plan: the whole flight and the mission within 3 %."""
-    plan = make_plan(read_scenario(small_case(autopilot="px4")))
+    plan = make_plan(read_scenario(small_case(autopilot="px4", airspeed_m_s=8.0)))
     mission = encode(plan)
     async with simulated(tmp_path, plan.home, 12.0, PARAMETERS, MULTIROTOR) as client:
         await store(client, mission)
