@@ -89,7 +89,7 @@ def others(document: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
 def run(
     seeds: Any = 3, kinds: Any = KINDS, compared: bool = False, first: int = 0
 ) -> Iterator[dict[str, Any]]:
-    """One row a scenario, and the last of them all.
+    """One row a scenario, then one a kind, and the last of them all.
 
     Parameters
     ----------
@@ -104,18 +104,26 @@ def run(
         for kind in [kinds] if isinstance(kinds, str) else kinds:
             rows.append(_row(kind, seed, compared))
             yield rows[-1]
-    yield _all_of(rows)
+    yield from summaries(rows)
 
 
-def _all_of(rows: list[dict[str, Any]]) -> dict[str, Any]:
-    """What all rows say together."""
+def summaries(rows: list[dict[str, Any]]) -> Iterator[dict[str, Any]]:
+    """What rows say together, of each kind and of all."""
+    for kind in dict.fromkeys(row["kind"] for row in rows):
+        yield _together(kind, [row for row in rows if row["kind"] == kind])
+    yield _together("all", rows)
+
+
+def _together(kind: str, rows: list[dict[str, Any]]) -> dict[str, Any]:
     parts = [row["share_s"] / (row["planned_s"] + row["share_s"]) for row in rows]
     return {
         "bench": "bound",
-        "kind": "all",
+        "kind": kind,
         "scenarios": len(rows),
         "gap": statistics.median(row["gap"] for row in rows),
+        "most_gap": max(row["gap"] for row in rows),
         "gap_in_a_third": statistics.median(row["gap_in_a_third"] for row in rows),
+        "most_in_a_third": max(row["gap_in_a_third"] for row in rows),
         "over_half": sum(row["gap"] > 0.5 for row in rows),
         "over_half_in_a_third": sum(row["gap_in_a_third"] > 0.5 for row in rows),
         "below_collection": sum(row["below_collection"] for row in rows),
