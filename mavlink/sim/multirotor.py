@@ -28,10 +28,12 @@ class MultirotorModel:
     """Flight of a point mass under a thrust that tilts.
 
     The horizontal acceleration is ``a = g tan(tilt) - k (v - wind)``: thrust less linear drag, k such that
-    the fastest airspeed takes 0.8 of the largest tilt. The controller wants ``2.5 (v_wanted - v) + a_known``
-    plus what it has learnt of drag and wind, which lags by half a second, so gusts are felt. The thrust
-    follows as a first-order lag under limits of tilt and jerk. Climb is a lag under an acceleration limit;
-    the yaw rate is limited. On the ground it stands still until launched; wind does not push it there.
+    the fastest airspeed takes 0.8 of the largest tilt. Against a wind it flies no faster through the air than
+    the limits' airspeed, or than it is told over the ground, as autopilots do whose tilt is limited. The
+    controller wants ``2.5 (v_wanted - v) + a_known`` plus what it has learnt of drag and wind, which lags by
+    half a second, so gusts are felt. The thrust follows as a first-order lag under limits of tilt and jerk.
+    Climb is a lag under an acceleration limit; the yaw rate is limited. On the ground it stands still until
+    launched; wind does not push it there.
 
     Parameters
     ----------
@@ -142,8 +144,8 @@ class MultirotorModel:
         velocity = (old.north_m_s, old.east_m_s)
         drag = (-self._drag_per_s * (velocity[0] - wind[0]), -self._drag_per_s * (velocity[1] - wind[1]))
         known = (hover.north_m_s2, hover.east_m_s2)
-        fastest = self._limits.fastest_m_s
-        wanted = _shortened((hover.north_m_s, hover.east_m_s), fastest)
+        wanted = _shortened((hover.north_m_s, hover.east_m_s), self._limits.fastest_m_s)
+        wanted = _against(wanted, wind, self._limits.airspeed_m_s)
         asked = _shortened(
             (
                 _VELOCITY_GAIN * (wanted[0] - velocity[0]) + known[0] - self._learnt[0],
@@ -180,6 +182,18 @@ class MultirotorModel:
         power_w = max(level_w + climb_w, _LEAST_POWER * self._cruise_power_w)
         full_w = 2.0 * self._cruise_power_w + self._mass_kg * GRAVITY_M_S2 * self._limits.climb_m_s
         return min(power_w / full_w, 1.0), power_w
+
+
+def _against(
+    wanted: tuple[float, float], wind: tuple[float, float], airspeed_m_s: float
+) -> tuple[float, float]:
+    """A velocity over the ground, on its course no faster than the airspeed lets it in a wind."""
+    speed = math.hypot(*wanted)
+    if speed == 0.0:
+        return wanted
+    along = (wind[0] * wanted[0] + wind[1] * wanted[1]) / speed
+    across_2 = wind[0] ** 2 + wind[1] ** 2 - along**2
+    return _shortened(wanted, max(along + math.sqrt(max(max(airspeed_m_s, speed) ** 2 - across_2, 0.0)), 0.0))
 
 
 def _shortened(vector: tuple[float, float], most: float) -> tuple[float, float]:

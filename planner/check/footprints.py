@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any, Protocol
 
 import numpy as np
@@ -10,7 +11,7 @@ from numpy.typing import NDArray
 from shapely.geometry import MultiPolygon, Polygon
 
 from planner.airspace.airspace import Airspace, Level
-from planner.airspace.values import Wind
+from planner.airspace.values import STILL_AIR, Wind
 from planner.plan import Collect
 from planner.route import Look
 from planner.scenario import Scenario
@@ -43,10 +44,12 @@ def footprint(scenario: Scenario, collect: Collect) -> Polygon | MultiPolygon:
     """Ground seen at full resolution during a collect, in the local frame; without what terrain hides."""
     sensor = scenario.suite.named(collect.sensor)
     line_m = scenario.frame.to_local([place[:2] for place in collect.line])
-    airspeed_m_s = next(a.airspeed_m_s for a in scenario.aircraft if a.name == collect.vehicle)
+    aircraft = next(a for a in scenario.aircraft if a.name == collect.vehicle)
+    # What hovers points its nose along the line: as in still air.
+    airspace = replace(scenario.airspace, wind=STILL_AIR) if aircraft.hovers else scenario.airspace
     altitude_m = collect.line[0][2]
-    where = (scenario.airspace, scenario.level.at(altitude_m))
-    return FOOTPRINTS[sensor.kind](sensor, line_m, collect.look, altitude_m, airspeed_m_s, *where)
+    where = (altitude_m, aircraft.airspeed_m_s, airspace, scenario.level.at(altitude_m))
+    return FOOTPRINTS[sensor.kind](sensor, line_m, collect.look, *where)
 
 
 def sar_footprint(

@@ -1,7 +1,7 @@
 """How long a published line takes, by the judge's own reckoning.
 
 Wings: every edge at the true airspeed of its height, as the wind lets it go over the ground. What hovers: as
-fast as the bends of the line and its acceleration allow, at rest where it climbs on the spot.
+fast as the wind, the bends of the line and its acceleration allow, at rest where it climbs on the spot.
 """
 
 from __future__ import annotations
@@ -35,10 +35,12 @@ def line_s(line_m: Floats, altitudes_m: Floats, aircraft: Aircraft, wind: Wind, 
     rises_m = np.diff(altitudes_m)
     spot = over_m <= SPOT_M
     hover_s = _spot_s(rises_m, spot, manners)
-    if aircraft.type == "multirotor":
-        return hover_s + _rotor_s(line_m[np.concatenate([[True], ~spot])], rises_m[~spot], aircraft, manners)
     if wind.speed_m_s >= aircraft.airspeed_m_s:
         return math.inf
+    if aircraft.hovers:
+        return hover_s + _rotor_s(
+            line_m[np.concatenate([[True], ~spot])], rises_m[~spot], aircraft, wind, manners
+        )
     flown = ~spot
     middles_m = datum_amsl_m + 0.5 * (altitudes_m[1:] + altitudes_m[:-1])[flown]
     # ICAO standard atmosphere: density falls with the 4.2559th power of temperature.
@@ -77,7 +79,17 @@ def _rest_to_rest_s(distance_m: float, speed_m_s: float, accel_m_s2: float) -> f
     return 0.0 if peak <= 0.0 else distance_m / peak + peak / accel_m_s2
 
 
-def _rotor_s(line_m: Floats, rises_m: Floats, aircraft: Aircraft, manners: Manners) -> float:
+def _against_m_s(edges: Floats, over_m: Floats, airspeed_m_s: float, wind: Wind, sharing: float) -> Floats:
+    """Speed over the ground of what hovers: that of still air, or what its airspeed leaves in this wind."""
+    ahead = edges / over_m[:, None]
+    toward_m_s = wind.speed_m_s * np.array([math.cos(wind.toward_rad), math.sin(wind.toward_rad)])
+    along_m_s = ahead @ toward_m_s
+    beside_m_s = np.abs(ahead @ np.array([-toward_m_s[1], toward_m_s[0]]))
+    left_m_s = along_m_s + (airspeed_m_s**sharing - beside_m_s**sharing) ** (1.0 / sharing)
+    return np.asarray(np.minimum(left_m_s, airspeed_m_s), dtype=np.float64)
+
+
+def _rotor_s(line_m: Floats, rises_m: Floats, aircraft: Aircraft, wind: Wind, manners: Manners) -> float:
     """Over the ground, from rest to rest."""
     edges = np.diff(line_m, axis=0)
     over_m = np.hypot(edges[:, 0], edges[:, 1])
@@ -87,7 +99,8 @@ def _rotor_s(line_m: Floats, rises_m: Floats, aircraft: Aircraft, manners: Manne
     rate = np.where(rises_m > 0.0, manners.climb_m_s, manners.sink_m_s)
     with np.errstate(divide="ignore"):
         limits = np.minimum(
-            aircraft.airspeed_m_s, np.where(rises_m == 0.0, np.inf, rate * lengths_m / np.abs(rises_m))
+            _against_m_s(edges, over_m, aircraft.airspeed_m_s, wind, manners.sharing),
+            np.where(rises_m == 0.0, np.inf, rate * lengths_m / np.abs(rises_m)),
         )
     turned = np.abs(np.mod(np.diff(np.arctan2(edges[:, 1], edges[:, 0])) + np.pi, 2.0 * np.pi) - np.pi)
     capped_m = np.minimum(over_m, MAX_ARC_EDGE_M)

@@ -19,6 +19,7 @@ from planner.plan import Collect, Plan
 from planner.sensors.sar import SarSensor
 from planner.sensors.suite import Suite
 from planner.vehicle.aircraft import Aircraft
+from planner.vehicle.model import FlightModel
 from planner.wishes import Region
 
 #: Overlays are done on a grid: without one, outlines equal but for rounding can be taken for disjoint.
@@ -144,14 +145,14 @@ def _flown(
     samples: Sequence[TrackSample],
 ) -> Flown:
     """One interval in the local frame, matched to its collect."""
-    airspeed_m_s = next(a.airspeed_m_s for a in asked.aircraft if a.name == collect.vehicle)
-    wind = asked.airspace.wind
+    aircraft = next(a for a in asked.aircraft if a.name == collect.vehicle)
+    model = FlightModel.of(aircraft, asked.airspace.wind)
     middle = places[len(places) // 2]
     # Where north is on the interval's map; it changes little along one pass.
     north_rad = asked.frame.angle_rad(float(middle[0]), float(middle[1]), 0.0)
     headings_deg = [math.nan if s.heading_deg is None else s.heading_deg for s in samples]
     return Flown(
-        sensor.in_wind(wind.speed_m_s / airspeed_m_s, wind.toward_rad),
+        sensor.in_wind(model.drift, model.wind.toward_rad),
         collect.look,
         asked.frame.to_local([place[:2] for place in collect.line]),
         places,

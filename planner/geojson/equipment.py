@@ -16,12 +16,16 @@ from planner.vehicle.aircraft import (
     turn_radius_from_bank_m,
     turn_radius_from_load_factor_m,
 )
+from planner.vehicle.steadiness import Steadiness, steadiness_of
 from planner.wishes import Method, Objective
 
 #: Sensors that scenarios may name and this version does not plan.
 NOT_YET = ("camera",)
 #: A multirotor without a stated turn limit rounds its corners with this bank.
 MULTIROTOR_BANK_DEG = 25.0
+
+VEHICLE_TYPES = ("fixed_wing", "multirotor", "vtol")
+AUTOPILOTS = ("ardupilot", "px4")
 
 METHODS = {
     "coverage": ("auto", "li2018"),
@@ -40,8 +44,8 @@ def read_aircraft(raw: Any, index: int, findings: Findings) -> Aircraft | None:
     name = raw.get("name")
     fields = Fields(f"vehicle {name if name else index}", raw, findings)
     name = fields.text("name")
-    kind: Any = fields.choice("type", ("fixed_wing", "multirotor", "vtol"), "fixed_wing")
-    autopilot: Any = fields.choice("autopilot", ("ardupilot", "px4"), "ardupilot")
+    kind: Any = fields.choice("type", VEHICLE_TYPES, "fixed_wing")
+    autopilot: Any = fields.choice("autopilot", AUTOPILOTS, "ardupilot")
     airspeed_m_s = fields.number("airspeed_m_s", above=0.0, maximum=400.0)
     radius_m = _turn_radius_m(fields, airspeed_m_s, kind)
     max_climb_deg = fields.number("max_climb_deg", 8.0, above=0.0, below=90.0)
@@ -50,7 +54,9 @@ def read_aircraft(raw: Any, index: int, findings: Findings) -> Aircraft | None:
     reserve = fields.number("reserve", DEFAULT_RESERVE, minimum=0.0, below=1.0)
     range_m = fields.number("max_range_m", None, above=0.0)
     time_s = fields.number("max_flight_time_s", None, above=0.0)
-    settle_m = fields.number("settle_m", 0.0, minimum=0.0)
+    steady = named_steadiness(raw)
+    steady_m = 0.0 if steady is None or airspeed_m_s is None else steady.settle_s * airspeed_m_s
+    settle_m = fields.number("settle_m", steady_m, minimum=0.0)
     base = fields.text("base", None)
     finish: Any = fields.choice("finish", ("auto", "land", "return", "loiter"), "auto")
     if "reserve" in fields and energy_wh is None:
@@ -79,6 +85,17 @@ def read_aircraft(raw: Any, index: int, findings: Findings) -> Aircraft | None:
         name, kind, autopilot, airspeed_m_s, radius_m, max_climb_deg, energy_wh, power_w, range_m, time_s,
         settle_m, base, reserve=reserve, finish=finish,
     )  # fmt: skip
+
+
+def named_steadiness(raw: Any) -> Steadiness | None:
+    """Of the autopilot that an entry of ``vehicles`` names; None where it names none that is known."""
+    if not isinstance(raw, Mapping):
+        return None
+    autopilot: Any = raw.get("autopilot")
+    kind: Any = raw.get("type") or "fixed_wing"
+    if autopilot not in AUTOPILOTS or kind not in VEHICLE_TYPES:
+        return None
+    return steadiness_of(autopilot, kind)
 
 
 def _turn_radius_m(fields: Fields, airspeed_m_s: float | None, kind: str | None) -> float | None:
@@ -111,13 +128,16 @@ def _given(fields: Fields) -> list[str]:
     return [n for n in ("min_turn_radius_m", "max_bank_deg", "max_load_factor") if n in fields]
 
 
-def read_sensor(raw: Any, index: int, findings: Findings) -> Sensor | None:
-    """One entry of ``sensors``."""
+def read_sensor(raw: Any, index: int, findings: Findings, steady: Steadiness | None = None) -> Sensor | None:
+    """One entry of ``sensors``, with the margins that its carrier needs where it states none."""
     if not isinstance(raw, dict):
         findings.error("scenario", "bad-value", f"sensors[{index}] is not an object", "Give an object.")
         return None
     name = raw.get("name")
-    fields = Fields(f"sensor {name if name else index}", raw, findings)
+    margins = {}
+    if steady is not None:
+        margins = {"pointing_margin_deg": steady.pointing_deg, "position_margin_m": steady.position_m}
+    fields = Fields(f"sensor {name if name else index}", raw, findings, margins)
     kind = fields.choice("type", (*KINDS, *(NOT_YET if raw.get("type") in NOT_YET else ())))
     if kind in NOT_YET:
         said = f"is a {kind}, which this version does not plan"

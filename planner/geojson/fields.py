@@ -6,6 +6,7 @@ import math
 import sys
 from collections.abc import Iterable, Mapping
 from enum import Enum
+from types import MappingProxyType
 from typing import Any, TypeVar
 
 from planner.errors import Finding
@@ -72,12 +73,21 @@ class Fields:
         The raw JSON object.
     findings
         Where findings go.
+    defaults
+        Numbers that stand in place of the readers' own where a property is absent.
     """
 
-    def __init__(self, owner: str, values: Mapping[str, Any], findings: Findings) -> None:
+    def __init__(
+        self,
+        owner: str,
+        values: Mapping[str, Any],
+        findings: Findings,
+        defaults: Mapping[str, float] = MappingProxyType({}),
+    ) -> None:
         self.owner = owner
         self._values = values
         self._findings = findings
+        self._defaults = defaults
         self._known: set[str] = set()
 
     def __contains__(self, name: str) -> bool:
@@ -105,7 +115,7 @@ class Fields:
         """
         value = self.raw(name)
         if value is None:
-            return self._absent(name, default, "a number")
+            return self._absent(name, self._defaults.get(name, default), "a number")
         if isinstance(value, bool) or not isinstance(value, (int, float)):
             self.wrong(name, f"must be a number, not {_kind(value)}", "Give a plain JSON number.")
             return None

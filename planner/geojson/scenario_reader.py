@@ -116,12 +116,11 @@ def _read(document: Any, findings: Findings, terrains: Terrains | None) -> Scena
 
     top = Fields("scenario", document, findings)
     top.refuse_unknown(also_known=MEMBERS)
-    aircraft = [
-        equipment.read_aircraft(raw, i, findings)
-        for i, raw in enumerate(equipment.listed(document, "vehicles", findings))
-    ]
+    vehicles = equipment.listed(document, "vehicles", findings)
+    aircraft = [equipment.read_aircraft(raw, i, findings) for i, raw in enumerate(vehicles)]
+    steady = equipment.named_steadiness(vehicles[0]) if vehicles else None
     sensors = [
-        equipment.read_sensor(raw, i, findings)
+        equipment.read_sensor(raw, i, findings, steady)
         for i, raw in enumerate(equipment.listed(document, "sensors", findings))
     ]
     if len(aircraft) > 1:

@@ -88,7 +88,7 @@ def times_of(model: FlightModel, datum_amsl_m: float) -> Times:
     manners = manners_of(model.aircraft)
     if model.aircraft.type == "multirotor":
         rotor = smoothed_times if manners.corner_m > 0.0 else rotor_times
-        return partial(rotor, speed_m_s=model.airspeed_m_s, manners=manners)
+        return partial(rotor, airspeed_m_s=model.airspeed_m_s, manners=manners, wind=model.wind)
     return partial(
         wing_times, aircraft=model.aircraft, manners=manners, wind=model.wind, datum_amsl_m=datum_amsl_m
     )

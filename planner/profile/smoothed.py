@@ -13,9 +13,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import groupby, pairwise
 
+from planner.airspace.values import STILL_AIR, Wind
 from planner.profile.flight import Stretch
 from planner.profile.jerks import HALVINGS, change_m, change_s, chords_of
 from planner.vehicle.manners import Manners
+from planner.vehicle.wind import held_speed_m_s
 
 #: Places nearer than this and the distance they are taken up early by are one in a mission.
 ONE_PLACE_M = 0.5
@@ -70,13 +72,15 @@ class Braking:
         return slowing_s + max(self.slack_m_s / (2.0 * self.accel_m_s2) - self.short_m / end_m_s, 0.0)
 
 
-def smoothed_times(stretches: Sequence[Stretch], speed_m_s: float, manners: Manners) -> list[float]:
+def smoothed_times(
+    stretches: Sequence[Stretch], airspeed_m_s: float, manners: Manners, wind: Wind = STILL_AIR
+) -> list[float]:
     """Seconds of each stretch: at rest before and behind every climb and descent on the spot."""
     found = _spots_s(stretches, manners)
     numbered = enumerate(stretches)
     for on_the_spot, run in groupby(numbered, key=lambda pair: pair[1].segment is None):
         if not on_the_spot:
-            legs = [leg for k, s in run for leg in _legs(k, s, speed_m_s, manners)]
+            legs = [leg for k, s in run for leg in _legs(k, s, airspeed_m_s, manners, wind)]
             for leg, time_s in zip(legs, _legs_s(legs, manners), strict=True):
                 found[leg.number] += time_s
     return found
@@ -99,21 +103,26 @@ def _legs_s(legs: Sequence[_Leg], manners: Manners) -> list[float]:
     return found
 
 
-def _legs(number: int, stretch: Stretch, speed_m_s: float, manners: Manners) -> list[_Leg]:
+def _legs(number: int, stretch: Stretch, airspeed_m_s: float, manners: Manners, wind: Wind) -> list[_Leg]:
     """The straights that a stretch is flown by."""
     segment = stretch.segment
     if segment is None or stretch.ground_m < manners.corner_m + ONE_PLACE_M:
         return []
     rise_m = stretch.end_altitude_m - stretch.start_altitude_m
     rate = manners.climb_m_s if rise_m > 0.0 else manners.sink_m_s
-    most = min(speed_m_s, rate * stretch.ground_m / abs(rise_m)) if abs(rise_m) > 0.0 else speed_m_s
+    steep_m_s = rate * stretch.ground_m / abs(rise_m) if abs(rise_m) > 0.0 else math.inf
+
+    def leg(length_m: float, angle_rad: float) -> _Leg:
+        held_m_s = float(held_speed_m_s(angle_rad, airspeed_m_s, wind, manners.sharing))
+        return _Leg(number, length_m, angle_rad, min(held_m_s, steep_m_s))
+
     if segment.kind == "straight":
-        return [_Leg(number, segment.length_m, segment.start.angle_rad, most)]
+        return [leg(segment.length_m, segment.start.angle_rad)]
     count = chords_of(abs(segment.turn_rad), segment.radius_m)
     step_rad = segment.turn_rad / count
     chord_m = 2.0 * segment.radius_m * math.sin(0.5 * abs(step_rad))
     first_rad = segment.start.angle_rad + 0.5 * step_rad
-    return [_Leg(number, chord_m, first_rad + k * step_rad, most) for k in range(count)]
+    return [leg(chord_m, first_rad + k * step_rad) for k in range(count)]
 
 
 def _turned_rad(leg: _Leg, behind: _Leg) -> float:

@@ -2,8 +2,8 @@
 
 Wings keep their airspeed as the autopilot measures it, the equivalent one, so through thinner air they fly
 faster: by the root of the density at sea level over that at their height (standard atmosphere). What hovers
-keeps a speed over the ground, and brakes before arcs to what it flies their chords with; under PX4 see
-``planner.profile.smoothed``.
+keeps a speed over the ground where its airspeed lets it (``planner.vehicle.wind.held_speed_m_s``), and brakes
+before arcs to what it flies their chords with; under PX4 see ``planner.profile.smoothed``.
 """
 
 from __future__ import annotations
@@ -12,14 +12,19 @@ import math
 from collections.abc import Sequence
 from itertools import groupby, pairwise
 
-from planner.airspace.values import Wind
+import numpy as np
+
+from planner.airspace.values import STILL_AIR, Wind
 from planner.dubins.path import Path
 from planner.profile.flight import Stretch
 from planner.profile.jerks import HALVINGS, change_m, change_s, chords_of
 from planner.vehicle.aircraft import Aircraft
 from planner.vehicle.atmosphere import true_over_equivalent
 from planner.vehicle.manners import Manners
-from planner.vehicle.wind import duration_s
+from planner.vehicle.wind import duration_s, held_speed_m_s
+
+#: Places of an arc at which the wind is asked for.
+_ALONG_ARC = (np.arange(16) + 0.5) / 16.0
 
 
 def wing_times(
@@ -71,9 +76,11 @@ def rest_to_rest_s(distance_m: float, speed_m_s: float, accel_m_s2: float) -> fl
     return distance_m / speed_m_s + speed_m_s / accel_m_s2
 
 
-def rotor_times(stretches: Sequence[Stretch], speed_m_s: float, manners: Manners) -> list[float]:
+def rotor_times(
+    stretches: Sequence[Stretch], airspeed_m_s: float, manners: Manners, wind: Wind = STILL_AIR
+) -> list[float]:
     """Seconds of each stretch flown by what hovers: at rest at both ends of what is flown over the ground."""
-    limits = [_allowed_m_s(s, speed_m_s, manners) for s in stretches]
+    limits = [_allowed_m_s(s, airspeed_m_s, manners, wind) for s in stretches]
     joints = [0.0, *(min(pair) for pair in pairwise(limits)), 0.0]
     for k, s in enumerate(stretches):
         joints[k + 1] = min(joints[k + 1], _reached_m_s(joints[k], s.ground_m, manners))
@@ -85,11 +92,13 @@ def rotor_times(stretches: Sequence[Stretch], speed_m_s: float, manners: Manners
     ]
 
 
-def _allowed_m_s(stretch: Stretch, speed_m_s: float, manners: Manners) -> float:
-    """Fastest on a stretch: on arcs what their chords allow, on slopes what the rates do."""
+def _allowed_m_s(stretch: Stretch, airspeed_m_s: float, manners: Manners, wind: Wind) -> float:
+    """Fastest on a stretch: what the wind, on arcs what their chords, on slopes what the rates allow."""
     if stretch.segment is None:
         return 0.0
-    allowed = speed_m_s
+    courses_rad = stretch.segment.start.angle_rad + stretch.segment.turn_rad * _ALONG_ARC
+    # On an arc the mean of the slowness: so long it takes.
+    allowed = 1.0 / float((1.0 / held_speed_m_s(courses_rad, airspeed_m_s, wind, manners.sharing)).mean())
     if stretch.segment.kind != "straight":
         turn_rad, radius_m = abs(stretch.segment.turn_rad), stretch.segment.radius_m
         allowed = min(allowed, chord_speed_m_s(turn_rad, radius_m, manners))

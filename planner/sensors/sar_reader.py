@@ -16,6 +16,8 @@ SPEED_OF_LIGHT_M_S = 299_792_458.0
 MAX_SQUINT_DEG = 60.0
 #: Beyond this there is nothing to call a pointing.
 MAX_POINTING_DEG = 15.0
+#: Margins that nobody asked for take no more than this part of the beam at either edge.
+UNASKED_PART = 0.125
 #: A spotlight pass turns no further than this round its place.
 MAX_TURNED_DEG = 60.0
 #: Two ways to say one thing may differ by this part.
@@ -55,6 +57,8 @@ def read_sar(fields: Properties) -> SarSensor | None:
             rule="swath-not-positive",
         )
         return None
+    if "pointing_margin_deg" not in fields:
+        pointing_deg = min(pointing_deg, UNASKED_PART * elevation_deg)
     if 2.0 * pointing_deg >= elevation_deg:
         fields.wrong(
             "pointing_margin_deg",

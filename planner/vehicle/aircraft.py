@@ -66,6 +66,11 @@ class Aircraft:
     finish: FinishWish = "auto"
 
     @property
+    def hovers(self) -> bool:
+        """Whether it flies on rotors alone: at a speed over the ground, its nose along its course."""
+        return self.type == "multirotor"
+
+    @property
     def usable_wh(self) -> float | None:
         """Energy that a flight may use; None where not limited."""
         return None if self.energy_wh is None else self.energy_wh * (1.0 - self.reserve)
@@ -73,8 +78,11 @@ class Aircraft:
     def in_wind(self, wind_m_s: float) -> Aircraft:
         """The same aircraft in a steady wind of this speed: its turns over the ground are wider.
 
-        Coming back to a line takes an autopilot time: downwind, over so much more ground.
+        Coming back to a line takes an autopilot time: downwind, over so much more ground. What hovers flies
+        no faster over the ground than in still air.
         """
+        if self.hovers:
+            return replace(self, wind_m_s=wind_m_s)
         longer = (self.airspeed_m_s + wind_m_s) / (self.airspeed_m_s + self.wind_m_s)
         return replace(self, wind_m_s=wind_m_s, settle_m=self.settle_m * longer)
 
@@ -85,6 +93,8 @@ class Aircraft:
         Downwind, at airspeed and wind together, the bank of ``min_turn_radius_m`` allows no tighter one; see
         ``planner.vehicle.wind``.
         """
+        if self.hovers:
+            return self.min_turn_radius_m
         return self.min_turn_radius_m * ((self.airspeed_m_s + self.wind_m_s) / self.airspeed_m_s) ** 2
 
     @property

@@ -47,6 +47,8 @@ class Manners:
         From this height on its descent slows down to the touch-down speed.
     take_off_m_s, take_off_below_m, take_off_accel_m_s2
         Its climb off the ground, up to a height.
+    sharing
+        How the parts of its airspeed share the tilt of what hovers: see ``planner.vehicle.wind``.
     height_reached_m
         So much under a height it counts as reached.
     """
@@ -65,12 +67,14 @@ class Manners:
     take_off_below_m: float = 0.0
     take_off_accel_m_s2: float = 0.0
     height_reached_m: float = 0.0
+    sharing: float = 2.0
 
 
 #: TECS_CLMB_MAX, TECS_SINK_MAX; Q_ACCEL_Z, Q_LAND_SPEED (hover of quadplanes).
 _PLANE = Manners(5.0, 5.0, land_m_s=0.5, land_below_m=6.0)
-#: WPNAV_SPEED_UP, WPNAV_SPEED_DN, WPNAV_ACCEL, WPNAV_JERK, WPNAV_ACCEL_Z, LAND_SPEED, LAND_ALT_LOW.
-_COPTER = Manners(2.5, 1.5, 2.5, 1.0, 1.0, 0.5, 10.0)
+#: WPNAV_SPEED_UP, WPNAV_SPEED_DN, WPNAV_ACCEL, WPNAV_JERK, WPNAV_ACCEL_Z, LAND_SPEED, LAND_ALT_LOW; its
+#: simulator's drag is that of each axis by itself, with the 1.5th power of the speed (``docs/flight.md``).
+_COPTER = Manners(2.5, 1.5, 2.5, 1.0, 1.0, 0.5, 10.0, sharing=3.0)
 #: FW_T_CLMB_R_SP, FW_T_SINK_R_SP; MPC_LAND_SPEED, MPC_LAND_ALT2 (hover of VTOLs).
 _PX4_WING = Manners(3.0, 2.0, land_m_s=0.7, land_below_m=5.0)
 #: MPC_Z_V_AUTO_UP, MPC_Z_V_AUTO_DN, MPC_ACC_HOR, MPC_JERK_AUTO, MPC_ACC_UP_MAX, MPC_LAND_SPEED,
@@ -81,7 +85,7 @@ _PX4_MULTIROTOR = Manners(3.0, 1.5, 3.0, 4.0, 4.0, 0.7, 5.0, 2.0, 0.5, 10.0, 1.5
 
 def manners_of(aircraft: Aircraft) -> Manners:
     """Those of an aircraft's autopilot for its type."""
-    hovers = aircraft.type == "multirotor"
+    hovers = aircraft.hovers
     if aircraft.autopilot == "px4":
         return _PX4_MULTIROTOR if hovers else _PX4_WING
     return _COPTER if hovers else _PLANE

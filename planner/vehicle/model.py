@@ -11,7 +11,14 @@ from planner.airspace.values import STILL_AIR, Wind
 from planner.errors import InfeasibleError
 from planner.route import Line
 from planner.vehicle.aircraft import Aircraft
-from planner.vehicle.wind import duration_s, ground_speed_m_s, still_air_costs, still_air_factor
+from planner.vehicle.manners import manners_of
+from planner.vehicle.wind import (
+    duration_s,
+    ground_speed_m_s,
+    held_speed_m_s,
+    still_air_costs,
+    still_air_factor,
+)
 
 Array = NDArray[np.float64]
 
@@ -77,11 +84,15 @@ class FlightModel:
 
     @property
     def drift(self) -> float:
-        """Speed of the wind by the airspeed."""
+        """Speed of the wind by the airspeed, for an aircraft that crabs; 0 for what hovers."""
+        if self.aircraft.hovers:
+            return 0.0
         return self.wind.speed_m_s / self.aircraft.airspeed_m_s
 
     def ground_speed_m_s(self, course_rad: ArrayLike) -> Array:
         """Speed over the ground on the courses given."""
+        if self.aircraft.hovers:
+            return held_speed_m_s(course_rad, self.airspeed_m_s, self.wind, manners_of(self.aircraft).sharing)
         return ground_speed_m_s(course_rad, self.airspeed_m_s, self.wind)
 
     def duration_s(self, line: Line) -> float:

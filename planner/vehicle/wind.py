@@ -45,6 +45,26 @@ def ground_speed_m_s(course_rad: ArrayLike, airspeed_m_s: float, wind: Wind) -> 
     )
 
 
+def held_speed_m_s(course_rad: ArrayLike, airspeed_m_s: float, wind: Wind, sharing: float) -> Array:
+    """Speed over the ground, on the courses given, of what holds that of still air for as long as it can.
+
+    What hovers does: its tilt, which its autopilot limits, lets it through the air at ``airspeed_m_s`` and
+    no faster, so the wind ahead or beside takes of its speed, and the wind behind adds nothing. Its nose
+    stays on the course; the parts of its airspeed along and across it, u and v, share the tilt::
+
+        u^p + v^p = V^p
+
+    Parameters
+    ----------
+    sharing
+        p: 2 where drag goes with the airspeed whatever its direction (the wind triangle).
+    """
+    delta = np.asarray(course_rad, dtype=np.float64) - wind.toward_rad
+    across = np.abs(np.sin(delta)) * wind.speed_m_s / airspeed_m_s
+    ahead_m_s = airspeed_m_s * (1.0 - across**sharing) ** (1.0 / sharing)
+    return np.minimum(wind.speed_m_s * np.cos(delta) + ahead_m_s, airspeed_m_s)
+
+
 def duration_s(path: Line, airspeed_m_s: float, wind: Wind) -> float:
     """Time to fly a line."""
     if wind.speed_m_s == 0.0:

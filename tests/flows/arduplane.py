@@ -54,8 +54,12 @@ def arduplane(
     model: str = "plane",
     binary: str = "",
     defaults: str = "",
+    heading_deg: float = 0.0,
 ) -> Iterator[subprocess.Popen[bytes]]:
-    """Run the simulator in a folder of its own, calling a port on loopback; ``home`` is (lon, lat)."""
+    """Run the simulator in a folder of its own, calling a port on loopback.
+
+    It stands at ``home`` (lon, lat) and points to ``heading_deg``, in which direction it takes off.
+    """
     own = folder / "own.parm"
     own.write_text("".join(f"{name} {value:g}\n" for name, value in parameters.items()))
     command = [
@@ -64,7 +68,7 @@ def arduplane(
         "--wipe",
         *("--model", model),
         *("--speedup", f"{speedup:g}"),
-        *("--home", f"{home[1]:.7f},{home[0]:.7f},{HOME_ALTITUDE_M:g},0"),
+        *("--home", f"{home[1]:.7f},{home[0]:.7f},{HOME_ALTITUDE_M:g},{heading_deg:g}"),
         *("--defaults", f"{(Path(defaults) if defaults else default_parameters(model)).resolve()},{own}"),
         *("--serial0", f"udpclient:127.0.0.1:{port}"),
         *("--serial1", "none"),
@@ -96,11 +100,12 @@ async def aeroplane(
     model: str = "plane",
     binary: str = "",
     defaults: str = "",
+    heading_deg: float = 0.0,
 ) -> AsyncIterator[VehicleClient]:
     """A simulator that has booted, and a client of it; another binary and its parameters where named."""
     link = await open_link("udpin:127.0.0.1:0")
     port = int(link.url.rpartition(":")[2])
-    with arduplane(folder, port, home, speedup, parameters, model, binary, defaults):
+    with arduplane(folder, port, home, speedup, parameters, model, binary, defaults, heading_deg):
         async with VehicleClient(link) as client:
             await booted(client)
             yield client

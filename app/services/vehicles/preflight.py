@@ -15,6 +15,7 @@ from mavlink.rules.table import Needs, ParameterFinding, judge_parameters
 from mavlink.state.telemetry import VehicleState
 from mavlink.wire.geometry import distance_m
 from planner.errors import Finding
+from planner.geojson.equipment import named_steadiness
 from planner.plan import Plan
 
 Status = Literal["ok", "warning", "failed"]
@@ -237,9 +238,15 @@ def _limits(scenario: Mapping[str, Any], name: str) -> Mapping[str, Any]:
 
 
 def settle_m(scenario: Mapping[str, Any], name: str) -> float | None:
-    """The straight flight a scenario's vehicle wants before each collect."""
-    value = _limits(scenario, name).get("settle_m")
-    return float(value) if isinstance(value, (int, float)) else None
+    """The straight flight a scenario's vehicle wants before each collect, itself or for its autopilot."""
+    vehicle = _limits(scenario, name)
+    value = vehicle.get("settle_m")
+    if isinstance(value, (int, float)):
+        return float(value)
+    steady, airspeed_m_s = named_steadiness(vehicle), vehicle.get("airspeed_m_s")
+    if steady is None or not isinstance(airspeed_m_s, (int, float)):
+        return None
+    return steady.settle_s * airspeed_m_s
 
 
 def _place(plan: Plan, state: VehicleState) -> Check:

@@ -82,7 +82,7 @@ function vehicle(index: number): Field[] {
     choice("vehicles", index, "autopilot", "Autopilot", [["ardupilot", "ArduPilot"], ["px4", "PX4"]]),
     finish(index),
     number("vehicles", index, "airspeed_m_s", "Airspeed", "m/s", { required: true }),
-    number("vehicles", index, "settle_m", "Straight before a pass", "m", { placeholder: "0", hint: "Straight flight wanted before each pass, so that the aircraft is on its line when the sensor goes on; 150 m suits an ArduPlane of 20 m/s" }),
+    number("vehicles", index, "settle_m", "Straight before a pass", "m", { placeholder: "its autopilot's", hint: "Straight flight wanted before each pass, so that the aircraft is on its line when the sensor goes on; left empty, as many seconds of it as the autopilot needs: 10 for ArduPlane" }),
     number("vehicles", index, "min_turn_radius_m", "Least turn radius", "m", { hint: "The widest of turn radius, bank and load factor counts" }),
     number("vehicles", index, "max_bank_deg", "Greatest bank", "°", { max: 84.9 }),
     number("vehicles", index, "max_load_factor", "Greatest load factor", "g", { min: 1 }),
@@ -125,8 +125,8 @@ function sensor(index: number): Field[] {
       ? [number("sensors", index, "sub_swaths", "Sub-swaths", "", { min: 1, placeholder: "3" })]
       : []),
     steered(index),
-    number("sensors", index, "pointing_margin_deg", "Pointing margin", "°", { max: 15, placeholder: "0", hint: "Planned with this much less of the beam at every edge, because the aircraft sways; 1.5° to 2° made real autopilots see every region whole" }),
-    number("sensors", index, "position_margin_m", "Position margin", "m", { placeholder: "0", hint: "Planned with this much less of the swath at every edge, because the aircraft is not quite on its line" }),
+    number("sensors", index, "pointing_margin_deg", "Pointing margin", "°", { max: 15, placeholder: "its autopilot's", hint: "Planned with this much less of the beam at every edge, because the aircraft sways; left empty, what its autopilot needs: 1.5° to 3°" }),
+    number("sensors", index, "position_margin_m", "Position margin", "m", { placeholder: "its autopilot's", hint: "Planned with this much less of the swath at every edge, because the aircraft is not quite on its line; left empty, what its autopilot needs: 2 to 5 m" }),
   ];
 }
 

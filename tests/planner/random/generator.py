@@ -139,6 +139,8 @@ def draw(number: int) -> Case:
         "autopilot": str(rng.choice(["ardupilot", "px4"])),
         "airspeed_m_s": round(speed_m_s, 2),
         "min_turn_radius_m": round(radius_m, 2),
+        # Not its autopilot's own: what a plain search finds is to be planned.
+        "settle_m": 0.0,
     }
     if rng.random() < 0.5:
         vehicle["settle_m"] = round(float(rng.uniform(0.3, 3.0)) * radius_m, 1)
@@ -187,6 +189,8 @@ def _sensors(rng: np.random.Generator) -> list[dict[str, Any]]:
             "azimuth_beamwidth_deg": round(float(rng.uniform(2.0, 10.0)), 1),
             "look": str(rng.choice(["left", "right", "both"])),
             "resolution_m": 1.0,
+            "pointing_margin_deg": 0.0,
+            "position_margin_m": 0.0,
         }
         if rng.random() < 0.15:
             sensor["squint_deg"] = round(float(rng.uniform(-20.0, 20.0)), 1)

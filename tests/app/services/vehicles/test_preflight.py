@@ -13,6 +13,7 @@ from mavlink.encoding.payload import RelayPayload
 from mavlink.rules.table import needs_of
 from mavlink.state.telemetry import VehicleState
 from planner.plan import Plan, Violation
+from planner.vehicle.steadiness import steadiness_of
 from tests.mavlink.plans import make_plan, square_fence
 
 PLAN = make_plan(fence=square_fence(5000.0), finish="return", altitude_reference="home")
@@ -199,6 +200,9 @@ def test_wind(speed_m_s: float, status: str) -> None:
 
 
 def test_settling_distance_is_the_scenarios() -> None:
-    """The vehicle's own, None where nothing is said."""
+    """The vehicle's own, its autopilot's at its airspeed, None where nothing is said."""
+    named = {"name": "b", "autopilot": "ardupilot", "airspeed_m_s": 20}
+    assert settle_m({"vehicles": [named]}, "b") == 20.0 * steadiness_of("ardupilot", "fixed_wing").settle_s
+    assert settle_m({"vehicles": [named | {"settle_m": 0}]}, "b") == 0.0
     assert settle_m({"vehicles": [{"name": "a"}, {"name": "b", "settle_m": 150}]}, "b") == 150.0
     assert settle_m({}, "b") is None
