@@ -81,11 +81,11 @@ class Settings(BaseSettings):
         default=8_000_000_000, ge=500_000_000, description="Most memory that one plan may take."
     )
     request_workers: int = Field(
-        default=2,
-        ge=1,
+        default=3,
+        ge=2,
         le=64,
         description="Processes for what requests compute beside plans: validation, imports, rasters, "
-        "exports, reports, what was seen.",
+        "exports, reports, what was seen; one of them is kept for missions on their way to a vehicle.",
     )
     request_time_limit_s: float = Field(
         default=30.0,

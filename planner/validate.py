@@ -57,7 +57,11 @@ def unseeable(scenario: Scenario) -> tuple[Finding, ...]:
     wide = scenario.method.coverage == "auto" and scenario.method.routing in ("auto", "joint")
     required = {region.name for region in scenario.regions if region.required}
     settle_m = scenario.aircraft[0].in_wind(scenario.wind.speed_m_s).settle_m
+    # What takes passes without number is not looked at pass by pass.
+    endless = {finding.feature for finding in laborious(scenario) if finding.severity == "error"}
     for region in scenario.regions:
+        if region.name in endless:
+            continue
         try:
             sensor, height_m = _over(scenario, region)
             family_of(sensor).check_seen(region, sensor, height_m, scenario.area, settle_m, wide=wide)

@@ -53,7 +53,7 @@ SCENARIO_SCHEMA: dict[str, Any] = {
         },
         "vehicles": {"type": "array", "items": {"type": "object"}, "minItems": 1},
         "sensors": {"type": "array", "items": {"type": "object"}, "minItems": 1},
-        "altitude_m": {"type": "number", "exclusiveMinimum": 0},
+        "altitude_m": {"type": "number", "minimum": 1},
         "altitude_reference": {"enum": ["amsl", "home", "terrain"], "default": "terrain"},
         "terrain": {"type": "string", "description": "Id of an uploaded elevation raster."},
         "wind": {"type": "object"},

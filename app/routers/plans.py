@@ -14,7 +14,6 @@ from app.problems import responses
 from app.routers.bodies import SCENARIO_BODY
 from app.routers.streams import event_stream
 from app.schemas.plans import PlanList, PlanOut, PlanStateName
-from app.services.documents import read_object
 
 router = APIRouter(prefix="/api/v1/plans", tags=["plans"])
 
@@ -63,10 +62,9 @@ async def post_plan(
 
     The answer is 202 with the plan's record and its place in `Location`, also when `wait` saw its end.
     """
-    document = read_object(await request.body())
     if scenario_id is not None:
         await scenarios.get(scenario_id)
-    record = await planning.submit(document, idempotency_key, scenario_id)
+    record = await planning.submit(await request.body(), idempotency_key, scenario_id)
     if wait > 0 and not record.ended:
         record = await planning.wait(record.id, min(wait, settings.max_wait_s))
     response.headers["Location"] = f"/api/v1/plans/{record.id}"

@@ -13,7 +13,7 @@ from app.routers.bodies import DRAFT_BODY, SCENARIO_BODY
 from app.schemas.base import FindingOut
 from app.schemas.plans import ValidationOut
 from app.schemas.scenarios import ScenarioList, ScenarioOut, ScenarioTextOut
-from app.services.documents import read_object, write_json
+from app.services.documents import write_json
 from app.services.errors import RefusedError
 from app.services.plans.work import finding_json
 from app.services.scenarios.regions_import import FORMAT_OF_MEDIA_TYPE, ImportOptions, import_file
@@ -53,7 +53,7 @@ def _revision(if_match: str) -> int | None:
 )
 async def keep(request: Request, scenarios: ScenariosDep, response: Response) -> ScenarioOut:
     """Keep a scenario people are at work on; it may be unfinished, and is not judged."""
-    record = await scenarios.add(read_object(await request.body()))
+    record = await scenarios.add(await request.body())
     response.headers["Location"] = f"/api/v1/scenarios/{record.id}"
     response.headers["ETag"] = f'"{record.revision}"'
     return ScenarioOut.of(record)
@@ -94,8 +94,7 @@ async def change(
     412 when somebody else has changed it since the revision in `If-Match`: read it again, or keep this one as
     a scenario of its own. The same text again changes nothing, not even the revision.
     """
-    document = read_object(await request.body())
-    record = await scenarios.change(scenario_id, document, _revision(if_match))
+    record = await scenarios.change(scenario_id, await request.body(), _revision(if_match))
     response.headers["ETag"] = f'"{record.revision}"'
     return ScenarioOut.of(record)
 
@@ -116,8 +115,7 @@ async def remove(scenario_id: str, scenarios: ScenariosDep, if_match: IfMatch = 
 )
 async def validate(request: Request, planning: PlanningDep) -> ValidationOut:
     """200 with warnings, or 422 with every rule the scenario breaks; plans nothing."""
-    document = read_object(await request.body())
-    verdict = await planning.validate(document)
+    verdict = await planning.validate(await request.body())
     if verdict.errors:
         raise RefusedError("the scenario is refused", verdict.errors + verdict.warnings)
     return ValidationOut(

@@ -5,15 +5,19 @@ The service's own process holds the links to the vehicles; nothing a request sen
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, NoReturn, TypeVar
 
-from app.services.errors import RefusedError, ServiceError
+from app.services.errors import OverloadedError, RefusedError, ServiceError
 from app.services.plans.pool import Pool, WorkerDiedError
 from planner.errors import Finding
 
 Made = TypeVar("Made")
+
+#: So many requests wait for each process; more are told to come again, after so long.
+WAITING_EACH, RETRY_AFTER_S = 16, 2
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,35 +46,67 @@ class Desk:
     ----------
     pool
         Where it is done.
+    workers
+        How many processes the pool has. One is kept for what is urgent, where there are several.
     time_limit_s
-        The longest one request may take.
+        The longest one request may take, and the longest it waits for its turn.
     """
 
-    def __init__(self, pool: Pool, time_limit_s: float) -> None:
+    def __init__(self, pool: Pool, workers: int, time_limit_s: float) -> None:
         self.pool = pool
         self._time_limit_s = time_limit_s
+        self._turns = asyncio.Semaphore(max(1, workers - 1))
+        self._most_waiting = WAITING_EACH * workers
+        self._waiting = 0
 
-    async def run(self, feature: str, function: Callable[..., Made], *arguments: Any) -> Made:
+    async def run(
+        self, feature: str, function: Callable[..., Made], *arguments: Any, urgent: bool = False
+    ) -> Made:
         """The result of a function in a process that can be killed.
 
         Parameters
         ----------
         feature
             What is worked on, as a refusal names it: ``scenario``, ``file``, ``terrain``, ``flight``.
+        urgent
+            Whether an operator's order to a vehicle waits for it: it does not wait behind other requests.
 
         Raises
         ------
         ServiceError
             What the function raises.
         RefusedError
-            Rules ``time-limit`` and ``memory-limit``: it takes more than a request may.
+            Rules ``time-limit`` and ``memory-limit``: it takes more than a request may; ``worker-died``.
+        OverloadedError
+            Too many wait before it.
         """
+        if urgent:
+            return await self._done(feature, function, arguments)
+        if self._waiting >= self._most_waiting:
+            raise OverloadedError("too many requests are being worked on; try again later", RETRY_AFTER_S)
+        self._waiting += 1
+        try:
+            async with asyncio.timeout(self._time_limit_s):
+                await self._turns.acquire()
+        except TimeoutError:
+            raise OverloadedError("other requests take too long; try again later", RETRY_AFTER_S) from None
+        finally:
+            self._waiting -= 1
+        try:
+            return await self._done(feature, function, arguments)
+        finally:
+            self._turns.release()
+
+    async def _done(self, feature: str, function: Callable[..., Made], arguments: tuple[Any, ...]) -> Made:
         try:
             outcome = await self.pool.run(_carried_out, (function, arguments), self._time_limit_s)
         except TimeoutError:
             _refuse(feature, "time-limit", f"it takes longer than {self._time_limit_s:g} s to work on")
         except WorkerDiedError as error:
-            _refuse(feature, "memory-limit", f"it takes more memory than a request may have ({error})")
+            message = f"{error} while it was worked on"
+            fix = "Send it again; where that ends the same way, send less at once."
+            finding = Finding(feature, "worker-died", message, fix)
+            raise RefusedError(f"the {feature} was not worked on: {message}", (finding,)) from error
         assert isinstance(outcome, _Outcome)
         if outcome.no_memory:
             _refuse(feature, "memory-limit", "it takes more memory than a request may have")

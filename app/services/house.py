@@ -43,7 +43,7 @@ class Limits:
     max_queued_plans: int
     track_interval_s: float
     plan_memory_bytes: int = 8_000_000_000
-    request_workers: int = 2
+    request_workers: int = 3
     request_time_limit_s: float = 30.0
     request_memory_bytes: int = 2_000_000_000
     recordings: Recordings | None = None
@@ -75,10 +75,10 @@ class House:
         request_pool = pool or WorkerPool(
             limits.request_workers, partial(work.limited, initialiser, limits.request_memory_bytes)
         )
-        self.desk = Desk(request_pool, limits.request_time_limit_s)
+        self.desk = Desk(request_pool, limits.request_workers, limits.request_time_limit_s)
         folder = terrain_folder(limits.database)
         self.terrain = TerrainService(TerrainStore(self.database), folder, self.desk)
-        self.scenarios = ScenarioService(ScenarioStore(self.database))
+        self.scenarios = ScenarioService(ScenarioStore(self.database), self.desk)
         self.planning = PlanningService(
             PlanStore(self.database),
             self.pool,

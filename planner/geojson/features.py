@@ -20,8 +20,8 @@ from planner.wishes import Region
 POINT_TARGET_RADIUS_M = 1.0
 #: Corners of a disc's polygon to a quarter.
 DISC_QUADRANT = 32
-#: Altitudes above this are a slip of the pen.
-HIGHEST_M = 30_000.0
+#: Altitudes beyond these are a slip of the pen.
+LOWEST_M, HIGHEST_M = 1.0, 30_000.0
 #: More visits than this are a slip of the pen: each is a stop of the tour.
 MOST_REVISITS = 50
 
@@ -124,7 +124,7 @@ def read_region(raw: RawFeature, frame: LocalFrame, findings: Findings) -> Regio
     required = fields.flag("required", True)
     sensor = fields.text("sensor", None)
     min_resolution_m = fields.number("min_resolution_m", None, above=0.0)
-    altitude_m = fields.number("altitude_m", None, above=0.0, maximum=HIGHEST_M)
+    altitude_m = fields.number("altitude_m", None, minimum=LOWEST_M, maximum=HIGHEST_M)
     headings = _headings(fields)
     fields.refuse_unknown()
     if area is None or priority is None:

@@ -128,7 +128,7 @@ def _read(document: Any, findings: Findings, terrains: Terrains | None) -> Scena
             "scenario", "not-supported", f"has {len(aircraft)} vehicles; this version plans for one",
             "Send one scenario a vehicle.",
         )  # fmt: skip
-    altitude_m = top.number("altitude_m", above=0.0, maximum=features.HIGHEST_M)
+    altitude_m = top.number("altitude_m", minimum=features.LOWEST_M, maximum=features.HIGHEST_M)
     reference: Any = top.choice("altitude_reference", ("amsl", "home", "terrain"), "terrain")
     task = top.choice("task", (*TASKS, *(name for name in NOT_YET if name not in TASKS)), "collect")
     if task is not None and task not in TASKS:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import json
+import os
+import signal
 import time
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -48,6 +50,11 @@ def greedy(size_bytes: int) -> int:
     return len(bytearray(size_bytes))
 
 
+def dying() -> None:
+    """End the process in the middle of its work."""
+    os.kill(os.getpid(), signal.SIGKILL)
+
+
 def refusing() -> None:
     """Refuse with a finding."""
     raise RefusedError("no", (Finding("R1", "a-rule", "it is wrong", "mend it"),))
@@ -85,10 +92,7 @@ def task(scenario_text: str, progress_path: str, *folders: str) -> WorkResult:
                 progress(f"step {step}", 0.25 + step / 1000)
                 time.sleep(0.05)
         case "die":
-            import os
-            import signal
-
-            os.kill(os.getpid(), signal.SIGKILL)
+            dying()
         case "raise":
             raise RuntimeError("a secret of the inside")
         case "failed":

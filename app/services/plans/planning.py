@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-import hashlib
 import json
 from collections.abc import AsyncGenerator, Callable, Mapping
 from dataclasses import replace
@@ -14,7 +13,7 @@ from typing import Any
 import structlog
 
 from app.services.desk import Desk
-from app.services.documents import name_of, write_json
+from app.services.documents import write_json
 from app.services.errors import ConflictError, NotFoundError, OverloadedError, RefusedError
 from app.services.hub import Hub
 from app.services.metrics import PLANNING_SECONDS, PLANS_ENDED, PLANS_RUNNING
@@ -24,10 +23,10 @@ from app.services.plans.missions import MissionChoice, encoded
 from app.services.plans.pool import Pool, WorkerDiedError
 from app.services.plans.progress_pipe import progress_pipe
 from app.services.records import PlanRecord
+from app.services.scenarios.received import Received, judged
 from app.services.scenarios.validation import Verdict, judge
 from app.services.store.plans import PlanStore
 from mavlink.dialects.mission import Mission
-from planner.geojson import scenario_hash
 
 log = structlog.get_logger(__name__)
 
@@ -118,9 +117,13 @@ class PlanningService:
             task.cancel()
         await asyncio.gather(*self._consumers, *self._running.values(), return_exceptions=True)
 
-    async def validate(self, document: Mapping[str, Any]) -> Verdict:
-        """Judge a scenario without planning it."""
-        return await self._desk.run("scenario", self._judge, document, *self._terrain_of(document))
+    async def validate(self, body: bytes) -> Verdict:
+        """Judge a scenario, as JSON, without planning it."""
+        return (await self._judged(body))[1]
+
+    async def _judged(self, body: bytes) -> tuple[Received, Verdict]:
+        folder = None if self._terrain_folder is None else str(self._terrain_folder)
+        return await self._desk.run("scenario", judged, body, self._judge, folder)
 
     @property
     def terrain_folder(self) -> Path | None:
@@ -134,9 +137,9 @@ class PlanningService:
         return (str(self._terrain_folder),)
 
     async def submit(
-        self, document: Mapping[str, Any], key: str | None = None, scenario_id: str | None = None
+        self, scenario: Mapping[str, Any] | bytes, key: str | None = None, scenario_id: str | None = None
     ) -> PlanRecord:
-        """Queue a scenario.
+        """Queue a scenario, as JSON or read already.
 
         Parameters
         ----------
@@ -154,23 +157,23 @@ class PlanningService:
         OverloadedError
             Too many plans are waiting.
         """
-        text = write_json(document)
-        digest = hashlib.sha256(text.encode()).hexdigest()
-        if key is not None and (known := await self._store.by_key(key)) is not None:
-            record, known_digest = known
-            if known_digest != digest:
+        known = None if key is None else await self._store.by_key(key)
+        if known is None and await self._store.count("queued") >= self._max_queued:
+            raise OverloadedError("too many plans are waiting; try again later", retry_after_s=10)
+        body = scenario if isinstance(scenario, bytes) else write_json(scenario).encode()
+        asked, verdict = await self._judged(body)
+        if known is not None:
+            record, digest = known
+            if digest != asked.digest:
                 raise ConflictError(f"the idempotency key {key} stands for another scenario")
             return self._with_progress(record)
-        if await self._store.count("queued") >= self._max_queued:
-            raise OverloadedError("too many plans are waiting; try again later", retry_after_s=10)
-        verdict = await self.validate(document)
         if verdict.errors:
             count, first = len(verdict.errors), verdict.errors[0]
             detail = f"{first.feature}: {first.message}" if count == 1 else f"{count} rules are broken"
             raise RefusedError(f"the scenario is refused: {detail}", verdict.errors)
         warnings = [work.finding_json(finding) for finding in verdict.warnings]
         record = await self._store.add(
-            name_of(document), text, digest, warnings, key, scenario_id, scenario_hash(document)
+            asked.name, asked.text, asked.digest, warnings, key, scenario_id, asked.scenario_hash
         )
         self._queue.put_nowait(record.id)
         self._bounder.look()
@@ -203,7 +206,7 @@ class PlanningService:
 
     async def mission(self, plan_id: str, choice: MissionChoice) -> Mission:
         """The mission of one vehicle of a plan; raises as ``plan_text`` and ``missions.encode_plan``."""
-        return await self._desk.run("plan", encoded, await self.plan_text(plan_id), choice)
+        return await self._desk.run("plan", encoded, await self.plan_text(plan_id), choice, urgent=True)
 
     async def events(self, plan_id: str) -> AsyncGenerator[tuple[str, PlanRecord], None]:
         """The plan as it is now, then at every change, to its end and, of a done one, its bound.

@@ -3,24 +3,25 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
 from typing import Any
 
-from app.services.documents import name_of, write_json
+from app.services.desk import Desk
 from app.services.records import KeptScenario
+from app.services.scenarios.received import received
 from app.services.store.scenarios import ScenarioStore
-from planner.geojson import scenario_hash
 
 
 class ScenarioService:
     """Kept scenarios; none is judged before it is planned."""
 
-    def __init__(self, store: ScenarioStore) -> None:
+    def __init__(self, store: ScenarioStore, desk: Desk) -> None:
         self._store = store
+        self._desk = desk
 
-    async def add(self, document: Mapping[str, Any]) -> KeptScenario:
-        """Keep a new one."""
-        return await self._store.add(name_of(document), write_json(document), scenario_hash(document))
+    async def add(self, body: bytes) -> KeptScenario:
+        """Keep a new one, sent as JSON."""
+        kept = await self._desk.run("scenario", received, body)
+        return await self._store.add(kept.name, kept.text, kept.scenario_hash)
 
     async def get(self, scenario_id: str) -> KeptScenario:
         """One without its text; raises NotFoundError."""
@@ -39,9 +40,7 @@ class ScenarioService:
         """How many there are."""
         return await self._store.count()
 
-    async def change(
-        self, scenario_id: str, document: Mapping[str, Any], revision: int | None
-    ) -> KeptScenario:
+    async def change(self, scenario_id: str, body: bytes, revision: int | None) -> KeptScenario:
         """Put another text in its place.
 
         Parameters
@@ -56,9 +55,8 @@ class ScenarioService:
         ChangedError
             Somebody else has changed it since that revision.
         """
-        return await self._store.change(
-            scenario_id, name_of(document), write_json(document), scenario_hash(document), revision
-        )
+        kept = await self._desk.run("scenario", received, body)
+        return await self._store.change(scenario_id, kept.name, kept.text, kept.scenario_hash, revision)
 
     async def remove(self, scenario_id: str, revision: int | None) -> None:
         """Forget one; raises as ``change``."""

@@ -9,8 +9,8 @@ from functools import partial
 
 import pytest
 
-from app.services.desk import Desk
-from app.services.errors import NotFoundError, RefusedError
+from app.services.desk import WAITING_EACH, Desk
+from app.services.errors import NotFoundError, OverloadedError, RefusedError
 from app.services.plans import work
 from app.services.plans.pool import WorkerPool
 from tests.app import fakes
@@ -22,7 +22,7 @@ MEMORY_BYTES = 300_000_000
 async def desk() -> AsyncIterator[Desk]:
     """One worker, with little time and memory."""
     pool = WorkerPool(1, partial(work.limited, fakes.no_warm_up, MEMORY_BYTES))
-    yield Desk(pool, time_limit_s=3.0)
+    yield Desk(pool, workers=1, time_limit_s=3.0)
     await pool.stop()
 
 
@@ -64,4 +64,33 @@ async def test_what_takes_too_much_memory_is_refused(desk: Desk) -> None:
     with pytest.raises(RefusedError) as refused:
         await desk.run("file", fakes.greedy, 4 * MEMORY_BYTES)
     assert [finding.rule for finding in refused.value.findings] == ["memory-limit"]
+    assert await desk.run("figure", math.sqrt, 4.0) == 2.0
+
+
+async def test_what_is_urgent_waits_behind_nobody() -> None:
+    """With others' endless work in the pool an order is answered; too many waiting are told to come again."""
+    pool = WorkerPool(2, partial(work.limited, fakes.no_warm_up, MEMORY_BYTES))
+    desk = Desk(pool, workers=2, time_limit_s=20.0)
+    try:
+        others = [asyncio.create_task(desk.run("scenario", fakes.endless)) for _ in range(3)]
+        assert await desk.run("plan", math.sqrt, 9.0, urgent=True) == 3.0
+        assert not any(other.done() for other in others)
+        others += [asyncio.create_task(desk.run("scenario", fakes.endless)) for _ in range(2 * WAITING_EACH)]
+        await asyncio.sleep(0)
+        with pytest.raises(OverloadedError):
+            await desk.run("scenario", math.sqrt, 9.0)
+        for other in others:
+            other.cancel()
+        await asyncio.gather(*others, return_exceptions=True)
+        # Those who went away hold no turn.
+        assert await desk.run("scenario", math.sqrt, 16.0) == 4.0
+    finally:
+        await pool.stop()
+
+
+async def test_a_worker_that_dies_is_not_taken_for_a_large_file(desk: Desk) -> None:
+    """The refusal names what happened, and the next request is answered."""
+    with pytest.raises(RefusedError) as refused:
+        await desk.run("file", fakes.dying)
+    assert [finding.rule for finding in refused.value.findings] == ["worker-died"]
     assert await desk.run("figure", math.sqrt, 4.0) == 2.0
