@@ -180,8 +180,13 @@ def _ends(ground: Ground, line_m: Floats, vehicle: dict[str, Any]) -> list[str]:
 
 
 def turn_radius_m(ground: Ground) -> float:
-    """The tightest turn over the ground: of the bank that the tightest in still air has, downwind."""
+    """The tightest turn over the ground: of the bank that the tightest in still air has, downwind.
+
+    Multirotors hold their speed over the ground: theirs is the same in any wind.
+    """
     vehicle = ground.document["vehicles"][0]
+    if vehicle.get("type") == "multirotor":
+        return float(vehicle["min_turn_radius_m"])
     share = math.hypot(*wind_m_s(ground)) / vehicle["airspeed_m_s"]
     return float(vehicle["min_turn_radius_m"] * (1.0 + share) ** 2)
 
