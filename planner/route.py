@@ -105,11 +105,28 @@ class Anchor:
 
 @dataclass(frozen=True, slots=True)
 class Terminal:
-    """Where the flight starts or ends; any direction where ``angle_rad`` is None."""
+    """Where the flight starts or ends; any direction where ``angle_rad`` is None.
+
+    Parameters
+    ----------
+    run_m, runs_rad
+        Flown straight from a start before anything else, and the directions of it to choose among.
+    """
 
     name: str
     position: Point
     angle_rad: float | None = None
+    run_m: float = 0.0
+    runs_rad: tuple[float, ...] = ()
+
+    def after_run(self, angle_rad: float) -> tuple[float, float, float]:
+        """Where a run in a direction ends, and that direction."""
+        east_m, north_m = self.position
+        return (
+            east_m + self.run_m * math.cos(angle_rad),
+            north_m + self.run_m * math.sin(angle_rad),
+            angle_rad,
+        )
 
 
 class LinePiece(Protocol):

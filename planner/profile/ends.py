@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from planner.airspace.zones import KeepOut
 from planner.dubins.path import Path, join
 from planner.plan import Finish
 from planner.profile.circling import circle_down
-from planner.profile.foot import Foot
+from planner.profile.foot import HEADINGS, Foot
 from planner.profile.heights import Heights, level
 from planner.profile.rise import Connect, Rise, Terms, fall, rise
 from planner.progress import Stop, never
@@ -67,8 +67,23 @@ def up(start: Terminal, ground_m: float, goal: Anchor, model: FlightModel, aroun
     InfeasibleError
         Where no line leads there.
     """
+    foot = foot_up(start, ground_m, around.top_m, model)
+    return rise(foot, goal, terms_of(around, climb_slope_rad(model), model))
+
+
+def with_run(ends: tuple[Terminal, Terminal], top_m: float, model: FlightModel) -> tuple[Terminal, Terminal]:
+    """Both ends, the start with the run that a flight to a height over it begins with."""
+    start, end = ends
+    foot = foot_up(start, 0.0, top_m, model)
+    ways = [angle for natural in (0.0, math.pi / HEADINGS) for angle in foot.headings(natural)]
+    runs_rad = tuple(dict.fromkeys(angle for angle in ways if angle is not None))
+    return replace(start, run_m=foot.run_m, runs_rad=runs_rad), end
+
+
+def foot_up(start: Terminal, ground_m: float, top_m: float, model: FlightModel) -> Foot:
+    """How a flight to an altitude leaves the ground."""
     slope_rad = climb_slope_rad(model)
-    aircraft, height_m = model.aircraft, around.top_m - ground_m
+    aircraft, height_m = model.aircraft, top_m - ground_m
     lift_m = run_m = rise_m = 0.0
     if aircraft.type == "multirotor":
         lift_m = height_m
@@ -78,8 +93,7 @@ def up(start: Terminal, ground_m: float, goal: Anchor, model: FlightModel, aroun
     else:
         rise_m = min(manners.TAKE_OFF_HEIGHT_M, height_m)
         run_m = rise_m / math.tan(slope_rad)
-    foot = Foot(start.position, start.angle_rad, ground_m, lift_m, run_m, rise_m, _into_rad(model))
-    return rise(foot, goal, terms_of(around, slope_rad, model))
+    return Foot(start.position, start.angle_rad, ground_m, lift_m, run_m, rise_m, _into_rad(model))
 
 
 def down(

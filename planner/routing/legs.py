@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from planner.airspace.airspace import Airspace, Level
 from planner.airspace.prices import risk_m, soft_prices, way_weight
 from planner.airspace.zones import TRANSIT_MARGIN_M, keep_out
+from planner.dubins.kernels import dubins_lengths
 from planner.dubins.path import MIN_TURN_RAD, Path
 from planner.errors import InfeasibleError
 from planner.progress import Stop
@@ -45,7 +46,7 @@ class Legs:
     ) -> None:
         self._zones = keep_out(airspace, level, TRANSIT_MARGIN_M)
         self._model = model
-        self._start, self._end = anchor(ends[0]), anchor(ends[1])
+        self._from, self._end = ends[0], anchor(ends[1])
         self._stop = stop
         self._soft = soft_prices(airspace, level, objective)
         self._objective = objective
@@ -61,8 +62,25 @@ class Legs:
 
     def between_m(self, leaving: Floats | None, arriving: Floats | None) -> float:
         """The same between poses (3,); None is the start, or the end, of the tour."""
-        start = self._start if leaving is None else _pose(leaving)
-        return self.cost_m(start, self._end if arriving is None else _pose(arriving))
+        goal = self._end if arriving is None else _pose(arriving)
+        return self._first_m(goal) if leaving is None else self.cost_m(_pose(leaving), goal)
+
+    def _first_m(self, goal: Anchor) -> float:
+        """From the start, by its run in the best of its directions where it has one."""
+        start, model = self._from, self._model
+        if start.run_m <= 0.0 or goal.angle_rad is None:
+            return self.cost_m(anchor(start), goal)
+        begins = np.array([start.after_run(angle_rad) for angle_rad in start.runs_rad])
+        goals = np.broadcast_to(np.array([goal.east_m, goal.north_m, goal.angle_rad]), begins.shape)
+        fastest = model.airspeed_m_s / (model.airspeed_m_s + model.wind.speed_m_s)
+        least_m = fastest * dubins_lengths(begins, np.ascontiguousarray(goals), model.turn_radius_m)
+        run_m = start.run_m * np.asarray(model.air_factor(begins[:, 2]), dtype=np.float64)
+        best_m = math.inf
+        for k in np.argsort(run_m + least_m, kind="stable"):
+            if run_m[k] + least_m[k] >= best_m:
+                break
+            best_m = min(best_m, float(run_m[k]) + self.cost_m(_pose(begins[k]), goal))
+        return best_m
 
     def inner_m(self, passes: Sequence[CollectPass]) -> float:
         """Passes flown one after the other, with the settling before the first and between them."""
@@ -85,11 +103,12 @@ class Legs:
         """From the start through all passes to the end."""
         ahead = [self.arrives(collect) for collect in passes]
         behind = [leaves(collect) for collect in passes]
-        legs_m = [
-            self.cost_m(start, goal)
-            for start, goal in zip([self._start, *behind], [*ahead, self._end], strict=True)
-        ]
-        return math.fsum(legs_m) + math.fsum(self.pass_m(collect) for collect in passes)
+        legs_m = [self.cost_m(one, other) for one, other in zip(behind, [*ahead[1:], self._end], strict=True)]
+        return (
+            self._first_m(ahead[0])
+            + math.fsum(legs_m)
+            + math.fsum(self.pass_m(collect) for collect in passes)
+        )
 
     def arrives(self, collect: CollectPass) -> Anchor:
         """Where a transit to a pass ends: before its settling run."""

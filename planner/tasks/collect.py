@@ -16,6 +16,7 @@ from planner.errors import Finding, InfeasibleError
 from planner.metrics import used
 from planner.plan import LeftOut, Plan
 from planner.profile.compose import Composed
+from planner.profile.ends import with_run
 from planner.progress import Progress, Stop, silent
 from planner.publish import Leg
 from planner.route import CollectPass
@@ -116,16 +117,17 @@ def _found(asked: Seeing, setting: Setting, methods: dict[str, str], seed: int, 
 
 def _joint(asked: Seeing, setting: Setting, seed: int, sight: Sight | None, controls: Controls) -> Found:
     around = asked.surroundings()
-    legs = Legs(setting.airspace, setting.level, setting.model, asked.objective, setting.ends, controls.stop)
+    ends = with_run(setting.ends, setting.level.height_m, setting.model)
+    legs = Legs(setting.airspace, setting.level, setting.model, asked.objective, ends, controls.stop)
 
     def complete(passes: Passes, legs: Legs) -> Passes:
         if sight is None:
             return passes
         at = partial(asked.at, around=around)
-        return see_hidden(sight, at, setting.ends, passes, legs, controls.stop)
+        return see_hidden(sight, at, ends, passes, legs, controls.stop)
 
     watched = (controls.progress, controls.stop, controls.enough)
-    search = Search(setting.ends, around, legs, seed, complete, *watched)
+    search = Search(ends, around, legs, seed, complete, *watched)
     share = partial(asked.sharing, around=around)
     visible = partial(asked.visible, around, enough=controls.enough)
     found = joint_route(search, visible(), visible, share)

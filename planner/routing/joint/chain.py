@@ -113,7 +113,11 @@ def layers_of(
 
 def from_start(start: Terminal, around: Surroundings, entries: Floats, discs: Floats) -> Floats:
     """Estimated costs from the start to poses, (N,)."""
-    costs = _terminal_costs(start, entries, around, discs)
+    if start.run_m > 0.0:
+        begins = np.array([start.after_run(angle_rad) for angle_rad in start.runs_rad])
+        costs = start.run_m + transit_costs(begins, entries, around.radius_m, discs).min(axis=0)
+    else:
+        costs = _terminal_costs(start, entries, around, discs)
     return _in_wind(costs, np.array(start.position), entries, around)
 
 
