@@ -26,6 +26,8 @@ Floats = NDArray[np.float64]
 
 #: Lines are looked at every so many metres for what of them lies in soft threats.
 SAMPLE_M = 20.0
+#: Runs from the start that lines are sought behind, where zones make the first ones longer than they look.
+MOST_RUNS = 3
 #: A turn costs as much as this many metres of way, where the weights are equal.
 TURN_M = 100.0
 
@@ -76,8 +78,8 @@ class Legs:
         least_m = fastest * dubins_lengths(begins, np.ascontiguousarray(goals), model.turn_radius_m)
         run_m = start.run_m * np.asarray(model.air_factor(begins[:, 2]), dtype=np.float64)
         best_m = math.inf
-        for k in np.argsort(run_m + least_m, kind="stable"):
-            if run_m[k] + least_m[k] >= best_m:
+        for tried, k in enumerate(np.argsort(run_m + least_m, kind="stable")):
+            if run_m[k] + least_m[k] >= best_m or (tried >= MOST_RUNS and math.isfinite(best_m)):
                 break
             best_m = min(best_m, float(run_m[k]) + self.cost_m(_pose(begins[k]), goal))
         return best_m
