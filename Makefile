@@ -27,7 +27,7 @@ journey-px4: ## The same in a real PX4
 	sh docker/journey.sh px4 $(ADDRESS)
 
 test: $(VENV)/.installed-dev static/dist/index.html ## Run every test
-	$(BIN)/python -m pytest -n 2 --dist worksteal
+	$(BIN)/python -m pytest -n 2 --dist loadfile
 
 lint: $(VENV)/.installed-dev ## ruff
 	$(BIN)/ruff check .

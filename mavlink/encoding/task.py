@@ -15,8 +15,8 @@ from planner.plan import Collect, FlownPath, PathSegment, PhaseKind, Plan, PlanV
 
 #: NPFG_SW_DST_MLT · NPFG_PERIOD · NPFG_DAMPING, as PX4 has them by default.
 _PX4_TURNS_EARLY_S = 0.32 * 10.0 * 0.7
-#: NAV_ACC_RAD of PX4's multirotors, by default.
-_PX4_ACCEPTANCE_M = 2.0
+#: NAV_ACC_RAD of PX4's multirotors, by default, and a hundredth more: PX4 measures on a sphere.
+_PX4_ACCEPTANCE_M = 1.01 * 2.0
 
 
 @dataclass(frozen=True, slots=True)

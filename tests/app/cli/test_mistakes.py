@@ -85,7 +85,7 @@ def exchanged() -> str:
             ("validate", "-"),
             json.dumps(EXAMPLE | {"altitude_m": 0.01}),
             2,
-            ("too-many-passes", "0.01 m up", "Fly higher"),
+            ("altitude_m is 0.01", "out-of-range", "≥ 1"),
         ),
         (("validate", "-"), json.dumps(EXAMPLE | {"altitude_m": 4}), 0, ("many-passes", "Fly higher")),
         (
