@@ -21,6 +21,8 @@ from shapely.geometry.base import BaseGeometry
 Floats = NDArray[np.float64]
 
 GEOD = Geod(ellps="WGS84")
+#: Straight flight is looked at in places so far apart.
+STEP_M = 2.0
 #: Projections and rounding move places by this part of their distance from the middle, and by centimetres.
 PLACE_M, PLACE_PART = 0.1, 2e-5
 EARTH_M = 6.37e6
@@ -243,12 +245,14 @@ def _straight(ground: Ground, line: LineString, collects: list[dict[str, Any]]) 
     vehicle = ground.document["vehicles"][0]
     faster = 1.0 + math.hypot(*wind_m_s(ground)) / vehicle["airspeed_m_s"]
     settle_m = vehicle.get("settle_m", 0.0) * faster
-    near = line.buffer(2.0 * ground.slack_m)
+    shapely.prepare(line)
     found = []
     for collect in collects:
         start, end = ground.places(collect["geometry"]["coordinates"])
         begin = start - settle_m * (end - start) / math.dist(start, end)
-        if not near.covers(LineString([begin, end])):
+        flown = LineString([begin, end])
+        places = shapely.points(shapely.get_coordinates(shapely.segmentize(flown, STEP_M)))
+        if not shapely.dwithin(line, places, 2.0 * ground.slack_m).all():
             found.append(f"collect {collect['properties']['seq']} or its settling run is off the path")
     return found
 
