@@ -144,10 +144,17 @@ class TcpServerLink:
     async def bind(self, port: int) -> None:
         """Bind and accept. Raises OSError."""
         loop = asyncio.get_running_loop()
-        self._server = await loop.create_server(lambda: _Peer(self), self._host, port)
-        for sock in self._server.sockets:
+        # Started by itself: cancelled while it starts, the server would be unknown and its port stay taken.
+        server = await loop.create_server(lambda: _Peer(self), self._host, port, start_serving=False)
+        self._server = server
+        for sock in server.sockets:
             # Handed on to the connections accepted.
             sock.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, _SYSTEM_BYTES)
+        try:
+            await server.start_serving()
+        except BaseException:
+            server.close()
+            raise
 
     def joined(self, peer: _Peer) -> None:
         """A peer has connected: it takes the place of the one before."""

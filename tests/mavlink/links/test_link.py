@@ -5,13 +5,14 @@ from __future__ import annotations
 import asyncio
 import os
 import pty
+import socket
 
 import pytest
 
 from mavlink.errors import LinkError
 from mavlink.links.inbox import Inbox
 from mavlink.links.link import DirectLink, Link, LinkFaults, memory_pair, open_link
-from mavlink.links.tcp import TcpClientLink, open_tcp_server
+from mavlink.links.tcp import TcpClientLink, TcpServerLink, open_tcp_server
 from mavlink.links.udp import open_udp
 
 
@@ -266,3 +267,19 @@ async def test_a_stuck_tcp_peer_does_not_fill_the_memory() -> None:
     assert 0 < server.waiting_bytes < (1 << 20) + 65536
     await client.close()
     await server.close()
+
+
+@pytest.mark.parametrize("steps", range(8))
+async def test_a_listener_given_up_while_it_opens_leaves_its_port(steps: int) -> None:
+    """However far it had come: the port is free for the next."""
+    with socket.create_server(("127.0.0.1", 0)) as probe:
+        port = probe.getsockname()[1]
+    opening = asyncio.create_task(open_tcp_server("127.0.0.1", port))
+    for _ in range(steps):
+        await asyncio.sleep(0)
+    opening.cancel()
+    (opened,) = await asyncio.gather(opening, return_exceptions=True)
+    if isinstance(opened, TcpServerLink):
+        await opened.close()
+    with socket.create_server(("127.0.0.1", port)) as again:
+        assert again.getsockname()[1] == port
