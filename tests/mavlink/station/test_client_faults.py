@@ -22,7 +22,9 @@ from mavlink.transfer.outcome import Accepted, Refused, Unknown
 from mavlink.wire.items import Command, MissionItem, MissionType
 
 # The count and questions are repeated early; the patience with a vehicle that asks again each second stays.
-QUICK = TransferSettings(timeout_s=0.2, retries=3, silence_s=2.5, acknowledgement_s=1.5)
+QUICK = TransferSettings(timeout_s=0.3, retries=3, silence_s=4.0, acknowledgement_s=2.5)
+#: So many aircraft at once: on a busy machine more would keep each other waiting longer than that.
+AT_ONCE = 12
 ITEMS = (
     MissionItem(0, 0, Command.NAV_WAYPOINT, x=473_977_000, y=85_456_000, z=488.0),
     MissionItem(1, 3, Command.NAV_TAKEOFF, 15.0, x=473_990_000, y=85_456_000, z=80.0),
@@ -122,10 +124,11 @@ def test_no_fault_is_left_out() -> None:
 
 
 async def test_every_fault_has_its_word() -> None:
-    """What is stored is called stored, and nothing else is; all faults of both autopilots at once."""
+    """What is stored is called stored, and nothing else is; all faults of both autopilots side by side."""
+    turns = asyncio.Semaphore(AT_ONCE)
 
     async def upload(flavour: Flavour, fault: Fault) -> VerifiedUpload:
-        async with simulated(flavour, fault) as client:
+        async with turns, simulated(flavour, fault) as client:
             return await client.upload_verified(mission(flavour), MissionType.MISSION, comparison(flavour))
 
     cases = [(flavour, fault) for flavour in Flavour for fault in EXPECTED]

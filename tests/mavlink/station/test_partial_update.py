@@ -16,7 +16,7 @@ from mavlink.station.verify import VerifiedUpload
 from mavlink.transfer.outcome import Accepted, Refused, Unknown
 from mavlink.wire.items import MissionItem, MissionResult, MissionType
 from tests.mavlink.station.aircraft import flying
-from tests.mavlink.station.test_client_faults import comparison, mission, simulated
+from tests.mavlink.station.test_client_faults import AT_ONCE, comparison, mission, simulated
 from tests.mavlink.station.test_client_transfers import compare
 from tests.mavlink.transfer.vehicle import waypoints
 
@@ -117,9 +117,10 @@ EXPECTED = {
 
 async def test_every_fault_has_its_word() -> None:
     """What is held as meant is called stored, and nothing else is."""
+    turns = asyncio.Semaphore(AT_ONCE)
 
     async def one(fault: Fault | None) -> VerifiedUpload:
-        async with simulated(Flavour.ARDUPILOT, *([] if fault is None else [fault])) as client:
+        async with turns, simulated(Flavour.ARDUPILOT, *([] if fault is None else [fault])) as client:
             # The mission goes up over the same fault, which takes no item from it.
             await client.upload(mission(Flavour.ARDUPILOT), MISSION)
             return await update(client)
