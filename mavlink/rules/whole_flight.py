@@ -11,6 +11,7 @@ from collections.abc import Callable
 from typing import Final
 
 from mavlink.rules.base import OTHER_NAMES, Needs, ParameterFinding, Rule, Values, check
+from mavlink.rules.heights import HeightNeeds
 
 #: A rate may be so much of the plan's, and height differ so much from a return's.
 _RATE_PART: Final = 0.95
@@ -59,29 +60,25 @@ def sinks(name: str) -> Rule:
 
 def turns_up(name: str) -> Rule:
     """In circles it climbs no steeper than the plan, which keeps ``max_climb_deg``."""
-    return check(
-        name,
-        lambda value, needs: value <= _FASTER_PART * needs.heights.turning_up_m_s,
-        lambda needs: (
-            f"circles are climbed in at this rate, in the plan at {needs.heights.turning_up_m_s:.1f} m/s:"
-            " steeper than its max_climb_deg, and done earlier than planned"
-        ),
-        lambda needs: _tenths(needs.heights.climb_m_s),
-        applies=lambda needs: needs.heights.turning_up_m_s > 0.0,
-    )
+    return _in_circles(name, "climbed", lambda heights: (heights.turning_up_m_s, heights.climb_m_s))
 
 
 def turns_down(name: str) -> Rule:
     """In circles it comes down no steeper than the plan."""
+    return _in_circles(name, "descended", lambda heights: (heights.turning_down_m_s, heights.sink_m_s))
+
+
+def _in_circles(name: str, flown: str, rates_m_s: Callable[[HeightNeeds], tuple[float, float]]) -> Rule:
+    """A rate that circles are flown at; of the plan's rates those in circles, and at most."""
     return check(
         name,
-        lambda value, needs: value <= _FASTER_PART * needs.heights.turning_down_m_s,
+        lambda value, needs: value <= _FASTER_PART * rates_m_s(needs.heights)[0],
         lambda needs: (
-            f"circles are descended in at this rate, in the plan at {needs.heights.turning_down_m_s:.1f} m/s:"
+            f"circles are {flown} in at this rate, in the plan at {rates_m_s(needs.heights)[0]:.1f} m/s:"
             " steeper than its max_climb_deg, and done earlier than planned"
         ),
-        lambda needs: _tenths(needs.heights.sink_m_s),
-        applies=lambda needs: needs.heights.turning_down_m_s > 0.0,
+        lambda needs: _tenths(rates_m_s(needs.heights)[1]),
+        applies=lambda needs: rates_m_s(needs.heights)[0] > 0.0,
     )
 
 

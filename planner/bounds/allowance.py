@@ -16,6 +16,8 @@ class Allowance:
         That many, by default no end of them.
     enough
         Ends the search for a better bound whatever is left.
+    whole
+        What this is a part of, and is spent of as well.
     """
 
     def __init__(self, lines: float = math.inf, enough: Stop = never, whole: Allowance | None = None) -> None:

@@ -54,7 +54,7 @@ def test_the_bound_ends_when_it_is_told_and_says_what_it_has() -> None:
     bounds = []
     for most in (0, 5, 40, 10_000):
         asked = itertools.count()
-        found = with_bound(scenario, plan, enough=lambda: next(asked) >= most)  # noqa: B023
+        found = with_bound(scenario, plan, enough=lambda asked=asked, most=most: next(asked) >= most)
         assert found.metrics.lower_bound_m is not None
         bounds.append(found.metrics.lower_bound_m)
     assert bounds[0] > 0.0
