@@ -9,6 +9,7 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -52,15 +53,14 @@ def _first_line(process: subprocess.Popen[str]) -> str:
     return line
 
 
-@pytest.fixture(scope="package")
-def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
+@contextmanager
+def serving(folder: Path, speedup: int) -> Iterator[Service]:
     """A service of its own: fresh database, free port, one simulated aircraft in quick motion."""
     if not PAGE.is_file():
         pytest.skip("the map is not built: run npm ci and npm run build in static/")
-    folder = tmp_path_factory.mktemp("service")
     command = [sys.executable, "-m", "app.cli", "serve", "--port", "0", "--json"]
     command += ["--database", str(folder / "swathplan.db"), "--workers", "1"]
-    command += ["--sim", "--sim-url", f"sim:?speedup={SPEEDUP}"]
+    command += ["--sim", "--sim-url", f"sim:?speedup={speedup}"]
     with (folder / "log").open("w") as log:
         process = subprocess.Popen(
             command,
@@ -82,6 +82,13 @@ def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
                 process.wait()
             if process.stdout is not None:
                 process.stdout.close()
+
+
+@pytest.fixture(scope="package")
+def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
+    """The service that most of the page's tests share."""
+    with serving(tmp_path_factory.mktemp("service"), SPEEDUP) as started:
+        yield started
 
 
 @pytest.fixture(scope="package")

@@ -2,19 +2,33 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import httpx
 import pytest
 from playwright.sync_api import Page, expect
 
 from tests.app.browser.air import vehicles_of
-from tests.app.browser.conftest import EXAMPLES, Service
+from tests.app.browser.conftest import EXAMPLES, Service, serving
 from tests.app.browser.helpers import ask, await_hook, open_scenario
 from tests.app.browser.test_truth_page import cell, go_to
 
 pytestmark = pytest.mark.browser
 
-LIMIT_S = 90.0
+LIMIT_S = 150.0
 LIMIT_MS = LIMIT_S * 1000.0
+
+
+#: What is flown in half a minute here is over in three seconds at the speed of the other files: sooner than a
+#: busy machine's page has been asked twice.
+SPEEDUP = 20
+
+
+@pytest.fixture(scope="module")
+def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
+    """A service whose aircraft is still in flight when the page is asked again."""
+    with serving(tmp_path_factory.mktemp("orders"), SPEEDUP) as started:
+        yield started
 
 
 def give(page: Page, command: str) -> None:
