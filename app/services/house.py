@@ -21,14 +21,10 @@ from app.services.store.flights import FlightStore
 from app.services.store.plans import PlanStore
 from app.services.store.scenarios import ScenarioStore
 from app.services.store.terrain import TerrainStore
-from app.services.store.uploads import UploadStore
-from app.services.store.vehicles import VehicleStore
 from app.services.terrain.service import TerrainService
-from app.services.vehicles.checks import Checks
-from app.services.vehicles.fleet import Fleet
 from app.services.vehicles.recordings import Recordings
+from app.services.vehicles.station import Station
 from app.services.vehicles.times import DEFAULT_TIMES, LinkTimes
-from app.services.vehicles.transfers import Transfers
 
 log = structlog.get_logger(__name__)
 
@@ -91,20 +87,11 @@ class House:
             judge_scenario=judge_scenario,
             terrain_folder=folder,
         )
-        flights = FlightStore(self.database)
-        self.flights = FlightService(flights, self.planning, self.desk)
-        kept = VehicleStore(self.database)
-        self.checks = Checks(self.planning)
-        self.transfers = Transfers(self.planning, UploadStore(self.database), kept)
-        self.fleet = Fleet(
-            self.planning,
-            self.transfers,
-            flights,
-            kept,
-            limits.track_interval_s,
-            limits.recordings,
-            times,
+        self.flights = FlightService(FlightStore(self.database), self.planning, self.desk)
+        station = Station(
+            self.database, self.planning.library, limits.track_interval_s, limits.recordings, times
         )
+        self.checks, self.transfers, self.fleet = station.checks, station.transfers, station.fleet
 
     async def open(self) -> None:
         """Open the database, start the workers, take up waiting plans."""

@@ -107,13 +107,8 @@ def mission_bytes(plan: Plan, choice: MissionChoice, form: str) -> bytes:
     return mission_text(plan, choice, form).encode()
 
 
-def encoded(text: str, choice: MissionChoice) -> Mission:
-    """:func:`encode_plan` of a plan document's text."""
-    return encode_plan(plan_of(text), choice)
-
-
 def exported(text: str, choice: MissionChoice, form: str) -> bytes:
-    """The same of a plan document's text."""
+    """:func:`mission_bytes` of a plan document's text."""
     return mission_bytes(plan_of(text), choice, form)
 
 

@@ -19,14 +19,13 @@ from app.services.hub import Hub
 from app.services.metrics import PLANNING_SECONDS, PLANS_ENDED, PLANS_RUNNING
 from app.services.plans import work
 from app.services.plans.bounder import Bounder
-from app.services.plans.missions import MissionChoice, encoded
+from app.services.plans.library import PlanLibrary
 from app.services.plans.pool import Pool, WorkerDiedError
 from app.services.plans.progress_pipe import progress_pipe
 from app.services.records import PlanRecord
 from app.services.scenarios.received import Received, judged
 from app.services.scenarios.validation import Verdict, judge
 from app.services.store.plans import PlanStore
-from mavlink.dialects.mission import Mission
 
 log = structlog.get_logger(__name__)
 
@@ -90,6 +89,7 @@ class PlanningService:
         self._bound_task = bound_task
         self._judge = judge_scenario
         self._terrain_folder = terrain_folder
+        self.library = PlanLibrary(store, desk)
         self._queue: asyncio.Queue[str] = asyncio.Queue()
         self._running: dict[str, asyncio.Task[None]] = {}
         self._live: dict[str, tuple[str | None, float]] = {}
@@ -193,20 +193,11 @@ class PlanningService:
 
     async def scenario_text(self, plan_id: str) -> str:
         """The scenario as it was sent."""
-        return (await self._store.documents(plan_id))[0]
+        return await self.library.scenario_text(plan_id)
 
     async def plan_text(self, plan_id: str) -> str:
         """The plan as GeoJSON text; raises ConflictError while there is none."""
-        record = await self.get(plan_id)
-        _, plan = await self._store.documents(plan_id)
-        if plan is None:
-            reason = f": {record.error['detail']}" if record.error else ""
-            raise ConflictError(f"plan {plan_id} is {record.state}, it has no plan{reason}")
-        return plan
-
-    async def mission(self, plan_id: str, choice: MissionChoice) -> Mission:
-        """The mission of one vehicle of a plan; raises as ``plan_text`` and ``missions.encode_plan``."""
-        return await self._desk.run("plan", encoded, await self.plan_text(plan_id), choice, urgent=True)
+        return await self.library.plan_text(plan_id)
 
     async def events(self, plan_id: str) -> AsyncGenerator[tuple[str, PlanRecord], None]:
         """The plan as it is now, then at every change, to its end and, of a done one, its bound.

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from dataclasses import replace
 
-from app.services.plans.missions import MissionChoice, plan_of
-from app.services.plans.planning import PlanningService
-from app.services.vehicles.inspection import ParameterReport, inspect, mission_needs, read_parameters
+from app.services.plans.library import PlanLibrary
+from app.services.plans.missions import MissionChoice
+from app.services.vehicles.brief import Brief, brief_of
+from app.services.vehicles.inspection import ParameterReport, inspect, read_parameters
 from app.services.vehicles.preflight import Preflight
 from app.services.vehicles.vehicle import Vehicle
 from mavlink.dialects.mission import Mission
@@ -17,8 +17,8 @@ from mavlink.dialects.mission import Mission
 class Checks:
     """Pre-flight checks and parameters."""
 
-    def __init__(self, planning: PlanningService) -> None:
-        self._planning = planning
+    def __init__(self, plans: PlanLibrary) -> None:
+        self._plans = plans
 
     async def preflight(self, vehicle: Vehicle, plan_id: str, choice: MissionChoice) -> Preflight:
         """Ask the vehicle whether it is ready to fly a plan; changes nothing in it.
@@ -26,12 +26,10 @@ class Checks:
         What is read back for it also tells whether the vehicle still holds what it was sent.
         """
         async with vehicle.turns.busy(f"pre-flight check for plan {plan_id}"):
-            plan = plan_of(await self._planning.plan_text(plan_id))
             choice = for_vehicle(vehicle, choice)
-            mission = await self._planning.mission(plan_id, choice)
-            scenario = json.loads(await self._planning.scenario_text(plan_id))
-            report = await inspect(vehicle.client, plan_id, plan, scenario, mission, choice)
-            if report.mission_held is not None and _as_sent(vehicle, plan_id, mission, choice):
+            brief = await self._brief(plan_id, choice)
+            report = await inspect(vehicle.client, plan_id, brief)
+            if report.mission_held is not None and _as_sent(vehicle, plan_id, brief.mission, choice):
                 vehicle.found(report.mission_held)
                 vehicle.tell()
             return report
@@ -51,12 +49,12 @@ class Checks:
         async with vehicle.turns.busy("reading parameters"):
             if plan_id is None:
                 return await read_parameters(vehicle.client, names, None)
-            plan = plan_of(await self._planning.plan_text(plan_id))
-            choice = for_vehicle(vehicle, choice)
-            mission = await self._planning.mission(plan_id, choice)
-            scenario = json.loads(await self._planning.scenario_text(plan_id))
-            needs = mission_needs(plan, scenario, mission, choice)
-            return await read_parameters(vehicle.client, names, (mission, needs))
+            brief = await self._brief(plan_id, for_vehicle(vehicle, choice))
+            return await read_parameters(vehicle.client, names, (brief.mission, brief.needs))
+
+    async def _brief(self, plan_id: str, choice: MissionChoice) -> Brief:
+        plan_text = await self._plans.plan_text(plan_id)
+        return await self._plans.worked(brief_of, plan_text, await self._plans.scenario_text(plan_id), choice)
 
 
 def _as_sent(vehicle: Vehicle, plan_id: str, mission: Mission, choice: MissionChoice) -> bool:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import json
 import uuid
 from collections.abc import AsyncGenerator, Sequence
 from dataclasses import replace
@@ -15,12 +14,12 @@ import structlog
 from app.services.errors import ConflictError, NotFoundError, ServiceError
 from app.services.hub import Hub
 from app.services.metrics import VEHICLES
-from app.services.plans.missions import plan_of
-from app.services.plans.planning import PlanningService
+from app.services.plans.library import PlanLibrary
 from app.services.records import VehicleRecord
 from app.services.store.flights import FlightStore
 from app.services.store.vehicles import VehicleStore
-from app.services.vehicles.connection import CONNECT_S, Home, is_replay, replayed_plan
+from app.services.vehicles.brief import first_vehicle, start_of
+from app.services.vehicles.connection import CONNECT_S, Home, is_replay, replayed_plan, simulated_of
 from app.services.vehicles.forwarding import read_forwards, refuse_loops
 from app.services.vehicles.recorder import HeldPlan
 from app.services.vehicles.recordings import RecordingFile, Recordings
@@ -46,7 +45,7 @@ class Fleet:
 
     def __init__(
         self,
-        planning: PlanningService,
+        plans: PlanLibrary,
         transfers: Transfers,
         flights: FlightStore,
         kept: VehicleStore,
@@ -54,7 +53,7 @@ class Fleet:
         recordings: Recordings | None = None,
         times: LinkTimes = DEFAULT_TIMES,
     ) -> None:
-        self._planning = planning
+        self._plans = plans
         self._transfers = transfers
         self._flights = flights
         self._kept = kept
@@ -69,7 +68,6 @@ class Fleet:
     async def open(self) -> None:
         """Close the flights an earlier service left open; listen for its vehicles, commanding nothing."""
         await self._flights.recover()
-        home = await self._default_home()
         for record in await self._kept.all():
             try:
                 vehicle = self._vehicle(record)
@@ -78,7 +76,7 @@ class Fleet:
                 await self._kept.forget(record.id)
                 continue
             self._vehicles[vehicle.id] = vehicle
-            vehicle.resume(home, CONNECT_S)
+            vehicle.resume(await self._default_home(record.url), CONNECT_S)
             log.info("vehicle known from before", vehicle=vehicle.name, url=vehicle.url)
 
     async def close(self) -> None:
@@ -168,7 +166,7 @@ class Fleet:
     async def _open_link(self, vehicle: Vehicle, timeout_s: float) -> None:
         if vehicle.replay:
             vehicle.held = await self._flown_plan(vehicle.url)
-        await vehicle.open(await self._default_home(), timeout_s)
+        await vehicle.open(await self._default_home(vehicle.url), timeout_s)
 
     async def forward(self, vehicle_id: str, forward: Sequence[tuple[str, bool]]) -> Vehicle:
         """Forward a vehicle's link to these addresses and no others; the same again changes nothing.
@@ -245,19 +243,23 @@ class Fleet:
         _, plan_id, payload = replayed_plan(url)
         if plan_id is None:
             return None
-        plan = plan_of(await self._planning.plan_text(plan_id))
+        name = await self._plans.worked(first_vehicle, await self._plans.plan_text(plan_id))
         # The output of an actuator is known from parameters, which a recording cannot be asked for.
         output = None if payload is None else output_of(parse_payload(payload), "generic")
-        return HeldPlan(plan_id, plan.vehicles[0].name, payload, output)
+        return HeldPlan(plan_id, name, payload, output)
 
-    async def _default_home(self) -> Home | None:
-        """Where a simulated aircraft stands at first: the start of the newest scenario."""
-        for record in await self._planning.newest(1, 0, None):
-            scenario = json.loads(await self._planning.scenario_text(record.id))
-            for feature in scenario["features"]:
-                if (feature.get("properties") or {}).get("role") == "start":
-                    lon_deg, lat_deg = feature["geometry"]["coordinates"][:2]
-                    return float(lat_deg), float(lon_deg), 0.0
+    async def _default_home(self, url: str) -> Home | None:
+        """Where a simulated aircraft stands at first that is not told: the start of the newest scenario."""
+        aircraft = simulated_of(url)
+        if aircraft is None or aircraft.home is not None:
+            return None
+        try:
+            for record in await self._plans.newest(1):
+                start = await self._plans.worked(start_of, await self._plans.scenario_text(record.id))
+                if start is not None:
+                    return start[1], start[0], 0.0
+        except ServiceError as error:
+            log.warning("start of the newest scenario not known", reason=str(error))
         return None
 
     def _vehicle(self, record: VehicleRecord) -> Vehicle:

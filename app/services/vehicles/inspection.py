@@ -3,37 +3,28 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from app.services.errors import LinkError, RefusedError
-from app.services.plans.missions import PARTS, MissionChoice, PartName
-from app.services.vehicles.preflight import Observed, Preflight, preflight, settle_m
+from app.services.plans.missions import PARTS, PartName
+from app.services.vehicles.brief import Brief
+from app.services.vehicles.preflight import Observed, Preflight, preflight
 from app.services.vehicles.uploads import UploadReport, comparing
 from mavlink.dialects.mission import Mission
-from mavlink.encoding.options import DEFAULT_PAYLOAD
-from mavlink.encoding.payload import parse_payload
 from mavlink.errors import TransferFailedError
 from mavlink.rules.table import (
     Needs,
     ParameterFinding,
     judge_parameters,
     names_to_read,
-    needs_of,
     other_names,
     unanswered,
 )
 from mavlink.station.client import VehicleClient
 from mavlink.transfer.parameters import Parameter
 from planner.errors import Finding
-from planner.plan import Plan
-
-
-def mission_needs(plan: Plan, scenario: Mapping[str, Any], mission: Mission, choice: MissionChoice) -> Needs:
-    """What a mission needs of its vehicle."""
-    payload = DEFAULT_PAYLOAD if choice.payload is None else parse_payload(choice.payload)
-    return needs_of(plan, mission, payload, settle_m(scenario, mission.vehicle))
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,10 +84,7 @@ async def _read(client: VehicleClient, names: Sequence[str]) -> dict[str, Parame
 async def inspect(
     client: VehicleClient,
     plan_id: str,
-    plan: Plan,
-    scenario: Mapping[str, Any],
-    mission: Mission,
-    choice: MissionChoice,
+    brief: Brief,
     report: UploadReport | None = None,
 ) -> Preflight:
     """Ask the vehicle, and judge; one that is not connected is not asked.
@@ -111,7 +99,7 @@ async def inspect(
     NotConnectedError, BusyError
         It vanished meanwhile, or something else is under way.
     """
-    needs = mission_needs(plan, scenario, mission, choice)
+    plan, scenario, mission, needs = brief.plan, brief.scenario, brief.mission, brief.needs
     if not client.state.connected:
         return preflight(plan_id, plan, scenario, mission, needs, Observed(client.state, {}, None))
     held: dict[PartName, list[Any] | None] = {}

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import json
 from collections.abc import Sequence
 from typing import Any
 
@@ -11,14 +10,15 @@ import structlog
 
 from app.services.errors import ConflictError, LinkError, NotFoundError, RefusedError
 from app.services.metrics import UPLOADS
-from app.services.plans.missions import PARTS, MissionChoice, PartName, plan_of
-from app.services.plans.planning import PlanningService
+from app.services.plans.library import PlanLibrary
+from app.services.plans.missions import PARTS, MissionChoice, PartName
 from app.services.records import HeldMission, SentMission
 from app.services.store.uploads import UploadStore
 from app.services.store.vehicles import VehicleStore
+from app.services.vehicles.brief import Brief, brief_of
 from app.services.vehicles.checks import for_vehicle
 from app.services.vehicles.connection import CONNECT_S
-from app.services.vehicles.inspection import inspect, mission_needs
+from app.services.vehicles.inspection import inspect
 from app.services.vehicles.items import item_json
 from app.services.vehicles.pointing import pointing_findings
 from app.services.vehicles.preflight import Preflight
@@ -51,8 +51,8 @@ AT_HOME_M = 50.0
 class Transfers:
     """Transfers to and from vehicles, and what is remembered of them over a restart."""
 
-    def __init__(self, planning: PlanningService, uploads: UploadStore, kept: VehicleStore) -> None:
-        self._planning = planning
+    def __init__(self, plans: PlanLibrary, uploads: UploadStore, kept: VehicleStore) -> None:
+        self._plans = plans
         self._uploads = uploads
         self._kept = kept
 
@@ -76,17 +76,17 @@ class Transfers:
             The vehicle is not there.
         """
         async with vehicle.turns.busy(f"upload of plan {plan_id}", changes=True):
-            plan = plan_of(await self._planning.plan_text(plan_id))
+            plan_text = await self._plans.plan_text(plan_id)
             # Now, as somebody may delete the plan meanwhile.
-            scenario = json.loads(await self._planning.scenario_text(plan_id))
-            stale = (await self._planning.get(plan_id)).stale_reason
+            scenario_text = await self._plans.scenario_text(plan_id)
+            stale = (await self._plans.get(plan_id)).stale_reason
             if not vehicle.state.connected:
                 raise LinkError(f"{vehicle.name}: {vehicle.client.absence}")
-            mission = await self._planning.mission(plan_id, for_vehicle(vehicle, choice))
-            findings = _pointed(plan, scenario, mission, choice) if "mission" in parts else ()
-            findings += judge_upload(plan, mission, parts, vehicle.state, override, stale)
-            await _bring_home(vehicle, plan)
-            report = await self._begin(vehicle, plan_id, mission, parts, override, findings)
+            brief = await self._plans.worked(brief_of, plan_text, scenario_text, for_vehicle(vehicle, choice))
+            findings = _pointed(brief) if "mission" in parts else ()
+            findings += judge_upload(brief.plan, brief.mission, parts, vehicle.state, override, stale)
+            await _bring_home(vehicle, brief.plan)
+            report = await self._begin(vehicle, plan_id, brief.mission, parts, override, findings)
             report.payload, report.gimbal = choice.payload, choice.gimbal
 
             def tell(part: PartName, made: Progress) -> None:
@@ -100,7 +100,7 @@ class Transfers:
             finally:
                 await self.record(vehicle)
             if report.outcome == "accepted":
-                report.preflight = await _preflight_behind(vehicle, plan, scenario, report, choice)
+                report.preflight = await _preflight_behind(vehicle, brief, report)
         return report
 
     async def download(self, vehicle: Vehicle, parts: Sequence[PartName]) -> dict[str, list[dict[str, Any]]]:
@@ -154,9 +154,12 @@ class Transfers:
         """
         try:
             choice = for_vehicle(vehicle, MissionChoice(held.plan_vehicle, None, held.payload, held.gimbal))
-            mission = await self._planning.mission(held.plan_id, choice)
+            plan_text = await self._plans.plan_text(held.plan_id)
+            scenario_text = await self._plans.scenario_text(held.plan_id)
+            brief = await self._plans.worked(brief_of, plan_text, scenario_text, choice)
         except (NotFoundError, ConflictError):
             return None
+        mission = brief.mission
         meant = mission.items_of(PARTS["mission"])
         found = await vehicle.client.download(PARTS["mission"])
         same = not comparing(mission.dialect)(meant, found)
@@ -217,11 +220,9 @@ class Transfers:
         return report
 
 
-def _pointed(
-    plan: Plan, scenario: dict[str, Any], mission: Mission, choice: MissionChoice
-) -> tuple[Finding, ...]:
+def _pointed(brief: Brief) -> tuple[Finding, ...]:
     """What is worth knowing of the gimbal; RefusedError where the sensor would look elsewhere."""
-    found = pointing_findings(plan, scenario, mission, mission_needs(plan, scenario, mission, choice))
+    found = pointing_findings(brief.plan, brief.scenario, brief.mission, brief.needs)
     errors = tuple(finding for finding in found if finding.severity == "error")
     if errors:
         raise RefusedError(f"the gimbal would point elsewhere: {errors[0].message}", errors)
@@ -241,16 +242,10 @@ async def _bring_home(vehicle: Vehicle, plan: Plan) -> None:
     await vehicle.move((lat_deg, lon_deg, 0.0), CONNECT_S)
 
 
-async def _preflight_behind(
-    vehicle: Vehicle,
-    plan: Plan,
-    scenario: dict[str, Any],
-    report: UploadReport,
-    choice: MissionChoice,
-) -> Preflight | None:
+async def _preflight_behind(vehicle: Vehicle, brief: Brief, report: UploadReport) -> Preflight | None:
     """The check behind an upload; None when the vehicle vanished, which leaves the upload as it is."""
     try:
-        return await inspect(vehicle.client, report.plan_id, plan, scenario, report.mission, choice, report)
+        return await inspect(vehicle.client, report.plan_id, brief, report)
     except (mavlink_errors.NotConnectedError, mavlink_errors.BusyError, LinkError):
         log.warning("no pre-flight check behind the upload", vehicle=vehicle.name)
         return None

@@ -1,0 +1,69 @@
+"""What has to be known of a plan at a vehicle, made where texts may take their time to be read."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+from app.services.documents import read_object
+from app.services.plans.missions import MissionChoice, encode_plan, plan_of
+from app.services.vehicles.preflight import settle_m
+from mavlink.dialects.mission import Mission
+from mavlink.encoding.options import DEFAULT_PAYLOAD
+from mavlink.encoding.payload import parse_payload
+from mavlink.rules.table import Needs, needs_of
+from planner.plan import LonLat, Plan
+
+
+@dataclass(frozen=True, slots=True)
+class Brief:
+    """A plan for one vehicle.
+
+    Parameters
+    ----------
+    plan
+        Without its lines and the ground it sees, which make it large.
+    scenario
+        As it was posted, of its features the start alone.
+    """
+
+    plan: Plan
+    scenario: dict[str, Any]
+    mission: Mission
+    needs: Needs
+
+
+def brief_of(plan_text: str, scenario_text: str, choice: MissionChoice) -> Brief:
+    """Read both, encode the mission; raises as ``missions.encode_plan``."""
+    plan, scenario = plan_of(plan_text), read_object(scenario_text)
+    mission = encode_plan(plan, choice)
+    needs = mission_needs(plan, scenario, mission, choice)
+    paths = tuple(replace(path, line=(), segments=()) for path in plan.paths)
+    plan = replace(plan, paths=paths, transits=(), footprints=(), uncovered=())
+    starts = [feature for feature in scenario.get("features") or () if _role(feature) == "start"]
+    return Brief(plan, scenario | {"features": starts}, mission, needs)
+
+
+def mission_needs(plan: Plan, scenario: Mapping[str, Any], mission: Mission, choice: MissionChoice) -> Needs:
+    """What a mission needs of its vehicle."""
+    payload = DEFAULT_PAYLOAD if choice.payload is None else parse_payload(choice.payload)
+    return needs_of(plan, mission, payload, settle_m(scenario, mission.vehicle))
+
+
+def first_vehicle(plan_text: str) -> str:
+    """The name of a plan's first vehicle."""
+    return plan_of(plan_text).vehicles[0].name
+
+
+def start_of(scenario_text: str) -> LonLat | None:
+    """Where a scenario's flights begin; None where it does not say."""
+    for feature in read_object(scenario_text)["features"]:
+        if _role(feature) == "start":
+            lon_deg, lat_deg = feature["geometry"]["coordinates"][:2]
+            return float(lon_deg), float(lat_deg)
+    return None
+
+
+def _role(feature: Mapping[str, Any]) -> Any:
+    return (feature.get("properties") or {}).get("role")

@@ -1,0 +1,43 @@
+"""All that talks to vehicles, wired."""
+
+from __future__ import annotations
+
+from app.services.plans.library import PlanLibrary
+from app.services.store.database import Database
+from app.services.store.flights import FlightStore
+from app.services.store.uploads import UploadStore
+from app.services.store.vehicles import VehicleStore
+from app.services.vehicles.checks import Checks
+from app.services.vehicles.fleet import Fleet
+from app.services.vehicles.recordings import Recordings
+from app.services.vehicles.times import LinkTimes
+from app.services.vehicles.transfers import Transfers
+
+
+class Station:
+    """The vehicles, what is put into them, and what is asked of them.
+
+    Parameters
+    ----------
+    plans
+        What may be put into them.
+    track_interval_s
+        Vehicle time between two recorded points of a track.
+    recordings
+        Where their links are recorded; None for nowhere.
+    """
+
+    def __init__(
+        self,
+        database: Database,
+        plans: PlanLibrary,
+        track_interval_s: float,
+        recordings: Recordings | None,
+        times: LinkTimes,
+    ) -> None:
+        kept = VehicleStore(database)
+        self.checks = Checks(plans)
+        self.transfers = Transfers(plans, UploadStore(database), kept)
+        self.fleet = Fleet(
+            plans, self.transfers, FlightStore(database), kept, track_interval_s, recordings, times
+        )
