@@ -1,4 +1,4 @@
-"""Which items each autopilot takes, and what it makes of them: the vehicle's side of the dialects.
+"""Which items each autopilot takes: the vehicle's side of the dialects.
 
 Measured on ArduPlane 4.6 and PX4 1.16 simulators; kept apart from ``mavlink.dialects`` on purpose, so that a
 wrong belief there is not confirmed here.
@@ -8,41 +8,35 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
 
-from mavlink.sim.geodesy import Place
 from mavlink.sim.modes import Flavour
 from mavlink.wire.items import Command, Frame, MissionItem, MissionResult, MissionType
 
-DO_SET_ACTUATOR = 187
-_VTOL_TAKEOFF, _VTOL_LAND = 84, 85
-_DO_MOUNT_CONTROL, _GIMBAL_PITCHYAW, _GIMBAL_CONFIGURE = 205, 1000, 1001
-_ROI_LOCATION, _ROI_NONE, _ROI = 195, 197, 201
-
-#: Commands with a place in x, y, z.
+#: Commands that ArduPilot keeps a place of.
 PLACED = frozenset(
     {
         Command.NAV_WAYPOINT,
+        Command.NAV_SPLINE_WAYPOINT,
         Command.NAV_LOITER_UNLIM,
         Command.NAV_LOITER_TURNS,
         Command.NAV_LOITER_TIME,
         Command.NAV_LAND,
         Command.NAV_TAKEOFF,
         Command.NAV_LOITER_TO_ALT,
+        Command.NAV_VTOL_TAKEOFF,
+        Command.NAV_VTOL_LAND,
         Command.DO_SET_HOME,
         Command.DO_LAND_START,
-        _VTOL_TAKEOFF,
-        _VTOL_LAND,
-        _ROI,
-        _ROI_LOCATION,
+        Command.DO_SET_ROI,
     }
 )
 
-_ARDUPILOT = PLACED - {_ROI_LOCATION} | {
+_COPTER = PLACED | {
     Command.NAV_RETURN_TO_LAUNCH,
     Command.NAV_DELAY,
     Command.CONDITION_DELAY,
     Command.CONDITION_DISTANCE,
+    Command.CONDITION_YAW,
     Command.DO_JUMP,
     Command.DO_CHANGE_SPEED,
     Command.DO_SET_RELAY,
@@ -50,13 +44,21 @@ _ARDUPILOT = PLACED - {_ROI_LOCATION} | {
     Command.DO_FENCE_ENABLE,
     Command.DO_DIGICAM_CONTROL,
     Command.DO_SET_CAM_TRIGG_DIST,
+    Command.DO_PARACHUTE,
+    Command.DO_GRIPPER,
+    Command.DO_WINCH,
+    Command.DO_PAUSE_CONTINUE,
+    Command.JUMP_TAG,
+    Command.SET_CAMERA_ZOOM,
+    Command.SET_CAMERA_FOCUS,
     Command.IMAGE_START_CAPTURE,
     Command.IMAGE_STOP_CAPTURE,
     Command.VIDEO_START_CAPTURE,
     Command.VIDEO_STOP_CAPTURE,
-    _DO_MOUNT_CONTROL,
-    _GIMBAL_PITCHYAW,
+    Command.DO_MOUNT_CONTROL,
+    Command.DO_GIMBAL_MANAGER_PITCHYAW,
 }
+_PLANE = _COPTER - {Command.NAV_SPLINE_WAYPOINT}
 
 _PX4_PLACED = frozenset(
     {
@@ -66,8 +68,10 @@ _PX4_PLACED = frozenset(
         Command.NAV_LOITER_TO_ALT,
         Command.NAV_TAKEOFF,
         Command.NAV_LAND,
-        _ROI_LOCATION,
-        _ROI,
+        Command.NAV_VTOL_TAKEOFF,
+        Command.NAV_VTOL_LAND,
+        Command.CONDITION_GATE,
+        Command.DO_SET_ROI_LOCATION,
     }
 )
 _PX4_UNPLACED = frozenset(
@@ -83,26 +87,36 @@ _PX4_UNPLACED = frozenset(
         Command.DO_SET_CAM_TRIGG_DIST,
         Command.DO_SET_CAM_TRIGG_INTERVAL,
         Command.DO_TRIGGER_CONTROL,
+        Command.SET_CAMERA_MODE,
+        Command.SET_CAMERA_FOCUS,
         Command.IMAGE_START_CAPTURE,
         Command.IMAGE_STOP_CAPTURE,
         Command.VIDEO_START_CAPTURE,
         Command.VIDEO_STOP_CAPTURE,
         Command.DO_DIGICAM_CONTROL,
         Command.DO_SET_ACTUATOR,
-        _ROI_NONE,
-        _DO_MOUNT_CONTROL,
-        _GIMBAL_PITCHYAW,
-        _GIMBAL_CONFIGURE,
+        Command.DO_GRIPPER,
+        Command.DO_WINCH,
+        Command.DO_SET_ROI_NONE,
+        Command.DO_MOUNT_CONTROL,
+        Command.DO_GIMBAL_MANAGER_PITCHYAW,
+        Command.DO_GIMBAL_MANAGER_CONFIGURE,
     }
 )
+_TAKEOFFS = frozenset({Command.NAV_TAKEOFF, Command.NAV_VTOL_TAKEOFF})
+_LANDINGS = frozenset({Command.NAV_LAND, Command.NAV_VTOL_LAND})
+_ROI = frozenset({Command.NAV_ROI, Command.DO_SET_ROI})
+#: Param 1 of those, MAV_ROI: 3 is a place, 0 none.
+_ROI_WITH_PLACE, _ROI_WITHOUT = (0.0, 3.0), (0.0, 1.0, 2.0)
 
 _ARDUPILOT_FRAMES = frozenset({0, 2, 3, 5, 6, 10, 11})
+_PX4_FRAMES = frozenset({0, 3, 5, 6})
 _NAN_TAKEN = {
     Command.NAV_WAYPOINT: {4},
     Command.NAV_TAKEOFF: {4},
     Command.NAV_LAND: {4},
-    _VTOL_TAKEOFF: {4},
-    _VTOL_LAND: {3, 4},
+    Command.NAV_VTOL_TAKEOFF: {4},
+    Command.NAV_VTOL_LAND: {3, 4},
 }
 _FENCE_POLYGONS = frozenset(
     {Command.NAV_FENCE_POLYGON_VERTEX_INCLUSION, Command.NAV_FENCE_POLYGON_VERTEX_EXCLUSION}
@@ -112,7 +126,9 @@ _FENCE = _FENCE_POLYGONS | _FENCE_CIRCLES | {Command.NAV_FENCE_RETURN_POINT}
 _FIRST_INVALID_PARAM = int(MissionResult.INVALID_PARAM1)
 
 
-def refusal(flavour: Flavour, item: MissionItem, count: int, sensor_command: int = 0) -> MissionResult | None:
+def refusal(
+    flavour: Flavour, item: MissionItem, count: int, sensor_command: int = 0, *, hovers: bool = False
+) -> MissionResult | None:
     """Why an item is refused as it arrives; None when it is taken.
 
     Parameters
@@ -127,14 +143,16 @@ def refusal(flavour: Flavour, item: MissionItem, count: int, sensor_command: int
     if item.mission_type is MissionType.RALLY:
         return None if item.command == Command.NAV_RALLY_POINT else MissionResult.UNSUPPORTED
     if flavour is Flavour.ARDUPILOT:
-        return _ardupilot_refusal(item, count, sensor_command)
+        return _ardupilot_refusal(item, count, sensor_command, _COPTER if hovers else _PLANE)
     return _px4_refusal(item, sensor_command)
 
 
-def _ardupilot_refusal(item: MissionItem, count: int, sensor_command: int) -> MissionResult | None:
+def _ardupilot_refusal(
+    item: MissionItem, count: int, sensor_command: int, known: frozenset[int]
+) -> MissionResult | None:
     if item.seq == 0:
         return None
-    if item.command not in _ARDUPILOT and item.command != sensor_command:
+    if item.command not in known and item.command != sensor_command:
         return MissionResult.UNSUPPORTED
     if item.command in PLACED and item.frame not in _ARDUPILOT_FRAMES:
         return MissionResult.UNSUPPORTED_FRAME
@@ -152,108 +170,15 @@ def _ardupilot_refusal(item: MissionItem, count: int, sensor_command: int) -> Mi
 
 
 def _px4_refusal(item: MissionItem, sensor_command: int) -> MissionResult | None:
+    if item.command in _ROI and (item.frame == Frame.MISSION or item.frame in _PX4_FRAMES):
+        taken = _ROI_WITHOUT if item.frame == Frame.MISSION else _ROI_WITH_PLACE
+        return None if item.param1 in taken else MissionResult.INVALID_PARAM1
     if item.frame == Frame.MISSION:
         known = item.command in _PX4_UNPLACED or item.command == sensor_command
         return None if known else MissionResult.UNSUPPORTED
-    if item.frame in (0, 3, 5, 6):
+    if item.frame in _PX4_FRAMES:
         return None if item.command in _PX4_PLACED else MissionResult.UNSUPPORTED
     return MissionResult.UNSUPPORTED_FRAME
-
-
-def as_stored(flavour: Flavour, item: MissionItem, home: Place, *, hovers: bool = False) -> MissionItem:
-    """The item as the autopilot keeps it and reads it back; ArduCopter's waypoints keep a delay alone."""
-    if item.mission_type is MissionType.FENCE:
-        frame = Frame.GLOBAL if flavour is Flavour.ARDUPILOT else Frame.GLOBAL_INT
-        return replace(item, frame=frame, z=0.0)
-    if item.mission_type is MissionType.RALLY:
-        if flavour is Flavour.ARDUPILOT:
-            return replace(item, frame=Frame.GLOBAL_RELATIVE_ALT, z=float(math.trunc(item.z)))
-        return item
-    if flavour is Flavour.ARDUPILOT:
-        stored = _ardupilot_stored(item, home)
-        if hovers and item.seq > 0 and item.command == Command.NAV_WAYPOINT:
-            return replace(stored, param1=float(math.trunc(item.param1)), param2=0.0, param3=0.0)
-        return stored
-    return _px4_stored(item)
-
-
-def home_item(home: Place) -> MissionItem:
-    """ArduPilot's row 0."""
-    return MissionItem(
-        seq=0,
-        frame=Frame.GLOBAL,
-        command=Command.NAV_WAYPOINT,
-        x=round(home.lat_deg * 1e7),
-        y=round(home.lon_deg * 1e7),
-        z=_centimetres(home.altitude_m),
-    )
-
-
-def _ardupilot_stored(item: MissionItem, home: Place) -> MissionItem:
-    if item.seq == 0:
-        return home_item(home)
-    p1, p2, p3, p4 = item.param1, item.param2, item.param3, item.param4
-    x, y, z = item.x, item.y, _centimetres(item.z)
-    frame = {2: 0, 5: 0, 6: 3, 11: 10}.get(item.frame, item.frame) if item.command in PLACED else 0
-    match item.command:
-        case Command.NAV_WAYPOINT:
-            p1, p2, p3, p4 = 0.0, _byte(p2), _byte(p3), 0.0
-        case Command.NAV_TAKEOFF:
-            p1, p4 = float(math.trunc(p1)), 0.0
-        case Command.NAV_LOITER_TURNS:
-            # A part of a turn is kept in 1/256.
-            p1 = math.floor(256.0 * p1) / 256.0 if 0.0 < p1 < 1.0 else _byte(p1)
-            p3 = _loiter_radius(p3)
-        case Command.NAV_LOITER_TIME:
-            p1, p3 = float(math.trunc(p1)), -1.0 if p3 < 0.0 else 1.0
-        case Command.NAV_LOITER_TO_ALT:
-            p2 = float(math.trunc(p2))
-        case Command.NAV_LOITER_UNLIM:
-            p3 = float(math.trunc(p3))
-        case Command.NAV_LAND:
-            p1, p4 = float(math.trunc(p1)), -1.0 if p4 < 0.0 else 1.0
-        case Command.NAV_RETURN_TO_LAUNCH:
-            x, y, z = 0, 0, 0.0
-        case Command.DO_CHANGE_SPEED:
-            p4 = 0.0
-        case Command.DO_SET_SERVO:
-            p2 = float(math.trunc(p2))
-        case Command.DO_SET_CAM_TRIGG_DIST:
-            p2 = 0.0
-        case Command.DO_DIGICAM_CONTROL | 205:
-            z = 0.0
-        case 1000:
-            p1, p2 = float(math.trunc(p1)), float(math.trunc(p2))
-        case _:
-            pass
-    return replace(
-        item,
-        frame=frame,
-        param1=p1,
-        param2=p2,
-        param3=p3,
-        param4=p4,
-        x=x,
-        y=y,
-        z=z,
-        current=False,
-        autocontinue=True,
-    )
-
-
-def _px4_stored(item: MissionItem) -> MissionItem:
-    item = replace(item, frame={0: 5, 3: 6}.get(item.frame, item.frame), current=False)
-    match item.command:
-        case Command.NAV_TAKEOFF | Command.NAV_LAND:
-            return replace(item, param1=0.0, param4=_yaw(item.param4))
-        case Command.NAV_WAYPOINT:
-            return replace(item, param3=0.0, param4=_yaw(item.param4))
-        case Command.DO_JUMP:
-            return replace(item, param2=65535.0) if item.param2 == -1.0 else item
-        case 80:
-            return replace(item, command=_ROI)
-        case _:
-            return item
 
 
 def finished_list(
@@ -291,31 +216,11 @@ def infeasible(flavour: Flavour, items: Sequence[MissionItem], *, hovers: bool =
     if flavour is Flavour.ARDUPILOT:
         return ""
     placed = [item for item in flown if item.command in _PX4_PLACED]
-    takes_off = any(item.command == Command.NAV_TAKEOFF for item in placed) or not hovers
-    if takes_off and (not placed or placed[0].command != Command.NAV_TAKEOFF):
+    takes_off = any(item.command in _TAKEOFFS for item in placed) or not hovers
+    if takes_off and (not placed or placed[0].command not in _TAKEOFFS):
         return "first item is no takeoff"
-    if not hovers and not any(item.command == Command.NAV_LAND for item in placed):
+    if not hovers and not any(item.command in _LANDINGS for item in placed):
         return "landing required"
     if any(item.command in (Command.CONDITION_DELAY, Command.CONDITION_DISTANCE) for item in flown):
         return "condition items are not flown"
     return ""
-
-
-def _centimetres(metres: float) -> float:
-    # The nudge keeps 0.29 from becoming 0.28 because 0.29 * 100 is 28.999… in binary.
-    return math.trunc(metres * 100.0 + math.copysign(1e-6, metres)) / 100.0
-
-
-def _byte(value: float) -> float:
-    return float(min(max(math.trunc(value), 0), 255))
-
-
-def _loiter_radius(radius_m: float) -> float:
-    size_m = math.trunc(abs(radius_m))
-    if size_m > 255:
-        size_m = min(size_m // 10 * 10, 2550)
-    return math.copysign(float(size_m), radius_m)
-
-
-def _yaw(yaw_deg: float) -> float:
-    return yaw_deg if math.isnan(yaw_deg) else yaw_deg % 360.0

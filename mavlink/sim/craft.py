@@ -25,6 +25,12 @@ NAVIGATION = frozenset(
     }
 )
 
+#: Of a VTOL, to an aircraft that is none: plain ones.
+PLAIN: dict[int, int] = {
+    Command.NAV_VTOL_TAKEOFF: Command.NAV_TAKEOFF,
+    Command.NAV_VTOL_LAND: Command.NAV_LAND,
+}
+
 
 @dataclass(frozen=True, slots=True)
 class Vertex:
@@ -65,6 +71,9 @@ class Craft(Protocol):
     @property
     def glides(self) -> bool:
         """Whether it flies straight on from the last waypoint to a landing place."""
+
+    def flown_as(self, item: MissionItem) -> MissionItem:
+        """The item it flies for one of a mission: those of other kinds of aircraft as its own."""
 
     def path(self, start: Place, vertices: Sequence[Vertex]) -> Path:
         """Straight lines through waypoints."""

@@ -76,7 +76,7 @@ class MissionRun:
     def __init__(
         self, items: Sequence[MissionItem], settings: SimSettings, craft: Craft, home: Place
     ) -> None:
-        self._items = list(items)
+        self._items = [craft.flown_as(item) for item in items]
         self._settings = settings
         self._craft = craft
         self._home = home

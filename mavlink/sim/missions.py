@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
-from mavlink.sim.acceptance import PLACED, as_stored, finished_list, home_item, refusal
+from mavlink.sim.acceptance import PLACED, finished_list, refusal
 from mavlink.sim.faults import Fault
 from mavlink.sim.geodesy import Place
 from mavlink.sim.meddling import Meddler
@@ -24,6 +24,7 @@ from mavlink.sim.replies import (
     sender,
     status_text,
 )
+from mavlink.sim.storage import as_stored, home_item
 from mavlink.wire.items import MissionItem, MissionResult, MissionType
 from mavlink.wire.messages import Message
 
@@ -261,6 +262,7 @@ class MissionServer:
             item,
             max(upload.first + upload.count, len(self._stores[kind])),
             self._sensor_command,
+            hovers=self._hovers,
         )
         if refused is not None:
             self._upload = None

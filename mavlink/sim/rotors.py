@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from mavlink.sim.craft import NAVIGATION, Path, Vertex
+from mavlink.sim.craft import NAVIGATION, PLAIN, Path, Vertex
 from mavlink.sim.dynamics import AircraftState
 from mavlink.sim.geodesy import Place
 from mavlink.sim.hovering import Circle, Descent, Return, Rise, Stay, stopping_place
@@ -20,6 +20,8 @@ _ACCELERATION_M_S2 = {Flavour.ARDUPILOT: 2.5, Flavour.PX4: 3.0}
 #: LAND_ALT_LOW and LAND_SPEED of ArduCopter, MPC_LAND_ALT2 and MPC_LAND_SPEED of PX4.
 _SLOW_BELOW_M = {Flavour.ARDUPILOT: 10.0, Flavour.PX4: 5.0}
 _SLOW_M_S = {Flavour.ARDUPILOT: 0.5, Flavour.PX4: 0.7}
+
+_PLAIN: dict[int, int] = {**PLAIN, Command.NAV_SPLINE_WAYPOINT: Command.NAV_WAYPOINT}
 
 
 class Multirotor:
@@ -41,6 +43,10 @@ class Multirotor:
         )
         self._slow_below_m = _SLOW_BELOW_M[flavour]
         self._slow_m_s = _SLOW_M_S[flavour]
+
+    def flown_as(self, item: MissionItem) -> MissionItem:
+        """A VTOL's items as plain ones; the curve of splines is not simulated."""
+        return replace(item, command=_PLAIN.get(item.command, item.command))
 
     def path(self, start: Place, vertices: Sequence[Vertex]) -> Path:
         """Straight legs, corners rounded as the autopilot does."""

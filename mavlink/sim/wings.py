@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from mavlink.sim.craft import NAVIGATION, Path, Vertex
+from mavlink.sim.craft import NAVIGATION, PLAIN, Path, Vertex
 from mavlink.sim.dynamics import AircraftState
 from mavlink.sim.geodesy import Place
 from mavlink.sim.guidance import PolylineFollower
@@ -25,6 +25,11 @@ class FixedWing:
         self._settings = settings
         self._tuning = settings.tuning
         self._ardupilot = settings.autopilot is Flavour.ARDUPILOT
+
+    def flown_as(self, item: MissionItem) -> MissionItem:
+        """PX4 takes off and lands by a VTOL's items; ArduPlane without rotors passes them over."""
+        command = item.command if self._ardupilot else PLAIN.get(item.command, item.command)
+        return replace(item, command=command)
 
     def path(self, start: Place, vertices: Sequence[Vertex]) -> Path:
         """A polyline whose corners are looked past."""

@@ -13,9 +13,10 @@ from hypothesis import strategies as st
 from mavlink.dialects import Autopilot, VehicleType, dialect_for
 from mavlink.dialects.compare import differences
 from mavlink.encoding.encode import EncodeOptions, encode
-from mavlink.sim.acceptance import as_stored, refusal
+from mavlink.sim.acceptance import refusal
 from mavlink.sim.geodesy import Place
 from mavlink.sim.modes import Flavour
+from mavlink.sim.storage import as_stored
 from mavlink.wire.items import MissionItem
 from tests.mavlink.plans import make_plan
 

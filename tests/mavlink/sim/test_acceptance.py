@@ -7,8 +7,9 @@ from dataclasses import replace
 
 import pytest
 
-from mavlink.sim.acceptance import as_stored, infeasible, refusal
+from mavlink.sim.acceptance import infeasible, refusal
 from mavlink.sim.modes import Flavour
+from mavlink.sim.storage import as_stored
 from mavlink.wire.items import Command, Frame, MissionItem, MissionResult, MissionType
 from tests.mavlink.sim.helpers import HOME, item, landing_mission, numbered, waypoint
 
@@ -19,6 +20,10 @@ ARDUPILOT, PX4 = Flavour.ARDUPILOT, Flavour.PX4
 def raw(command: int, frame: int, params: tuple[float, ...] = (), z: float = 50.0) -> MissionItem:
     p1, p2, p3, p4 = (*params, *(0.0,) * (4 - len(params)))
     return MissionItem(3, frame, command, p1, p2, p3, p4, 473977000, 85456000, z)
+
+
+def placeless(command: int, frame: int, params: tuple[float, ...], z: float) -> MissionItem:
+    return replace(raw(command, frame, params, z), x=0, y=0)
 
 
 @pytest.mark.parametrize(
@@ -76,11 +81,11 @@ def test_the_sensor_command_is_taken_by_both() -> None:
         (raw(18, 3, (2.7, 0.0, -267.0)), raw(18, 3, (2.0, 0.0, -260.0))),
         (raw(18, 3, (300.0, 0.0, 9999.0)), raw(18, 3, (255.0, 0.0, 2550.0))),
         (raw(19, 3, (9.9, 0.0, -80.0)), raw(19, 3, (9.0, 0.0, -1.0))),
-        (raw(31, 3, (1.0, 120.7)), raw(31, 3, (1.0, 120.0))),
+        (raw(31, 3, (1.0, 120.7)), raw(31, 3, (0.0, 120.0))),
         (raw(21, 3, (4.2, 0.0, 0.0, NAN)), raw(21, 3, (4.0, 0.0, 0.0, 1.0))),
-        (raw(178, 2, (0.0, 20.0, -1.0, 7.0), 0.0), raw(178, 0, (0.0, 20.0, -1.0, 0.0), 0.0)),
-        (raw(183, 2, (9.0, 1900.9), 0.0), raw(183, 0, (9.0, 1900.0), 0.0)),
-        (raw(206, 2, (25.0, 3.0, 1.0), 0.0), raw(206, 0, (25.0, 0.0, 1.0), 0.0)),
+        (raw(178, 2, (0.0, 20.0, -1.0, 7.0), 0.0), placeless(178, 0, (0.0, 20.0, -1.0, 0.0), 0.0)),
+        (raw(183, 2, (9.0, 1900.9), 0.0), placeless(183, 0, (9.0, 1900.0), 0.0)),
+        (raw(206, 2, (25.0, 3.0, 1.0), 0.0), placeless(206, 0, (25.0, 0.0, 1.0), 0.0)),
     ],
 )
 def test_ardupilot_rounds_as_measured(sent: MissionItem, kept: MissionItem) -> None:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from mavlink.sim.acceptance import as_stored
 from mavlink.sim.autopilot import SimulatedAircraft
 from mavlink.sim.faults import Fault, parse_faults
 from mavlink.sim.modes import Flavour
 from mavlink.sim.settings import SimSettings
+from mavlink.sim.storage import as_stored
 from mavlink.wire.items import Command
 from tests.mavlink.sim.helpers import (
     HOME,

@@ -8,10 +8,10 @@ from dataclasses import replace
 
 import pytest
 
-from mavlink.sim.acceptance import as_stored
 from mavlink.sim.modes import Flavour
 from mavlink.sim.run import serve
 from mavlink.sim.settings import SimSettings
+from mavlink.sim.storage import as_stored
 from mavlink.wire.items import Command, MissionItem
 from tests.mavlink.sim.helpers import HOME, item, landing_mission, numbered, place_at, waypoint
 

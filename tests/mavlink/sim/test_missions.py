@@ -9,10 +9,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mavlink.sim.acceptance import as_stored
 from mavlink.sim.autopilot import SimulatedAircraft
 from mavlink.sim.modes import Flavour, Mode
 from mavlink.sim.settings import SimSettings
+from mavlink.sim.storage import as_stored
 from mavlink.wire.items import Command, Frame, MissionItem, MissionType
 from mavlink.wire.messages import Message
 from tests.mavlink.sim.helpers import (

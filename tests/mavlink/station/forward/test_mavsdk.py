@@ -9,10 +9,10 @@ from collections.abc import AsyncIterator, Awaitable, Callable
 import pytest
 
 from mavlink.links.link import memory_pair
-from mavlink.sim.acceptance import as_stored
 from mavlink.sim.modes import Flavour
 from mavlink.sim.run import serve_link
 from mavlink.sim.settings import SimSettings
+from mavlink.sim.storage import as_stored
 from mavlink.station.client import VehicleClient
 from mavlink.station.forward.address import parse_forward
 from mavlink.station.forward.hub import Forwards
