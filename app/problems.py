@@ -30,12 +30,16 @@ TABLE: tuple[tuple[type[errors.ServiceError], int, str, str], ...] = (
     (errors.UnsafeError, 409, "unsafe", "Not to be flown without an explicit override"),
     (errors.RefusedError, 422, "refused", "The input is refused"),
     (errors.OverloadedError, 429, "overloaded", "No room for more work now"),
+    (errors.StorageError, 503, "storage", "Nothing can be kept now"),
     # no 502: a 5xx means that the service is broken, and it is not; 504 is the vehicle's silence alone
     (errors.LinkError, 409, "vehicle-unreachable", "The vehicle cannot be reached"),
     (errors.CommandRefusedError, 409, "command-refused", "The command is refused"),
     (errors.CommandOvertakenError, 409, "command-overtaken", "A newer command has overtaken it"),
     (errors.CommandUnknownError, 504, "command-unknown", "Nobody can tell whether it was carried out"),
 )
+
+#: When to try again what the database did not take, seconds.
+_RETRY_AFTER_S = 10
 
 
 class ProblemEntry(BaseModel):
@@ -130,7 +134,10 @@ def service_problem(request: Request, error: Exception) -> Response:
         else None
     )
     members = error.members if isinstance(error, errors.CommandError) else None
-    headers = {"Retry-After": str(error.retry_after_s)} if isinstance(error, errors.OverloadedError) else None
+    retry_after_s = _RETRY_AFTER_S if isinstance(error, errors.StorageError) else None
+    if isinstance(error, errors.OverloadedError):
+        retry_after_s = error.retry_after_s
+    headers = None if retry_after_s is None else {"Retry-After": str(retry_after_s)}
     return problem_response(request, status, kind, title, str(error), entries, headers, members)
 
 

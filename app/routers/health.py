@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
+
 from fastapi import APIRouter, Response
 from prometheus_client import CONTENT_TYPE_LATEST, generate_latest
 
 from app.deps import HouseDep
 from app.schemas.health import Health
+from app.services.plans.pool import WorkerDiedError
 from app.version import VERSION
 
 router = APIRouter(tags=["health"])
@@ -21,17 +24,27 @@ async def live() -> Health:
 @router.get(
     "/health/ready",
     summary="Can it plan?",
-    responses={503: {"model": Health, "description": "Workers are still compiling their kernels."}},
+    responses={
+        503: {"model": Health, "description": "The check that is false says why: see `checks`."},
+    },
 )
 async def ready(house: HouseDep, response: Response) -> Health:
-    """200 once the database answers and a planning process is warm."""
+    """200 once the database can be read and written and a planning process is warm.
+
+    Workers that ended are replaced by this; until they are warm it is 503.
+    """
+    pools = (house.pool, house.desk.pool)
+    for pool in pools:
+        with contextlib.suppress(WorkerDiedError):
+            await pool.mend()
     checks = {
         "database": await house.database.answers(),
-        "workers": house.pool.ready and house.desk.pool.ready,
+        "workers": all(pool.ready for pool in pools),
     }
-    ready = all(checks.values())
-    response.status_code = 200 if ready else 503
-    return Health(status="ok" if ready else "starting", version=VERSION, checks=checks)
+    if all(checks.values()):
+        return Health(status="ok", version=VERSION, checks=checks)
+    response.status_code = 503
+    return Health(status="starting" if checks["database"] else "failing", version=VERSION, checks=checks)
 
 
 @router.get(

@@ -10,6 +10,11 @@ from pydantic import BaseModel, Field
 class Health(BaseModel):
     """A probe's answer."""
 
-    status: Literal["ok", "starting"]
+    status: Literal["ok", "starting", "failing"] = Field(
+        description="starting: workers are compiling their kernels. failing: nothing can be kept."
+    )
     version: str
-    checks: dict[str, bool] = Field(default_factory=dict)
+    checks: dict[str, bool] = Field(
+        default_factory=dict,
+        description="`database`: it can be read and written. `workers`: planning processes are warm.",
+    )

@@ -232,7 +232,9 @@ class LogList(BaseModel):
     """Recordings of a vehicle's link, oldest first."""
 
     vehicle_id: str
-    failure: str | None = Field(description="Why the link is no longer recorded, e.g. a full disk.")
+    failure: str | None = Field(
+        description="Why the link is not recorded now, e.g. a full disk; it is tried again and again."
+    )
     logs: list[LogOut]
 
 

@@ -10,6 +10,7 @@
     ├── RefusedError           the input is wrong; carries findings
     ├── UnsafeError            the plan breaks a hard constraint, or the autopilot cannot hold it
     ├── OverloadedError        no room for more work now
+    ├── StorageError           the database cannot be written or read
     ├── LinkError              the vehicle cannot be reached
     └── CommandError           a flight command that was not carried out as far as anybody can tell
         ├── CommandRefusedError    the vehicle said no, or it was not sent for a reason
@@ -80,6 +81,10 @@ class OverloadedError(ServiceError):
 
     def __reduce__(self) -> tuple[Any, ...]:
         return type(self), (str(self), self.retry_after_s)
+
+
+class StorageError(ServiceError):
+    """The database, or the disk below it, cannot be written or read: nothing of the request was kept."""
 
 
 class LinkError(ServiceError):

@@ -8,6 +8,7 @@ Source: pymavlink ``mavutil.mavlogfile``.
 
 from __future__ import annotations
 
+import contextlib
 import struct
 import time
 from collections.abc import Callable, Iterator
@@ -23,6 +24,7 @@ SUFFIX: Final = ".tlog"
 
 _MICROSECONDS: Final = 1_000_000
 _FLUSH_S: Final = 1.0
+_RETRY_S: Final = 5.0
 _CHUNK_BYTES: Final = 1 << 16
 #: A frame's time may lie this far from the one before; what claims more is no time.
 _LONGEST_GAP_US: Final = 7 * 86_400 * _MICROSECONDS
@@ -62,7 +64,8 @@ class TlogWriter:
     Attributes
     ----------
     failure
-        Why recording has ended, e.g. a full disk; the link goes on without. None while all is well.
+        Why nothing is recorded, e.g. a full disk; the link goes on without, and a new file is tried every
+        few seconds. None while all is well.
     """
 
     def __init__(
@@ -75,14 +78,15 @@ class TlogWriter:
         self._file: BinaryIO | None = None
         self._written = 0
         self._flushed_s = 0.0
+        self._failed_s = 0.0
         self._last_us = 0
         self._closed = False
 
     def write(self, frame: bytes) -> None:
         """Write one frame with the time of now."""
-        if self.failure is not None or self._closed:
-            return
         now_s = self._clock()
+        if self._closed or (self.failure is not None and abs(now_s - self._failed_s) < _RETRY_S):
+            return
         # Readers take time to run forwards; a clock set back must not make a recording unreadable.
         self._last_us = max(self._last_us, round(now_s * _MICROSECONDS))
         try:
@@ -91,12 +95,12 @@ class TlogWriter:
             assert self._file is not None
             self._file.write(STAMP.pack(self._last_us) + frame)
             self._written += STAMP.size + len(frame)
-            if abs(now_s - self._flushed_s) >= _FLUSH_S:
+            if self.failure is not None or abs(now_s - self._flushed_s) >= _FLUSH_S:
                 self._flushed_s = now_s
                 self._file.flush()
+            self.failure = None
         except OSError as error:
-            self.failure = f"recording ended: {error.strerror or error}"
-            self._abandon()
+            self._fail(error)
 
     def flush(self) -> None:
         """Put everything written so far where readers see it."""
@@ -104,8 +108,7 @@ class TlogWriter:
             try:
                 self._file.flush()
             except OSError as error:
-                self.failure = f"recording ended: {error.strerror or error}"
-                self._abandon()
+                self._fail(error)
 
     def close(self) -> None:
         """Write what is left and close the file; closing twice is harmless."""
@@ -129,13 +132,27 @@ class TlogWriter:
         self._written = 0
         prune(self.folder.parent, self._limits.total_bytes, keep=Path(self._file.name))
 
+    def _fail(self, error: OSError) -> None:
+        self.failure, self._failed_s = _words(error), self._clock()
+        path = None if self._file is None else Path(self._file.name)
+        self._abandon()
+        if path is not None:
+            with contextlib.suppress(OSError):
+                # Tried every few seconds, empty files would be many.
+                if path.stat().st_size == 0:
+                    path.unlink()
+
     def _abandon(self) -> None:
         file, self._file = self._file, None
         if file is not None:
             try:
                 file.close()
             except OSError as error:
-                self.failure = self.failure or f"recording ended: {error.strerror or error}"
+                self.failure = self.failure or _words(error)
+
+
+def _words(error: OSError) -> str:
+    return f"recording has stopped: {error.strerror or error}"
 
 
 def prune(folder: Path, total_bytes: int, keep: Path) -> None:

@@ -31,6 +31,9 @@ class ThreadPool:
     def warm(self) -> None:
         """Nothing to start."""
 
+    async def mend(self) -> None:
+        """Nothing to mend."""
+
     async def run(self, function: Callable[..., Any], args: tuple[Any, ...], timeout_s: float) -> Any:
         """Run a function to its end."""
         return await asyncio.to_thread(function, *args)
@@ -77,7 +80,7 @@ def judge(document: Mapping[str, Any], *folders: str) -> Verdict:
 
 
 def task(scenario_text: str, progress_path: str, *folders: str) -> WorkResult:
-    """Do what the ``fake`` member says: ``done``, ``failed``, ``slow``, ``die``, ``raise``; else plan."""
+    """Do what the ``fake`` member says (``done`` where there is none); plan real scenarios for real."""
     scenario = json.loads(scenario_text)
     if "fake_plan" in scenario:
         plan = json.loads(Path(scenario["fake_plan"]).read_text())
@@ -91,6 +94,9 @@ def task(scenario_text: str, progress_path: str, *folders: str) -> WorkResult:
             for step in range(600):
                 progress(f"step {step}", 0.25 + step / 1000)
                 time.sleep(0.05)
+        case "waits":
+            while not Path(scenario["for"]).exists():
+                time.sleep(0.02)
         case "die":
             dying()
         case "raise":

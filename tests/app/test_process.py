@@ -97,6 +97,9 @@ def test_killed_workers_fail_their_plan_at_most(tmp_path: Path) -> None:
         assert running.post("done", wait_s=20)["state"] == "done"
         for pid in running.workers():
             os.kill(pid, signal.SIGKILL)
+        while (ready := running.client.get("/health/ready")).status_code == 200:
+            time.sleep(0.02)
+        assert ready.json()["checks"] == {"database": True, "workers": False}
         assert running.post("done", wait_s=20)["state"] == "done"
 
 

@@ -14,13 +14,20 @@ import structlog
 
 from app.services.desk import Desk
 from app.services.documents import write_json
-from app.services.errors import ConflictError, NotFoundError, OverloadedError, RefusedError
+from app.services.errors import (
+    ConflictError,
+    NotFoundError,
+    OverloadedError,
+    RefusedError,
+    StorageError,
+)
 from app.services.hub import Hub
 from app.services.metrics import PLANNING_SECONDS, PLANS_ENDED, PLANS_RUNNING
 from app.services.plans import work
+from app.services.plans.attempt import attempted, failure
 from app.services.plans.bounder import Bounder
 from app.services.plans.library import PlanLibrary
-from app.services.plans.pool import Pool, WorkerDiedError
+from app.services.plans.pool import Pool
 from app.services.plans.progress_pipe import progress_pipe
 from app.services.records import PlanRecord
 from app.services.scenarios.received import Received, judged
@@ -29,13 +36,11 @@ from app.services.store.plans import PlanStore
 
 log = structlog.get_logger(__name__)
 
+#: How often the end of a plan that could not be written is tried again, seconds.
+SETTLE_S = 1.0
+
 Task = Callable[..., work.WorkResult]
 BoundTask = Callable[..., work.WorkResult | None]
-
-
-def failure(kind: str, title: str, detail: str) -> dict[str, Any]:
-    """The ``error`` of a failed plan."""
-    return {"type": kind, "title": title, "detail": detail, "errors": []}
 
 
 class PlanningService:
@@ -109,6 +114,7 @@ class PlanningService:
             self._queue.put_nowait(plan_id)
         self._consumers = [asyncio.create_task(self._consume()) for _ in range(self._workers)]
         self._consumers.append(asyncio.create_task(self._bounder.serve()))
+        self._consumers.append(asyncio.create_task(self._settle()))
 
     async def stop(self) -> None:
         """Stop planning; plans being made go back into the queue of the next service."""
@@ -159,6 +165,7 @@ class PlanningService:
         """
         known = None if key is None else await self._store.by_key(key)
         if known is None and await self._store.count("queued") >= self._max_queued:
+            # Before it is judged, which costs more than to be told so.
             raise OverloadedError("too many plans are waiting; try again later", retry_after_s=10)
         body = scenario if isinstance(scenario, bytes) else write_json(scenario).encode()
         asked, verdict = await self._judged(body)
@@ -173,7 +180,14 @@ class PlanningService:
             raise RefusedError(f"the scenario is refused: {detail}", verdict.errors)
         warnings = [work.finding_json(finding) for finding in verdict.warnings]
         record = await self._store.add(
-            asked.name, asked.text, asked.digest, warnings, key, scenario_id, asked.scenario_hash
+            asked.name,
+            asked.text,
+            asked.digest,
+            warnings,
+            key,
+            scenario_id,
+            asked.scenario_hash,
+            self._max_queued,
         )
         self._queue.put_nowait(record.id)
         self._bounder.look()
@@ -252,10 +266,20 @@ class PlanningService:
     async def _announce(self, plan_id: str) -> PlanRecord | None:
         try:
             record = await self.get(plan_id)
-        except NotFoundError:
+        except (NotFoundError, StorageError):
+            # Of one that cannot be read now its end is told once it is written.
             return None
         self._hub.publish(plan_id, record)
         return record
+
+    async def _settle(self) -> None:
+        """Write, as soon as the database takes it, how plans ended that could not be written then."""
+        while True:
+            await asyncio.sleep(SETTLE_S)
+            if self._store.unsettled:
+                for plan_id in await self._store.settle():
+                    log.warning("plan's end is written now", plan_id=plan_id)
+                    await self._announce(plan_id)
 
     async def _consume(self) -> None:
         while True:
@@ -265,10 +289,22 @@ class PlanningService:
             try:
                 await asyncio.wait((task,))
                 if not task.cancelled() and (error := task.exception()) is not None:
-                    log.error("plan could not be run", plan_id=plan_id, exc_info=error)
+                    await self._give_up(plan_id, error)
             finally:
+                self._live.pop(plan_id, None)
                 self._running.pop(plan_id, None)
                 self._bounder.look()
+
+    async def _give_up(self, plan_id: str, error: BaseException) -> None:
+        """A plan that could not be read or written has failed."""
+        if isinstance(error, StorageError):
+            reason = failure("storage", "The plan could not be kept", str(error))
+        else:
+            log.error("plan could not be run", plan_id=plan_id, exc_info=error)
+            detail = "it could not be run for a reason nobody foresaw; the service's log has the details"
+            reason = failure("internal", "Internal error", detail)
+        self._live.setdefault(plan_id, (None, 0.0))
+        await self._end(plan_id, work.WorkResult(error=reason))
 
     async def _run(self, plan_id: str) -> None:
         if not await self._store.start(plan_id):
@@ -296,27 +332,12 @@ class PlanningService:
         finally:
             PLANS_RUNNING.dec()
             PLANNING_SECONDS.observe(asyncio.get_running_loop().time() - started_s)
-            self._live.pop(plan_id, None)
 
     async def _attempt(self, scenario: str, pipe: str) -> work.WorkResult:
         # A text without the word needs no second parsing.
         document = json.loads(scenario) if '"terrain"' in scenario else {}
         arguments = (scenario, pipe, *self._terrain_of(document))
-        try:
-            result = await self._pool.run(self._task, arguments, self._time_limit_s)
-        except TimeoutError:
-            detail = f"planning took longer than {self._time_limit_s:g} s and was stopped"
-            return work.WorkResult(error=failure("time-limit", "The time limit passed", detail))
-        except WorkerDiedError as error:
-            detail = f"{error}; other plans go on, post the scenario again"
-            return work.WorkResult(error=failure("worker-died", "The planning process died", detail))
-        except Exception as error:
-            # The planner broke its word; the client learns that much and the log the rest.
-            log.error("planner failed", exc_info=error)
-            detail = "the planner failed for a reason it did not foresee; the service's log has the details"
-            return work.WorkResult(error=failure("internal", "Internal error", detail))
-        assert isinstance(result, work.WorkResult)
-        return result
+        return await attempted(self._pool, self._task, arguments, self._time_limit_s)
 
     async def _end(self, plan_id: str, result: work.WorkResult) -> None:
         if result.plan is not None:

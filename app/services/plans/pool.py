@@ -31,6 +31,9 @@ class Pool(Protocol):
     def ready(self) -> bool:
         """Whether plans can be made at once."""
 
+    async def mend(self) -> None:
+        """Begin anew where it is broken."""
+
     async def run(self, function: Callable[..., Any], args: tuple[Any, ...], timeout_s: float) -> Any:
         """The result of a function; TimeoutError after a time, WorkerDiedError when its process ended."""
 
@@ -70,8 +73,14 @@ class WorkerPool:
 
     @property
     def ready(self) -> bool:
-        """Whether a process has answered since the pool was built."""
-        return self._warm is not None and self._warm.done() and self._warm.exception() is None
+        """Whether a process has answered since the pool was built, and the pool still stands."""
+        answered = self._warm is not None and self._warm.done() and self._warm.exception() is None
+        return answered and bool(self._pool.active)
+
+    async def mend(self) -> None:
+        """Build the pool anew where a process that was killed while idle has broken it."""
+        if self._warm is not None and not self._pool.active and not self._stopped:
+            await self._replace(self._pool, "a process ended while it had nothing to do")
 
     async def run(self, function: Callable[..., Any], args: tuple[Any, ...], timeout_s: float) -> Any:
         """Run a function in a worker; cancelling this kills the worker.
@@ -103,8 +112,12 @@ class WorkerPool:
         # several runs learn of the same broken pool; the first replaces it
         if self._pool is broken:
             log.warning("worker pool rebuilt", reason=reason)
-            self._pool = self._build()
-            self.warm()
+            try:
+                self._pool = self._build()
+                self.warm()
+            except OSError as error:
+                # No descriptors, no shared memory: the next run tries again.
+                raise WorkerDiedError(f"no planning process could be started: {error.strerror}") from error
             await asyncio.to_thread(_end, broken)
 
     async def stop(self) -> None:

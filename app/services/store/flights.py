@@ -48,6 +48,10 @@ def _record(row: FlightRow, points: int, photos: int) -> FlightRecord:
     )
 
 
+def _rows(flight_id: str, values: Sequence[TrackSample] | Sequence[FlightEvent]) -> list[dict[str, Any]]:
+    return [{"flight_id": flight_id} | asdict(value) for value in values]
+
+
 class FlightStore:
     """Flights: begun, added to, ended, read."""
 
@@ -64,7 +68,7 @@ class FlightStore:
     ) -> str:
         """A new flight; returns its id."""
         flight_id = str(uuid.uuid4())
-        async with self._database.session() as session:
+        async with self._database.writing() as session:
             session.add(
                 FlightRow(
                     id=flight_id,
@@ -81,30 +85,36 @@ class FlightStore:
 
     async def add(self, flight_id: str, samples: Sequence[TrackSample]) -> None:
         """Append to a flight's track."""
-        if not samples:
-            return
-        rows: list[dict[str, Any]] = [{"flight_id": flight_id} | asdict(sample) for sample in samples]
-        async with self._database.session() as session:
-            await session.execute(insert(TrackPointRow), rows)
+        if samples:
+            async with self._database.writing() as session:
+                await session.execute(insert(TrackPointRow), _rows(flight_id, samples))
 
     async def add_events(self, flight_id: str, events: Sequence[FlightEvent]) -> None:
         """Append photos and switches."""
-        if not events:
-            return
-        rows: list[dict[str, Any]] = [{"flight_id": flight_id} | asdict(event) for event in events]
-        async with self._database.session() as session:
-            await session.execute(insert(FlightEventRow), rows)
+        if events:
+            async with self._database.writing() as session:
+                await session.execute(insert(FlightEventRow), _rows(flight_id, events))
 
     async def act(self, flight_id: str, action: SensorAction) -> None:
         """Append what the service did by itself; a flight that has just ended takes it too."""
-        async with self._database.session() as session:
+        async with self._database.writing() as session:
             row = await session.scalar(select(FlightRow).where(FlightRow.id == flight_id))
             if row is not None:
                 row.actions = [*(row.actions or ()), asdict(action) | {"at": action.at.isoformat()}]
 
-    async def end(self, flight_id: str, state: FlightState) -> None:
-        """Close a flight."""
-        async with self._database.session() as session:
+    async def end(
+        self,
+        flight_id: str,
+        state: FlightState,
+        samples: Sequence[TrackSample] = (),
+        events: Sequence[FlightEvent] = (),
+    ) -> None:
+        """Close a flight, with the last of its track and its events."""
+        async with self._database.writing() as session:
+            if samples:
+                await session.execute(insert(TrackPointRow), _rows(flight_id, samples))
+            if events:
+                await session.execute(insert(FlightEventRow), _rows(flight_id, events))
             await session.execute(
                 update(FlightRow)
                 .where(FlightRow.id == flight_id, FlightRow.state == "flying")
@@ -113,7 +123,7 @@ class FlightStore:
 
     async def recover(self) -> None:
         """After a restart: flights nobody watched to their end are interrupted."""
-        async with self._database.session() as session:
+        async with self._database.writing() as session:
             await session.execute(
                 update(FlightRow)
                 .where(FlightRow.state == "flying")
@@ -125,12 +135,12 @@ class FlightStore:
         query = _records().order_by(FlightRow.number.desc()).limit(limit).offset(offset)
         if vehicle_id is not None:
             query = query.where(FlightRow.vehicle_id == vehicle_id)
-        async with self._database.session() as session:
+        async with self._database.reading() as session:
             return tuple(_record(*found) for found in await session.execute(query))
 
     async def get(self, flight_id: str) -> FlightRecord:
         """One flight; raises NotFoundError."""
-        async with self._database.session() as session:
+        async with self._database.reading() as session:
             found = (await session.execute(_records().where(FlightRow.id == flight_id))).first()
         if found is None:
             raise NotFoundError("flight", flight_id)
@@ -141,7 +151,7 @@ class FlightStore:
         query = (
             select(TrackPointRow).where(TrackPointRow.flight_id == flight_id).order_by(TrackPointRow.number)
         )
-        async with self._database.session() as session:
+        async with self._database.reading() as session:
             rows = await session.scalars(query)
             return tuple(
                 TrackSample(
@@ -166,7 +176,7 @@ class FlightStore:
             .where(FlightEventRow.flight_id == flight_id)
             .order_by(FlightEventRow.number)
         )
-        async with self._database.session() as session:
+        async with self._database.reading() as session:
             rows = await session.scalars(query)
             return tuple(
                 FlightEvent(**{name: getattr(row, name) for name in FlightEvent.__slots__}) for row in rows

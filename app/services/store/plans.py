@@ -4,16 +4,21 @@ from __future__ import annotations
 
 import uuid
 from collections.abc import Sequence
+from dataclasses import asdict
 from datetime import UTC, datetime
 from typing import Any, cast
 
-from sqlalchemy import Select, delete, func, select, update
+from sqlalchemy import ColumnElement, Select, delete, func, select, update
 from sqlalchemy.exc import IntegrityError
 
-from app.services.errors import ConflictError, NotFoundError
+from app.services.errors import ConflictError, NotFoundError, OverloadedError, StorageError
 from app.services.records import PlanRecord, PlanState
 from app.services.store.database import Database
 from app.services.store.tables import PlanDocumentRow, PlanRow, ScenarioRow
+from app.services.store.unwritten import Failure, Unwritten
+
+#: When to come again where too many plans wait, seconds.
+_RETRY_AFTER_S = 10
 
 
 def now() -> datetime:
@@ -52,6 +57,7 @@ class PlanStore:
 
     def __init__(self, database: Database) -> None:
         self._database = database
+        self._unwritten = Unwritten()
 
     async def add(
         self,
@@ -62,8 +68,17 @@ class PlanStore:
         key: str | None,
         scenario_id: str | None,
         scenario_hash: str,
+        most_queued: int,
     ) -> PlanRecord:
-        """A new queued plan; raises ConflictError when the idempotency key has been used meanwhile."""
+        """A new queued plan.
+
+        Raises
+        ------
+        ConflictError
+            The idempotency key has been used meanwhile.
+        OverloadedError
+            So many plans are queued already, however many are posted at once.
+        """
         row = PlanRow(
             id=str(uuid.uuid4()),
             name=name,
@@ -77,47 +92,58 @@ class PlanStore:
             scenario_hash=scenario_hash,
         )
         try:
-            async with self._database.session() as session:
+            async with self._database.writing() as session:
                 session.add(row)
                 await session.flush()
+                queued = select(func.count()).select_from(PlanRow).where(PlanRow.state == "queued")
+                if (await session.scalar(queued) or 0) > most_queued:
+                    raise OverloadedError("too many plans are waiting; try again later", _RETRY_AFTER_S)
                 session.add(PlanDocumentRow(plan_id=row.id, scenario=scenario))
+                found = (await session.execute(_records().where(PlanRow.id == row.id))).one()
+                return _record(*found)
         except IntegrityError as error:
             raise ConflictError(f"the idempotency key {key} is in use") from error
-        return await self.get(row.id)
 
     async def by_key(self, key: str) -> tuple[PlanRecord, str] | None:
         """The plan an idempotency key stands for, and the digest of its scenario."""
-        async with self._database.session() as session:
+        async with self._database.reading() as session:
             found = (await session.execute(_records().where(PlanRow.idempotency_key == key))).first()
-        return None if found is None else (_record(*found), found[0].body_sha256)
+        return None if found is None else (self._unwritten.seen(_record(*found)), found[0].body_sha256)
 
     async def get(self, plan_id: str) -> PlanRecord:
         """One plan; raises NotFoundError."""
-        async with self._database.session() as session:
+        async with self._database.reading() as session:
             found = (await session.execute(_records().where(PlanRow.id == plan_id))).first()
         if found is None:
             raise NotFoundError("plan", plan_id)
-        return _record(*found)
+        return self._unwritten.seen(_record(*found))
 
     async def newest(self, limit: int, offset: int = 0, state: str | None = None) -> tuple[PlanRecord, ...]:
         """Plans, newest first."""
         query = _records().order_by(PlanRow.number.desc()).limit(limit).offset(offset)
         if state is not None:
-            query = query.where(PlanRow.state == state)
-        async with self._database.session() as session:
-            return tuple(_record(*found) for found in await session.execute(query))
+            query = query.where(self._is(state))
+        async with self._database.reading() as session:
+            return tuple(self._unwritten.seen(_record(*found)) for found in await session.execute(query))
 
     async def count(self, state: str | None = None) -> int:
         """How many plans there are, of one state or of all."""
         query = select(func.count()).select_from(PlanRow)
         if state is not None:
-            query = query.where(PlanRow.state == state)
-        async with self._database.session() as session:
+            query = query.where(self._is(state))
+        async with self._database.reading() as session:
             return await session.scalar(query) or 0
+
+    def _is(self, state: str) -> ColumnElement[bool]:
+        """Whether a plan is in a state, whatever its row still says."""
+        unwritten = PlanRow.id.in_(self._unwritten.ids)
+        if state == "failed":
+            return (PlanRow.state == state) | unwritten
+        return (PlanRow.state == state) & ~unwritten
 
     async def documents(self, plan_id: str) -> tuple[str, str | None]:
         """Scenario and plan as JSON texts; raises NotFoundError."""
-        async with self._database.session() as session:
+        async with self._database.reading() as session:
             row = await session.get(PlanDocumentRow, plan_id)
         if row is None:
             raise NotFoundError("plan", plan_id)
@@ -135,7 +161,7 @@ class PlanStore:
 
     async def done(self, plan_id: str, plan: str, summary: dict[str, Any]) -> bool:
         """Running to done, with its result; False when it was cancelled meanwhile."""
-        async with self._database.session() as session:
+        async with self._database.writing() as session:
             result = await session.execute(
                 update(PlanRow)
                 .where(PlanRow.id == plan_id, PlanRow.state == "running")
@@ -151,7 +177,7 @@ class PlanStore:
 
     async def bounded(self, plan_id: str, plan: str, summary: dict[str, Any]) -> bool:
         """A done plan once more, with its bound; False when it was deleted meanwhile."""
-        async with self._database.session() as session:
+        async with self._database.writing() as session:
             result = await session.execute(
                 update(PlanRow)
                 .where(PlanRow.id == plan_id, PlanRow.state == "done")
@@ -166,10 +192,33 @@ class PlanStore:
             return True
 
     async def fail(self, plan_id: str, error: dict[str, Any], stage: str | None, progress: float) -> bool:
-        """Running to failed, with the reason."""
-        return await self._move(
-            plan_id, ("running",), state="failed", error=error, stage=stage, progress=progress, ended_at=now()
-        )
+        """Queued or running to failed, with the reason; it holds also where it cannot be written."""
+        failure = Failure(error, stage, progress, now())
+        try:
+            return await self._write(plan_id, failure)
+        except StorageError:
+            self._unwritten.add(plan_id, failure)
+            return True
+
+    async def settle(self) -> tuple[str, ...]:
+        """Write the failures that could not be written before; returns the ids of those that are now."""
+        written = []
+        for plan_id in self._unwritten.ids:
+            try:
+                await self._write(plan_id, self._unwritten.get(plan_id))
+            except StorageError:
+                break
+            self._unwritten.drop(plan_id)
+            written.append(plan_id)
+        return tuple(written)
+
+    @property
+    def unsettled(self) -> bool:
+        """Whether there are failures to write yet."""
+        return bool(self._unwritten.ids)
+
+    async def _write(self, plan_id: str, failure: Failure) -> bool:
+        return await self._move(plan_id, ("queued", "running"), state="failed", **asdict(failure))
 
     async def cancel(self, plan_id: str) -> bool:
         """Queued or running to cancelled."""
@@ -177,17 +226,19 @@ class PlanStore:
 
     async def delete(self, plan_id: str) -> bool:
         """Remove an ended plan; False when it has not ended."""
-        async with self._database.session() as session:
+        ended = PlanRow.state.in_(("done", "failed", "cancelled")) | PlanRow.id.in_(self._unwritten.ids)
+        async with self._database.writing() as session:
             result = await session.execute(
-                delete(PlanRow)
-                .where(PlanRow.id == plan_id, PlanRow.state.in_(("done", "failed", "cancelled")))
-                .returning(PlanRow.id)
+                delete(PlanRow).where(PlanRow.id == plan_id, ended).returning(PlanRow.id)
             )
-            return result.first() is not None
+            found = result.first() is not None
+        if found:
+            self._unwritten.drop(plan_id)
+        return found
 
     async def recover(self, error: dict[str, Any]) -> tuple[str, ...]:
         """After a crash: fail what was running, for a reason given; return what was queued, oldest first."""
-        async with self._database.session() as session:
+        async with self._database.writing() as session:
             await session.execute(
                 update(PlanRow)
                 .where(PlanRow.state == "running")
@@ -199,7 +250,7 @@ class PlanStore:
             return tuple(rows)
 
     async def _move(self, plan_id: str, states: tuple[str, ...], **values: Any) -> bool:
-        async with self._database.session() as session:
+        async with self._database.writing() as session:
             result = await session.execute(
                 update(PlanRow)
                 .where(PlanRow.id == plan_id, PlanRow.state.in_(states))

@@ -42,13 +42,13 @@ class ScenarioStore:
             created_at=moment,
             changed_at=moment,
         )
-        async with self._database.session() as session:
+        async with self._database.writing() as session:
             session.add(row)
         return _record(row)
 
     async def read(self, scenario_id: str) -> tuple[KeptScenario, str]:
         """One and its text; raises NotFoundError."""
-        async with self._database.session() as session:
+        async with self._database.reading() as session:
             row = await session.scalar(select(ScenarioRow).where(ScenarioRow.id == scenario_id))
         if row is None:
             raise NotFoundError("scenario", scenario_id)
@@ -62,12 +62,12 @@ class ScenarioStore:
             .limit(limit)
             .offset(offset)
         )
-        async with self._database.session() as session:
+        async with self._database.reading() as session:
             return tuple(_record(row) for row in await session.scalars(query))
 
     async def count(self) -> int:
         """How many there are."""
-        async with self._database.session() as session:
+        async with self._database.reading() as session:
             return await session.scalar(select(func.count()).select_from(ScenarioRow)) or 0
 
     async def change(
@@ -87,7 +87,7 @@ class ScenarioStore:
         ChangedError
             It is at another revision, with another text than this.
         """
-        async with self._database.session() as session:
+        async with self._database.writing() as session:
             other = ScenarioRow.scenario_hash != scenario_hash
             changed = await session.scalar(
                 update(ScenarioRow)
@@ -110,7 +110,7 @@ class ScenarioStore:
 
     async def delete(self, scenario_id: str, revision: int | None) -> None:
         """Forget one; raises as ``change``."""
-        async with self._database.session() as session:
+        async with self._database.writing() as session:
             query = delete(ScenarioRow).where(_at(scenario_id, revision)).returning(ScenarioRow.id)
             result = await session.execute(query)
             if result.first() is not None:

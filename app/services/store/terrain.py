@@ -53,12 +53,12 @@ class TerrainStore:
             sha256=record.sha256,
             created_at=record.created_at,
         )
-        async with self._database.session() as session:
+        async with self._database.writing() as session:
             session.add(row)
 
     async def get(self, terrain_id: str) -> TerrainRecord:
         """One raster; raises NotFoundError."""
-        async with self._database.session() as session:
+        async with self._database.reading() as session:
             row = await session.scalar(select(TerrainRow).where(TerrainRow.id == terrain_id))
         if row is None:
             raise NotFoundError("terrain", terrain_id)
@@ -66,24 +66,24 @@ class TerrainStore:
 
     async def by_sha256(self, sha256: str) -> TerrainRecord | None:
         """The raster with this content, read the same way, where there is one."""
-        async with self._database.session() as session:
+        async with self._database.reading() as session:
             row = await session.scalar(select(TerrainRow).where(TerrainRow.sha256 == sha256))
         return None if row is None else _record(row)
 
     async def newest(self, limit: int, offset: int) -> tuple[TerrainRecord, ...]:
         """Rasters, newest first."""
         query = select(TerrainRow).order_by(TerrainRow.number.desc()).limit(limit).offset(offset)
-        async with self._database.session() as session:
+        async with self._database.reading() as session:
             return tuple(_record(row) for row in await session.scalars(query))
 
     async def count(self) -> int:
         """How many there are."""
-        async with self._database.session() as session:
+        async with self._database.reading() as session:
             return await session.scalar(select(func.count()).select_from(TerrainRow)) or 0
 
     async def delete(self, terrain_id: str) -> None:
         """Forget one; raises NotFoundError."""
-        async with self._database.session() as session:
+        async with self._database.writing() as session:
             result = await session.execute(
                 delete(TerrainRow).where(TerrainRow.id == terrain_id).returning(TerrainRow.id)
             )

@@ -37,13 +37,13 @@ class UploadStore:
             detail={},
             started_at=now(),
         )
-        async with self._database.session() as session:
+        async with self._database.writing() as session:
             session.add(row)
         return row.number
 
     async def end(self, number: int, outcome: str, detail: dict[str, Any]) -> None:
         """How it ended: ``accepted``, ``refused`` or ``unknown``; later ``unknown`` may be resolved."""
-        async with self._database.session() as session:
+        async with self._database.writing() as session:
             await session.execute(
                 update(UploadRow)
                 .where(UploadRow.number == number)
@@ -58,7 +58,7 @@ class UploadStore:
             .order_by(UploadRow.number.desc())
             .limit(limit)
         )
-        async with self._database.session() as session:
+        async with self._database.reading() as session:
             return tuple(
                 {
                     "number": row.number,

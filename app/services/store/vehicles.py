@@ -41,12 +41,12 @@ class VehicleStore:
             forward=_forward_json(record.forward),
             system_id=record.system_id or None,
         )
-        async with self._database.session() as session:
+        async with self._database.writing() as session:
             session.add(row)
 
     async def all(self) -> tuple[VehicleRecord, ...]:
         """Every vehicle, oldest first."""
-        async with self._database.session() as session:
+        async with self._database.reading() as session:
             rows = await session.scalars(select(VehicleRow).order_by(VehicleRow.number))
             return tuple(_record(row) for row in rows)
 
@@ -58,7 +58,7 @@ class VehicleStore:
             "held_payload": held.payload if held else None,
             "held_gimbal": held.gimbal if held else None,
         }
-        async with self._database.session() as session:
+        async with self._database.writing() as session:
             await session.execute(update(VehicleRow).where(VehicleRow.id == vehicle_id).values(**values))
 
     async def send(self, vehicle_id: str, sent: SentMission | None) -> None:
@@ -67,22 +67,22 @@ class VehicleStore:
             "last_plan_id": sent.plan_id if sent else None,
             "last_list_id": sent.list_id if sent else None,
         }
-        async with self._database.session() as session:
+        async with self._database.writing() as session:
             await session.execute(update(VehicleRow).where(VehicleRow.id == vehicle_id).values(**values))
 
     async def forward(self, vehicle_id: str, forward: tuple[ForwardAddress, ...]) -> None:
         """Note where a vehicle's link is forwarded to."""
         values = {"forward": _forward_json(forward)}
-        async with self._database.session() as session:
+        async with self._database.writing() as session:
             await session.execute(update(VehicleRow).where(VehicleRow.id == vehicle_id).values(**values))
 
     async def identify(self, vehicle_id: str, system_id: int) -> None:
         """Note which system a vehicle is."""
         values = {"system_id": system_id}
-        async with self._database.session() as session:
+        async with self._database.writing() as session:
             await session.execute(update(VehicleRow).where(VehicleRow.id == vehicle_id).values(**values))
 
     async def forget(self, vehicle_id: str) -> None:
         """Let one go; nothing for one that is not kept."""
-        async with self._database.session() as session:
+        async with self._database.writing() as session:
             await session.execute(delete(VehicleRow).where(VehicleRow.id == vehicle_id))

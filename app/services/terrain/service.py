@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import uuid
 from dataclasses import replace
@@ -10,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from app.services.desk import Desk
-from app.services.errors import RefusedError
+from app.services.errors import RefusedError, StorageError
 from app.services.records import TerrainRecord
 from app.services.store.plans import now
 from app.services.store.terrain import TerrainStore
@@ -59,8 +60,16 @@ class TerrainService:
         record = await self._desk.run(
             "terrain", _taken_in, self.folder, content, filename, title, sha256, datum
         )
-        await self._store.add(record)
+        try:
+            await self._store.add(record)
+        except BaseException:
+            # Nobody would ever find its posts.
+            self._file(record.id).unlink(missing_ok=True)
+            raise
         return record, True
+
+    def _file(self, terrain_id: str) -> Path:
+        return self.folder / f"{terrain_id}.npz"
 
     async def get(self, terrain_id: str) -> TerrainRecord:
         """One raster's record; raises NotFoundError."""
@@ -77,7 +86,7 @@ class TerrainService:
     async def remove(self, terrain_id: str) -> None:
         """Forget a raster; plans made on it stay. Raises NotFoundError."""
         await self._store.delete(terrain_id)
-        (self.folder / f"{terrain_id}.npz").unlink(missing_ok=True)
+        self._file(terrain_id).unlink(missing_ok=True)
 
 
 def _taken_in(
@@ -86,10 +95,17 @@ def _taken_in(
     """Read a file and keep its posts."""
     terrain_id = str(uuid.uuid4())
     terrain = replace(read_raster(content, filename, name, datum), name=terrain_id)
-    folder.mkdir(parents=True, exist_ok=True)
     partial = folder / f".{terrain_id}.partial"
-    partial.write_bytes(pack(terrain))
-    partial.replace(folder / f"{terrain_id}.npz")
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        partial.write_bytes(pack(terrain))
+        partial.replace(folder / f"{terrain_id}.npz")
+    except OSError as error:
+        with contextlib.suppress(OSError):
+            partial.unlink(missing_ok=True)
+        raise StorageError(
+            f"the raster cannot be kept: {error.strerror}; make room, or see to the rights"
+        ) from None
     rows, columns = terrain.heights_m.shape
     return TerrainRecord(
         id=terrain_id,

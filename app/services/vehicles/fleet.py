@@ -11,7 +11,7 @@ from pathlib import Path
 
 import structlog
 
-from app.services.errors import ConflictError, NotFoundError, ServiceError
+from app.services.errors import ConflictError, NotFoundError, ServiceError, StorageError
 from app.services.hub import Hub
 from app.services.metrics import VEHICLES
 from app.services.plans.library import PlanLibrary
@@ -159,7 +159,12 @@ class Fleet:
         finally:
             del self._opening[vehicle.id]
         if keep and not vehicle.replay:
-            await self._kept.add(replace(record, system_id=vehicle.system_id))
+            try:
+                await self._kept.add(replace(record, system_id=vehicle.system_id))
+            except BaseException:
+                self._vehicles.pop(vehicle.id, None)
+                await vehicle.close()
+                raise
         log.info("vehicle added", vehicle=name, url=url, connected=vehicle.state.connected)
         return vehicle
 
@@ -177,12 +182,19 @@ class Fleet:
             An address is malformed, or would send frames round for ever.
         ConflictError
             An address cannot be opened; all is as before.
+        StorageError
+            It cannot be kept for the next start; all is as before.
         """
         vehicle = self.get(vehicle_id)
         addresses = read_forwards(forward, replay=vehicle.replay)
         self._refuse_loops(vehicle, addresses)
+        before = tuple(outlet.address for outlet in vehicle.forwards.outlets)
         await vehicle.forward_to(addresses)
-        await self._kept.forward(vehicle_id, addresses)
+        try:
+            await self._kept.forward(vehicle_id, addresses)
+        except StorageError:
+            await vehicle.forward_to(before)
+            raise
         vehicle.tell()
         return vehicle
 
@@ -194,10 +206,11 @@ class Fleet:
     async def disconnect(self, vehicle_id: str) -> None:
         """Let a vehicle go; raises NotFoundError."""
         vehicle = self.get(vehicle_id)
-        del self._vehicles[vehicle_id]
+        await self._kept.forget(vehicle_id)
+        if self._vehicles.pop(vehicle_id, None) is None:
+            raise NotFoundError("vehicle", vehicle_id)
         if vehicle_id in self._opening:
             _give_up(self._opening[vehicle_id])
-        await self._kept.forget(vehicle_id)
         await vehicle.close()
         self._hub.publish(vehicle_id, vehicle)
         log.info("vehicle let go", vehicle=vehicle.name)

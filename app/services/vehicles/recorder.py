@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 from dataclasses import dataclass
 
 import structlog
 
+from app.services.errors import StorageError
 from app.services.records import FlightEvent, FlightState, SensorAction, TrackSample
 from app.services.store.flights import FlightStore
 from mavlink.state.outputs import SensorOutput
@@ -52,6 +54,16 @@ class HeldPlan:
     gimbal: str | None = None
 
 
+@dataclass(frozen=True, slots=True)
+class _Ending:
+    """A flight that is over, with what of it is not stored."""
+
+    flight_id: str
+    state: FlightState
+    samples: tuple[TrackSample, ...]
+    events: tuple[FlightEvent, ...]
+
+
 class FlightRecorder:
     """Records the flights of one vehicle.
 
@@ -70,6 +82,10 @@ class FlightRecorder:
         self._recorder: TrackRecorder | None = None
         self._plan: HeldPlan | None = None
         self._events_saved = 0
+        #: Places and ends that the database has not taken yet.
+        self._unsaved: list[TrackSample] = []
+        self._endings: list[_Ending] = []
+        self._failing = False
         self._landed_looks = 0
         self._thinner = Thinner(interval_s)
         self.flight_id: str | None = None
@@ -82,9 +98,20 @@ class FlightRecorder:
 
         A plan uploaded in flight ends one flight and begins another: each is judged by the plan it followed.
         Before a flight, what the vehicle sends is recorded from one look to the next, so that a flight has
-        its very beginning however late it is looked at.
+        its very beginning however late it is looked at. What the database does not take is kept and tried
+        again at the next look.
         """
+        try:
+            await self._look(client, plan)
+            self._failing = False
+        except StorageError as error:
+            if not self._failing:
+                log.error("track not stored yet", vehicle=self._vehicle_name, reason=str(error))
+            self._failing = True
+
+    async def _look(self, client: VehicleClient, plan: HeldPlan | None) -> None:
         async with self._turn:
+            await self._close()
             state = client.state
             if self.flight_id is None:
                 if client.failure is not None or not state.connected:
@@ -143,6 +170,9 @@ class FlightRecorder:
                 plan.plan_vehicle if plan else None,
                 plan.payload if plan else None,
             )
+        except StorageError:
+            # What is heard is kept: the flight begins with it once the database takes it.
+            raise
         except BaseException:
             self._stop_listening()
             raise
@@ -154,11 +184,16 @@ class FlightRecorder:
     async def _save(self) -> None:
         if self._recorder is None or self.flight_id is None:
             return
-        track = self._recorder.track()
-        await self._store.add(self.flight_id, self._thinner.more(track))
-        events = track.events[self._events_saved :]
-        self._events_saved = len(track.events)
-        await self._store.add_events(self.flight_id, [flight_event(event) for event in events])
+        events = self._gather(self._recorder.track())
+        await self._store.add(self.flight_id, self._unsaved)
+        self._unsaved = []
+        await self._store.add_events(self.flight_id, events)
+        self._events_saved += len(events)
+
+    def _gather(self, track: Track) -> list[FlightEvent]:
+        """Events that are not saved yet; places join those that are not."""
+        self._unsaved += self._thinner.more(track)
+        return [flight_event(event) for event in track.events[self._events_saved :]]
 
     async def act(self, action: SensorAction) -> None:
         """Note what the service did by itself, in the flight under way or the one that has just ended."""
@@ -174,11 +209,22 @@ class FlightRecorder:
         if self.flight_id is None:
             self._stop_listening()
             return
-        await self._save()
+        events = [] if self._recorder is None else self._gather(self._recorder.track())
         self._stop_listening()
-        await self._store.end(self.flight_id, state)
-        log.info("flight ended", vehicle=self._vehicle_name, flight_id=self.flight_id, state=state)
-        self.flight_id = None
+        self._endings.append(_Ending(self.flight_id, state, tuple(self._unsaved), tuple(events)))
+        self._unsaved, self.flight_id = [], None
+        with contextlib.suppress(StorageError):
+            await self._close()
+
+    async def _close(self) -> None:
+        """Store the ends of flights; those that the database does not take stay for the next look."""
+        while self._endings:
+            ending = self._endings[0]
+            await self._store.end(ending.flight_id, ending.state, ending.samples, ending.events)
+            self._endings.pop(0)
+            log.info(
+                "flight ended", vehicle=self._vehicle_name, flight_id=ending.flight_id, state=ending.state
+            )
 
 
 def flight_event(event: SensorEvent) -> FlightEvent:

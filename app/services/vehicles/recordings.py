@@ -78,7 +78,7 @@ class Tape:
 
     @property
     def failure(self) -> str | None:
-        """Why the link is no longer recorded; None while it is, or was never to be."""
+        """Why the link is not recorded now; None while it is, or was never to be."""
         return None if self._writer is None else self._writer.failure
 
     def flush(self) -> None:

@@ -8,7 +8,7 @@ from typing import Any
 
 import structlog
 
-from app.services.errors import ConflictError, LinkError, NotFoundError, RefusedError
+from app.services.errors import ConflictError, LinkError, NotFoundError, RefusedError, StorageError
 from app.services.metrics import UPLOADS
 from app.services.plans.library import PlanLibrary
 from app.services.plans.missions import PARTS, MissionChoice, PartName
@@ -122,28 +122,42 @@ class Transfers:
                 outcomes[name] = await vehicle.client.clear(PARTS[name])
                 if name == "mission":
                     vehicle.holds_unknown()
-                    await self._kept.hold(vehicle.id, None)
                     if outcomes[name].kind == "accepted":
                         vehicle.sent = None
-                        await self._kept.send(vehicle.id, None)
+                    await self._cleared(vehicle)
             return outcomes
+
+    async def _cleared(self, vehicle: Vehicle) -> None:
+        try:
+            await self._kept.hold(vehicle.id, None)
+            if vehicle.sent is None:
+                await self._kept.send(vehicle.id, None)
+        except StorageError as error:
+            # After a restart the vehicle is read back, and found to hold another mission.
+            log.error("clearing not kept", vehicle=vehicle.name, reason=str(error))
 
     async def record(self, vehicle: Vehicle) -> None:
         """Note what became of an upload, also once an unknown outcome has been resolved."""
         report = vehicle.upload
         assert report is not None
         mission = report.parts.get("mission")
+        held = HeldMission(report.plan_id, report.plan_vehicle, report.payload, report.gimbal)
         if mission is not None:
-            held = HeldMission(report.plan_id, report.plan_vehicle, report.payload, report.gimbal)
             if mission.verified:
                 await vehicle.hold(held, report.mission.items_of(PARTS["mission"]))
             vehicle.found(None if mission.differences is None else not mission.differences)
             vehicle.sent = SentMission(report.plan_id, vehicle.sent_id if mission.verified else None)
-            await self._kept.send(vehicle.id, vehicle.sent)
-            await self._kept.hold(vehicle.id, held if mission.verified else None)
         outcome = "unknown" if report.outcome == "not_attempted" else report.outcome
         UPLOADS.labels(outcome=outcome).inc()
-        await self._uploads.end(report.number, outcome, report_json(report))
+        try:
+            if mission is not None:
+                await self._kept.send(vehicle.id, vehicle.sent)
+                await self._kept.hold(vehicle.id, held if mission.verified else None)
+            await self._uploads.end(report.number, outcome, report_json(report))
+        except StorageError as error:
+            # The vehicle holds what it holds: that is told, and the next start reads it back.
+            log.error("outcome of an upload not kept", vehicle=vehicle.name, reason=str(error))
+            report.notes += (f"this outcome could not be recorded: {error}",)
         log.info("upload ended", vehicle=vehicle.name, plan_id=report.plan_id, outcome=outcome)
         vehicle.tell()
 
@@ -172,7 +186,10 @@ class Transfers:
 
     async def identified(self, vehicle: Vehicle) -> None:
         """Note which system a vehicle is."""
-        await self._kept.identify(vehicle.id, vehicle.system_id)
+        try:
+            await self._kept.identify(vehicle.id, vehicle.system_id)
+        except StorageError as error:
+            log.error("system id not kept", vehicle=vehicle.name, reason=str(error))
 
     async def acknowledge(self, vehicle: Vehicle, system_id: int) -> None:
         """Take the aircraft that answers in a vehicle's place for the vehicle; nothing is known of it yet.
@@ -189,9 +206,9 @@ class Transfers:
         async with vehicle.turns.busy("acknowledging another aircraft", changes=True):
             if vehicle.state.connected or vehicle.state.other_system != system_id:
                 raise ConflictError(f"no system {system_id} answers in the place of {vehicle.name}")
-            await vehicle.begin_anew()
             await self._kept.hold(vehicle.id, None)
             await self._kept.send(vehicle.id, None)
+            await vehicle.begin_anew()
             before = vehicle.system_id
             vehicle.client.adopt(system_id)
             vehicle.system_id = system_id

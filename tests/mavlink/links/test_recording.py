@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import resource
 from pathlib import Path
 
 import pytest
@@ -120,14 +121,42 @@ def test_a_clock_set_back_does_not_turn_time_round(tmp_path: Path) -> None:
     assert times == sorted(times)
 
 
-def test_a_folder_that_cannot_be_written_ends_the_recording_alone(tmp_path: Path) -> None:
-    """The reason is kept and nothing is raised: the link goes on."""
+def test_a_folder_that_cannot_be_written_stops_the_recording_for_a_while(tmp_path: Path) -> None:
+    """The reason is kept and nothing is raised: the link goes on, and so does the recording once it can."""
+    clock = Clock()
     (tmp_path / "uav").write_text("a file stands here")
-    writer = TlogWriter(tmp_path / "uav")
+    writer = TlogWriter(tmp_path / "uav", clock=clock)
     for frame in frames(3):
         writer.write(frame)
     assert writer.failure is not None
-    assert "recording ended" in writer.failure
+    assert "recording has stopped" in writer.failure
+    (tmp_path / "uav").unlink()
+    for _ in range(10):
+        clock.now_s += 1.0
+        writer.write(frames(1)[0])
+    assert writer.failure is None
+    writer.close()
+    (path,) = (tmp_path / "uav").iterdir()
+    assert len(list(read_tlog(path))) > 3
+
+
+def test_a_full_disk_leaves_no_empty_files(tmp_path: Path) -> None:
+    """Tried again and again while there is no room, a recording leaves one file at most behind."""
+    clock = Clock()
+    writer = TlogWriter(tmp_path / "uav", clock=clock)
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (0, hard))
+    try:
+        for _ in range(30):
+            clock.now_s += 1.0
+            writer.write(frames(1)[0])
+        assert writer.failure is not None
+        assert list((tmp_path / "uav").iterdir()) == []
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+    clock.now_s += 10.0
+    writer.write(frames(1)[0])
+    assert writer.failure is None
     writer.close()
 
 

@@ -5,10 +5,11 @@ from __future__ import annotations
 import asyncio
 from collections.abc import AsyncIterator, Sequence
 from dataclasses import replace
+from typing import Any
 
 import pytest
 
-from app.services.errors import ServiceError
+from app.services.errors import ServiceError, StorageError
 from app.services.records import TrackSample
 from app.services.store.database import Database
 from app.services.store.flights import FlightStore
@@ -59,6 +60,11 @@ class Client(VehicleClient):
         for recorder in self.recorders:
             recorder.take(received("RELAY_STATUS", time_boot_ms=1000 * second, on=0b100, present=0xFF), state)
             recorder.take(at(1000 * second), state)
+
+    def photograph(self, index: int) -> None:
+        """A photo was taken."""
+        for recorder in self.recorders:
+            recorder.take(received("CAMERA_FEEDBACK", img_idx=index, lat=1, lng=1), self.told)
 
 
 @pytest.fixture
@@ -221,6 +227,58 @@ async def test_a_flight_that_cannot_be_stored_is_tried_again(
     assert client.recorders == []
     await recorder.look(client, PLAN)
     assert recorder.flight_id is not None
+
+
+class FullStore(FlightStore):
+    """A database that takes nothing while it is full."""
+
+    full = False
+
+    def _take(self) -> None:
+        if self.full:
+            raise StorageError("no room")
+
+    async def begin(self, *what: Any, **named: Any) -> str:
+        self._take()
+        return await super().begin(*what, **named)
+
+    async def add(self, *what: Any) -> None:
+        self._take()
+        await super().add(*what)
+
+    async def add_events(self, *what: Any) -> None:
+        self._take()
+        await super().add_events(*what)
+
+    async def end(self, *what: Any) -> None:
+        self._take()
+        await super().end(*what)
+
+
+@pytest.mark.parametrize("full", [(0, 3), (2, 5), (4, 9), (5, 7), (8, 10), (0, 4), (3, 4)])
+async def test_a_full_disk_costs_nothing_of_a_flight(settings: Settings, full: tuple[int, int]) -> None:
+    """Whenever the database takes nothing for a while, the flight is stored whole once it does."""
+    database = Database(settings.database)
+    await database.open()
+    store = FullStore(database)
+    recorder = FlightRecorder(store, "vehicle", "uav", 0.0)
+    client = Client()
+    await recorder.look(client, PLAN)
+    client.told = FLIGHT
+    for second in range(8):
+        store.full = full[0] <= second < full[1]
+        client.hear(second)
+        client.photograph(second)
+        await recorder.look(client, PLAN)
+    client.told = GROUND
+    for second in range(8, 12):
+        store.full = full[0] <= second < full[1]
+        await recorder.look(client, PLAN)
+    (flight,) = await FlightStore(database).newest(10, 0, None)
+    assert flight.state == "ended"
+    assert [sample.time_s for sample in await store.track(flight.id)] == [float(s) for s in range(8)]
+    assert [event.index for event in await store.events(flight.id)] == list(range(8))
+    await database.close()
 
 
 class SlowStore(FlightStore):
