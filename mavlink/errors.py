@@ -10,6 +10,7 @@
     ├── NotConnectedError    asked of a vehicle that is not connected, or whose client is closed
     │   └── ReadOnlyError    a transfer or command asked of a recording that is being replayed
     ├── UnsupportedError     asked of an autopilot that does not do it; nothing was sent
+    ├── DoubtError           it is doubted who would hear: the vehicle meant, and it alone; nothing was sent
     ├── BusyError            another transfer with this vehicle is under way
     └── TransferFailedError  a download ended without all items; carries the outcome
 
@@ -54,6 +55,14 @@ class ReadOnlyError(NotConnectedError):
 
 class UnsupportedError(MavlinkError):
     """The vehicle's autopilot does not do what was asked; nothing was sent."""
+
+
+class DoubtError(MavlinkError):
+    """It is not certain that the vehicle meant would hear, and it alone."""
+
+    def __init__(self, rule: str, message: str, fix: str) -> None:
+        self.rule, self.message, self.fix = rule, message, fix
+        super().__init__(f"{message}: {fix}")
 
 
 class BusyError(MavlinkError):

@@ -17,6 +17,7 @@ from app.schemas.forwards import ForwardsIn, ForwardsOut
 from app.schemas.missions import ClearedOut, HeldOut, MissionIn, Part, UploadOut
 from app.schemas.preflight import ParametersOut, PreflightIn, PreflightOut
 from app.schemas.vehicles import (
+    AddressIn,
     CommandIn,
     CommandList,
     CommandOut,
@@ -225,6 +226,21 @@ async def acknowledge(
     return VehicleOut.of(vehicle)
 
 
+@router.post("/{vehicle_id}/address", summary="Acknowledge an address", responses=responses(404, 409, 422))
+async def acknowledge_address(
+    vehicle_id: str, body: AddressIn, fleet: FleetDep, transfers: TransfersDep
+) -> VehicleOut:
+    """Say at which address of its port the vehicle is: `address`, or one of `strangers`.
+
+    It alone is heard and sent to from then on, and others that say that they are this system are no longer
+    in doubt. From another address than before another aircraft may speak: what this one held, and its flight,
+    are not taken for that one's. 409 when nobody was heard there lately.
+    """
+    vehicle = fleet.get(vehicle_id)
+    await transfers.acknowledge_address(vehicle, body.address)
+    return VehicleOut.of(vehicle)
+
+
 @router.post("/{vehicle_id}/commands", summary="Command", responses=responses(404, 409, 422, 504))
 async def command(vehicle_id: str, body: CommandIn, fleet: FleetDep) -> CommandOut:
     """An explicit flight command; nothing else arms or moves a vehicle.
@@ -232,7 +248,7 @@ async def command(vehicle_id: str, body: CommandIn, fleet: FleetDep) -> CommandO
     Answered once the vehicle shows it (`done`), or `pending` after `wait_s`. Refused and overtaken commands
     are a 409, those nobody can tell of a 504, each a problem with the command's members and, in `errors`,
     the rule and the way out: `not-armed` (start), `mode-would-take-off` (arm), `no-landing` (land of a fixed
-    wing), `command-refused` (the vehicle said no).
+    wing), `command-refused` (the vehicle said no), and whatever `doubt` of the vehicle says.
     """
     vehicle = fleet.get(vehicle_id)
     wish = Wish(body.command, body.seq, body.arm_first, body.hold_first, body.payload)

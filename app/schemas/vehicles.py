@@ -142,6 +142,14 @@ class CommandList(BaseModel):
     commands: list[CommandOut]
 
 
+class DoubtOut(BaseModel):
+    """Why it is not certain that orders reach the vehicle meant, and it alone."""
+
+    rule: str = Field(examples=["two-aircraft"])
+    message: str
+    fix: str = Field(description="What resolves it.")
+
+
 class VehicleOut(BaseModel):
     """A vehicle and how it is."""
 
@@ -153,6 +161,15 @@ class VehicleOut(BaseModel):
     other_system: int | None = Field(
         description="Another autopilot that answers in its place while it is silent: a swapped aircraft. It "
         "is not talked to until it is acknowledged, or let go and connected as another vehicle."
+    )
+    address: str | None = Field(
+        description="Where it is heard from, on a port where anybody may speak: it alone is believed there."
+    )
+    strangers: list[str] = Field(
+        description="Other addresses heard on that port lately: neither believed nor sent to."
+    )
+    doubt: DoubtOut | None = Field(
+        description="Why orders that make it fly, and uploads, are refused; stops are sent all the same."
     )
     position_age_s: float | None = Field(
         description="How old the position in `state` is, seconds; null: it never told one.", examples=[0.2]
@@ -185,6 +202,9 @@ class VehicleOut(BaseModel):
             connected=vehicle.state.connected,
             system_id=vehicle.state.system_id or vehicle.system_id or None,
             other_system=vehicle.state.other_system,
+            address=state.address,
+            strangers=list(state.strangers),
+            doubt=None if state.doubt is None else DoubtOut(**asdict(state.doubt)),
             position_age_s=vehicle.age_s(state.position_heard_s),
             sensor=SensorOut(
                 on=state.sensor_shown,
@@ -242,3 +262,14 @@ class IdentityIn(Strict):
     """The aircraft that is the vehicle from now on."""
 
     system_id: int = Field(ge=1, le=255, description="As other_system says.")
+
+
+class AddressIn(Strict):
+    """Where the vehicle is from now on."""
+
+    address: str = Field(
+        min_length=3,
+        max_length=100,
+        description="As `address` or `strangers` says.",
+        examples=["10.0.0.7:14555"],
+    )

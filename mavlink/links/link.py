@@ -15,7 +15,7 @@ from mavlink.links.memory import LinkFaults, MemoryLink, memory_pair
 from mavlink.links.replay import ReplayLink, open_replay
 from mavlink.links.serial_port import open_serial
 from mavlink.links.tcp import open_tcp_client, open_tcp_server
-from mavlink.links.udp import open_udp
+from mavlink.links.udp import Sieve, open_udp
 
 __all__ = [
     "FORMS",
@@ -23,6 +23,7 @@ __all__ = [
     "Link",
     "LinkFaults",
     "MemoryLink",
+    "OpenLink",
     "PacedLink",
     "ReplayLink",
     "memory_pair",
@@ -60,6 +61,18 @@ class DirectLink(Link, Protocol):
 
     def send_now(self, data: bytes) -> None:
         """Send without waiting."""
+
+
+@runtime_checkable
+class OpenLink(Link, Protocol):
+    """A link on which strangers may speak."""
+
+    @property
+    def listens(self) -> bool:
+        """Whether anybody may send to it."""
+
+    def believe(self, sieve: Sieve) -> None:
+        """Let a sieve say from now on who is heard and answered."""
 
 
 @runtime_checkable

@@ -1,4 +1,4 @@
-"""UDP: listening (every peer heard is answered) and calling."""
+"""UDP: listening, and calling one peer whose answers alone are heard."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import contextlib
 import ipaddress
 import socket
 from collections.abc import Callable
-from typing import Any, Final
+from typing import Any, Final, Protocol
 
 from mavlink.errors import LinkError
 from mavlink.links.inbox import Inbox
@@ -17,27 +17,39 @@ _RECEIVE_BUFFER_BYTES: Final = 1 << 20
 # A silent peer is forgotten, unless it is the only one: it may have restarted on another port.
 _FORGET_AFTER_S: Final = 30.0
 _MOST_PEERS: Final = 16
+# Datagrams of strangers thrown away in a turn of the event loop.
+_MOST_AT_ONCE: Final = 64
 # A MAVLink frame has at most 280 bytes, and some bridges put several into a datagram.
 _MOST_BYTES: Final = 1 << 16
 
 Address = tuple[Any, ...]
 
 
+class Sieve(Protocol):
+    """Says which senders on a listening port are believed."""
+
+    @property
+    def address(self) -> Address | None:
+        """Where alone to send to; None: nowhere yet."""
+
+    def sift(self, sender: Address, data: bytes) -> bytes:
+        """What of a datagram is to be read."""
+
+
 class UdpLink:
     """A datagram socket. Opened by ``open_udp``.
 
-    A listening link answers whoever it has heard; a calling one sends to its fixed peer from the start.
+    A calling link sends to its fixed peer from the start, and hears that one alone. A listening one answers
+    whoever it has heard, as an aircraft's does, until a sieve says who is believed.
     It reads its socket itself: asyncio's transport reserves 256 KiB for every datagram.
     """
 
-    def __init__(
-        self, form: str, host: str, sock: socket.socket, peer: Address | None, answers_only: bool = False
-    ) -> None:
+    def __init__(self, form: str, host: str, sock: socket.socket, peer: Address | None) -> None:
         self._form = form
         self._host = host
         self._socket = sock
         self._fixed_peer = peer
-        self._answers_only = answers_only
+        self._sieve: Sieve | None = None
         self._peers: dict[Address, float] = {}
         self._inbox = Inbox()
         self._listener: Callable[[bytes], None] | None = None
@@ -60,7 +72,24 @@ class UdpLink:
     @property
     def peers(self) -> int:
         """How many are sent to."""
-        return len(self._peers) if self._fixed_peer is None else 1
+        return len(self._targets)
+
+    @property
+    def listens(self) -> bool:
+        """Whether anybody may send to it."""
+        return self._fixed_peer is None
+
+    @property
+    def _targets(self) -> tuple[Address, ...]:
+        if self._fixed_peer is not None:
+            return (self._fixed_peer,)
+        if self._sieve is None:
+            return tuple(self._peers)
+        return () if self._sieve.address is None else (self._sieve.address,)
+
+    def believe(self, sieve: Sieve) -> None:
+        """Let a sieve say from now on who is heard and answered on a listening port."""
+        self._sieve = sieve
 
     @property
     def waiting_bytes(self) -> int:
@@ -68,18 +97,30 @@ class UdpLink:
         return 0
 
     def _readable(self) -> None:
+        for _ in range(_MOST_AT_ONCE):
+            if self._closed or self._take():
+                return
+
+    def _take(self) -> bool:
+        """Take one datagram; False when it was a stranger's, behind whom others wait."""
         try:
             data, peer = self._socket.recvfrom(_MOST_BYTES)
         except OSError:
-            return  # a peer that is not listening (yet): like a radio out of range, it may come back
-        if self._fixed_peer is None:
+            return True  # a peer that is not listening (yet): like a radio out of range, it may come back
+        if self._fixed_peer is not None:
+            if peer[:2] != self._fixed_peer[:2]:
+                return False
+        elif self._sieve is not None:
+            data = self._sieve.sift(peer, data)
+            if not data:
+                return False
+        else:
             self._hear(peer)
-        elif self._answers_only and peer[:2] != self._fixed_peer[:2]:
-            return
         if self._listener is None:
             self._inbox.put(data)
         else:
             self._listener(data)
+        return True
 
     def _hear(self, peer: Address) -> None:
         now_s = self._loop.time()
@@ -100,14 +141,14 @@ class UdpLink:
         self._listener = listener
 
     async def send(self, data: bytes) -> None:
-        """Send to the fixed peer, or to every peer heard."""
+        """Send to the fixed peer, to the one that is believed, or to every peer heard."""
         self.send_now(data)
 
     def send_now(self, data: bytes) -> None:
         """The same without waiting, which datagrams never do."""
         if self._closed:
             raise LinkError("link closed")
-        for peer in self._peers if self._fixed_peer is None else (self._fixed_peer,):
+        for peer in self._targets:
             # A full buffer, or nobody listening there: the datagram is lost, as on any radio.
             with contextlib.suppress(OSError):
                 self._socket.sendto(data, peer)
@@ -125,19 +166,13 @@ class UdpLink:
             self._inbox.fail("link closed")
 
 
-async def open_udp(host: str, port: int, *, listen: bool, answers_only: bool = False) -> UdpLink:
-    """Bind (``listen``) or aim at a host and port. Raises OSError.
-
-    Parameters
-    ----------
-    answers_only
-        Of an aimed link: be deaf to all but the peer, and, where that is on this machine, bound to it alone.
-    """
+async def open_udp(host: str, port: int, *, listen: bool) -> UdpLink:
+    """Bind (``listen``) or aim at a host and port. Raises OSError."""
     loop = asyncio.get_running_loop()
     found = await loop.getaddrinfo(host, port, type=socket.SOCK_DGRAM, proto=socket.IPPROTO_UDP)
     family, _, _, _, address = found[0]
     source: tuple[str, int] = ("::", 0) if family == socket.AF_INET6 else ("0.0.0.0", 0)
-    if answers_only and ipaddress.ip_address(address[0]).is_loopback:
+    if ipaddress.ip_address(address[0]).is_loopback:
         source = (str(address[0]), 0)
     sock = socket.socket(family, socket.SOCK_DGRAM)
     try:
@@ -148,4 +183,4 @@ async def open_udp(host: str, port: int, *, listen: bool, answers_only: bool = F
     except OSError:
         sock.close()
         raise
-    return UdpLink("udpin" if listen else "udpout", host, sock, None if listen else address, answers_only)
+    return UdpLink("udpin" if listen else "udpout", host, sock, None if listen else address)

@@ -46,6 +46,23 @@ class StatusText:
 
 
 @dataclass(frozen=True, slots=True)
+class Doubt:
+    """Why it is not certain that orders reach the vehicle meant, and it alone: only stops are sent.
+
+    Parameters
+    ----------
+    rule
+        Its name, e.g. ``two-aircraft``.
+    fix
+        What resolves it.
+    """
+
+    rule: str
+    message: str
+    fix: str
+
+
+@dataclass(frozen=True, slots=True)
 class VehicleState:
     """All that is known of a vehicle now; None where it has not said.
 
@@ -55,6 +72,12 @@ class VehicleState:
         Something was heard from it lately; decided by the client.
     other_system
         System id of another autopilot that answers while the vehicle is silent: a swapped aircraft.
+    address
+        Where it is heard from, on a port where anybody may speak.
+    strangers
+        Other addresses heard there lately: neither believed nor sent to.
+    doubt
+        Why orders are refused that make it fly or change what it holds; None where all is certain.
     heard_s
         When it last told something of itself, in the client's clock.
     position_heard_s
@@ -95,6 +118,9 @@ class VehicleState:
     component_id: int = 0
     connected: bool = False
     other_system: int | None = None
+    address: str | None = None
+    strangers: tuple[str, ...] = ()
+    doubt: Doubt | None = None
     heard_s: float | None = None
     position_heard_s: float | None = None
     time_s: float | None = None

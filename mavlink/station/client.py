@@ -274,6 +274,10 @@ class VehicleClient(MissionTransfers, FlightCommands):
             timeout_s=min(self._settings.timeout_s, _PARAMETER_TIMEOUT_S),
         )
 
+    def require_certain(self) -> None:
+        """Raise DoubtError unless the vehicle meant hears, and it alone; NotConnectedError without one."""
+        self._driver.require_certain()
+
     def _target(self) -> tuple[int, int]:
         self._driver.require_connected()
         return self.state.system_id, self.state.component_id

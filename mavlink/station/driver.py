@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import Any, Final
 
-from mavlink.errors import BusyError, CodecError, LinkError, NotConnectedError, ReadOnlyError
+from mavlink.errors import BusyError, CodecError, DoubtError, LinkError, NotConnectedError, ReadOnlyError
 from mavlink.links.link import DirectLink, Link, ReplayLink
 from mavlink.state.events import EVENT_MESSAGES, EventOrder
 from mavlink.state.link_quality import LinkQuality
@@ -26,6 +26,7 @@ from mavlink.station.forward.hub import Forwards
 from mavlink.station.identity import Identity
 from mavlink.station.jobs import Job
 from mavlink.station.list_ids import ListIds
+from mavlink.station.trust import Trust
 from mavlink.station.under_way import UnderWay
 from mavlink.transfer.command import CommandMachine, CommandOutcome
 from mavlink.transfer.machine import Machine, Progress
@@ -73,6 +74,7 @@ class Driver:
         self._clock = clock
         self._on_connect = on_connect
         self._identity = Identity(vehicle_system, lost_after_s)
+        self._trust = Trust(link, vehicle_system, clock, self._doubt)
         self._lost_after_s = lost_after_s
         self._task: asyncio.Task[None] | None = None
         self._timeout: asyncio.Timeout | None = None
@@ -166,7 +168,29 @@ class Driver:
     @property
     def absence(self) -> str:
         """Why a vehicle that is not connected cannot be talked to."""
-        return self._failure or self._identity.absence(self.state)
+        return self._failure or self._trust.absence or self._identity.absence(self.state)
+
+    def require_certain(self) -> None:
+        """Raise DoubtError unless the vehicle meant hears, and it alone; NotConnectedError without one."""
+        self.require_connected()
+        doubt = self.state.doubt
+        if doubt is not None:
+            raise DoubtError(doubt.rule, doubt.message, doubt.fix)
+
+    def acknowledge(self, address: str) -> None:
+        """Take an address for the vehicle's, whoever else says that it is there.
+
+        Raises
+        ------
+        NotConnectedError
+            Nobody was heard from there lately.
+        """
+        if self._failure is not None or not self._trust.acknowledge(address):
+            raise NotConnectedError(self._failure or f"nobody is heard from {address}")
+
+    def _doubt(self) -> None:
+        """Tell what is doubted now."""
+        self._change(self._trust.told(self.state))
 
     def adopt(self, system_id: int) -> None:
         """Take the system heard in the vehicle's place for the vehicle, of which nothing is known yet.
@@ -185,6 +209,7 @@ class Driver:
         self.sensor = SensorWatch()
         self._identity.adopt(system_id)
         self._set_state(VehicleState())
+        self._trust.adopt(system_id)
 
     @contextlib.contextmanager
     def watching(self) -> Iterator[asyncio.Event]:
@@ -286,6 +311,8 @@ class Driver:
         if self.state.connected and now_s >= self._heard_s + self._lost_after_s:
             self._lose()
         self._change(self._identity.waited(self.state, now_s))
+        self._trust.let_time_pass()
+        self._doubt()
         self._under_way.let_time_pass(now_s)
 
     def _take(self, message: Message) -> None:
@@ -303,7 +330,8 @@ class Driver:
         state = self.list_ids.watched(updated(self.state, message, now_s), message, now_s)
         state = self.sensor.watched(state, message, now_s)
         if not self.state.connected:
-            self._set_state(replace(state, connected=True, other_system=None))
+            self._trust.heard()
+            self._set_state(self._trust.told(replace(state, connected=True, other_system=None)))
             self._on_connect()
         else:
             self._change(state)
@@ -326,7 +354,8 @@ class Driver:
     def _lose(self) -> None:
         """The vehicle has vanished: nobody can tell what it still took in."""
         self.quality.forget()
-        self._set_state(self.sensor.unknown(replace(self.state, connected=False)))
+        self._trust.lost()
+        self._set_state(self._trust.told(self.sensor.unknown(replace(self.state, connected=False))))
         self._under_way.abandon()
 
     def show_sensor(self, output: SensorOutput | None) -> None:

@@ -32,11 +32,16 @@ class FlightCommands(ABC):
         """Send a command until it is answered."""
 
     @abstractmethod
+    def require_certain(self) -> None:
+        """Raise DoubtError unless the vehicle meant hears, and it alone."""
+
+    @abstractmethod
     async def set_current(self, seq: int) -> Outcome:
         """Make an item the one flown next."""
 
     async def arm(self) -> CommandOutcome:
-        """Arm the motors; the vehicle's own checks decide."""
+        """Arm the motors; the vehicle's own checks decide. Raises DoubtError."""
+        self.require_certain()
         return await self.command(Command.COMPONENT_ARM_DISARM, (1.0,))
 
     async def disarm(self) -> CommandOutcome:
@@ -49,7 +54,11 @@ class FlightCommands(ABC):
         return await self.command(Command.DO_SET_MODE, parameters)
 
     async def start_mission(self) -> CommandOutcome:
-        """Fly the mission from its current item. PX4 arms by itself; ArduPilot wants to be armed first."""
+        """Fly the mission from its current item. PX4 arms by itself; ArduPilot wants to be armed first.
+
+        Raises DoubtError.
+        """
+        self.require_certain()
         if self.state.autopilot == "ardupilot":
             outcome = await self.set_mode("AUTO")
             if not outcome.accepted:
@@ -69,7 +78,8 @@ class FlightCommands(ABC):
         return await self.set_mode("AUTO.MISSION" if self.state.autopilot == "px4" else "AUTO")
 
     async def resume(self) -> CommandOutcome:
-        """Go on with the mission at its current item."""
+        """Go on with the mission at its current item. Raises DoubtError."""
+        self.require_certain()
         if self.state.autopilot == "px4":
             return await self.set_mode("AUTO.MISSION")
         if self.state.autopilot == "ardupilot" and self.state.type != "multirotor":

@@ -36,14 +36,14 @@ class Identity:
         """True for the autopilot's messages; its heartbeat makes the acquaintance, anew after a loss."""
         if state.connected:
             return (message.system_id, message.component_id) == (state.system_id, state.component_id)
-        return _is_autopilot(message) and self._expected(state) in (0, message.system_id)
+        return is_autopilot(message) and self._expected(state) in (0, message.system_id)
 
     def watched(self, state: VehicleState, message: Message, now_s: float) -> VehicleState:
         """The state after a message that is not the vehicle's: another autopilot may answer in its place.
 
         Beside a vehicle that is there others may fly on the same link, and mean nothing.
         """
-        if state.connected or not _is_autopilot(message) or self._expected(state) in (0, message.system_id):
+        if state.connected or not is_autopilot(message) or self._expected(state) in (0, message.system_id):
             return state
         if state.other_system not in (None, message.system_id):
             return state
@@ -73,7 +73,8 @@ class Identity:
         return self._system_id or state.system_id
 
 
-def _is_autopilot(message: Message) -> bool:
+def is_autopilot(message: Message) -> bool:
+    """Whether it is an autopilot's heartbeat."""
     return (
         message.name == "HEARTBEAT"
         and message.integer("autopilot") != NO_AUTOPILOT

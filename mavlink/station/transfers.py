@@ -85,13 +85,32 @@ class MissionTransfers(ABC):
         self._driver.adopt(system_id)
         self._forget_lists()
 
+    def acknowledge(self, address: str) -> None:
+        """Take an address heard on the vehicle's port for the vehicle's: nothing is known of what it holds.
+
+        Parameters
+        ----------
+        address
+            As ``state.strangers`` or ``state.address`` has it.
+
+        Raises
+        ------
+        NotConnectedError
+            Nobody was heard from there lately.
+        """
+        self._driver.acknowledge(address)
+        self._forget_lists()
+
     async def upload(
         self,
         items: Sequence[MissionItem],
         mission_type: MissionType,
         progress: Callable[[Progress], None] | None = None,
     ) -> Outcome:
-        """Upload without reading back. Raises BusyError, NotConnectedError, CodecError, ValueError."""
+        """Upload without reading back.
+
+        Raises BusyError, DoubtError, NotConnectedError, CodecError, ValueError.
+        """
         return await self._send(UploadMachine(items, mission_type, *self._target(), self._settings), progress)
 
     async def update(
@@ -113,6 +132,7 @@ class MissionTransfers(ABC):
 
     async def _send(self, machine: UploadMachine, progress: Callable[[Progress], None] | None) -> Outcome:
         ids, kind = self._driver.list_ids, machine.mission_type
+        self._driver.require_certain()
         self._driver.require_free()
         with self.reserved(changes=True):
             self._forget(kind)
@@ -162,8 +182,9 @@ class MissionTransfers(ABC):
         return self._held_mission
 
     async def clear(self, mission_type: MissionType) -> Outcome:
-        """Empty one of the vehicle's lists. Raises BusyError, NotConnectedError."""
+        """Empty one of the vehicle's lists. Raises BusyError, DoubtError, NotConnectedError."""
         machine = ClearMachine(mission_type, *self._target(), self._settings)
+        self._driver.require_certain()
         self._driver.require_free()
         with self.reserved(changes=True):
             self._forget(mission_type)

@@ -51,7 +51,8 @@ def difference_json(difference: Difference) -> dict[str, Any]:
 def state_json(state: VehicleState) -> dict[str, Any]:
     """A vehicle's state; null where it has not said."""
     body = asdict(state)
-    for clock in ("heard_s", "position_heard_s", "sensor_since_s"):
-        del body[clock]
+    # Told beside the state, or in a clock that is nobody else's.
+    for name in ("heard_s", "position_heard_s", "sensor_since_s", "address", "strangers", "doubt"):
+        del body[name]
     body["texts"] = [{"severity": text.severity, "text": text.text} for text in state.texts]
     return {name: _number(value) if isinstance(value, float) else value for name, value in body.items()}

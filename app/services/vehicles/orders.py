@@ -18,7 +18,7 @@ from app.services.errors import (
     ServiceError,
 )
 from app.services.vehicles.flight_orders import CARRY_OUT, OrderRefusedError, Wish
-from app.services.vehicles.order_book import FLYING, Order
+from app.services.vehicles.order_book import FLYING, STOPPING, Order
 from app.services.vehicles.vehicle import Vehicle
 from mavlink import errors as mavlink_errors
 from mavlink.encoding.payload import PayloadError
@@ -86,10 +86,18 @@ def _judge(wish: Wish) -> None:
             )
 
 
+def _require_certain(vehicle: Vehicle, wish: Wish) -> None:
+    """Raise OrderRefusedError where it is doubted who would hear; stops are given all the same."""
+    doubt = vehicle.state.doubt
+    if doubt is not None and wish.command not in STOPPING | {"sensor_off"}:
+        raise OrderRefusedError(doubt.rule, doubt.message, doubt.fix)
+
+
 async def _follow(vehicle: Vehicle, wish: Wish, order: Order) -> None:
     """Carry an order out to its end, and note that end."""
     flies = wish.command in FLYING
     try:
+        _require_certain(vehicle, wish)
         with vehicle.turns.ordering(wish.command) if flies else nullcontext():
             outcome, reason = await CARRY_OUT[wish.command](vehicle, wish, order)
         order.end(outcome, reason)

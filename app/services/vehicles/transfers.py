@@ -217,6 +217,28 @@ class Transfers:
             with contextlib.suppress(TimeoutError):
                 await vehicle.client.wait_for(lambda state: state.connected, HEARD_S)
 
+    async def acknowledge_address(self, vehicle: Vehicle, address: str) -> None:
+        """Take an address heard on a vehicle's port for the vehicle's.
+
+        Raises
+        ------
+        ConflictError
+            Nobody was heard from there lately, or it is a recording.
+        BusyError
+            Another operation is at work on the vehicle.
+        """
+        async with vehicle.turns.busy("acknowledging an address", changes=True):
+            before = vehicle.state.address
+            if address != before and address not in vehicle.state.strangers:
+                raise ConflictError(f"{vehicle.name}: nobody is heard from {address}")
+            if address != before:
+                await vehicle.begin_anew()
+                await self._kept.hold(vehicle.id, None)
+                await self._kept.send(vehicle.id, None)
+            vehicle.client.acknowledge(address)
+            log.warning("address acknowledged", vehicle=vehicle.name, before=before, address=address)
+            vehicle.tell()
+
     async def _begin(
         self,
         vehicle: Vehicle,

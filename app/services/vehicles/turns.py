@@ -6,9 +6,10 @@ from collections.abc import AsyncIterator, Iterator
 from contextlib import asynccontextmanager, contextmanager
 from typing import Any
 
-from app.services.errors import BusyError, ConflictError, LinkError
+from app.services.errors import BusyError, ConflictError, LinkError, UnsafeError
 from mavlink import errors as mavlink_errors
 from mavlink.station.forward.hub import Forwards
+from planner.errors import Finding
 
 
 class Turns:
@@ -69,6 +70,9 @@ class Turns:
                 yield
         except mavlink_errors.BusyError as error:
             raise BusyError(f"{self._name} is busy: {error}") from error
+        except mavlink_errors.DoubtError as error:
+            finding = Finding("vehicle", error.rule, error.message, error.fix)
+            raise UnsafeError(f"{self._name}: {error}; no override helps", (finding,)) from error
         except (mavlink_errors.NotConnectedError, mavlink_errors.LinkError) as error:
             raise LinkError(f"{self._name}: {error}") from error
         finally:

@@ -80,7 +80,7 @@ async def open_outlet(address: ForwardAddress) -> OutletLink:
     try:
         match form:
             case "udpin" | "udpout":
-                return await open_udp(host, port, listen=form == "udpin", answers_only=True)
+                return await open_udp(host, port, listen=form == "udpin")
             case "tcpin":
                 return await open_tcp_server(host, port)
             case _:

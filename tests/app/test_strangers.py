@@ -1,0 +1,74 @@
+"""Who else speaks on a vehicle's port, over HTTP: told, refused what flies, and acknowledged by address."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncIterator, Callable
+from contextlib import asynccontextmanager
+from typing import Any
+
+import httpx
+
+from app.main import create_app
+from app.settings import Settings
+from mavlink.links.udp import open_udp
+from tests.app.conftest import impatient_house, serving
+from tests.app.test_problems import check_problem
+from tests.app.test_restart import free_port
+from tests.mavlink.station.aircraft import Aircraft
+from tests.mavlink.transfer.vehicle import StubVehicle
+
+VEHICLES = "/api/v1/vehicles"
+
+
+@asynccontextmanager
+async def aircraft(port: int, system_id: int = 1) -> AsyncIterator[Aircraft]:
+    """An aircraft that calls a port and notes what it is ordered."""
+    link = await open_udp("127.0.0.1", port, listen=False)
+    async with Aircraft(link, StubVehicle(), system_id=system_id) as flying:
+        yield flying
+
+
+async def until(client: httpx.AsyncClient, place: str, ready: Callable[[Any], bool]) -> Any:
+    """The vehicle, once it is ready."""
+    async with asyncio.timeout(25):
+        while not ready(body := (await client.get(place)).json()):
+            await asyncio.sleep(0.05)
+    return body
+
+
+def armings(flying: Aircraft) -> int:
+    """How often it was told to arm."""
+    return sum(number == 400 for number, _ in flying.commands)
+
+
+async def test_of_two_aircraft_with_one_system_id_none_is_armed(settings: Settings) -> None:
+    """The second is told at once; what flies is refused until an address is acknowledged, stops are not."""
+    port = free_port()
+    async with serving(create_app(settings, impatient_house)) as client, aircraft(port) as first:
+        answer = await client.post(VEHICLES, json={"name": "uav", "url": f"udpin:127.0.0.1:{port}"})
+        place = answer.headers["location"]
+        assert answer.json()["doubt"] is None
+        assert answer.json()["address"].startswith("127.0.0.1:")
+        async with aircraft(port) as second, aircraft(port, 77) as another:
+            doubted = await until(client, place, lambda body: body["doubt"] and len(body["strangers"]) == 2)
+            assert doubted["doubt"]["rule"] == "two-aircraft"
+            assert doubted["address"] == answer.json()["address"]
+            for wish in ({"command": "arm", "hold_first": True}, {"command": "start", "arm_first": True}):
+                refused = await client.post(place + "/commands", json=wish)
+                check_problem(refused, 409)
+                assert refused.json()["errors"][0]["rule"] == "two-aircraft"
+                assert "another system id" in refused.json()["errors"][0]["fix"]
+            refused = await client.delete(place + "/mission")
+            check_problem(refused, 409)
+            assert refused.json()["errors"][0]["rule"] == "two-aircraft"
+            await client.post(place + "/commands", json={"command": "rtl", "wait_s": 0.5})
+            assert (20, (0.0,) * 7) in first.commands
+            assert armings(first) == armings(second) == 0
+
+            check_problem(await client.post(place + "/address", json={"address": "127.0.0.1:1"}), 409)
+            taken = await client.post(place + "/address", json={"address": doubted["address"]})
+            assert (taken.status_code, taken.json()["doubt"]) == (200, None)
+            await client.post(place + "/commands", json={"command": "resume", "wait_s": 0.5})
+            assert 176 in [number for number, _ in first.commands]
+            assert second.heard == another.heard == []
