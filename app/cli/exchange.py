@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
@@ -84,37 +85,65 @@ def import_(
         RoleChoice | None,
         typer.Option(
             help="Role of shapes that no value, name or folder of the file gives one "
-            "(roi for polygons and lines, threat for points)."
+            "(roi for polygons and lines; points are left out)."
+        ),
+    ] = None,
+    role_of: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Role of one shape, or of all in a folder or layer, by its name or number; goes before "
+            "everything the file says: 'NFZ north=no_fly', 'Buildings=obstacle', '#3=none' (left out). "
+            "May be repeated.",
+            metavar="WHICH=ROLE",
         ),
     ] = None,
     width_m: Metres = None,
     radius_m: Metres = None,
     height_m: Metres = None,
     crs: Annotated[
-        str | None, typer.Option(help="Reference system of a shapefile (that of its .prj), e.g. EPSG:32611.")
+        str | None,
+        typer.Option(
+            help="Reference system of the coordinates, where the file names none or a wrong one: EPSG:32611."
+        ),
     ] = None,
     as_json: Json = False,
 ) -> None:
     """Turn regions drawn elsewhere into features of a scenario: KML, KMZ, GPX, shapefile, GeoJSON.
 
-    Writes a GeoJSON FeatureCollection to be merged into a scenario. Lines become corridors of --width-m,
-    points threats of --radius-m, footprints of buildings obstacles of --height-m.
+    Writes a GeoJSON FeatureCollection to be merged into a scenario, and says what every shape became and why.
+    Lines become corridors of --width-m, threats and no-fly circles have --radius-m, footprints of buildings
+    are obstacles of --height-m. Where words forbid flying a shape forbids it; one whose role is in doubt is
+    marked (role_in_doubt) and cannot be planned before --role or --role-of settles it.
     """
     from app.services.errors import RefusedError
-    from app.services.scenarios.regions_import import ImportOptions, import_file
+    from app.services.scenarios.regions_import import ImportOptions, import_file, words_of
 
-    options = ImportOptions(role.value if role else None, width_m, radius_m, height_m, crs)
+    name = "" if source == "-" else Path(source).name
+    options = ImportOptions(role.value if role else None, width_m, radius_m, height_m, crs, file_name=name)
     try:
-        found = import_file(read_bytes(source), options, companions=_companions(source))
+        found = import_file(read_bytes(source), options, companions=_companions(source), roles=role_of or ())
     except RefusedError as error:
         raise CommandError(f"{source} is not imported: {error}", Exit.BAD_INPUT, error.findings) from error
     emit_json(found.collection, output)
+    for line in words_of(found):
+        say(line)
+    for finding in found.left_out:
+        say(f"not as it is: {finding}")
     for note in found.notes:
         say(f"note: {note}")
     count = len(found.collection["features"])
     say(f"{count} features from {found.format}")
     if as_json and output != "-":
-        emit_json({"file": output, "format": found.format, "features": count, "notes": list(found.notes)})
+        emit_json(
+            {
+                "file": output,
+                "format": found.format,
+                "features": count,
+                "shapes": [asdict(account) for account in found.shapes],
+                "left_out": [asdict(finding) for finding in found.left_out],
+                "notes": list(found.notes),
+            }
+        )
 
 
 def _companions(source: str) -> dict[str, bytes]:
@@ -122,10 +151,11 @@ def _companions(source: str) -> dict[str, bytes]:
     path = Path(source)
     if path.suffix.lower() != ".shp":
         return {}
+    stem = path.stem.casefold()
     return {
         beside.suffix.lower(): read_bytes(str(beside))
         for beside in sorted(path.parent.iterdir())
-        if beside.stem == path.stem and beside.suffix.lower() in (".prj", ".dbf", ".cpg")
+        if beside.stem.casefold() == stem and beside.suffix.lower() in (".prj", ".dbf", ".cpg")
     }
 
 

@@ -21,6 +21,15 @@ _PIECE_M = 1000.0
 _MAX_PIECES = 10_000
 _NAMED = re.compile(r"(EPSG|ESRI|OGC):[A-Za-z0-9]{1,12}", re.IGNORECASE)
 
+#: ``EPSG:32632``, ``urn:ogc:def:crs:EPSG::32632``, ``http://www.opengis.net/def/crs/EPSG/0/32632``, 32632.
+_WRITTEN = re.compile(
+    r"(?:(?:urn:(?:x-)?ogc:def:crs:|https?://www\.opengis\.net/def/crs/)?(?P<authority>EPSG|ESRI|OGC|CRS)[:/]"
+    r"(?:[0-9.]*[:/])?|https?://www\.opengis\.net/gml/srs/epsg\.xml#)?(?P<code>CRS84H?|[0-9]{2,6})",
+    re.IGNORECASE,
+)
+#: Numbers beyond are Esri's.
+_LAST_EPSG = 32_767
+
 ToWgs84 = Callable[[list[LonLat]], list[LonLat]]
 
 
@@ -36,6 +45,31 @@ def named_crs(name: str) -> CRS:
     if not _NAMED.fullmatch(name.strip()):
         raise file_error("crs", f"{name[:60]!r} is no code of a reference system", "write e.g. EPSG:32611")
     return _checked(lambda: CRS.from_user_input(name.strip()), name)
+
+
+def written_crs(name: str) -> CRS:
+    """The reference system that a file names: a code, a URN or an address of OGC, or WGS 84 by name.
+
+    Raises
+    ------
+    RegionFileError
+        Rule ``crs``.
+    """
+    text = name.strip()
+    short = re.sub(r"[\s_-]", "", text).upper()
+    if short in ("CRS84", "WGS84", "OGC:CRS84", "EPSG4326"):
+        return CRS.from_epsg(4326)
+    if short in ("EPSG:900913", "EPSG:3785", "900913", "3785", "EPSG:102100", "102100", "102113"):
+        return CRS.from_epsg(3857)
+    found = _WRITTEN.fullmatch(text)
+    if found is not None:
+        authority, code = (found["authority"] or "EPSG").upper(), found["code"].upper()
+        if authority in ("OGC", "CRS") and code in ("CRS84", "84", "CRS84H"):
+            return CRS.from_epsg(4326)
+        if authority == "EPSG" and code.isdigit() and int(code) > _LAST_EPSG:
+            return named_crs(f"ESRI:{code}")
+        return named_crs(f"{authority}:{code}")
+    return named_crs(text)
 
 
 def crs_of_prj(text: str) -> CRS:
@@ -57,6 +91,11 @@ def _checked(make: Callable[[], CRS], name: str) -> CRS:
     if not (crs.is_geographic or crs.is_projected):
         raise file_error("crs", f"{name[:60]} is no reference system of maps", "give the right one as crs")
     return crs
+
+
+def mover(crs: CRS, notes: list[str]) -> ToWgs84 | None:
+    """As :func:`to_wgs84`; None where the places are in WGS 84 already."""
+    return None if crs == CRS.from_epsg(4326) else to_wgs84(crs, notes)
 
 
 def to_wgs84(crs: CRS, notes: list[str]) -> ToWgs84:

@@ -9,12 +9,12 @@ from pathlib import PurePosixPath
 from typing import Any
 
 import shapefile
-from shapely.geometry import Point, Polygon
 
 from app.imports.archive import unpack
-from app.imports.crs import ToWgs84, crs_of_prj, named_crs, to_wgs84
+from app.imports.crs import ToWgs84, crs_of_prj, to_wgs84, written_crs
 from app.imports.errors import file_error
-from app.imports.shapes import MAX_SHAPES, LonLat, Rings, Shape
+from app.imports.rings import grouped
+from app.imports.shapes import MAX_SHAPES, Shape, moved
 
 MAGIC = b"\x00\x00\x27\x0a"
 _HEADER_BYTES = 100
@@ -112,7 +112,7 @@ def _walk(data: bytes) -> None:
 
 def _crs(companions: Mapping[str, bytes], crs: str | None, layer: str) -> Any:
     if crs is not None:
-        return named_crs(crs)
+        return written_crs(crs)
     if ".prj" not in companions:
         raise file_error(
             "crs-missing",
@@ -152,31 +152,11 @@ def _shapes(
     pieces = [places[a:b] for a, b in zip(starts, [*starts[1:], len(places)], strict=True)]
     if not all(pieces):
         raise file_error("shapefile-damaged", f"{name or 'a shape'} has an empty part", "export it again")
-    moved = [tuple(move(piece)) for piece in pieces]
     if kind in _LINES:
-        return [Shape("line", ((line,),), name, folders, lower) for line in moved]
+        return [Shape("line", ((tuple(move(piece)),),), name, folders, lower) for piece in pieces]
     if kind in _POLYGONS:
-        return [Shape("polygon", _group(pieces, moved), name, folders, lower)]
+        rings = grouped([tuple(piece) for piece in pieces])
+        return [moved(Shape("polygon", rings, name, folders, lower), move)]
     raise file_error(
         "shapefile-kind", f"{name or 'a shape'} is of type {kind}", "export polygons, lines or points"
     )
-
-
-def _group(pieces: list[list[LonLat]], moved: list[tuple[LonLat, ...]]) -> tuple[Rings, ...]:
-    """Rings by polygon: outer rings run clockwise, holes the other way, each in the outer ring about it."""
-    outers = [i for i, piece in enumerate(pieces) if _clockwise(piece)] or list(range(len(pieces)))
-    holes: dict[int, list[tuple[LonLat, ...]]] = {i: [] for i in outers}
-    for i, piece in enumerate(pieces):
-        if i in holes:
-            continue
-        about = [o for o in outers if len(pieces[o]) > 3 and _holds(Polygon(pieces[o]), piece)]
-        holes[about[0] if about else outers[0]].append(moved[i])
-    return tuple((moved[o], *holes[o]) for o in outers)
-
-
-def _holds(outer: Polygon, piece: list[LonLat]) -> bool:
-    return bool(outer.is_valid and outer.covers(Point(piece[0])))
-
-
-def _clockwise(ring: list[LonLat]) -> bool:
-    return sum((b[0] - a[0]) * (b[1] + a[1]) for a, b in zip(ring, [*ring[1:], ring[0]], strict=True)) > 0.0

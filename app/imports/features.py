@@ -2,119 +2,75 @@
 
 from __future__ import annotations
 
-import math
-import re
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 from typing import Any
 
-from shapely.geometry import Polygon
-from shapely.geometry.polygon import orient
-
+from app.imports.drawing import closed, forbidden_area, geometry, mended, on_earth
 from app.imports.errors import RegionFileError, file_error
-from app.imports.shapes import MAX_POSITIONS, MAX_SHAPES, LonLat, Rings, Shape
+from app.imports.options import NONE, ImportOptions, check_choices
+from app.imports.roles import KEEP_AWAY, KINDS, Verdict, verdicts
+from app.imports.shapes import MAX_POSITIONS, MAX_SHAPES, Shape
+from app.imports.values import add_values
 from planner.errors import Finding
-from planner.geojson.sheet import MOST_LONGITUDE_DEG, continued, wrapped_deg
 
-ROLES = ("roi", "threat", "no_fly", "area", "obstacle", "start", "end", "base", "importance")
-KINDS: dict[str, tuple[str, ...]] = {
-    "roi": ("polygon", "line", "point"),
-    "threat": ("point",),
-    "no_fly": ("polygon", "point"),
-    "obstacle": ("polygon",),
-    "area": ("polygon",),
-    "start": ("point",),
-    "end": ("point",),
-    "base": ("point",),
-    "importance": ("polygon",),
-}
-#: What a folder, or a name, is called to mean a role; spaces for - and _, without a number behind.
-_WORDS = {
-    "roi": ("roi", "rois", "region", "regions", "region of interest", "regions of interest", "targets"),
-    "threat": ("threat", "threats", "missile", "missiles", "radar", "radars", "sam"),
-    "no_fly": ("no fly", "nofly", "no fly zone", "no fly zones", "nfz", "restricted", "prohibited"),
-    "obstacle": ("obstacle", "obstacles", "building", "buildings"),
-    "area": ("area", "operating area", "area of operations"),
-    "start": ("start", "take off", "takeoff", "launch"),
-    "end": ("end", "landing"),
-    "base": ("base", "bases"),
-    "importance": ("importance",),
-}
-ROLE_OF_WORD = {word: role for role, words in _WORDS.items() for word in words}
-#: Numbers that a role takes from the file's own values.
-_NUMBERS = {
-    "roi": ("width_m", "radius_m", "priority", "min_resolution_m"),
-    "threat": ("radius_m", "intensity_m", "height_m"),
-    "no_fly": ("radius_m", "floor_m", "ceiling_m"),
-    "obstacle": ("height_m", "base_m"),
-    "importance": ("score",),
-    "start": ("heading_deg",),
-    "end": ("heading_deg",),
-}
-_NEEDS = {
-    ("roi", "line"): "width_m",
-    ("threat", "point"): "radius_m",
-    ("no_fly", "point"): "radius_m",
-    ("obstacle", "polygon"): "height_m",
-    ("importance", "polygon"): "score",
-}
 _LIMIT_FINDINGS = 20
 
 
 @dataclass(frozen=True, slots=True)
-class ImportOptions:
-    """What the file does not say.
+class Account:
+    """What one shape of the file became.
 
     Parameters
     ----------
+    number
+        Its place in the file, from 1.
+    name
+        As in the file.
+    folders
+        What it lies in, outermost first.
+    kind
+        ``polygon``, ``line`` or ``point``.
     role
-        Role of the shapes that no folder, name or value gives one; None: polygons and lines are ``roi``,
-        points are ``threat``.
-    width_m
-        Width of corridors.
-    radius_m
-        Radius of threats and no-fly circles.
-    height_m
-        Height of obstacles.
-    crs
-        Reference system of a shapefile, ``EPSG:32611``; None for the one its ``.prj`` names.
+        Its role; ``none`` where it is left out.
+    why
+        What says so.
+    in_doubt
+        Whether its role has to be settled before anything is planned.
+    features
+        Names of the features made of it.
     """
 
-    role: str | None = None
-    width_m: float | None = None
-    radius_m: float | None = None
-    height_m: float | None = None
-    crs: str | None = None
+    number: int
+    name: str
+    folders: tuple[str, ...]
+    kind: str
+    role: str
+    why: str
+    in_doubt: bool
+    features: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
-class Imported:
-    """A FeatureCollection of scenario features, the format it came in, and what is worth knowing."""
+class Made:
+    """Features, what each shape became, and what could not be taken or lacks something."""
 
-    collection: dict[str, Any]
-    format: str
-    notes: tuple[str, ...]
-
-
-def check_options(options: ImportOptions) -> None:
-    """Refuse an unknown role and lengths that are none (rule ``bad-option``)."""
-    if options.role is not None and options.role not in ROLES:
-        raise file_error("bad-option", f"there is no role {options.role[:40]!r}", f"use {', '.join(ROLES)}")
-    for name in ("width_m", "radius_m", "height_m"):
-        value = getattr(options, name)
-        if value is not None and not 0.0 < value < math.inf:
-            raise file_error("bad-option", f"{name} is {value}", "give a positive number of metres")
+    features: list[dict[str, Any]] = field(default_factory=list)
+    accounts: list[Account] = field(default_factory=list)
+    findings: list[Finding] = field(default_factory=list)
 
 
-def features(shapes: Iterable[Shape], options: ImportOptions, notes: list[str]) -> list[dict[str, Any]]:
+def features(shapes: Sequence[Shape], options: ImportOptions, notes: list[str]) -> Made:
     """The features, in the file's order.
+
+    A shape that can take no part is left out and found; one that keeps the aircraft away and lacks something
+    stays as it is, to be refused with the scenario until it is mended.
 
     Raises
     ------
     RegionFileError
-        With a finding for each shape that can take no part.
+        With a finding for each shape, where none can take a part as it is.
     """
-    shapes = list(shapes)
     if not shapes:
         raise file_error("no-shapes", "the file holds no polygon, line or point", "draw some")
     if len(shapes) > MAX_SHAPES or sum(shape.positions for shape in shapes) > MAX_POSITIONS:
@@ -123,66 +79,111 @@ def features(shapes: Iterable[Shape], options: ImportOptions, notes: list[str]) 
             f"the file holds {len(shapes)} shapes with {sum(s.positions for s in shapes)} positions",
             f"keep to {MAX_SHAPES} shapes and {MAX_POSITIONS} positions",
         )
-    found: list[dict[str, Any]] = []
+    check_choices(options, shapes)
+    made = Made()
     taken: set[str] = set()
-    findings: list[Finding] = []
-    for shape in shapes:
-        role = _role(shape, options)
-        shape = _closed_line(shape, role)
-        pieces = [shape] if role == "roi" else _split(shape)
-        for piece in pieces:
-            name = _free_name(piece.name or role, taken, numbered=not piece.name)
-            wrong = _judge(name, role, piece)
-            properties: dict[str, Any] = {"role": role, "name": name}
-            wrong += _add_values(properties, name, role, piece, options, notes)
-            findings += wrong
-            if not wrong:
-                found.append(
-                    {"type": "Feature", "id": name, "geometry": _geometry(piece), "properties": properties}
-                )
-    if findings:
-        more = len(findings) - _LIMIT_FINDINGS
-        detail = str(findings[0].feature) + ": " + findings[0].message
-        if more > 0:
-            findings = findings[:_LIMIT_FINDINGS]
-            detail += f" (and {more} findings more than listed)"
-        raise RegionFileError(detail, tuple(findings))
-    return found
+    whole = 0
+    for number, (shape, verdict) in enumerate(zip(shapes, verdicts(shapes, options), strict=True), 1):
+        names: list[str] = []
+        for piece in _pieces(shape, verdict.role, options, notes):
+            name = _free_name(piece.name or verdict.role, taken, numbered=not piece.name)
+            wrong, feature = _feature(name, piece, verdict, options, notes)
+            made.findings.extend(wrong)
+            if feature is not None:
+                made.features.append(feature)
+                names.append(name)
+                whole += not wrong
+        made.accounts.append(
+            Account(
+                number,
+                shape.name,
+                shape.folders,
+                shape.kind,
+                verdict.role if names else NONE,
+                verdict.why,
+                bool(verdict.doubt),
+                tuple(names),
+            )
+        )
+    if not whole:
+        _refuse(made)
+    return made
 
 
-def _role(shape: Shape, options: ImportOptions) -> str:
-    """The file's own role; else that of the name, of the folders from within; else the wish; else by kind."""
-    own = shape.properties.get("role", "").strip().lower()
-    if own in ROLES:
-        return own
-    for text in (shape.name, *reversed(shape.folders)):
-        role = ROLE_OF_WORD.get(_word(text))
-        if role is not None and shape.kind in KINDS[role]:
-            return role
-    if options.role is not None:
-        return options.role
-    return "threat" if shape.kind == "point" else "roi"
+def _refuse(made: Made) -> None:
+    findings = list(made.findings) or [
+        Finding(
+            account.name or f"#{account.number}",
+            "role-unknown",
+            f"is left out: {account.why}",
+            f"give the import a role, or one for this {account.kind}, e.g. #{account.number}=roi",
+        )
+        for account in made.accounts
+    ]
+    more = len(findings) - _LIMIT_FINDINGS
+    detail = f"{findings[0].feature}: {findings[0].message}"
+    if more > 0:
+        findings = findings[:_LIMIT_FINDINGS]
+        detail += f" (and {more} findings more than listed)"
+    raise RegionFileError(detail, tuple(findings))
 
 
-def _word(text: str) -> str:
-    """``No-Fly_Zone 3: airport`` as ``no fly zone``."""
-    head = text.split(":", 1)[0]
-    plain = re.sub(r"[-_\s]+", " ", head).strip().lower()
-    return re.sub(r" ?#?\d+$", "", plain)
+def _pieces(shape: Shape, role: str, options: ImportOptions, notes: list[str]) -> list[Shape]:
+    """The shape as so many as its role wants."""
+    if role == NONE:
+        return []
+    shape = _without_bad_holes(shape, notes)
+    if role == "roi":
+        return [shape]
+    shape = closed(shape, role)
+    pieces = [replace(shape, parts=(part,)) for part in shape.parts]
+    return [_enclosing(piece, options, notes) for piece in pieces] if role == "no_fly" else pieces
 
 
-def _closed_line(shape: Shape, role: str) -> Shape:
-    """A line that comes back to its start, where the role wants a polygon."""
-    if shape.kind != "line" or "line" in KINDS[role]:
+def _without_bad_holes(shape: Shape, notes: list[str]) -> Shape:
+    if shape.kind != "polygon" or all(len(set(hole)) > 2 for part in shape.parts for hole in part[1:]):
         return shape
-    line = shape.parts[0][0]
-    if len(line) < 4 or line[0] != line[-1]:
-        return shape
-    return Shape("polygon", shape.parts, shape.name, shape.folders, shape.properties)
+    notes.append(f"{shape.name or 'a polygon'} has holes of less than three corners, which are left out")
+    parts = tuple((part[0], *(hole for hole in part[1:] if len(set(hole)) > 2)) for part in shape.parts)
+    return replace(shape, parts=parts)
 
 
-def _split(shape: Shape) -> list[Shape]:
-    return [Shape(shape.kind, (part,), shape.name, shape.folders, shape.properties) for part in shape.parts]
+def _enclosing(piece: Shape, options: ImportOptions, notes: list[str]) -> Shape:
+    """A no-fly shape that is no outline yet."""
+    outer = piece.parts[0][0]
+    if piece.kind == "point" or not all(on_earth(place) for ring in piece.parts[0] for place in ring):
+        return piece
+    if piece.kind == "polygon" and len(set(outer)) > 2:
+        area = mended(piece)
+        if area is not None:
+            notes.append(f"{piece.name or 'a no-fly zone'} crosses itself: all that it encloses is forbidden")
+        return area or piece
+    width_m = options.width_m
+    own = piece.properties.get("width_m", "")
+    try:
+        width_m = float(own) if own else width_m
+    except ValueError:
+        notes.append(f"{piece.name or 'a line'}: width_m is {own[:40]!r} and is not used")
+    area = forbidden_area(piece, width_m if width_m is not None and 0.0 < width_m < 1e6 else None)
+    if area is None:
+        return piece
+    notes.append(f"{piece.name or 'a no-fly line'} is an open line: what it encloses closed is forbidden")
+    return area
+
+
+def _feature(
+    name: str, shape: Shape, verdict: Verdict, options: ImportOptions, notes: list[str]
+) -> tuple[list[Finding], dict[str, Any] | None]:
+    """What is wrong, and the feature; None where it can take no part."""
+    role = verdict.role
+    wrong, fatal = _judge(name, role, shape)
+    properties: dict[str, Any] = {"role": role, "name": name}
+    wrong += add_values(properties, name, role, shape, options, notes)
+    if fatal or (wrong and role not in KEEP_AWAY):
+        return wrong, None
+    if verdict.doubt:
+        properties["role_in_doubt"] = verdict.why
+    return wrong, {"type": "Feature", "id": name, "geometry": geometry(shape), "properties": properties}
 
 
 def _free_name(name: str, taken: set[str], *, numbered: bool) -> str:
@@ -194,7 +195,8 @@ def _free_name(name: str, taken: set[str], *, numbered: bool) -> str:
     return candidate
 
 
-def _judge(name: str, role: str, shape: Shape) -> list[Finding]:
+def _judge(name: str, role: str, shape: Shape) -> tuple[list[Finding], bool]:
+    """What is wrong, and whether nothing can be drawn of it."""
     found: list[Finding] = []
     if shape.kind not in KINDS[role]:
         message = f"is a {shape.kind}, which cannot be a {role}"
@@ -202,7 +204,7 @@ def _judge(name: str, role: str, shape: Shape) -> list[Finding]:
         found.append(Finding(name, "wrong-geometry", message, fix))
     for part in shape.parts:
         for positions in part:
-            wrong = next((p for p in positions if not _on_earth(p)), None)
+            wrong = next((p for p in positions if not on_earth(p)), None)
             if wrong is not None:
                 lon, lat = wrong
                 message = f"has longitude {lon:g}, latitude {lat:g}"
@@ -212,91 +214,11 @@ def _judge(name: str, role: str, shape: Shape) -> list[Finding]:
                     if swapped
                     else "give degrees, or the file's reference system"
                 )
-                found.append(Finding(name, "latitude-out-of-range", message, fix))
-                return found
+                return [*found, Finding(name, "latitude-out-of-range", message, fix)], True
             if shape.kind == "polygon" and len(set(positions)) < 3:
                 message = f"has a ring of {len(set(positions))} corners"
                 found.append(Finding(name, "ring-too-short", message, "give three or more"))
+                return found, True
             if shape.kind == "line" and len(set(positions)) < 2:
-                found.append(Finding(name, "line-too-short", "has no length", "give two places"))
-    return found
-
-
-def _on_earth(place: LonLat) -> bool:
-    return abs(place[0]) <= MOST_LONGITUDE_DEG and abs(place[1]) <= 90.0
-
-
-def _add_values(
-    properties: dict[str, Any], name: str, role: str, shape: Shape, options: ImportOptions, notes: list[str]
-) -> list[Finding]:
-    found: list[Finding] = []
-    for key in _NUMBERS.get(role, ()):
-        text = shape.properties.get(key, "")
-        if text and text.lower() not in ("none", "null", "nan"):
-            try:
-                value = float(text)
-            except ValueError:
-                value = math.nan
-            if not math.isfinite(value):
-                found.append(Finding(name, "not-a-number", f"{key} is {text[:40]!r}", "write a number"))
-            elif _takes(role, shape.kind, key):
-                properties[key] = value
-    needed = _NEEDS.get((role, shape.kind))
-    given = getattr(options, needed, None) if needed else None
-    if needed and needed not in properties:
-        if given is None:
-            fix = f"give {needed} with the import, or as a value of the shape"
-            found.append(
-                Finding(name, f"{needed}-missing", f"is a {role} {shape.kind} without {needed}", fix)
-            )
-        else:
-            properties[needed] = given
-    if role == "threat":
-        found += _add_model(properties, name, shape, notes)
-    return found
-
-
-def _takes(role: str, kind: str, key: str) -> bool:
-    if key == "width_m":
-        return kind == "line"
-    if key == "radius_m":
-        return kind == "point"
-    return True
-
-
-def _add_model(properties: dict[str, Any], name: str, shape: Shape, notes: list[str]) -> list[Finding]:
-    model = shape.properties.get("model", "").strip().lower()
-    if not model:
-        words = " ".join((shape.name, *shape.folders)).lower()
-        model = "radar" if "radar" in words and "intensity_m" in properties else "missile"
-        notes.append(f"{name} is taken for a {model} threat")
-    if model not in ("missile", "radar"):
-        return [Finding(name, "bad-model", f"model is {model[:40]!r}", "write missile or radar")]
-    properties["model"] = model
-    if model == "radar" and "intensity_m" not in properties:
-        message = "is a radar without intensity_m"
-        return [Finding(name, "intensity_m-missing", message, "give it as a value of the shape")]
-    return []
-
-
-def _geometry(shape: Shape) -> dict[str, Any]:
-    if shape.kind == "point":
-        return {"type": "Point", "coordinates": _place(shape.parts[0][0][0])}
-    if shape.kind == "line":
-        return {"type": "LineString", "coordinates": [_place(place) for place in shape.parts[0][0]]}
-    polygons = [_rings(part) for part in shape.parts]
-    if len(polygons) == 1:
-        return {"type": "Polygon", "coordinates": polygons[0]}
-    return {"type": "MultiPolygon", "coordinates": polygons}
-
-
-def _rings(part: Rings) -> list[list[list[float]]]:
-    """Closed rings, the outer counter-clockwise and holes clockwise (RFC 7946)."""
-    near_deg = part[0][0][0]
-    polygon = orient(Polygon(continued(part[0], near_deg), [continued(ring, near_deg) for ring in part[1:]]))
-    return [[_place((x, y)) for x, y in ring.coords] for ring in (polygon.exterior, *polygon.interiors)]
-
-
-def _place(place: LonLat) -> list[float]:
-    """Within ±180°; what crosses there jumps to the other side, as the scenario's reader takes it."""
-    return [wrapped_deg(float(place[0])), float(place[1])]
+                return [*found, Finding(name, "line-too-short", "has no length", "give two places")], True
+    return found, False

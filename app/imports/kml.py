@@ -7,7 +7,8 @@ from xml.etree.ElementTree import Element
 
 from app.imports.archive import unpack
 from app.imports.errors import file_error
-from app.imports.shapes import LonLat, Rings, Shape, line_of
+from app.imports.rings import grouped
+from app.imports.shapes import LonLat, Rings, Shape, labelled, line_of
 from app.imports.xml import child_text, children, local_name, parse
 
 _CONTAINERS = ("kml", "Document", "Folder")
@@ -54,7 +55,7 @@ def _placemarks(
             yield child, folders
         elif kind in _CONTAINERS:
             name = child_text(child, "name")
-            inside = (*folders, name) if name and kind == "Folder" else folders
+            inside = (*folders, name) if name else folders
             yield from _placemarks(child, inside, notes)
         elif kind == "NetworkLink":
             notes.append("a network link is not followed")
@@ -68,7 +69,7 @@ def _shapes(placemark: Element, folders: tuple[str, ...], notes: list[str]) -> l
     for geometry in _flat(placemark):
         kind = local_name(geometry)
         if kind == "Polygon":
-            polygons.append(_polygon(geometry, name))
+            polygons += grouped(_polygon(geometry, name))
         elif kind == "LinearRing":
             polygons.append((_coordinates(geometry, name),))
         elif kind in ("Point", "LineString"):
@@ -78,7 +79,7 @@ def _shapes(placemark: Element, folders: tuple[str, ...], notes: list[str]) -> l
             others.append(line_of(_track(geometry, name), name, folders))
     shapes = [Shape("polygon", tuple(polygons), name, folders)] if polygons else []
     shapes += others
-    return [Shape(shape.kind, shape.parts, name, folders, properties) for shape in shapes]
+    return labelled([Shape(shape.kind, shape.parts, name, folders, properties) for shape in shapes])
 
 
 def _flat(element: Element) -> Iterator[Element]:

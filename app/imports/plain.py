@@ -2,52 +2,107 @@
 
 from __future__ import annotations
 
+import json
+from collections.abc import Mapping
 from typing import Any
 
+from app.imports.crs import ToWgs84, mover, written_crs
 from app.imports.errors import file_error
-from app.imports.shapes import LonLat, Rings, Shape
+from app.imports.rings import grouped
+from app.imports.shapes import LonLat, Rings, Shape, labelled, moved
 from app.services.documents import read_object
 from app.services.errors import RefusedError
 
-_NAMES = ("name", "Name", "NAME", "title", "label")
+_NAMES = ("name", "title", "label", "id")
+_TITLES = ("name", "title", "description")
 _MAX_DEPTH = 10
+_MAX_NESTED = 4_000
 
 
-def read_geojson(data: bytes, notes: list[str]) -> list[Shape]:
-    """The shapes of a FeatureCollection, a Feature or a geometry (RFC 7946)."""
+def read_geojson(data: bytes, crs: str | None, notes: list[str]) -> list[Shape]:
+    """The shapes of a FeatureCollection, a Feature or a geometry (RFC 7946; 2008 with ``crs``)."""
     try:
         document = read_object(data)
     except RefusedError as error:
         raise file_error("json-syntax", str(error), "send GeoJSON") from error
-    if "crs" in document:
-        notes.append("the member crs is left out: GeoJSON is WGS 84")
+    return shapes_of(document, crs, notes)
+
+
+def shapes_of(document: Mapping[str, Any], crs: str | None, notes: list[str]) -> list[Shape]:
+    """The shapes of a parsed GeoJSON document."""
+    folders: tuple[str, ...] = ()
     if document.get("type") == "FeatureCollection":
         features = document.get("features")
         if not isinstance(features, list):
             raise file_error("geojson", "the collection has no list of features", "send GeoJSON")
+        folders = tuple(str(document[key])[:500] for key in _TITLES if isinstance(document.get(key), str))
     else:
         features = [document]
+    whole = _mover(document, crs, notes)
     shapes: list[Shape] = []
     for feature in features:
         if not isinstance(feature, dict):
             raise file_error("geojson", "a feature is no object", "send GeoJSON")
-        holder = feature.get("properties")
-        properties = holder if isinstance(holder, dict) else {}
-        geometry = feature.get("geometry") if feature.get("type") == "Feature" else feature
-        name = next((str(properties[key]) for key in _NAMES if properties.get(key)), "")
-        if not name and isinstance(feature.get("id"), (str, int)):
-            name = str(feature["id"])
-        texts = {key: str(value) for key, value in properties.items() if isinstance(value, (str, int, float))}
-        if geometry is None:
-            notes.append(f"{name or 'a feature'} has no geometry and is left out")
-            continue
-        shapes += [Shape(s.kind, s.parts, name, (), texts) for s in _shapes(geometry, name, 0)]
+        move = whole if feature is document else _mover(feature, crs, notes) or whole
+        shapes += _of_feature(feature, folders, move, crs, notes)
     return shapes
+
+
+def _of_feature(
+    feature: Mapping[str, Any],
+    folders: tuple[str, ...],
+    move: ToWgs84 | None,
+    crs: str | None,
+    notes: list[str],
+) -> list[Shape]:
+    holder = feature.get("properties")
+    texts = texts_of(holder) if isinstance(holder, dict) else {}
+    geometry = feature.get("geometry") if feature.get("type") == "Feature" else feature
+    name = next((texts[key] for key in _NAMES if texts.get(key)), "")
+    if not name and isinstance(feature.get("id"), (str, int)):
+        name = str(feature["id"])
+    if geometry is None:
+        notes.append(f"{name or 'a feature'} has no geometry and is left out")
+        return []
+    if geometry is not feature and isinstance(geometry, dict):
+        move = _mover(geometry, crs, notes) or move
+    drawn = [Shape(s.kind, s.parts, name, folders, texts) for s in _shapes(geometry, name, 0)]
+    return labelled([moved(shape, move) for shape in drawn])
+
+
+def texts_of(properties: Mapping[str, Any]) -> dict[str, str]:
+    """Values as texts, by names in lower case; what is nested as JSON."""
+    texts: dict[str, str] = {}
+    for key, value in properties.items():
+        if isinstance(value, (dict, list)):
+            value = json.dumps(value, ensure_ascii=False)[:_MAX_NESTED]
+        if value is not None:
+            texts.setdefault(str(key).lower(), str(value).strip())
+    return texts
+
+
+def _mover(holder: Mapping[str, Any], crs: str | None, notes: list[str]) -> ToWgs84 | None:
+    """What brings the places to WGS 84, by the member ``crs`` of GeoJSON before RFC 7946."""
+    if crs is not None:
+        return mover(written_crs(crs), notes)
+    member = holder.get("crs")
+    if member is None:
+        return None
+    inner = member.get("properties") if isinstance(member, dict) else None
+    if isinstance(inner, dict) and (name := inner.get("name", inner.get("code"))) is not None:
+        return mover(written_crs(str(name)), notes)
+    if isinstance(member, str):
+        return mover(written_crs(member), notes)
+    raise file_error(
+        "crs", f"the member crs is {str(member)[:60]}", "give crs with the import, e.g. EPSG:32611"
+    )
 
 
 def _shapes(geometry: Any, name: str, depth: int) -> list[Shape]:
     kind = geometry.get("type") if isinstance(geometry, dict) else None
     value = geometry.get("coordinates") if isinstance(geometry, dict) else None
+    if value == [] or (kind == "GeometryCollection" and geometry.get("geometries") == []):
+        return []
     match kind:
         case "Point":
             return [Shape("point", (((_place(value, name),),),))]
@@ -58,9 +113,9 @@ def _shapes(geometry: Any, name: str, depth: int) -> list[Shape]:
         case "MultiLineString":
             return [Shape("line", ((_places(one, name),),)) for one in _list(value, name)]
         case "Polygon":
-            return [Shape("polygon", (_polygon(value, name),))]
+            return [Shape("polygon", grouped(_polygon(value, name)))]
         case "MultiPolygon":
-            return [Shape("polygon", tuple(_polygon(one, name) for one in _list(value, name)))]
+            return [Shape("polygon", sum((grouped(_polygon(one, name)) for one in _list(value, name)), ()))]
         case "GeometryCollection" if depth < _MAX_DEPTH:
             inner = _list(geometry.get("geometries"), name)
             return [shape for one in inner for shape in _shapes(one, name, depth + 1)]

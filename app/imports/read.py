@@ -3,13 +3,43 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
 
 from app.imports import esri, gpx, kml, plain
 from app.imports.archive import is_zip, unpack
 from app.imports.errors import file_error
-from app.imports.features import Imported, ImportOptions, check_options, features
+from app.imports.features import Account, features
+from app.imports.options import ImportOptions, check_options
 from app.imports.shapes import Shape
 from app.imports.xml import local_name, parse
+from planner.errors import Finding
+
+
+@dataclass(frozen=True, slots=True)
+class Imported:
+    """What a file became.
+
+    Parameters
+    ----------
+    collection
+        A FeatureCollection of scenario features.
+    format
+        The format it came in.
+    shapes
+        What each shape of the file became, and why.
+    left_out
+        What keeps shapes from taking a part, or from taking it as they are.
+    notes
+        What else is worth knowing.
+    """
+
+    collection: dict[str, Any]
+    format: str
+    shapes: tuple[Account, ...]
+    left_out: tuple[Finding, ...]
+    notes: tuple[str, ...]
+
 
 FORMATS = ("kml", "kmz", "gpx", "shp", "shapefile", "geojson")
 
@@ -43,8 +73,11 @@ def import_regions(
     found = form or _format(data)
     notes: list[str] = []
     shapes = _shapes(found, data, options.crs, companions or {}, notes)
-    collection = {"type": "FeatureCollection", "features": features(shapes, options, notes)}
-    return Imported(collection, found, tuple(dict.fromkeys(notes)))
+    made = features(shapes, options, notes)
+    collection = {"type": "FeatureCollection", "features": made.features}
+    return Imported(
+        collection, found, tuple(made.accounts), tuple(made.findings), tuple(dict.fromkeys(notes))
+    )
 
 
 def _format(data: bytes) -> str:
@@ -81,7 +114,7 @@ def _shapes(
         case "shapefile":
             return esri.read_archive(data, crs, notes)
         case "geojson":
-            return plain.read_geojson(data, notes)
+            return plain.read_geojson(data, crs, notes)
     raise file_error(
         "unknown-format", f"there is no format {form[:40]!r}", f"use one of {', '.join(FORMATS)}"
     )

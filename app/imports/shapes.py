@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 LonLat = tuple[float, float]
@@ -31,6 +31,8 @@ class Shape:
         Names of the folders it lies in, outermost first.
     properties
         Further values of the file by name.
+    label
+        Whether it is a point drawn with a polygon as one thing, to carry its name.
     """
 
     kind: Literal["polygon", "line", "point"]
@@ -38,11 +40,27 @@ class Shape:
     name: str = ""
     folders: tuple[str, ...] = ()
     properties: Mapping[str, str] = field(default_factory=dict)
+    label: bool = False
 
     @property
     def positions(self) -> int:
         """How many positions it has."""
         return sum(len(ring) for part in self.parts for ring in part)
+
+
+def labelled(shapes: list[Shape]) -> list[Shape]:
+    """The shapes of one drawn thing: beside polygons, its points are labels."""
+    if not any(shape.kind == "polygon" for shape in shapes):
+        return shapes
+    return [replace(shape, label=shape.kind == "point") for shape in shapes]
+
+
+def moved(shape: Shape, move: Callable[[list[LonLat]], list[LonLat]] | None) -> Shape:
+    """The shape with every ring, line and place brought elsewhere."""
+    if move is None:
+        return shape
+    parts = tuple(tuple(tuple(move(list(ring))) for ring in part) for part in shape.parts)
+    return replace(shape, parts=parts)
 
 
 def line_of(positions: tuple[LonLat, ...], name: str, folders: tuple[str, ...] = ()) -> Shape:

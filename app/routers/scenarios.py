@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import asdict
 from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Header, Query, Request, Response
@@ -136,11 +137,34 @@ IMPORT_ANSWER: dict[int | str, dict[str, Any]] = {
             "application/geo+json": {
                 "schema": {
                     "type": "object",
-                    "required": ["type", "features", "format", "notes"],
+                    "required": ["type", "features", "format", "shapes", "left_out", "notes"],
                     "properties": {
                         "type": {"const": "FeatureCollection"},
                         "features": {"type": "array", "items": {"type": "object"}},
                         "format": {"type": "string"},
+                        "shapes": {
+                            "type": "array",
+                            "description": "What each shape became (`role`, `none` where it is left out), "
+                            "why, whether that is `in_doubt`, and the names of its `features`.",
+                            "items": {
+                                "type": "object",
+                                "properties": {
+                                    "number": {"type": "integer"},
+                                    "name": {"type": "string"},
+                                    "folders": {"type": "array", "items": {"type": "string"}},
+                                    "kind": {"enum": ["polygon", "line", "point"]},
+                                    "role": {"type": "string"},
+                                    "why": {"type": "string"},
+                                    "in_doubt": {"type": "boolean"},
+                                    "features": {"type": "array", "items": {"type": "string"}},
+                                },
+                            },
+                        },
+                        "left_out": {
+                            "type": "array",
+                            "description": "Findings of shapes that take no part, or not as they are.",
+                            "items": {"type": "object"},
+                        },
                         "notes": {"type": "array", "items": {"type": "string"}},
                     },
                 },
@@ -158,6 +182,19 @@ IMPORT_ANSWER: dict[int | str, dict[str, Any]] = {
                         }
                     ],
                     "format": "kml",
+                    "shapes": [
+                        {
+                            "number": 1,
+                            "name": "north field",
+                            "folders": [],
+                            "kind": "polygon",
+                            "role": "roi",
+                            "why": "nothing says otherwise",
+                            "in_doubt": False,
+                            "features": ["north field"],
+                        }
+                    ],
+                    "left_out": [],
                     "notes": [],
                 },
             }
@@ -187,26 +224,54 @@ async def import_regions(
         Literal["roi", "threat", "no_fly", "area", "obstacle", "start", "end", "base", "importance"] | None,
         Query(
             description="Role of shapes that no value, name or folder of the file gives one "
-            "[`roi` for polygons and lines, `threat` for points]."
+            "[`roi` for polygons and lines; points are left out]."
         ),
     ] = None,
+    role_of: Annotated[
+        list[str],
+        Query(
+            max_length=5000,
+            description="Role of one shape, or of all in a folder or layer, by name or number, before all "
+            "that the file says: `NFZ north=no_fly`, `Buildings=obstacle`, `#3=none` (left out).",
+        ),
+    ] = [],  # noqa: B006
+    name: Annotated[
+        str, Query(max_length=300, description="The file's name; its words count like a folder's.")
+    ] = "",
     width_m: Metres = None,
     radius_m: Metres = None,
     height_m: Metres = None,
     crs: Annotated[
         str | None,
-        Query(max_length=20, description="Reference system of a shapefile [its .prj's], e.g. EPSG:32611."),
+        Query(
+            max_length=20,
+            description="Reference system of the coordinates [the file's own], e.g. EPSG:32611.",
+        ),
     ] = None,
 ) -> Response:
     """A FeatureCollection to merge into a scenario; stores and plans nothing.
 
-    Polygons become regions, lines corridors of `width_m`, points threats of `radius_m`, unless the file's own
-    `role` values, names or folders (`No-fly zones`, `Operating area`, `Start` …) say otherwise.
+    Polygons become regions and lines corridors of `width_m`, unless the file's own `role` values, names,
+    folders or other values (`No-fly zones`, `Operating area`, `Start` …) say otherwise; points take the part
+    that these say, or none. Where words forbid flying a shape forbids it. One whose role is in doubt has
+    `role_in_doubt`, and the scenario is refused until `role`, `role_of` or the map has settled it. `shapes`
+    says what each became and why, `left_out` what cannot be taken as it is.
     """
     media_type = request.headers.get("content-type", "").split(";")[0].strip().lower()
-    options = ImportOptions(role, width_m, radius_m, height_m, crs)
+    options = ImportOptions(role, width_m, radius_m, height_m, crs, file_name=name)
     found = await desk.run(
-        "file", import_file, await request.body(), options, form or FORMAT_OF_MEDIA_TYPE.get(media_type)
+        "file",
+        import_file,
+        await request.body(),
+        options,
+        form or FORMAT_OF_MEDIA_TYPE.get(media_type),
+        None,
+        role_of,
     )
-    answer = found.collection | {"format": found.format, "notes": list(found.notes)}
+    answer = found.collection | {
+        "format": found.format,
+        "shapes": [asdict(account) for account in found.shapes],
+        "left_out": [finding_json(finding) for finding in found.left_out],
+        "notes": list(found.notes),
+    }
     return Response(write_json(answer), media_type="application/geo+json")

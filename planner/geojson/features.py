@@ -79,6 +79,14 @@ def read_role(name: str, feature: Mapping[str, Any], findings: Findings) -> RawF
             f"Use one of: {', '.join(GEOMETRIES)}.",
         )
         return None
+    doubt = fields.raw("role_in_doubt")
+    if doubt is not None:
+        findings.error(
+            name,
+            "role-in-doubt",
+            f"has the role {role}, which is in doubt: {str(doubt)[:200]}",
+            "Give it the role that it has, and take role_in_doubt away.",
+        )
     geometry = feature.get("geometry")
     kind = geometry.get("type") if isinstance(geometry, dict) else None
     if not isinstance(geometry, dict) or kind not in GEOMETRIES[role]:

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import pytest
 
-from app.imports import ImportOptions, RegionFileError, import_regions
+from app.imports import ImportOptions, RegionFileError, import_regions, read_choices
 from tests.app.imports.samples import GPX
+
+LINES = read_choices(("river=roi", "power line=roi"))
 
 
 def test_tracks_and_routes_are_corridors() -> None:
     """Lines get the width, points the radius; places that add nothing to the line are left out."""
-    found = import_regions(GPX, ImportOptions(width_m=100.0, radius_m=50.0))
+    found = import_regions(GPX, ImportOptions("threat", 100.0, 50.0, roles=LINES))
     assert found.format == "gpx"
     river, power, mast = found.collection["features"]
     assert (river["id"], river["properties"]["role"], river["properties"]["width_m"]) == (

@@ -93,13 +93,20 @@ def test_lines_are_corridors_with_a_width() -> None:
     road, rail = imported(text, width_m=200.0)
     assert (road["geometry"]["type"], road["properties"]["width_m"]) == ("LineString", 200.0)
     assert rail["properties"]["width_m"] == 30.0
-    assert rule_of(text) == "width_m-missing"
+    found = import_regions(text)
+    assert [feature["id"] for feature in found.collection["features"]] == ["rail"]
+    assert [(finding.feature, finding.rule) for finding in found.left_out] == [("road", "width_m-missing")]
+    assert rule_of(kml(placemark("road", line(RING[:3])))) == "width_m-missing"
 
 
-def test_points_are_threats_with_a_radius() -> None:
-    """A point becomes a missile threat of the radius given, a radar where the values say so."""
+def test_points_of_threats_have_a_radius() -> None:
+    """A threat's point has the radius given and is a missile site, a radar where the values say so."""
     text = kml(
-        placemark("SA-6", point(8.5, 47.3)), placemark("r", point(8.6, 47.3), model="radar", intensity_m=9)
+        folder(
+            "Threats",
+            placemark("SA-6", point(8.5, 47.3)),
+            placemark("r", point(8.6, 47.3), model="radar", intensity_m=9),
+        )
     )
     first, second = imported(text, radius_m=500.0)
     assert first["properties"] == {"role": "threat", "name": "SA-6", "radius_m": 500.0, "model": "missile"}
@@ -127,7 +134,7 @@ def test_a_closed_line_can_be_a_zone() -> None:
     """Programs that draw outlines as lines are understood where the role wants a polygon."""
     (zone,) = imported(kml(placemark("z", line(RING))), role="no_fly")
     assert zone["geometry"]["type"] == "Polygon"
-    assert rule_of(kml(placemark("z", line(RING[:3]))), role="no_fly") == "wrong-geometry"
+    assert rule_of(kml(placemark("z", line(RING[:3]))), role="area") == "wrong-geometry"
 
 
 @pytest.mark.parametrize(
@@ -140,7 +147,8 @@ def test_a_closed_line_can_be_a_zone() -> None:
         (kml(placemark("x", polygon([(lat, lon + 90) for lon, lat in RING]))), "latitude-out-of-range"),
         (kml(placemark("x", polygon(RING[:2]))), "ring-too-short"),
         (kml(placemark("x", point(8.5, 47.3))).replace(b"8.5,47.3", b"8.5, 47.3"), "kml-coordinates"),
-        (kml(placemark("x", point(8.5, 47.3))).replace(b"8.5,47.3", b"nan,47.3"), "latitude-out-of-range"),
+        (kml(placemark("x", polygon(RING))).replace(b"8.5,47.3", b"nan,47.3"), "latitude-out-of-range"),
+        (kml(placemark("x", point(8.5, 47.3))), "role-unknown"),
         (kml(placemark("x", "<LineString><coordinates/></LineString>")), "kml-coordinates"),
         (kml()[:-4], "xml-syntax"),
         (b"<kml>" + b"<Folder>" * 200 + b"</Folder>" * 200 + b"</kml>", "xml-depth"),
@@ -155,7 +163,7 @@ def test_faults_have_rules(data: bytes, rule: str) -> None:
 def test_every_faulty_shape_is_named() -> None:
     """Findings name all the shapes that are wrong, not only the first."""
     with pytest.raises(RegionFileError) as caught:
-        imported(kml(*(placemark(f"p{n}", point(8.5, 147.3)) for n in range(3))), radius_m=1.0)
+        imported(kml(*(placemark(f"p{n}", point(8.5, 147.3)) for n in range(3))), role="threat", radius_m=1.0)
     assert [finding.feature for finding in caught.value.findings] == ["p0", "p1", "p2"]
 
 

@@ -1,0 +1,197 @@
+"""Which role a shape of a file has, and why. In doubt it forbids flying, and its role is to be asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+from shapely import Polygon, contains_xy
+
+from app.imports.options import NONE, ROLES, ImportOptions, choice_of
+from app.imports.rings import encloses
+from app.imports.shapes import Shape
+from app.imports.words import forbids, is_false, keeps_inside, plain, role_of, says_either, threatens
+
+KINDS: dict[str, tuple[str, ...]] = {
+    "roi": ("polygon", "line", "point"),
+    "threat": ("point",),
+    "no_fly": ("polygon", "point"),
+    "obstacle": ("polygon",),
+    "area": ("polygon",),
+    "start": ("point",),
+    "end": ("point",),
+    "base": ("point",),
+    "importance": ("polygon",),
+}
+#: Roles that keep the aircraft away; a shape that cannot have its own of them forbids all the same.
+KEEP_AWAY = ("threat", "no_fly", "obstacle")
+_TERMINALS = ("start", "end", "base")
+#: Values that say what a thing is.
+_SAYING = (
+    "type", "kind", "class", "category", "zone_type", "zonetype", "area_type", "fence_type", "fencetype",
+    "layer", "purpose", "usage", "restriction",
+)  # fmt: skip
+#: Values of ours: their names hold no words of others.
+_OURS = frozenset(
+    ("role", "width_m", "radius_m", "priority", "min_resolution_m", "intensity_m", "height_m", "floor_m",
+     "ceiling_m", "base_m", "score", "heading_deg", "model")
+)  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """A shape's role.
+
+    Parameters
+    ----------
+    role
+        One of ``ROLES``, or ``none`` where the shape takes no part.
+    why
+        What says so, in words.
+    doubt
+        Whether it has to be settled before anything is planned: ``open`` where ``role`` of the options
+        settles it, ``contradiction`` where only a choice for the shape itself does.
+    """
+
+    role: str
+    why: str
+    doubt: Literal["", "open", "contradiction"] = ""
+
+
+def verdicts(shapes: Sequence[Shape], options: ImportOptions) -> list[Verdict]:
+    """The role of each shape, in order."""
+    named: dict[str, list[Polygon]] = {}
+    for shape in shapes:
+        if shape.kind == "polygon":
+            of_name = named.setdefault(shape.name.casefold(), [])
+            of_name += [Polygon(part[0]) for part in shape.parts if encloses(part[0])]
+    found = [_verdict(shape, options, number, named) for number, shape in enumerate(shapes, 1)]
+    seen_start = False
+    for index, verdict in enumerate(found):
+        if verdict.role == "start" and shapes[index].kind == "point":
+            if seen_start:
+                found[index] = Verdict("base", f"{verdict.why}, and there is a start already")
+            seen_start = True
+    return found
+
+
+def _verdict(shape: Shape, options: ImportOptions, number: int, named: dict[str, list[Polygon]]) -> Verdict:
+    choice = choice_of(options, shape, number)
+    if choice is not None:
+        return Verdict(choice.role, f"chosen for {choice.which!r}")
+    if shape.label or _labels(shape, named):
+        return Verdict(NONE, "it only labels the polygon of its name")
+    told = _told(shape, options)
+    if told is not None and (not told.doubt or (told.doubt == "contradiction" and options.role != "no_fly")):
+        return told
+    if options.role is not None:
+        return Verdict(options.role, "role of the import")
+    if told is not None:
+        return told
+    if shape.kind == "point":
+        return Verdict(NONE, "nothing says what this point is")
+    return Verdict("roi", "nothing says otherwise")
+
+
+def _told(shape: Shape, options: ImportOptions) -> Verdict | None:
+    """What the file says, by its words."""
+    texts = list(_texts(shape, options))
+    own = shape.properties.get("role", "").strip()
+    forbidden = next(((where, word) for where, text in texts if (word := forbids(text))), None)
+    forbidden = forbidden or _forbidden_by_value(shape)
+    if own:
+        return _by_own_role(own, shape, forbidden)
+    said = _said(texts, shape)
+    if forbidden is not None:
+        where, word = forbidden
+        why = f"{where} says {word!r}"
+        if said is None or said.role in KEEP_AWAY:
+            return said if said is not None and said.role != "no_fly" else Verdict("no_fly", why)
+        if shape.kind == "point" and said.role in _TERMINALS:
+            return said
+        return Verdict("no_fly", f"{why}, but {said.why}", "contradiction")
+    if said is not None:
+        return said
+    if shape.kind == "point":
+        return None
+    for where, text in texts:
+        if word := keeps_inside(text):
+            return Verdict("area", f"{where} says {word!r}")
+    for where, text in texts:
+        if word := says_either(text):
+            return Verdict("no_fly", f"{where} says {word!r}, which can mean either side", "open")
+    return None
+
+
+def _by_own_role(own: str, shape: Shape, forbidden: tuple[str, str] | None) -> Verdict:
+    why = f"its role is {own[:40]!r}"
+    role = own.lower() if own.lower() in ROLES else role_of(own)
+    if role is None and forbids(own):
+        role = "no_fly"
+    if role is None and keeps_inside(own):
+        role = "area"
+    if role is None:
+        return Verdict("no_fly", f"{why}, which is none of ours", "open")
+    if forbidden is None or role in KEEP_AWAY or (role in _TERMINALS and shape.kind == "point"):
+        return Verdict(role, why)
+    where, word = forbidden
+    return Verdict("no_fly", f"{where} says {word!r}, but {why}", "contradiction")
+
+
+def _texts(shape: Shape, options: ImportOptions) -> Iterator[tuple[str, str]]:
+    """What says something of the shape, from within, each with how to name it."""
+    yield "its name", shape.name
+    for key in _SAYING:
+        if key in shape.properties:
+            yield f"its {key}", shape.properties[key]
+    for folder in reversed(shape.folders):
+        yield f"the folder {folder[:60]!r}", folder
+    # the ending is none of its words
+    yield "the file's name", options.file_name.rpartition(".")[0] or options.file_name
+
+
+def _forbidden_by_value(shape: Shape) -> tuple[str, str] | None:
+    for key, value in shape.properties.items():
+        if key in _OURS:
+            continue
+        if is_false(value):
+            # inclusion=false forbids, exclusion=false says nothing
+            if keeps_inside(key) and plain(value):
+                return f"its {key}", value
+            continue
+        word = forbids(value) or (None if says_either(value) else forbids(key))
+        if word is not None:
+            return f"its {key[:40]}", word
+    return None
+
+
+def _said(texts: Sequence[tuple[str, str]], shape: Shape) -> Verdict | None:
+    """The innermost text that means a role and nothing else, or speaks of threats."""
+    for where, text in texts:
+        role = role_of(text)
+        vague = role is None and where != "the file's name" and threatens(text)
+        if vague:
+            role = "threat"
+        if role is None:
+            continue
+        why = f"{where} says {text[:40]!r}"
+        if shape.kind in KINDS[role] or _closable(shape, role):
+            return Verdict(role, why)
+        if role in KEEP_AWAY:
+            why += f", which a {shape.kind} cannot be: it is kept clear of"
+            return Verdict("no_fly", why, "open" if vague else "")
+    return None
+
+
+def _closable(shape: Shape, role: str) -> bool:
+    line = shape.parts[0][0]
+    return shape.kind == "line" and "polygon" in KINDS[role] and len(line) > 3 and line[0] == line[-1]
+
+
+def _labels(shape: Shape, named: dict[str, list[Polygon]]) -> bool:
+    """Whether it is a point within a polygon of its name that says nothing of its own."""
+    if shape.kind != "point" or not shape.name or {"role", "radius_m"} & shape.properties.keys():
+        return False
+    lon, lat = shape.parts[0][0][0]
+    return any(bool(contains_xy(polygon, lon, lat)) for polygon in named.get(shape.name.casefold(), ()))

@@ -1,0 +1,182 @@
+"""What words say of a shape: that nobody may fly there, that one must stay inside, or which role it has.
+
+Names, folders, documents and values of other programs are free text in any language. Words that restrict are
+looked for anywhere in a text, by their stems: one that is found wrongly costs a question, one that is missed
+an incursion. Words for the other roles have to be all that the text says.
+"""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from functools import lru_cache
+
+#: Stems that begin a word, by language; blanks stand for blanks, hyphens, underscores and changes of case.
+_FORBID = (
+    # English
+    r"no ?fly\w*|no ?flight\w*|no ?flying|no ?over ?fl\w*|no ?drone\w*|no ?uav\w*|no ?uas\b|no ?suas\b"
+    r"|no ?rpas\b"
+    r"|no ?go\b|no ?entry|no ?access|no ?trespass\w*|not? (?:to )?(?:fly|enter|overfly|cross)\w*"
+    r"|(?:dont|don t|never) (?:fly|enter|overfly|cross)\w*|restrict\w*|prohibit\w*|forbid\w*|ban|bans"
+    r"|banned"
+    r"|off limits?|out of bounds|keep ?out|stay ?out|stay clear|keep clear|stand ?off|avoid\w*|exclu\w*"
+    r"|danger\w*|hazard\w*|warning (?:area|zone)\w*|alert area\w*|firing (?:area|range|zone)\w*|live fire"
+    r"|military (?:area|zone|airspace)\w*|controlled (?:airspace|zone|area)\w*|control (?:zone|area)\w*"
+    r"|denied|closed airspace|not allowed|not permitted|unsafe",
+    # abbreviations of air traffic
+    r"nfz\w*|ctr|mctr|ctz|atz|frz|tfrs?|koz|adiz|nofly\w*|ed r|ed p|ed d",
+    # German
+    r"\w*verbot\w*|flugbeschrank\w*|luftsperr\w*|\w*sperrgebiet\w*|sperr\w*|\w*gefahr\w*|kontrollzone\w*"
+    r"|nicht (?:uber)?flieg\w*|ausschluss\w*|meid\w*",
+    # French
+    r"interdi\w*|reglement\w*|danger\w*|survol interdit|zones? (?:p|r|d)\b|eviter|evitement"
+    r"|hors limites?|defendu\w*",
+    # Italian, Spanish, Portuguese, Catalan, Romanian
+    r"viet\w*|divieto\w*|interdet\w*|regolamentat\w*|pericol\w*|riservat\w*|prohib\w*|proib\w*|restring\w*"
+    r"|restrit\w*|restric\w*|peligr\w*|perig\w*|vedad\w*|no vol\w*|no sobrevol\w*|evitar\w*|interzis\w*"
+    r"|interzic\w*",
+    # Dutch, Scandinavian, Finnish
+    r"verboden|vliegverbod\w*|beperk\w*|gevaar\w*|forbud\w*|forbudt|forbjud\w*|flygforbud\w*|flyveforbud\w*"
+    r"|flyforbud\w*|restrik\w*|farlig\w*|fareomrad\w*|kielle\w*|kielto\w*|lentokiel\w*|rajoit\w*|vaara\w*",
+    # Polish, Czech, Slovak, Slovene, Croatian, Hungarian, Turkish, Baltic
+    r"zakaz\w*|zabron\w*|ogranicz\w*|niebezp\w*|omezen\w*|obmedzen\w*|nebezp\w*|zabran\w*|omejit\w*"
+    r"|prepoved\w*"
+    r"|ogranicen\w*|opasn\w*|tilos\w*|tiltott\w*|korlatoz\w*|veszely\w*|yasak\w*|kisitl\w*|tehlike\w*"
+    r"|draudz\w*|ribojim\w*|aizlieg\w*|ierobezo\w*|keelat\w*|piirang\w*|ohtlik\w*",
+    # Indonesian, Malay, Vietnamese
+    r"larang\w*|terlarang\w*|dilarang\w*|cam bay|vung cam|han che|nguy hiem",
+    # Russian, Ukrainian, Bulgarian, Serbian, Greek
+    r"запрет\w*|запрещ\w*|ограничен\w*|опасн\w*|бесполет\w*|заборон\w*|обмежен\w*|небезпеч\w*|забран\w*"
+    r"|απαγορ\w*|περιορισ\w*|επικινδυν\w*",
+)  # fmt: skip
+#: Of languages that put no blanks between words, or put endings before them: anywhere.
+_FORBID_ANYWHERE = (
+    "禁飞", "禁飛", "限飞", "限飛", "禁止", "禁区", "禁區", "限制",
+    "限高", "管制", "管控", "危险", "危險", "净空", "淨空",
+    "飛行禁止", "制限", "規制", "立入禁止", "비행금지", "금지", "제한", "위험", "관제권", "통제",
+    "ممنوع", "محظور", "حظر", "خطر", "مقيد", "ממנוע", "אסור", "מסוכן", "מוגבל", "ห้าม", "จำกัด", "อันตราย",
+    "निषिद्ध", "प्रतिबंध", "वर्जित", "খতরা", "নিষিদ্ধ", "தடை",
+)  # fmt: skip
+_NEGATION = r"(?:no|non|not|without|free of|keine?|ohne|nicht|sans|sin|sem|senza|bez|без)"
+_NEGATED = re.compile(
+    rf"\b{_NEGATION} (?:restric\w*|restrik\w*|prohibit\w*|hazard\w*|danger\w*|exclu\w*|beschrank\w*)"
+)
+_FORBIDDEN = re.compile(rf"\b(?:{'|'.join(_FORBID)})\b")
+_ANYWHERE = re.compile("|".join(unicodedata.normalize("NFKC", word) for word in _FORBID_ANYWHERE))
+_INSIDE = re.compile(
+    r"\b(?:inclusion\w*|keep ?in\b|stay ?in\b|stay inside|"
+    r"(?:operat\w*|flight|flying|mission) (?:area|zone|volume|geography|boundary)\b|area of operations?)"
+)
+#: What one must stay inside of, or out of: the word alone does not say.
+_EITHER = re.compile(
+    r"\b(?:geo ?fenc\w*|fenc(?:e|es|ing)|d ?fence|geo ?zones?|geographical zones?|airspaces?"
+    r"|luftraum\w*|clotur\w*"
+    r"|cerca virtual|geocerca\w*|geovall\w*)\b|围栏|圍欄|空域|ジオフェンス|空域|공역"
+)
+_THREATENS = re.compile(r"\b(?:threats?|missiles?|radars?|sams?|manpads?|aaa)\b")
+
+#: What a text says, all of it, to mean a role; without a number behind.
+_PHRASES = {
+    "roi": (
+        "roi", "rois", "region", "regions", "region of interest", "regions of interest", "target",
+        "targets",
+        "aoi", "area of interest", "areas of interest", "poi", "point of interest", "points of interest",
+        "survey area", "survey areas",
+    ),
+    "threat": ("threat", "threats", "missile", "missiles", "radar", "radars", "sam"),
+    "no_fly": ("no fly", "no fly zone", "no fly zones", "nfz", "restricted", "prohibited"),
+    "obstacle": ("obstacle", "obstacles", "building", "buildings", "obstruction", "obstructions"),
+    "area": ("area", "operating area", "area of operations", "inclusion", "inclusion zone"),
+    "start": (
+        "start", "start point", "take off", "takeoff", "take off point", "takeoff point", "take off site",
+        "takeoff site", "launch", "launch site", "launch point", "launch pad", "to", "t o", "tol", "toal",
+        "home", "home point", "home position", "home location", "rth", "startpunkt", "startplatz", "abflug",
+        "decollage", "point de depart", "despegue", "decollo", "decolagem", "partenza", "salida", "взлет",
+        "起飞点", "起飞", "起飛點", "离陆", "離陸", "이륙",
+    ),
+    "end": (
+        "end", "landing", "lz", "landing site", "landing point", "landing zone", "land",
+        "recovery", "recovery site",
+        "landeplatz", "landung", "atterrissage", "aterrizaje", "atterraggio", "pouso", "посадка",
+        "降落点", "着陸",
+        "착륙",
+    ),
+    "base": ("base", "bases", "rally", "rally point", "rally points"),
+    "importance": ("importance",),
+}  # fmt: skip
+ROLE_OF_PHRASE = {phrase: role for role, phrases in _PHRASES.items() for phrase in phrases}
+_LETTERS = str.maketrans(
+    {
+        "ı": "i",
+        "ł": "l",
+        "Ł": "L",
+        "ø": "o",
+        "Ø": "O",
+        "đ": "d",
+        "Đ": "D",
+        "æ": "ae",
+        "Æ": "AE",
+        "'": "",
+        "’": "",
+    }
+)
+_FALSE = frozenset({"", "0", "0.0", "no", "n", "false", "f", "none", "null", "nan", "off", "nein", "non"})
+_LONGEST = 20_000
+
+
+@lru_cache(maxsize=1024)
+def plain(text: str) -> str:
+    """``No-Fly_Zone 3`` and ``NoFlyZone3`` as ``no fly zone 3``: single blanks, no accents, no case."""
+    folded = unicodedata.normalize("NFKD", text[:_LONGEST])
+    bare = unicodedata.normalize(
+        "NFC", "".join(c for c in folded if not unicodedata.combining(c) or c > "\u0900")
+    )
+    bare = re.sub(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", " ", bare)
+    for letter, plain_letter in (
+        ("ı", "i"),
+        ("ł", "l"),
+        ("ø", "o"),
+        ("đ", "d"),
+        ("æ", "ae"),
+        ("'", ""),
+        ("’", ""),
+    ):
+        bare = bare.replace(letter, plain_letter).replace(letter.upper(), plain_letter)
+    bare = re.sub(r"[\W_]+", " ", bare.casefold())
+    bare = re.sub(r"(?<=[^\W\d_])(?=\d)|(?<=\d)(?=[^\W\d_])", " ", bare)
+    return re.sub(r"\bn f z\b", "nfz", bare).strip()
+
+
+def forbids(text: str) -> str | None:
+    """The word that forbids flying there; None where there is none."""
+    words = _NEGATED.sub(" ", plain(text))
+    found = _FORBIDDEN.search(words) or _ANYWHERE.search(unicodedata.normalize("NFKC", text[:_LONGEST]))
+    return found.group().strip() if found else None
+
+
+def keeps_inside(text: str) -> str | None:
+    """The word that means a fence to stay inside of."""
+    found = _INSIDE.search(plain(text))
+    return found.group() if found else None
+
+
+def says_either(text: str) -> str | None:
+    """A word of restriction that leaves open in which sense, or denies it."""
+    found = _EITHER.search(plain(text)) or _NEGATED.search(plain(text))
+    return found.group() if found else None
+
+
+def threatens(text: str) -> bool:
+    """Whether the text speaks of missiles, radars or threats."""
+    return _THREATENS.search(plain(text)) is not None
+
+
+def role_of(text: str) -> str | None:
+    """The role that the text means and nothing else, a number or a colon with more behind it aside."""
+    head = plain(text.split(":", 1)[0])
+    return ROLE_OF_PHRASE.get(head) or ROLE_OF_PHRASE.get(re.sub(r" \d+$", "", head))
+
+
+def is_false(text: str) -> bool:
+    """Whether a value says no."""
+    return text.strip().lower() in _FALSE

@@ -1,0 +1,309 @@
+"""Roles of shapes: where words forbid flying a shape forbids it, in doubt its role is asked for."""
+
+from __future__ import annotations
+
+import itertools
+import json
+import random
+from pathlib import Path
+from typing import Any
+
+import pytest
+from shapely.geometry import LineString, Point, Polygon, shape
+
+from app.imports import Account, Imported, ImportOptions, RegionFileError, import_regions, read_choices
+from app.imports.words import forbids
+from planner.errors import ScenarioError
+from planner.geojson import read_scenario
+from tests.app.imports.samples import (
+    RING,
+    archive_of,
+    folder,
+    kml,
+    line,
+    placemark,
+    point,
+    polygon,
+    shapefiles,
+)
+from tests.planner.scenarios import small
+
+FAULTS = Path(__file__).parents[2] / "faults"
+FORBIDDING = (
+    "no-fly", "NFZ", "NFZ north", "nfz_3", "NoFlyZone", "Drone No Fly Zones", "restrict_area",
+    "RESTRICTED", "prohibited", "Danger area D-12", "CTR Zürich", "TFR 4/1234", "geofence exclusion",
+    "keep out", "Exclusion zone", "do not enter", "Flugverbotszone", "Sperrgebiet", "Gefahrengebiet",
+    "zone interdite", "survol réglementé", "zona proibita", "área restringida", "zona peligrosa",
+    "vietato", "verboden gebied", "förbjudet", "lentokielto", "strefa zakazana", "zakázaný prostor",
+    "nebezpečná oblast", "tiltott", "yasak bölge", "запретная зона", "опасная зона", "заборонено",
+    "απαγορευμένη", "禁飞区", "限飞区域", "飛行禁止区域", "비행금지구역", "منطقة محظورة", "אסור לטיסה",
+    "ห้ามบิน", "cấm bay",
+)  # fmt: skip
+HARMLESS = (
+    "field 3",
+    "Unrestricted view",
+    "bank",
+    "Urban",
+    "north",
+    "Ctrl",
+    "Vierwaldstättersee",
+    "zone 4",
+    "dangle",
+)
+
+
+def became(data: bytes, **options: Any) -> Imported:
+    return import_regions(data, ImportOptions(**options))
+
+
+def account_of(data: bytes, **options: Any) -> Account:
+    (account,) = became(data, **options).shapes
+    return account
+
+
+def geojson(
+    name: str, drawn: dict[str, Any], collection: dict[str, Any], properties: dict[str, Any]
+) -> bytes:
+    feature = {"type": "Feature", "geometry": drawn, "properties": {"name": name} | properties}
+    return json.dumps({"type": "FeatureCollection", "features": [feature]} | collection).encode()
+
+
+SQUARE = {"type": "Polygon", "coordinates": [RING]}
+OUTLINE = {"type": "LineString", "coordinates": RING}
+
+
+def written(word: str, place: str, outline: bool) -> tuple[bytes, dict[str, Any]]:
+    """A file with one shape, the word at one of the places that say something, and what goes with it."""
+    drawn = OUTLINE if outline else SQUARE
+    mark = line(RING) if outline else polygon(RING)
+    match place:
+        case "kml name":
+            return kml(placemark(word, mark)), {}
+        case "kml folder":
+            return kml(folder("a", folder(word, folder("b", placemark("x", mark))))), {}
+        case "kml document":
+            return kml(placemark("x", mark)).replace(b"<name>d<", f"<name>{word}<".encode()), {}
+        case "kml value":
+            return kml(placemark("x", mark, remark=word)), {}
+        case "role":
+            return geojson("x", drawn, {}, {"role": word}), {}
+        case "Role":
+            return geojson("x", drawn, {}, {"Role": word}), {}
+        case "nested":
+            return geojson("x", drawn, {}, {"zone": {"kinds": [word]}}), {}
+        case "collection":
+            return geojson("x", drawn, {"name": word}, {}), {}
+        case "key":
+            return geojson("x", drawn, {}, {word: True}), {}
+    return geojson("x", drawn, {}, {}), {"file_name": f"{word}.geojson"}
+
+
+PLACES = (
+    "kml name", "kml folder", "kml document", "kml value", "role", "Role", "nested", "collection", "key",
+    "file",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("word", FORBIDDING)
+def test_words_of_restriction_forbid(word: str) -> None:
+    """Wherever the word stands, and drawn as polygon or as closed line, the shape is a no-fly polygon."""
+    for place, outline in itertools.product(PLACES, (False, True)):
+        data, more = written(word, place, outline)
+        found = became(data, **more)
+        (feature,) = found.collection["features"]
+        assert feature["properties"]["role"] == "no_fly", (place, outline)
+        assert shape(feature["geometry"]).equals(Polygon(RING)), (place, outline)
+        assert "role_in_doubt" not in feature["properties"], (place, outline)
+        assert found.shapes[0].why
+
+
+@pytest.mark.parametrize("word", HARMLESS)
+def test_other_words_forbid_nothing(word: str) -> None:
+    """Parts of words, and denials that are words of their own, are no restriction."""
+    assert forbids(word) is None
+    assert account_of(written(word, "kml folder", False)[0]).role == "roi"
+
+
+def test_a_layer_of_a_shapefile_forbids() -> None:
+    """A shapefile's name and its table's values count as well."""
+    files = shapefiles([[RING[::-1]]], ["x"])
+    assert account_of(archive_of(files, "gis/restrict_area")).role == "no_fly"
+    assert account_of(archive_of(shapefiles([[RING[::-1]]], ["Zone interdite"]))).role == "no_fly"
+
+
+@pytest.mark.parametrize(
+    ("properties", "name", "rule"),
+    [
+        ({"role": "cloud"}, "x", "none of ours"),
+        ({"role": "roi"}, "NFZ 4", "but its role"),
+        ({"role": "area"}, "restricted", "but its role"),
+        ({}, "Geofence", "either side"),
+        ({}, "class D airspace", "either side"),
+        ({"type": "region"}, "danger", "but its type"),
+        ({"restriction": "NO_RESTRICTION"}, "x", "either side"),
+    ],
+)
+def test_in_doubt_a_role_is_asked_for(properties: dict[str, Any], name: str, rule: str) -> None:
+    """The shape forbids, says that its role is in doubt, and the scenario is refused until it is settled."""
+    data = geojson(name, SQUARE, {}, properties)
+    found = became(data)
+    (feature,) = found.collection["features"]
+    assert feature["properties"]["role"] == "no_fly"
+    assert rule in feature["properties"]["role_in_doubt"]
+    assert found.shapes[0].in_doubt
+    with pytest.raises(ScenarioError) as caught:
+        read_scenario(small(features=[feature]))
+    refused = [f for f in caught.value.findings if f.rule == "role-in-doubt"]
+    assert [finding.feature for finding in refused] == [name]
+    assert all(finding.message and finding.fix for finding in refused)
+    for role in ("roi", "no_fly", "area"):
+        settled = became(data, roles=read_choices([f"{name.upper()}={role}"]))
+        assert settled.collection["features"][0]["properties"] == {"role": role, "name": name}
+
+
+def test_the_role_of_the_import_settles_what_is_open_but_no_contradiction() -> None:
+    """A word that is none of ours becomes what is asked for; a no-fly zone stays one."""
+    unknown = geojson("x", SQUARE, {}, {"role": "cloud"})
+    assert not account_of(unknown, role="roi").in_doubt
+    forbidden = geojson("NFZ", SQUARE, {}, {})
+    assert account_of(forbidden, role="roi").role == "no_fly"
+    both = geojson("NFZ", SQUARE, {}, {"role": "roi"})
+    assert account_of(both, role="roi").in_doubt
+    assert not account_of(both, role="no_fly").in_doubt
+
+
+@pytest.mark.parametrize(
+    ("properties", "name", "role"),
+    [
+        ({}, "inclusion fence", "area"),
+        ({"inclusion": False}, "x", "no_fly"),
+        ({"fence_type": "exclusion"}, "geofence", "no_fly"),
+        ({"exclusion": False}, "x", "roi"),
+        ({"no_fly": "no"}, "x", "roi"),
+        ({"no_fly": 1}, "x", "no_fly"),
+        ({}, "Operation area", "area"),
+        ({"role": "Inclusion"}, "x", "area"),
+    ],
+)
+def test_fences_say_their_side(properties: dict[str, Any], name: str, role: str) -> None:
+    """What is to be stayed inside of is the area, what is excluded a no-fly zone, whatever says so."""
+    account = account_of(geojson(name, SQUARE, {}, properties))
+    assert (account.role, account.in_doubt) == (role, False)
+
+
+@pytest.mark.parametrize(
+    ("name", "role"),
+    [
+        ("Home", "start"), ("Launch Site", "start"), ("TO", "start"), ("Takeoff 2", "start"),
+        ("Landing", "end"), ("Rally 1", "base"), ("Point 7", "none"), ("", "none"), ("Weather mast", "none"),
+        ("Radar north", "threat"), ("target 3", "roi"), ("Startpunkt", "start"), ("起飞点", "start"),
+    ],
+)  # fmt: skip
+def test_points_are_what_words_say_or_nothing(name: str, role: str) -> None:
+    """A point is never a threat that the file doesn't speak of; what nothing names is left out, and said."""
+    data = kml(placemark("field", polygon(RING)), placemark(name, point(8.7, 47.3)))
+    found = became(data, radius_m=100.0)
+    account = found.shapes[1]
+    assert (account.role, len(account.features)) == (role, int(role != "none"))
+    assert account.why
+
+
+def test_a_second_start_is_a_base() -> None:
+    """A scenario has one start: further ones of the file are bases."""
+    found = became((FAULTS / "11-home-point-is-threat.kml").read_bytes())
+    assert [account.role for account in found.shapes] == ["start", "base", "base", "roi", "none"]
+    assert all(feature["properties"]["role"] != "threat" for feature in found.collection["features"])
+
+
+def test_points_that_carry_a_name_are_left_out() -> None:
+    """A label of its own within the polygon of its name is no target and no zone, in any folder."""
+    data = kml(folder("NFZ", placemark("a", polygon(RING)), placemark("a", point(8.55, 47.35))))
+    found = became(data, radius_m=10.0)
+    assert [feature["geometry"]["type"] for feature in found.collection["features"]] == ["Polygon"]
+    assert (found.shapes[1].role, "labels" in found.shapes[1].why) == ("none", True)
+
+
+def test_one_bad_shape_refuses_no_other() -> None:
+    """A line without a width is left out and found; as a zone it is closed and forbidden."""
+    data = (FAULTS / "18-one-open-line.kml").read_bytes()
+    found = became(data)
+    assert [feature["id"] for feature in found.collection["features"]] == ["zone A", "zone B"]
+    assert [finding.feature for finding in found.left_out] == ["zone C"]
+    zones = became(data, role="no_fly").collection["features"]
+    assert [zone["geometry"]["type"] for zone in zones] == ["Polygon"] * 3
+
+
+def test_an_open_no_fly_line_forbids_what_it_may_mean() -> None:
+    """It covers the line, what it encloses when closed, and the strip of a width, by shapely."""
+    dice = random.Random(5)
+    for _ in range(40):
+        places = [
+            (8.5 + dice.uniform(0, 0.1), 47.3 + dice.uniform(0, 0.1)) for _ in range(dice.randint(3, 8))
+        ]
+        for width_m in (None, 500.0):
+            data = kml(folder("no fly", placemark("wire", line(places))))
+            (feature,) = became(data, width_m=width_m).collection["features"]
+            area = shape(feature["geometry"])
+            assert area.is_valid
+            grown = area.buffer(1e-9)
+            assert grown.covers(LineString(places))
+            ring = Polygon(places)
+            assert grown.covers(ring if ring.is_valid else LineString([*places, places[0]]))
+            if width_m is not None:
+                # half of 500 m is 0.0022 degrees of latitude, and more of longitude
+                assert grown.covers(LineString(places).buffer(0.0018))
+
+
+def test_a_zone_that_crosses_itself_forbids_all_it_encloses() -> None:
+    """Random closed lines in a no-fly folder become valid polygons over every place they run round."""
+    dice = random.Random(6)
+    for _ in range(60):
+        ring = [(8.5 + dice.uniform(0, 0.1), 47.3 + dice.uniform(0, 0.1)) for _ in range(dice.randint(4, 9))]
+        ring.append(ring[0])
+        found = became(kml(folder("no fly", placemark("z", polygon(ring)))))
+        area = shape(found.collection["features"][0]["geometry"])
+        assert area.is_valid
+        for _ in range(20):
+            lon, lat = 8.5 + dice.uniform(0, 0.1), 47.3 + dice.uniform(0, 0.1)
+            if _winding(ring, lon, lat) != 0 or _crossings(ring, lon, lat) % 2:
+                assert area.buffer(1e-9).covers(Point(lon, lat))
+
+
+def _crossings(ring: list[tuple[float, float]], lon: float, lat: float) -> int:
+    return sum(
+        (ay > lat) != (by > lat) and lon < ax + (lat - ay) / (by - ay) * (bx - ax)
+        for (ax, ay), (bx, by) in itertools.pairwise(ring)
+    )
+
+
+def _winding(ring: list[tuple[float, float]], lon: float, lat: float) -> int:
+    return sum(
+        (1 if by > ay else -1)
+        for (ax, ay), (bx, by) in itertools.pairwise(ring)
+        if (ay > lat) != (by > lat) and lon < ax + (lat - ay) / (by - ay) * (bx - ax)
+    )
+
+
+def test_no_fly_shapes_that_lack_something_stay_and_refuse_the_scenario() -> None:
+    """A no-fly point without a radius is not dropped: the rest is taken, and the scenario names it."""
+    data = kml(folder("NFZ", placemark("mast", point(8.9, 47.3)), placemark("z", polygon(RING))))
+    found = became(data)
+    assert [feature["id"] for feature in found.collection["features"]] == ["mast", "z"]
+    assert [(finding.feature, finding.rule) for finding in found.left_out] == [("mast", "radius_m-missing")]
+    with pytest.raises(ScenarioError) as caught:
+        read_scenario(small(features=found.collection["features"]))
+    assert any(finding.feature == "mast" for finding in caught.value.findings)
+
+
+def test_shapes_and_folders_have_roles_chosen() -> None:
+    """By number, name or folder, in any case; none leaves a shape out; a choice of nothing is refused."""
+    data = kml(
+        folder("Zones", placemark("a", polygon(RING)), placemark("b", polygon(RING))),
+        placemark("c", polygon(RING)),
+    )
+    found = became(data, roles=read_choices(["ZONES=no_fly", "b=area", "#3=none"]))
+    assert [account.role for account in found.shapes] == ["no_fly", "area", "none"]
+    for text in ("e=roi", "#4=roi", "a=cloud", "a", "=roi"):
+        with pytest.raises(RegionFileError) as caught:
+            became(data, roles=read_choices([text]))
+        assert caught.value.findings[0].rule == "bad-option"
