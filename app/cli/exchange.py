@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from app.cli.missions import AutopilotChoice, HeldFormat
+from app.cli.missions import AutopilotChoice, HeldFormat, TypeChoice
 from app.cli.output import CommandError, Exit, Json, Output, emit, emit_json, read_bytes, say
 
 
@@ -31,7 +31,9 @@ Metres = Annotated[float | None, typer.Option(help="For shapes that do not say t
 RegionFile = Annotated[
     str, typer.Argument(help=".kml, .kmz, .gpx, .shp, .zip or .geojson; - is standard input.", metavar="FILE")
 ]
-MissionFile = Annotated[str, typer.Argument(help=".plan or .waypoints; - is standard input.", metavar="IN")]
+MissionFile = Annotated[
+    str, typer.Argument(help=".plan, .mission or .waypoints; - is standard input.", metavar="IN")
+]
 
 
 def convert(
@@ -39,31 +41,38 @@ def convert(
     output: Output = "-",
     form: Annotated[HeldFormat | None, typer.Option("--format", help="Format to write.")] = None,
     autopilot: Annotated[
-        AutopilotChoice, typer.Option(help="Whose mission a .waypoints file holds; it does not say.")
-    ] = AutopilotChoice.ARDUPILOT,
+        AutopilotChoice | None,
+        typer.Option(help="Whose mission it is: instead of the file's word, or ardupilot where it has none."),
+    ] = None,
+    vehicle_type: Annotated[
+        TypeChoice | None, typer.Option("--type", help="Type of vehicle, where the file does not say.")
+    ] = None,
     as_json: Json = False,
 ) -> None:
     """Turn a mission file into the other format: .plan into .waypoints, .waypoints into .plan.
 
-    Surveys, corridor and structure scans and landing patterns of a .plan become the items they stand for.
+    Also reads .mission files and plain lists of fences and rally points. Surveys, corridor and structure
+    scans and landing patterns of a .plan become the items they stand for. What was mended, and what the
+    format written cannot hold, is told item by item.
     """
-    from mavlink.formats import FormatError, read_plan, read_waypoints, write_plan, write_waypoints
+    from mavlink.formats import FormatError, kind_of, losses, read_mission, write_plan, write_waypoints
+    from mavlink.formats.reading import decoded
 
-    text = _text(source)
-    is_plan = text.lstrip("\ufeff \t\r\n").startswith("{")
     try:
-        mission = read_plan(text) if is_plan else read_waypoints(text, autopilot.value)
-        target = form or (HeldFormat.WAYPOINTS if is_plan else HeldFormat.PLAN)
+        text = decoded(read_bytes(source))
+        target = form or (HeldFormat.WAYPOINTS if kind_of(text) == "plan" else HeldFormat.PLAN)
+        mission = read_mission(
+            text,
+            autopilot.value if autopilot else None,
+            vehicle_type.value if vehicle_type else None,
+        )
         written = write_plan(mission) if target is HeldFormat.PLAN else write_waypoints(mission)
     except FormatError as error:
         raise CommandError(
             f"{source}: {error}", Exit.BAD_INPUT, line=error.line, column=error.column
         ) from error
     emit(written, output)
-    lost = []
-    if target is HeldFormat.WAYPOINTS:
-        lost = [name for name, items in (("fence", mission.fence), ("rally points", mission.rally)) if items]
-    notes = [*mission.notes, *(f"the {name} has no place in a .waypoints file" for name in lost)]
+    notes = [*mission.notes, *losses(mission, target.value)]
     for note in notes:
         say(f"note: {note}")
     if as_json and output != "-":
@@ -72,7 +81,10 @@ def convert(
                 "file": output,
                 "format": target.value,
                 "autopilot": mission.autopilot,
+                "type": mission.vehicle_type,
                 "items": len(mission.mission),
+                "fence_items": len(mission.fence),
+                "rally_points": len(mission.rally),
                 "notes": notes,
             }
         )
@@ -157,13 +169,6 @@ def _companions(source: str) -> dict[str, bytes]:
         for beside in sorted(path.parent.iterdir())
         if beside.stem.casefold() == stem and beside.suffix.lower() in (".prj", ".dbf", ".cpg")
     }
-
-
-def _text(source: str) -> str:
-    try:
-        return read_bytes(source).decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        raise CommandError(f"{source} is no UTF-8 text", Exit.BAD_INPUT) from error
 
 
 def register(cli: typer.Typer) -> None:

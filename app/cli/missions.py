@@ -57,6 +57,14 @@ class AutopilotChoice(StrEnum):
     PX4 = "px4"
 
 
+class TypeChoice(StrEnum):
+    """Types of vehicle."""
+
+    FIXED_WING = "fixed_wing"
+    MULTIROTOR = "multirotor"
+    VTOL = "vtol"
+
+
 class PartChoice(StrEnum):
     """Parts of a mission."""
 

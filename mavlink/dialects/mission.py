@@ -10,6 +10,24 @@ from planner.plan import LonLat
 
 
 @dataclass(frozen=True, slots=True)
+class Declared:
+    """What a file says of the vehicle it is for; None where it does not say."""
+
+    firmware_type: int | None = None
+    mav_type: int | None = None
+    cruise_speed_m_s: float | None = None
+    hover_speed_m_s: float | None = None
+    altitude_mode: int | None = None
+
+
+def declared_by(autopilot: Autopilot, vehicle_type: VehicleType | None) -> Declared:
+    """What whoever reads a file says in its place; None for a type that nobody names."""
+    if vehicle_type is None:
+        return Declared()
+    return Declared(mav_type=dialect_for(autopilot, vehicle_type).mav_type)
+
+
+@dataclass(frozen=True, slots=True)
 class Mission:
     """Everything that goes up to one vehicle.
 
@@ -29,6 +47,10 @@ class Mission:
         Height of home above sea level; 0 when it is not known.
     speed_m_s
         Cruise speed.
+    declared
+        Of a mission that was read from a file, what the file says; None for a mission of our own.
+    unread
+        Lists that the file has and that could not be read whole.
     """
 
     mission: tuple[MissionItem, ...]
@@ -41,6 +63,8 @@ class Mission:
     notes: tuple[str, ...] = ()
     home_altitude_m: float = 0.0
     speed_m_s: float = 0.0
+    declared: Declared | None = None
+    unread: frozenset[MissionType] = frozenset()
 
     @property
     def dialect(self) -> Dialect:
@@ -89,8 +113,8 @@ def unplaced(
 
 
 def home_item(home: LonLat, altitude_m: float) -> MissionItem:
-    """The row that ArduPilot and the waypoint file keep for home, numbered 0."""
-    return placed(Command.NAV_WAYPOINT, home, altitude_m, Frame.GLOBAL)
+    """The row that ArduPilot and the waypoint file keep for home, numbered 0, its altitude unrounded."""
+    return replace(placed(Command.NAV_WAYPOINT, home, altitude_m, Frame.GLOBAL), z=altitude_m)
 
 
 def numbered(items: list[MissionItem], kind: MissionType = MissionType.MISSION) -> tuple[MissionItem, ...]:

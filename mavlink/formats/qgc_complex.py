@@ -4,8 +4,9 @@ Surveys and corridor scans carry their items in ``TransectStyleComplexItem.Items
 stand, and the camera settings beside them are not needed. Landing patterns and structure scans carry their
 settings alone; their items are made anew, as QGroundControl's plan file format and user guide describe them:
 
-- ``fwLandingPattern`` and ``vtolLandingPattern``: DO_LAND_START, the wish to stop photos or video, the final
-  approach (LOITER_TO_ALT with exit along the tangent, or a WAYPOINT), then LAND or VTOL_LAND.
+- ``fwLandingPattern`` and ``vtolLandingPattern``: DO_LAND_START, the approach's airspeed where it has one,
+  the wish to stop photos or video, the final approach (LOITER_TO_ALT with exit along the tangent, or a
+  WAYPOINT), then LAND or VTOL_LAND.
 - ``StructureScan``: entrance, camera to the structure, one closed round a layer with the camera triggered by
   distance, camera back, exit.
 """
@@ -28,6 +29,7 @@ from mavlink.formats.members import (
     object_of,
     place_of,
 )
+from mavlink.formats.notes import Notes
 from mavlink.formats.qgc_structure import structure_scan
 from mavlink.wire.items import Command, Frame, MissionItem
 from planner.plan import LonLat
@@ -36,7 +38,7 @@ from planner.plan import LonLat
 Part = tuple[str, "dict[str, Any] | MissionItem"]
 
 
-def expand(entry: dict[str, Any], name: str, autopilot: Autopilot, notes: list[str]) -> Iterator[Part]:
+def expand(entry: dict[str, Any], name: str, autopilot: Autopilot, notes: Notes) -> Iterator[Part]:
     """The items that one complex item stands for.
 
     Parameters
@@ -62,7 +64,7 @@ def expand(entry: dict[str, Any], name: str, autopilot: Autopilot, notes: list[s
     if maker is None:
         raise FormatError(f"{name} is of type {kind!r}, which holds no items")
     made = maker(entry, name, autopilot)
-    notes.append(f"{name}: the {len(made)} items of the {kind} are made from its settings")
+    notes.add(f"{name}: the {len(made)} items of the {kind} are made from its settings")
     for item in made:
         yield name, item
 
@@ -108,6 +110,12 @@ def _landing(
     approach, approach_m = _coordinate(entry, name, key)
     touchdown, land_m = _coordinate(entry, name, "landCoordinate")
     items = [unplaced(Command.DO_LAND_START)]
+    if _flag(entry, name, "useDoChangeSpeed", default=False):
+        speed_m_s = number_of(entry.get("finalApproachSpeed"), f"{name}.finalApproachSpeed")
+        if not 0.0 < speed_m_s < math.inf:
+            raise FormatError(f"{name}.finalApproachSpeed is {speed_m_s}")
+        # airspeed, throttle unchanged
+        items.append(unplaced(Command.DO_CHANGE_SPEED, (0.0, speed_m_s, -1.0, 0.0)))
     if _flag(entry, name, "stopTakingPhotos", default=False):
         # ArduPilot refuses NaN in the camera's reserved fields
         open_value = 0.0 if autopilot == "ardupilot" else math.nan

@@ -11,13 +11,15 @@ import math
 from typing import Any
 
 from mavlink.dialects.base import CIRCLE_COMMANDS, GLOBAL_FRAMES, fence_shapes, is_polygon
-from mavlink.dialects.mission import Mission
+from mavlink.dialects.mission import Declared, Mission
+from mavlink.formats.columns import for_file, in_file
 from mavlink.formats.errors import FormatError
 from mavlink.formats.qgc_plan_read import read_plan
 from mavlink.wire.items import Command, Frame, MissionItem
 
 __all__ = ["FormatError", "read_plan", "write_plan"]
 
+_AMSL = (Frame.GLOBAL, Frame.GLOBAL_INT)
 #: QGroundControl's altitude modes by frame.
 _ALTITUDE_MODES = {
     Frame.GLOBAL_RELATIVE_ALT: 1,
@@ -42,7 +44,7 @@ def write_plan(mission: Mission) -> str:
     home = [mission.home[1], mission.home[0], mission.home_altitude_m]
     if dialect.home_row and mission.mission:
         row = mission.mission[0]
-        home = [row.x / 1e7, row.y / 1e7, row.z]
+        home = [*in_file(row), row.z if row.frame in _AMSL else mission.home_altitude_m]
     first_jump_id = 1 - (items[0].seq if items else 0)
     document: dict[str, Any] = {
         "fileType": "Plan",
@@ -51,17 +53,13 @@ def write_plan(mission: Mission) -> str:
         "geoFence": _fence(mission.fence),
         "mission": {
             "version": 2,
-            "firmwareType": dialect.firmware_type,
-            "vehicleType": dialect.mav_type,
-            "cruiseSpeed": mission.speed_m_s,
-            "hoverSpeed": mission.speed_m_s,
-            "globalPlanAltitudeMode": 1,
+            **_vehicle(mission),
             "plannedHomePosition": home,
             "items": [_simple_item(item, first_jump_id) for item in items],
         },
         "rallyPoints": {
             "version": 2,
-            "points": [[item.x / 1e7, item.y / 1e7, item.z] for item in mission.rally],
+            "points": [[*in_file(item), item.z] for item in mission.rally],
         },
     }
     try:
@@ -70,13 +68,29 @@ def write_plan(mission: Mission) -> str:
         raise FormatError(f"JSON has no infinite numbers: {error}") from error
 
 
-def _simple_item(item: MissionItem, first_jump_id: int) -> dict[str, Any]:
+def _vehicle(mission: Mission) -> dict[str, Any]:
+    """What the file says of its vehicle: of a mission from a file what that said, and nothing else."""
+    dialect = mission.dialect
+    told = mission.declared
+    if told is None:
+        told = Declared(None, dialect.mav_type, mission.speed_m_s, mission.speed_m_s)
+    firmware = dialect.firmware_type if told.firmware_type is None else told.firmware_type
+    members = {
+        "firmwareType": firmware,
+        "vehicleType": told.mav_type,
+        "cruiseSpeed": told.cruise_speed_m_s,
+        "hoverSpeed": told.hover_speed_m_s,
+        "globalPlanAltitudeMode": 1 if told.altitude_mode is None else told.altitude_mode,
+    }
+    return {name: value for name, value in members.items() if value is not None}
+
+
+def _simple_item(told: MissionItem, first_jump_id: int) -> dict[str, Any]:
+    item = for_file(told)
     param1 = item.param1
     if item.command == Command.DO_JUMP and math.isfinite(param1):
         param1 += first_jump_id
-    scale = 1e7 if item.frame in GLOBAL_FRAMES else 1.0
-    x: float = item.x / scale if item.frame in GLOBAL_FRAMES else item.x
-    y: float = item.y / scale if item.frame in GLOBAL_FRAMES else item.y
+    x, y = in_file(item)
     entry: dict[str, Any] = {
         "autoContinue": item.autocontinue,
         "command": int(item.command),
@@ -84,8 +98,8 @@ def _simple_item(item: MissionItem, first_jump_id: int) -> dict[str, Any]:
         "frame": int(item.frame),
         "params": [
             *(_null(value) for value in (param1, item.param2, item.param3, item.param4)),
-            x,
-            y,
+            _null(x),
+            _null(y),
             _null(item.z),
         ],
         "type": "SimpleItem",
@@ -106,13 +120,13 @@ def _fence(items: tuple[MissionItem, ...]) -> dict[str, Any]:
     fence: dict[str, Any] = {"version": 2, "polygons": polygons, "circles": circles}
     for command, shape in fence_shapes(items):
         first = shape[0]
-        place = [first.x / 1e7, first.y / 1e7]
+        place = list(in_file(first))
         if is_polygon(command):
             polygons.append(
                 {
                     "version": 1,
                     "inclusion": command == Command.NAV_FENCE_POLYGON_VERTEX_INCLUSION,
-                    "polygon": [[item.x / 1e7, item.y / 1e7] for item in shape],
+                    "polygon": [list(in_file(item)) for item in shape],
                 }
             )
         elif command in CIRCLE_COMMANDS:

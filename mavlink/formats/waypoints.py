@@ -2,107 +2,196 @@
 
 A header line, then one line an item with twelve columns divided by tabs: index, current, frame, command,
 four parameters, latitude, longitude, altitude, autocontinue. Line 0 is the home position for every
-autopilot; for ArduPilot it is item 0 of the mission too. Fence and rally points have no place in it.
+autopilot; for ArduPilot it is item 0 of the mission too. A file holds a mission, a fence or rally points, as
+Mission Planner keeps them; a file that mixes them is read and split.
 """
 
 from __future__ import annotations
 
 import math
-import re
-from dataclasses import replace
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 
 from mavlink.dialects import Autopilot, VehicleType
-from mavlink.dialects.mission import Mission, home_item
+from mavlink.dialects.base import GLOBAL_FRAMES
+from mavlink.dialects.mission import Mission, declared_by, home_item, numbered
+from mavlink.formats.columns import for_file, in_file
 from mavlink.formats.errors import FormatError
-from mavlink.formats.places import check_place
+from mavlink.formats.notes import Notes
+from mavlink.formats.wpl_rows import HEADER, HOMELESS, OLDEST, STRICT, Row, read_rows
 from mavlink.wire.items import Command, Frame, MissionItem, MissionType
 
-HEADER = "QGC WPL 110"
+__all__ = ["HEADER", "held_by_waypoints", "read_waypoints", "write_waypoints"]
 
-_DECIMAL_COMMA = re.compile(r"[+-]?\d+,\d+")
-_LINE_END = re.compile(r"\r\n|\n|\r")
+_FENCE = frozenset(range(Command.NAV_FENCE_RETURN_POINT, Command.NAV_FENCE_CIRCLE_EXCLUSION + 1))
+#: Mission Planner once wrote its home row with this command.
+_NO_COMMAND = 0
 
-_COLUMNS = (
-    "index",
-    "current",
-    "frame",
-    "command",
-    "param 1",
-    "param 2",
-    "param 3",
-    "param 4",
-    "latitude",
-    "longitude",
-    "altitude",
-    "autocontinue",
-)
+
+def held_by_waypoints(mission: Mission) -> MissionType:
+    """The one list that a waypoint file of this mission holds."""
+    if len(mission.mission) > (1 if mission.dialect.home_row else 0) or not (mission.fence or mission.rally):
+        return MissionType.MISSION
+    return MissionType.FENCE if mission.fence else MissionType.RALLY
 
 
 def write_waypoints(mission: Mission) -> str:
-    """The mission as a waypoint file; fence and rally points are left out.
+    """The mission as a waypoint file; of fence and rally points the first, where there is no mission.
 
-    Jump targets count from the home row in the file, as ArduPilot counts them.
+    Jump targets count from the home row in the file, as ArduPilot counts them. A parameter that is NaN is 0
+    for ArduPilot, which has no open ones.
     """
-    if mission.dialect.home_row:
-        rows = list(mission.mission)
-        if not rows:
-            rows = [home_item(mission.home, mission.home_altitude_m)]
+    kind = held_by_waypoints(mission)
+    home = _home_row(mission)
+    if kind is not MissionType.MISSION:
+        rows = [home, *(replace(item, seq=item.seq + 1) for item in mission.items_of(kind))]
+    elif mission.dialect.home_row:
+        rows = list(mission.mission) or [home]
     else:
-        rows = [home_item(mission.home, mission.home_altitude_m)]
-        rows += [_shifted(item, 1) for item in mission.mission]
-    lines = [HEADER, *(_row(replace(item, current=item.seq == 0)) for item in rows)]
+        rows = [home, *(_shifted(item, 1) for item in mission.mission)]
+    closed = mission.autopilot == "ardupilot"
+    lines = [HEADER, *(_row(replace(for_file(item), current=item.seq == 0), closed) for item in rows)]
     return "\n".join(lines) + "\n"
 
 
+def _home_row(mission: Mission) -> MissionItem:
+    row = home_item(mission.home, mission.home_altitude_m)
+    lon_deg, lat_deg = mission.home
+    return row if in_file(row) == (lat_deg, lon_deg) else replace(row, written=(lat_deg, lon_deg))
+
+
 def read_waypoints(
-    text: str, autopilot: Autopilot = "ardupilot", vehicle_type: VehicleType = "fixed_wing"
+    text: str, autopilot: Autopilot = "ardupilot", vehicle_type: VehicleType | None = None
 ) -> Mission:
-    """The mission of a waypoint file.
+    """The mission, fence or rally points of a waypoint file, or all of them where they are mixed.
 
     Parameters
     ----------
     text
-        The file; lines may end in LF, CR LF or both mixed, blank lines at the end are left out.
+        The file; see :mod:`mavlink.formats.wpl_rows` for what is mended.
     autopilot, vehicle_type
-        For whom it is: the file does not say.
+        For whom it is: the file does not say. Without a type a fixed wing is assumed, with a note.
 
     Raises
     ------
     FormatError
         With the number of the line, and the name of the column where one is wrong.
     """
-    lines = _LINE_END.split(text.removeprefix("\ufeff"))
-    while lines and not lines[-1].strip():
-        lines.pop()
-    _check_header(lines[0] if lines else "")
-    items = [_read_row(line, number, number - 2) for number, line in enumerate(lines[1:], start=2)]
-    if not items:
-        raise FormatError("the home row is missing", 2)
-    home = items[0]
-    if home.command != Command.NAV_WAYPOINT or home.frame == Frame.MISSION:
-        raise FormatError(f"row 0 must be the home position, it holds command {home.command}", 2, "command")
-    if autopilot == "px4":
-        items = [_shifted(item, -1) for item in items[1:]]
+    notes = Notes()
+    version, rows = read_rows(text, notes)
+    if version != STRICT:
+        notes.add(f"the file is of version {version}, {STRICT} is written")
+    home, rows_ahead = _home(version, rows, notes)
+    lists = _split(rows, rows_ahead)
+    for row in rows[1:]:
+        if row.item.current:
+            notes.add(
+                "the mark of the current item is left out: a mission begins with its first", "line", row.line
+            )
+    if home is None:
+        home = _assumed_home(rows, notes)
+    items = list(_mission(lists.mission, _Shift(rows, lists, autopilot, rows_ahead), notes))
+    if autopilot == "ardupilot":
+        items = [home, *items]
+    if vehicle_type is None:
+        notes.add("the file does not say its vehicle: a fixed wing is assumed; say which (--type)")
+    first, second = in_file(home)
     return Mission(
-        mission=tuple(replace(item, current=seq == 0) for seq, item in enumerate(items)),
-        fence=(),
-        rally=(),
+        mission=numbered(items),
+        fence=numbered([row.item for row in lists.fence], MissionType.FENCE),
+        rally=numbered([row.item for row in lists.rally], MissionType.RALLY),
         autopilot=autopilot,
         vehicle="",
-        vehicle_type=vehicle_type,
-        home=(home.y / 1e7, home.x / 1e7),
-        home_altitude_m=home.z,
+        vehicle_type=vehicle_type or "fixed_wing",
+        home=(second, first),
+        notes=notes.lines(),
+        home_altitude_m=home.z if home.frame in (Frame.GLOBAL, Frame.GLOBAL_INT) else 0.0,
+        declared=declared_by(autopilot, vehicle_type),
     )
 
 
-def _check_header(line: str) -> None:
-    words = line.split()
-    if words == HEADER.split():
-        return
-    if words[:2] == HEADER.split()[:2]:
-        found = " ".join(words[2:])[:20]
-        raise FormatError(f"the version is {found!r}, {HEADER!r} is meant", 1, "version")
-    raise FormatError(f"the file must begin with {HEADER!r}, it begins with {line.strip()[:40]!r}", 1)
+def _home(version: str, rows: list[Row], notes: Notes) -> tuple[MissionItem | None, int]:
+    """The home row, and how many rows it takes; None where there is none."""
+    if not rows or version in (OLDEST, HOMELESS):
+        return None, 0
+    item, line = rows[0].item, rows[0].line
+    if item.command == _NO_COMMAND:
+        notes.add("home has command 0, 16 is meant", "line", line)
+        return replace(item, command=int(Command.NAV_WAYPOINT)), 1
+    if item.command != Command.NAV_WAYPOINT or item.frame not in GLOBAL_FRAMES:
+        return None, 0
+    if item.frame not in (Frame.GLOBAL, Frame.GLOBAL_INT):
+        notes.add(
+            f"the first row is home, and its frame {item.frame} does not say its height above the sea",
+            "line",
+            line,
+        )
+    return item, 1
+
+
+def _assumed_home(rows: list[Row], notes: Notes) -> MissionItem:
+    """Home at the first place of a file without a home row."""
+    places = (in_file(row.item) for row in rows if row.item.frame in GLOBAL_FRAMES)
+    found = next((place for place in places if all(map(math.isfinite, place)) and any(place)), None)
+    if found is None:
+        notes.add("there is no home row, and no item has a place: home is not known")
+        return home_item((0.0, 0.0), 0.0)
+    notes.add("there is no home row: home is taken to be at the first place, its height is not known")
+    lat_deg, lon_deg = found
+    return home_item((lon_deg, lat_deg), 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class _Lists:
+    mission: list[Row]
+    fence: list[Row]
+    rally: list[Row]
+
+
+def _split(rows: list[Row], rows_ahead: int) -> _Lists:
+    lists = _Lists([], [], [])
+    for row in rows[rows_ahead:]:
+        if row.item.command in _FENCE:
+            lists.fence.append(row)
+        elif row.item.command == Command.NAV_RALLY_POINT:
+            lists.rally.append(row)
+        else:
+            lists.mission.append(row)
+    return lists
+
+
+class _Shift:
+    """Where a jump of the file leads, by the numbers that the vehicle gives its items."""
+
+    def __init__(self, rows: list[Row], lists: _Lists, autopilot: Autopilot, rows_ahead: int) -> None:
+        first = 1 if autopilot == "ardupilot" else 0
+        self._by = first - rows_ahead
+        self._mixed = bool(lists.fence or lists.rally)
+        self._targets = {row.item.seq: number for number, row in enumerate(lists.mission, start=first)}
+        self._labels = {row.index: row.item.seq for row in rows}
+
+    def target(self, jump: Row, notes: Notes) -> float:
+        """The new target; jumps out of the list keep leading out of it."""
+        told = jump.item.param1
+        if not (math.isfinite(told) and told == round(told)):
+            return told
+        if self._labels.get(round(told), round(told)) != told:
+            notes.add(
+                "it jumps to an item by where that stands, not by the number in front of it",
+                "line",
+                jump.line,
+            )
+        if round(told) in self._targets:
+            return float(self._targets[round(told)])
+        if self._mixed:
+            raise FormatError(f"it jumps to {told:g}, which is no item of the mission", jump.line, "param 1")
+        return told + self._by
+
+
+def _mission(rows: list[Row], shift: _Shift, notes: Notes) -> Iterator[MissionItem]:
+    for row in rows:
+        item = row.item
+        yield replace(item, param1=shift.target(row, notes)) if item.command == Command.DO_JUMP else item
 
 
 def _shifted(item: MissionItem, by: int) -> MissionItem:
@@ -112,11 +201,8 @@ def _shifted(item: MissionItem, by: int) -> MissionItem:
     return replace(item, seq=item.seq + by)
 
 
-def _row(item: MissionItem) -> str:
-    if item.frame == Frame.MISSION:
-        x, y = str(item.x), str(item.y)
-    else:
-        x, y = _degrees(item.x), _degrees(item.y)
+def _row(item: MissionItem, closed: bool) -> str:
+    x, y = in_file(item)
     numbers = (item.param1, item.param2, item.param3, item.param4)
     return "\t".join(
         (
@@ -124,93 +210,22 @@ def _row(item: MissionItem) -> str:
             str(int(item.current)),
             str(int(item.frame)),
             str(int(item.command)),
-            *(_number(value) for value in numbers),
-            x,
-            y,
-            _number(item.z),
+            *(_number(value, closed) for value in numbers),
+            _column(item, x, closed),
+            _column(item, y, closed),
+            _number(item.z, closed),
             str(int(item.autocontinue)),
         )
     )
 
 
-def _number(value: float) -> str:
-    return "nan" if math.isnan(value) else repr(float(value))
+def _number(value: float, closed: bool) -> str:
+    if math.isnan(value):
+        return repr(0.0) if closed else "nan"
+    return repr(float(value))
 
 
-def _degrees(value_e7: int) -> str:
-    return f"{value_e7 / 1e7:.7f}"
-
-
-def _read_row(line: str, number: int, seq: int) -> MissionItem:
-    # Some programs write spaces for tabs.
-    fields = line.split("\t") if "\t" in line else line.split()
-    _check_count(fields, number)
-    index = _integer(fields, 0, number)
-    if index != seq:
-        raise FormatError(f"item {index} stands where item {seq} belongs", number, "index")
-    frame = _integer(fields, 2, number)
-    command = _integer(fields, 3, number)
-    if not 0 <= command <= 65535:
-        raise FormatError(f"command {command} is none", number, "command")
-    param1, param2, param3, param4 = (_float(fields, column, number) for column in range(4, 8))
-    x, y = _place(fields, command, frame, number)
-    altitude_m = _float(fields, 10, number)
-    return MissionItem(
-        seq,
-        frame,
-        command,
-        param1=param1,
-        param2=param2,
-        param3=param3,
-        param4=param4,
-        x=x,
-        y=y,
-        z=altitude_m,
-        current=_integer(fields, 1, number) != 0,
-        autocontinue=_integer(fields, 11, number) != 0,
-        mission_type=MissionType.MISSION,
-    )
-
-
-def _check_count(fields: list[str], number: int) -> None:
-    meant, found = len(_COLUMNS), len(fields)
-    if found < meant:
-        missing = _COLUMNS[found] if found else _COLUMNS[0]
-        raise FormatError(
-            f"{meant} columns are meant, here are {found}: {missing} is missing", number, missing
-        )
-    if found > meant:
-        junk = " ".join(fields[meant:])[:40]
-        raise FormatError(f"{meant} columns are meant, here are {found}: {junk!r} is too much", number)
-
-
-def _place(fields: list[str], command: int, frame: int, number: int) -> tuple[int, int]:
-    values = [_float(fields, column, number) for column in (8, 9)]
-    scale = 1.0 if frame == Frame.MISSION else 1e7
-    problem = check_place(command, frame, *values)
-    if problem and all(math.isfinite(value) for value in values):
-        raise FormatError(problem, number, "longitude" if problem.startswith("longitude") else "latitude")
-    for value, column in zip(values, (8, 9), strict=True):
-        if not math.isfinite(value) or abs(value * scale) > 2**31 - 1:
-            raise FormatError(
-                f"{_COLUMNS[column]} {fields[column].strip()!r} is out of range", number, _COLUMNS[column]
-            )
-    return round(values[0] * scale), round(values[1] * scale)
-
-
-def _integer(fields: list[str], column: int, number: int) -> int:
-    value = _float(fields, column, number)
-    if not (math.isfinite(value) and value == round(value)):
-        found = fields[column].strip()
-        raise FormatError(f"{_COLUMNS[column]} {found!r} is no whole number", number, _COLUMNS[column])
-    return round(value)
-
-
-def _float(fields: list[str], column: int, number: int) -> float:
-    found = fields[column].strip()
-    try:
-        return float(found)
-    except ValueError:
-        comma = ": write a point for the comma" if _DECIMAL_COMMA.fullmatch(found) else ""
-        message = f"{_COLUMNS[column]} {found[:40]!r} is no number{comma}"
-        raise FormatError(message, number, _COLUMNS[column]) from None
+def _column(item: MissionItem, value: float, closed: bool) -> str:
+    if item.written is not None:
+        return _number(value, closed)
+    return f"{value:.7f}" if item.frame in GLOBAL_FRAMES else str(int(value))

@@ -5,7 +5,7 @@ Source: MAVLink ``common.xml`` (MISSION_ITEM_INT, MAV_CMD, MAV_FRAME, MAV_MISSIO
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import IntEnum
 
 
@@ -128,6 +128,9 @@ class MissionItem:
         Altitude in metres over the frame's datum.
     param1, param2, param3, param4
         As the command defines; NaN means "unchanged" where the command allows it.
+    written
+        What a file says of the two columns of the place, where x and y cannot hold it: degrees finer than
+        1e-7, a fraction where the frame has none, NaN. Only files keep it; None where nothing is lost.
     """
 
     seq: int
@@ -143,6 +146,7 @@ class MissionItem:
     current: bool = False
     autocontinue: bool = True
     mission_type: MissionType = MissionType.MISSION
+    written: tuple[float, float] | None = field(default=None, compare=False)
 
 
 def degrees_e7(degrees: float) -> int:

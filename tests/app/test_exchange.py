@@ -35,6 +35,18 @@ def test_a_mission_survives_both_conversions(swathplan: Command, tmp_path: Path)
     assert same(read_plan(again.out).mission, MISSION.mission)
 
 
+def test_a_type_is_said_where_the_file_has_none(swathplan: Command, tmp_path: Path) -> None:
+    """Without --type a .waypoints file gives a .plan without type and speeds, and a note."""
+    rows = tmp_path / "a.waypoints"
+    rows.write_text(write_waypoints(MISSION))
+    bare = swathplan("convert", str(rows))
+    assert not {"vehicleType", "cruiseSpeed", "hoverSpeed"} & json.loads(bare.out)["mission"].keys()
+    assert "--type" in bare.err
+    said = swathplan("convert", str(rows), "--type", "multirotor")
+    assert json.loads(said.out)["mission"]["vehicleType"] == 2
+    assert "--type" not in said.err
+
+
 def test_complex_items_are_laid_out(swathplan: Command) -> None:
     """A survey and a landing pattern become rows, and what was made is told."""
     plan = json.dumps(plan_of(simple(22, 47.3977, 8.5456, 50, 1), SURVEY, LANDING))
@@ -46,7 +58,7 @@ def test_complex_items_are_laid_out(swathplan: Command) -> None:
 @pytest.mark.parametrize(
     ("text", "says"),
     [
-        ("QGC WPL 100\n", "line 1: the version is '100'"),
+        ("QGC WPL 99\n", "line 1: the version is '99'"),
         ('{\n"fileType": 1,}', "line 2: no JSON"),
         (write_waypoints(MISSION).replace("33.49", "133.49"), "latitude"),
     ],

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import re
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -14,7 +16,7 @@ from mavlink.dialects import Autopilot
 from mavlink.dialects.mission import Mission
 from mavlink.encoding.encode import EncodeOptions, encode
 from mavlink.formats import FormatError, read_waypoints, write_waypoints
-from mavlink.wire.items import Command, Frame
+from mavlink.wire.items import Command, Frame, MissionItem
 from tests.mavlink.plans import make_plan
 from tests.mavlink.strategies import missions, same
 
@@ -44,12 +46,22 @@ def test_pymavlink_reads_the_file_item_by_item(autopilot: Autopilot, tmp_path: P
         assert (round(read.x * scale), round(read.y * scale)) == (item.x, item.y)
 
 
+def without_nan(items: tuple[MissionItem, ...], autopilot: Autopilot) -> tuple[MissionItem, ...]:
+    """ArduPilot has no open parameters: its files say 0."""
+    if autopilot == "px4":
+        return items
+    names = ("param1", "param2", "param3", "param4", "z")
+    return tuple(
+        replace(item, **{name: 0.0 for name in names if math.isnan(getattr(item, name))}) for item in items
+    )
+
+
 @given(missions())
 @settings(max_examples=150, deadline=None)
 def test_what_is_written_is_read(mission: Mission) -> None:
-    """Any mission comes back from its file, NaN, jumps and raw integers included."""
+    """Any mission comes back from its file, jumps, raw integers and PX4's NaN included."""
     read = read_waypoints(write_waypoints(mission), mission.autopilot, mission.vehicle_type)
-    assert same(read.mission, mission.mission)
+    assert same(read.mission, without_nan(mission.mission, mission.autopilot))
     assert read.home == mission.home
     assert read.home_altitude_m == mission.home_altitude_m
 
@@ -95,25 +107,19 @@ def swapped() -> str:
     ("text", "line", "column", "says"),
     [
         ("", 1, None, "QGC WPL 110"),
-        ("QGC WPL 120\n", 1, "version", "the version is '120'"),
+        ("QGC WPL 130\n", 1, "version", "the version is '130'"),
         ("QGC WPL\n", 1, "version", "the version is ''"),
         ("{}", 1, None, "it begins with '{}'"),
-        ("QGC WPL 110\n", 2, None, "home row"),
-        (GOOD.replace("\n4\t", "\n\n4\t"), 6, "index", "12 columns"),
         ("\n".join([*GOOD.splitlines()[:5], "4\t0\t3"]), 6, "command", "here are 3: command is missing"),
         (changed(4, 11, "1\tjunk\tmore"), 4, None, "here are 14: 'junk more' is too much"),
         (GOOD + "end of file\n", len(GOOD.splitlines()) + 1, "command", "here are 3"),
-        (changed(4, 0, "7"), 4, "index", "item 7 stands where item 2 belongs"),
         (changed(4, 3, "way"), 4, "command", "command 'way' is no number"),
         (changed(4, 3, "16.5"), 4, "command", "no whole number"),
         (changed(4, 3, "70000"), 4, "command", "command 70000"),
-        (changed(4, 5, ""), 4, "param 2", "param 2 ''"),
         (changed(4, 10, "500,5"), 4, "altitude", "write a point for the comma"),
         (changed(3, 8, "999"), 3, "latitude", "latitude 999 is out of range"),
         (changed(3, 9, "181"), 3, "longitude", "longitude 181 is out of range$"),
-        (changed(4, 9, "nan"), 4, "longitude", "longitude 'nan'"),
         (changed(4, 8, "inf"), 4, "latitude", "latitude 'inf'"),
-        (changed(2, 3, "22"), 2, "command", "home position"),
         (swapped(), 2, "latitude", "latitude -117.753 is out of range: .* seem to be swapped"),
     ],
 )
@@ -145,9 +151,13 @@ def test_a_file_of_mission_planner_is_read() -> None:
 
 @given(st.text(max_size=200))
 def test_any_text_is_read_or_refused(text: str) -> None:
-    """Rubbish raises FormatError and nothing else."""
-    with pytest.raises(FormatError):
-        read_waypoints("QGC WPL 110\n" + text)
+    """Rubbish raises FormatError and nothing else; comments and blank lines alone are an empty mission."""
+    try:
+        mission = read_waypoints("QGC WPL 110\n" + text)
+    except FormatError:
+        return
+    assert len(mission.mission) == 1
+    assert not any(line.partition("#")[0].strip() for line in re.split(r"\r\n|\n|\r", text))
 
 
 @given(st.integers(0, 40), st.integers(0, 13), st.text(max_size=12) | st.floats().map(str))
