@@ -325,12 +325,13 @@ class Driver:
             return
         self._heard_s = now_s
         self.quality.heard(message.sequence, now_s)
+        self._trust.heard(message, now_s)
         if message.name in EVENT_MESSAGES and not self._event_is_new(message):
             return
         state = self.list_ids.watched(updated(self.state, message, now_s), message, now_s)
         state = self.sensor.watched(state, message, now_s)
         if not self.state.connected:
-            self._trust.heard()
+            self._trust.connected()
             self._set_state(self._trust.told(replace(state, connected=True, other_system=None)))
             self._on_connect()
         else:

@@ -8,6 +8,8 @@ from dataclasses import replace
 from mavlink.links.link import Link, OpenLink
 from mavlink.state.telemetry import Doubt, VehicleState
 from mavlink.station.peers import Peers
+from mavlink.station.twins import Twins
+from mavlink.wire.messages import Message
 
 
 class Trust:
@@ -24,6 +26,8 @@ class Trust:
     def __init__(
         self, link: Link, system_id: int, clock: Callable[[], float], changed: Callable[[], None]
     ) -> None:
+        self._clock = clock
+        self._twins = Twins()
         self._peers: Peers | None = None
         if isinstance(link, OpenLink) and link.listens:
             self._peers = Peers(system_id, clock, changed)
@@ -42,6 +46,13 @@ class Trust:
         return replace(state, address=address, strangers=strangers, doubt=doubt)
 
     def _doubt(self, state: VehicleState) -> Doubt | None:
+        if state.connected and self._twins.told(self._clock()):
+            return Doubt(
+                "two-aircraft",
+                f"two aircraft speak in turns as system {state.system_id} on this link: what one is ordered,"
+                " both do",
+                "switch one of them off, or give it another system id",
+            )
         peers = self._peers
         if peers is None or peers.acknowledged or not peers.rivals:
             return None
@@ -70,8 +81,12 @@ class Trust:
         """Take an address heard lately for the vehicle's; False when it was not heard."""
         return self._peers is not None and self._peers.acknowledge(address)
 
-    def heard(self) -> None:
-        """The vehicle has spoken."""
+    def heard(self, message: Message, now_s: float) -> None:
+        """The vehicle, or another one under its ids, has spoken."""
+        self._twins.heard(message, now_s)
+
+    def connected(self) -> None:
+        """The vehicle is there."""
         if self._peers is not None:
             self._peers.heard()
 
@@ -82,6 +97,7 @@ class Trust:
 
     def adopt(self, system_id: int) -> None:
         """Another aircraft is the vehicle from now on."""
+        self._twins = Twins()
         if self._peers is not None:
             self._peers.adopt(system_id)
 
