@@ -19,6 +19,8 @@ _LONGEST_SILENCE_S: Final = 10.0
 #: Frames due within this time of each other come together.
 _TOGETHER_S: Final = 0.02
 _MOST_BYTES: Final = 1 << 14
+#: Frames that come together lie within this of each other in the recording, so that its clock is known.
+_TOGETHER_THEN_S: Final = 0.2
 #: A file none of whose first frames is whole is no recording.
 _LOOKED_AT: Final = 200
 
@@ -40,6 +42,12 @@ class ReplayLink:
         self._next: tuple[float, bytes] | None = None
         self._last_s: float | None = None
         self._due_s = 0.0
+        self._clock_s: float | None = None
+
+    @property
+    def clock_s(self) -> float | None:
+        """When what was received last was recorded, in seconds since 1970; None before anything was."""
+        return self._clock_s
 
     @property
     def url(self) -> str:
@@ -67,8 +75,12 @@ class ReplayLink:
             raise LinkError(f"{self._url} is closed")
         data = bytearray()
         horizon_s = loop.time() + _TOGETHER_S
+        begun_s = self._last_s or 0.0
         while self._next is not None and self._due_s <= horizon_s and len(data) < _MOST_BYTES:
-            data += self._next[1]
+            if abs(self._next[0] - begun_s) > _TOGETHER_THEN_S:
+                break
+            self._clock_s, frame = self._next
+            data += frame
             self._next = None
             self._advance()
         # Even at the highest speed others must have their turn.

@@ -8,6 +8,7 @@ RELAY_STATUS (376), SYSTEM_TIME (2).
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final, Literal
 
@@ -102,10 +103,17 @@ class TrackRecorder:
     ----------
     output
         What the payload in use switches; a sensor that reports itself is believed before it.
+    clock
+        The recording's clock where the messages come from one: seconds since 1970, None while not known.
     """
 
-    def __init__(self, output: SensorOutput | None = None) -> None:
+    def __init__(
+        self, output: SensorOutput | None = None, clock: Callable[[], float | None] | None = None
+    ) -> None:
         self.output = output
+        self._clock = clock
+        self._began_s: float | None = None
+        self._went_on_s: float | None = None
         self._points: list[TrackPoint] = []
         self._events: list[SensorEvent] = []
         self._sensor_on: bool | None = None
@@ -120,18 +128,29 @@ class TrackRecorder:
         """What was recorded so far."""
         return Track(tuple(self._points), tuple(self._events))
 
+    @property
+    def recorded(self) -> tuple[float, float] | None:
+        """First and last of what was recorded by the recording's clock; None without one, or without any."""
+        if self._began_s is None or self._went_on_s is None:
+            return None
+        return self._began_s, max(self._began_s, self._went_on_s)
+
     def forget(self) -> None:
         """Drop what was recorded so far, but not how relays stand; a sensor that is on is on anew."""
         self._points.clear()
         self._events.clear()
         self._images.clear()
         self._sensor_on = self._output_on = None
+        self._began_s = self._went_on_s = None
         self._keep_every, self._skipped = 1, 0
 
     def take(self, message: Message, state: VehicleState) -> None:
         """Take one message, and the state it led to."""
         if message.name == "GLOBAL_POSITION_INT":
             self._position(state)
+            if self._clock is not None:
+                self._went_on_s = self._clock()
+                self._began_s = self._went_on_s if self._began_s is None else self._began_s
         elif is_sensor_switch(message):
             on = bool(message.integer("value"))
             if on != self._sensor_on:

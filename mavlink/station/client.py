@@ -194,7 +194,7 @@ class VehicleClient(MissionTransfers, FlightCommands):
         output
             What switches the sensor, as ``sensor_output`` tells; the vehicle is asked to report it.
         """
-        recorder = TrackRecorder(output)
+        recorder = TrackRecorder(output, self._driver.recording_clock)
         self._driver.record(recorder)
         self._report(output)
         return recorder

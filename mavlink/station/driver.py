@@ -221,6 +221,12 @@ class Driver:
         finally:
             self._watchers.discard(changed)
 
+    @property
+    def recording_clock(self) -> Callable[[], float | None] | None:
+        """When what is heard was heard first, where the link is a recording; None of a live one."""
+        link = self._link
+        return (lambda: link.clock_s) if isinstance(link, ReplayLink) else None
+
     def record(self, recorder: TrackRecorder) -> None:
         """Feed a recorder from now on."""
         self._recorders.add(recorder)

@@ -65,8 +65,9 @@ class FlightStore:
         plan_id: str | None,
         plan_vehicle: str | None,
         payload: str | None = None,
+        started_at: datetime | None = None,
     ) -> str:
-        """A new flight; returns its id."""
+        """A new flight; returns its id. It starts now, unless it was flown at another time."""
         flight_id = str(uuid.uuid4())
         async with self._database.writing() as session:
             session.add(
@@ -78,7 +79,7 @@ class FlightStore:
                     plan_vehicle=plan_vehicle,
                     payload=payload,
                     state="flying",
-                    started_at=now(),
+                    started_at=started_at or now(),
                 )
             )
         return flight_id
@@ -108,8 +109,9 @@ class FlightStore:
         state: FlightState,
         samples: Sequence[TrackSample] = (),
         events: Sequence[FlightEvent] = (),
+        ended_at: datetime | None = None,
     ) -> None:
-        """Close a flight, with the last of its track and its events."""
+        """Close a flight, with the last of its track and its events, now or when it was flown."""
         async with self._database.writing() as session:
             if samples:
                 await session.execute(insert(TrackPointRow), _rows(flight_id, samples))
@@ -118,7 +120,7 @@ class FlightStore:
             await session.execute(
                 update(FlightRow)
                 .where(FlightRow.id == flight_id, FlightRow.state == "flying")
-                .values(state=state, ended_at=now())
+                .values(state=state, ended_at=ended_at or now())
             )
 
     async def recover(self) -> None:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import asyncio
 import contextlib
 from dataclasses import dataclass
+from datetime import UTC, datetime
+from typing import Literal
 
 import structlog
 
@@ -62,6 +64,7 @@ class _Ending:
     state: FlightState
     samples: tuple[TrackSample, ...]
     events: tuple[FlightEvent, ...]
+    ended_at: datetime | None
 
 
 class FlightRecorder:
@@ -169,6 +172,7 @@ class FlightRecorder:
                 plan.plan_id if plan else None,
                 plan.plan_vehicle if plan else None,
                 plan.payload if plan else None,
+                _moment(self._recorder, 0),
             )
         except StorageError:
             # What is heard is kept: the flight begins with it once the database takes it.
@@ -210,8 +214,9 @@ class FlightRecorder:
             self._stop_listening()
             return
         events = [] if self._recorder is None else self._gather(self._recorder.track())
+        ended_at = _moment(self._recorder, 1)
         self._stop_listening()
-        self._endings.append(_Ending(self.flight_id, state, tuple(self._unsaved), tuple(events)))
+        self._endings.append(_Ending(self.flight_id, state, tuple(self._unsaved), tuple(events), ended_at))
         self._unsaved, self.flight_id = [], None
         with contextlib.suppress(StorageError):
             await self._close()
@@ -220,11 +225,19 @@ class FlightRecorder:
         """Store the ends of flights; those that the database does not take stay for the next look."""
         while self._endings:
             ending = self._endings[0]
-            await self._store.end(ending.flight_id, ending.state, ending.samples, ending.events)
+            await self._store.end(
+                ending.flight_id, ending.state, ending.samples, ending.events, ending.ended_at
+            )
             self._endings.pop(0)
             log.info(
                 "flight ended", vehicle=self._vehicle_name, flight_id=ending.flight_id, state=ending.state
             )
+
+
+def _moment(recorder: TrackRecorder | None, which: Literal[0, 1]) -> datetime | None:
+    """When a recording's track begins or ends, by its own clock; None of what is flown now."""
+    recorded = None if recorder is None else recorder.recorded
+    return None if recorded is None else datetime.fromtimestamp(recorded[which], UTC)
 
 
 def flight_event(event: SensorEvent) -> FlightEvent:

@@ -112,3 +112,18 @@ async def test_addresses_that_cannot_be_played(tmp_path: Path, url: str, words: 
     known = {"file": flight(tmp_path, 2), "folder": tmp_path, "text": text}
     with pytest.raises(LinkError, match=words):
         await open_link(url.format(**known))
+
+
+async def test_a_recording_keeps_its_own_clock(tmp_path: Path) -> None:
+    """Played a hundred times as fast, the track begins and ends when it was flown."""
+    url = f"replay:{flight(tmp_path, 20)}?speedup=100"
+    async with VehicleClient(await open_link(url)) as client:
+        recorder = client.start_recording()
+        assert recorder.recorded is None
+        await client.connect(5)
+        async with asyncio.timeout(10):
+            while client.failure is None:
+                await asyncio.sleep(0.01)
+        assert recorder.recorded == pytest.approx((1_790_000_000.0, 1_790_000_019.0), abs=1e-3)
+        recorder.forget()
+        assert recorder.recorded is None

@@ -290,16 +290,9 @@ class SlowStore(FlightStore):
         wait_s, self.wait_s = self.wait_s, 0.0
         await asyncio.sleep(wait_s)
 
-    async def begin(
-        self,
-        vehicle_id: str,
-        vehicle_name: str,
-        plan_id: str | None,
-        plan_vehicle: str | None,
-        payload: str | None = None,
-    ) -> str:
+    async def begin(self, *what: Any, **named: Any) -> str:
         await self._turn()
-        return await super().begin(vehicle_id, vehicle_name, plan_id, plan_vehicle, payload)
+        return await super().begin(*what, **named)
 
     async def add(self, flight_id: str, samples: Sequence[TrackSample]) -> None:
         await self._turn()
