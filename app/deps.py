@@ -11,6 +11,7 @@ from app.services.flights.service import FlightService
 from app.services.house import House
 from app.services.plans.planning import PlanningService
 from app.services.scenarios.kept import ScenarioService
+from app.services.store.audit import AuditStore
 from app.services.terrain.service import TerrainService
 from app.services.vehicles.checks import Checks
 from app.services.vehicles.fleet import Fleet
@@ -50,6 +51,10 @@ async def _flights(house: Annotated[House, Depends(_house)]) -> FlightService:
     return house.flights
 
 
+async def _audit(house: Annotated[House, Depends(_house)]) -> AuditStore:
+    return house.audit
+
+
 def _terrain(house: Annotated[House, Depends(_house)]) -> TerrainService:
     return house.terrain
 
@@ -66,5 +71,6 @@ ScenariosDep = Annotated[ScenarioService, Depends(_scenarios)]
 FleetDep = Annotated[Fleet, Depends(_fleet)]
 TransfersDep = Annotated[Transfers, Depends(_transfers)]
 ChecksDep = Annotated[Checks, Depends(_checks)]
+AuditDep = Annotated[AuditStore, Depends(_audit)]
 FlightsDep = Annotated[FlightService, Depends(_flights)]
 TerrainDep = Annotated[TerrainService, Depends(_terrain)]

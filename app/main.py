@@ -14,7 +14,7 @@ from starlette.routing import Match, Mount
 from starlette.types import Scope
 
 from app import middleware, problems
-from app.routers import artefacts, flights, health, interface, plans, scenarios, terrain, vehicles
+from app.routers import artefacts, audit, flights, health, interface, plans, scenarios, terrain, vehicles
 from app.services.house import House, Limits
 from app.services.vehicles.recordings import Recordings
 from app.settings import Settings
@@ -33,6 +33,7 @@ TAGS = [
     {"name": "terrain", "description": "Elevation rasters for scenarios to lie on."},
     {"name": "vehicles", "description": "Connected vehicles: state, missions, commands."},
     {"name": "flights", "description": "What was flown, and what was seen."},
+    {"name": "audit", "description": "What was ordered of vehicles, and what became of it."},
     {"name": "health", "description": "Probes and figures."},
 ]
 
@@ -96,7 +97,7 @@ def create_app(settings: Settings | None = None, build_house: Callable[[Limits],
     )
     app.state.settings = settings
     problems.install(app)
-    for module in (plans, artefacts, scenarios, terrain, vehicles, flights, health, interface):
+    for module in (plans, artefacts, scenarios, terrain, vehicles, flights, audit, health, interface):
         app.include_router(module.router)
     _add_map(app, settings)
     # The last added stands outermost.

@@ -119,6 +119,9 @@ class CommandOut(BaseModel):
         "command came before. unknown: it may have been carried out."
     )
     reason: str = Field(description="In words; empty where nothing is to be said.")
+    unrecorded: str | None = Field(
+        description="Why the command is not in the audit yet, e.g. a full disk; null: it is."
+    )
     given_at: datetime
 
     @classmethod
@@ -131,6 +134,7 @@ class CommandOut(BaseModel):
                 "command": order.command,
                 "outcome": order.outcome,
                 "reason": order.reason,
+                "unrecorded": order.unrecorded,
                 "given_at": order.given_at,
             }
         )

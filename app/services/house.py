@@ -16,6 +16,7 @@ from app.services.plans.planning import BoundTask, PlanningService, Task
 from app.services.plans.pool import Pool, WorkerPool
 from app.services.scenarios.kept import ScenarioService
 from app.services.scenarios.validation import Verdict, judge
+from app.services.store.audit import AuditStore
 from app.services.store.database import Database
 from app.services.store.flights import FlightStore
 from app.services.store.plans import PlanStore
@@ -87,6 +88,7 @@ class House:
             judge_scenario=judge_scenario,
             terrain_folder=folder,
         )
+        self.audit = AuditStore(self.database)
         self.flights = FlightService(FlightStore(self.database), self.planning, self.desk)
         station = Station(
             self.database, self.planning.library, limits.track_interval_s, limits.recordings, times

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import datetime
 from typing import Any, Literal
@@ -11,6 +12,7 @@ from mavlink.station.forward.address import ForwardAddress
 PlanState = Literal["queued", "running", "done", "failed", "cancelled"]
 ENDED: frozenset[PlanState] = frozenset({"done", "failed", "cancelled"})
 
+AuditKind = Literal["order", "upload", "clear", "override", "acknowledgement"]
 
 FlightState = Literal["flying", "ended", "interrupted"]
 
@@ -67,6 +69,43 @@ class SensorAction:
     outcome: str
     lon_deg: float | None
     lat_deg: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class LeftUpload:
+    """An upload whose outcome nobody noted: the service ended while it was at work."""
+
+    number: int
+    vehicle_id: str
+    parts: tuple[str, ...]
+    meant: HeldMission
+    override_reason: str | None
+
+
+@dataclass(frozen=True, slots=True)
+class AuditEntry:
+    """What somebody ordered of a vehicle, and what became of it.
+
+    Parameters
+    ----------
+    actor
+        Who; ``local`` as long as the service knows no users, ``service`` for what it did by itself.
+    what
+        The command, the plan, the parts, the reason of an override.
+    outcome
+        ``pending`` until it is settled.
+    """
+
+    number: int
+    at: datetime
+    actor: str
+    kind: AuditKind
+    vehicle_id: str
+    vehicle_name: str
+    what: Mapping[str, Any]
+    outcome: str
+    reason: str
+    ended_at: datetime | None
 
 
 @dataclass(frozen=True, slots=True)

@@ -117,6 +117,23 @@ class UploadRow(Base):
     ended_at: Mapped[datetime | None] = mapped_column(UtcTime)
 
 
+class AuditRow(Base):
+    """What somebody ordered of a vehicle, written before it was sent, and what became of it."""
+
+    __tablename__ = "audit"
+
+    number: Mapped[int] = mapped_column(Integer, primary_key=True, autoincrement=True)
+    at: Mapped[datetime] = mapped_column(UtcTime, index=True)
+    actor: Mapped[str] = mapped_column(String(200))
+    kind: Mapped[str] = mapped_column(String(20))
+    vehicle_id: Mapped[str] = mapped_column(String(36), index=True)
+    vehicle_name: Mapped[str] = mapped_column(String(200))
+    what: Mapped[dict[str, Any]] = mapped_column(JSON)
+    outcome: Mapped[str] = mapped_column(String(20))
+    reason: Mapped[str] = mapped_column(Text)
+    ended_at: Mapped[datetime | None] = mapped_column(UtcTime)
+
+
 class FlightRow(Base):
     """One flight, from the first movement of an armed vehicle to its disarming."""
 

@@ -7,6 +7,7 @@ from typing import Any
 
 from sqlalchemy import select, update
 
+from app.services.records import HeldMission, LeftUpload
 from app.services.store.database import Database
 from app.services.store.plans import now
 from app.services.store.tables import UploadRow
@@ -25,8 +26,9 @@ class UploadStore:
         plan_id: str,
         parts: Sequence[str],
         override_reason: str | None,
+        meant: HeldMission,
     ) -> int:
-        """A new upload; returns its number."""
+        """A new upload of what is meant to be held; returns its number."""
         row = UploadRow(
             vehicle_id=vehicle_id,
             vehicle_name=vehicle_name,
@@ -34,7 +36,11 @@ class UploadStore:
             parts=list(parts),
             outcome="pending",
             override_reason=override_reason,
-            detail={},
+            detail={
+                "plan_vehicle": meant.plan_vehicle,
+                "payload": meant.payload,
+                "gimbal": meant.gimbal,
+            },
             started_at=now(),
         )
         async with self._database.writing() as session:
@@ -48,6 +54,26 @@ class UploadStore:
                 update(UploadRow)
                 .where(UploadRow.number == number)
                 .values(outcome=outcome, detail=detail, ended_at=now())
+            )
+
+    async def pending(self) -> tuple[LeftUpload, ...]:
+        """Those without an outcome, oldest first."""
+        query = select(UploadRow).where(UploadRow.outcome == "pending").order_by(UploadRow.number)
+        async with self._database.reading() as session:
+            return tuple(
+                LeftUpload(
+                    row.number,
+                    row.vehicle_id,
+                    tuple(row.parts),
+                    HeldMission(
+                        row.plan_id,
+                        row.detail.get("plan_vehicle") or "",
+                        row.detail.get("payload"),
+                        row.detail.get("gimbal"),
+                    ),
+                    row.override_reason,
+                )
+                for row in await session.scalars(query)
             )
 
     async def of_vehicle(self, vehicle_id: str, limit: int = 50) -> tuple[dict[str, Any], ...]:

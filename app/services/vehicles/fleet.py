@@ -18,6 +18,7 @@ from app.services.plans.library import PlanLibrary
 from app.services.records import VehicleRecord
 from app.services.store.flights import FlightStore
 from app.services.store.vehicles import VehicleStore
+from app.services.vehicles.audit import Audit
 from app.services.vehicles.brief import first_vehicle, start_of
 from app.services.vehicles.connection import CONNECT_S, Home, is_replay, replayed_plan, simulated_of
 from app.services.vehicles.forwarding import read_forwards, refuse_loops
@@ -49,6 +50,7 @@ class Fleet:
         transfers: Transfers,
         flights: FlightStore,
         kept: VehicleStore,
+        audit: Audit,
         track_interval_s: float,
         recordings: Recordings | None = None,
         times: LinkTimes = DEFAULT_TIMES,
@@ -57,6 +59,7 @@ class Fleet:
         self._transfers = transfers
         self._flights = flights
         self._kept = kept
+        self._audit = audit
         self._track_interval_s = track_interval_s
         self._recordings = recordings
         self._times = times
@@ -68,9 +71,12 @@ class Fleet:
     async def open(self) -> None:
         """Close the flights an earlier service left open; listen for its vehicles, commanding nothing."""
         await self._flights.recover()
-        for record in await self._kept.all():
+        await self._audit.open()
+        kept = await self._kept.all()
+        await self._transfers.left.open(kept)
+        for record in kept:
             try:
-                vehicle = self._vehicle(record)
+                vehicle = self._vehicle(replace(record, held=self._transfers.left.believed(record)))
             except ServiceError as error:
                 log.error("vehicle forgotten", vehicle=record.name, url=record.url, reason=str(error))
                 await self._kept.forget(record.id)
@@ -86,6 +92,7 @@ class Fleet:
             _give_up(opening)
         await asyncio.gather(*(vehicle.close() for vehicle in self._vehicles.values()))
         self._vehicles.clear()
+        await self._audit.close()
 
     def all(self) -> tuple[Vehicle, ...]:
         """Every vehicle, oldest first."""
@@ -284,6 +291,7 @@ class Fleet:
             self._transfers.record,
             self._transfers.still_holds,
             self._transfers.identified,
+            self._audit,
             self._recordings,
             self._times,
         )

@@ -10,6 +10,7 @@ from datetime import UTC, datetime
 from typing import Final, Literal
 
 from app.services.errors import NotFoundError
+from app.services.vehicles.audit import Entry
 from planner.errors import Finding
 
 OrderOutcome = Literal["done", "refused", "pending", "overtaken", "unknown"]
@@ -17,6 +18,8 @@ OrderOutcome = Literal["done", "refused", "pending", "overtaken", "unknown"]
 #: Orders that have an aircraft stop what it does, and that have it fly its mission.
 STOPPING: Final = frozenset({"pause", "rtl", "land", "hold", "disarm"})
 GOING: Final = frozenset({"start", "resume", "goto_item"})
+#: Orders that make safe: nothing of the service's own holds them up.
+SAFE: Final = STOPPING | {"sensor_off"}
 #: Orders that make a vehicle fly a mission, and so not while one is being changed.
 FLYING: Final = GOING | {"arm"}
 _KEPT: Final = 50
@@ -36,6 +39,8 @@ class Order:
         Of a refused one: the rule, and the way out.
     sent
         Whether the vehicle may have heard of it.
+    entry
+        Its entry in the audit.
     """
 
     command: str
@@ -45,6 +50,12 @@ class Order:
     reason: str = "not answered yet"
     findings: tuple[Finding, ...] = ()
     sent: bool = False
+    entry: Entry | None = None
+
+    @property
+    def unrecorded(self) -> str | None:
+        """Why its entry is not written yet; None once it is."""
+        return None if self.entry is None else self.entry.unrecorded
 
     def end(self, outcome: OrderOutcome, reason: str = "", findings: tuple[Finding, ...] = ()) -> None:
         """Say what became of it; what was said first stands."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable
 from contextlib import nullcontext
+from dataclasses import asdict
 
 import structlog
 
@@ -18,7 +19,7 @@ from app.services.errors import (
     ServiceError,
 )
 from app.services.vehicles.flight_orders import CARRY_OUT, OrderRefusedError, Wish
-from app.services.vehicles.order_book import FLYING, STOPPING, Order
+from app.services.vehicles.order_book import FLYING, SAFE, Order
 from app.services.vehicles.vehicle import Vehicle
 from mavlink import errors as mavlink_errors
 from mavlink.encoding.payload import PayloadError
@@ -49,12 +50,14 @@ async def give_order(vehicle: Vehicle, wish: Wish, wait_s: float = WAIT_S) -> Or
         What is to be flown is being changed.
     RefusedError
         The wish itself is wrong.
+    StorageError
+        It cannot be recorded, and makes nothing safe: nothing was sent.
     """
     vehicle.turns.require_orders(wish.command)
     _judge(wish)
     if not vehicle.state.connected:
         raise LinkError(f"{vehicle.name}: {vehicle.client.absence}")
-    order = vehicle.book.begin(wish.command)
+    order = await _begun(vehicle, wish)
     log.info("flight command", vehicle=vehicle.name, command=wish.command, seq=wish.seq, command_id=order.id)
     task = asyncio.create_task(_follow(vehicle, wish, order))
     vehicle.book.follow(order, task)
@@ -69,8 +72,23 @@ async def give_order(vehicle: Vehicle, wish: Wish, wait_s: float = WAIT_S) -> Or
             "outcome": order.outcome,
             "reason": order.reason,
         }
+        if order.unrecorded is not None:
+            members["unrecorded"] = order.unrecorded
         detail = f"{vehicle.name}: {order.command} {order.outcome}: {order.reason}"
         raise _ERRORS[order.outcome](detail, order.findings, members)
+    return order
+
+
+async def _begun(vehicle: Vehicle, wish: Wish) -> Order:
+    """The order in the book and in the audit; what makes safe stops others before anything is waited for."""
+    what = {name: value for name, value in asdict(wish).items() if value is not None and value is not False}
+    if wish.command in SAFE:
+        order = vehicle.book.begin(wish.command)
+        order.entry = await vehicle.audit.begin_safe("order", vehicle.id, vehicle.name, what)
+        return order
+    entry = await vehicle.audit.begin("order", vehicle.id, vehicle.name, what)
+    order = vehicle.book.begin(wish.command)
+    order.entry = entry
     return order
 
 
@@ -89,7 +107,7 @@ def _judge(wish: Wish) -> None:
 def _require_certain(vehicle: Vehicle, wish: Wish) -> None:
     """Raise OrderRefusedError where it is doubted who would hear; stops are given all the same."""
     doubt = vehicle.state.doubt
-    if doubt is not None and wish.command not in STOPPING | {"sensor_off"}:
+    if doubt is not None and wish.command not in SAFE:
         raise OrderRefusedError(doubt.rule, doubt.message, doubt.fix)
 
 
@@ -124,6 +142,8 @@ async def _follow(vehicle: Vehicle, wish: Wish, order: Order) -> None:
         raise
     finally:
         order.end("unknown", "it failed for a reason nobody foresaw")
+        if order.entry is not None:
+            vehicle.audit.end(order.entry, order.outcome, order.reason)
         log.info(
             "flight command ended",
             vehicle=vehicle.name,

@@ -9,6 +9,7 @@ from datetime import UTC, datetime
 import structlog
 
 from app.services.records import SensorAction
+from app.services.vehicles.audit import SERVICE, Audit
 from app.services.vehicles.recorder import FlightRecorder
 from mavlink.encoding.payload import Payload
 from mavlink.errors import CodecError, LinkError, NotConnectedError, ReadOnlyError
@@ -27,6 +28,8 @@ class SensorSafety:
     ----------
     recorder
         Keeps what was done in the record of the flight.
+    audit
+        Keeps what was ordered.
     tell
         Called when something was done.
 
@@ -36,9 +39,18 @@ class SensorSafety:
         What was done last; None while nothing was.
     """
 
-    def __init__(self, vehicle: str, recorder: FlightRecorder, tell: Callable[[], None]) -> None:
+    def __init__(
+        self,
+        vehicle_id: str,
+        vehicle: str,
+        recorder: FlightRecorder,
+        audit: Audit,
+        tell: Callable[[], None],
+    ) -> None:
+        self._vehicle_id = vehicle_id
         self._vehicle = vehicle
         self._recorder = recorder
+        self._audit = audit
         self._tell = tell
         self._guard = SensorGuard()
         self.last: SensorAction | None = None
@@ -77,10 +89,16 @@ class SensorSafety:
         payload, state = self._guard.payload, client.state
         assert payload is not None
         log.warning("sensor left on, switching it off", vehicle=self._vehicle, reason=reason)
+        what = {"command": "sensor_off", "reason": reason}
+        entry = await self._audit.begin_safe("order", self._vehicle_id, self._vehicle, what, SERVICE)
         try:
-            outcome = str(await client.switch_off(payload))
+            answer = await client.switch_off(payload)
+            outcome = str(answer)
+            told = "unknown" if answer.result is None else "done" if answer.accepted else "refused"
+            self._audit.end(entry, told, outcome)
         except (NotConnectedError, ReadOnlyError, LinkError, CodecError) as error:
             outcome = f"not sent: {error}"
+            self._audit.end(entry, "refused", outcome)
         done = SensorAction(
             at=datetime.now(UTC),
             time_s=state.time_s,

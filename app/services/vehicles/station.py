@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from app.services.plans.library import PlanLibrary
+from app.services.store.audit import AuditStore
 from app.services.store.database import Database
 from app.services.store.flights import FlightStore
 from app.services.store.uploads import UploadStore
 from app.services.store.vehicles import VehicleStore
+from app.services.vehicles.audit import Audit
 from app.services.vehicles.checks import Checks
 from app.services.vehicles.fleet import Fleet
 from app.services.vehicles.recordings import Recordings
@@ -36,8 +38,9 @@ class Station:
         times: LinkTimes,
     ) -> None:
         kept = VehicleStore(database)
+        audit = Audit(AuditStore(database))
         self.checks = Checks(plans)
-        self.transfers = Transfers(plans, UploadStore(database), kept)
+        self.transfers = Transfers(plans, UploadStore(database), kept, audit)
         self.fleet = Fleet(
-            plans, self.transfers, FlightStore(database), kept, track_interval_s, recordings, times
+            plans, self.transfers, FlightStore(database), kept, audit, track_interval_s, recordings, times
         )

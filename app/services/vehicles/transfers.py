@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Sequence
+from collections.abc import AsyncIterator, Sequence
 from typing import Any
 
 import structlog
@@ -15,11 +15,13 @@ from app.services.plans.missions import PARTS, MissionChoice, PartName
 from app.services.records import HeldMission, SentMission
 from app.services.store.uploads import UploadStore
 from app.services.store.vehicles import VehicleStore
+from app.services.vehicles.audit import Audit
 from app.services.vehicles.brief import Brief, brief_of
 from app.services.vehicles.checks import for_vehicle
 from app.services.vehicles.connection import CONNECT_S
 from app.services.vehicles.inspection import inspect
 from app.services.vehicles.items import item_json
+from app.services.vehicles.left_uploads import LeftUploads
 from app.services.vehicles.pointing import pointing_findings
 from app.services.vehicles.preflight import Preflight
 from app.services.vehicles.recorder import is_flying
@@ -51,10 +53,12 @@ AT_HOME_M = 50.0
 class Transfers:
     """Transfers to and from vehicles, and what is remembered of them over a restart."""
 
-    def __init__(self, plans: PlanLibrary, uploads: UploadStore, kept: VehicleStore) -> None:
+    def __init__(self, plans: PlanLibrary, uploads: UploadStore, kept: VehicleStore, audit: Audit) -> None:
         self._plans = plans
         self._uploads = uploads
         self._kept = kept
+        self._audit = audit
+        self.left = LeftUploads(uploads, plans)
 
     async def upload(
         self,
@@ -86,8 +90,7 @@ class Transfers:
             findings = _pointed(brief) if "mission" in parts else ()
             findings += judge_upload(brief.plan, brief.mission, parts, vehicle.state, override, stale)
             await _bring_home(vehicle, brief.plan)
-            report = await self._begin(vehicle, plan_id, brief.mission, parts, override, findings)
-            report.payload, report.gimbal = choice.payload, choice.gimbal
+            report = await self._begin(vehicle, plan_id, brief.mission, parts, override, findings, choice)
 
             def tell(part: PartName, made: Progress) -> None:
                 vehicle.turns.progress = {"part": part, "done": made.done, "total": made.total}
@@ -118,13 +121,20 @@ class Transfers:
         """Empty a vehicle's lists."""
         async with vehicle.turns.busy("clearing", changes=True):
             outcomes: dict[str, Outcome] = {}
-            for name in parts:
-                outcomes[name] = await vehicle.client.clear(PARTS[name])
-                if name == "mission":
-                    vehicle.holds_unknown()
-                    if outcomes[name].kind == "accepted":
-                        vehicle.sent = None
-                    await self._cleared(vehicle)
+            entry = await self._audit.begin("clear", vehicle.id, vehicle.name, {"parts": list(parts)})
+            try:
+                for name in parts:
+                    outcomes[name] = await vehicle.client.clear(PARTS[name])
+                    if name == "mission":
+                        vehicle.holds_unknown()
+                        if outcomes[name].kind == "accepted":
+                            vehicle.sent = None
+                        await self._cleared(vehicle)
+            finally:
+                kinds = {outcomes[name].kind if name in outcomes else "unknown" for name in parts}
+                worst = next(kind for kind in ("unknown", "refused", "accepted") if kind in kinds)
+                words = "; ".join(f"{name}: {outcome}" for name, outcome in outcomes.items())
+                self._audit.end(entry, worst, words)
             return outcomes
 
     async def _cleared(self, vehicle: Vehicle) -> None:
@@ -149,6 +159,8 @@ class Transfers:
             vehicle.sent = SentMission(report.plan_id, vehicle.sent_id if mission.verified else None)
         outcome = "unknown" if report.outcome == "not_attempted" else report.outcome
         UPLOADS.labels(outcome=outcome).inc()
+        for entry in report.entries:
+            self._audit.end(entry, outcome, "; ".join(part.reason for part in report.parts.values()))
         try:
             if mission is not None:
                 await self._kept.send(vehicle.id, vehicle.sent)
@@ -164,8 +176,16 @@ class Transfers:
     async def still_holds(self, vehicle: Vehicle, held: HeldMission) -> bool | None:
         """Read back whether a vehicle holds the plan it held before, and take it that it does if so.
 
-        None when that plan is deleted: nobody can tell.
+        An upload that a crash left without an outcome gets it first. None when the plan is deleted: nobody
+        can tell.
         """
+        if vehicle.id in self.left:
+            report = await self.left.read_back(vehicle)
+            if report is not None:
+                vehicle.upload = report
+                await self.record(vehicle)
+            if report is None or "mission" in report.parts:
+                return None if report is None else report.parts["mission"].verified
         try:
             choice = for_vehicle(vehicle, MissionChoice(held.plan_vehicle, None, held.payload, held.gimbal))
             plan_text = await self._plans.plan_text(held.plan_id)
@@ -206,16 +226,28 @@ class Transfers:
         async with vehicle.turns.busy("acknowledging another aircraft", changes=True):
             if vehicle.state.connected or vehicle.state.other_system != system_id:
                 raise ConflictError(f"no system {system_id} answers in the place of {vehicle.name}")
-            await self._kept.hold(vehicle.id, None)
-            await self._kept.send(vehicle.id, None)
-            await vehicle.begin_anew()
             before = vehicle.system_id
-            vehicle.client.adopt(system_id)
-            vehicle.system_id = system_id
-            await self.identified(vehicle)
+            async with self._acknowledged(vehicle, {"system_id": system_id, "before": before}):
+                await self._kept.hold(vehicle.id, None)
+                await self._kept.send(vehicle.id, None)
+                await vehicle.begin_anew()
+                vehicle.client.adopt(system_id)
+                vehicle.system_id = system_id
+                await self.identified(vehicle)
             log.warning("another aircraft", vehicle=vehicle.name, before=before, system_id=system_id)
             with contextlib.suppress(TimeoutError):
                 await vehicle.client.wait_for(lambda state: state.connected, HEARD_S)
+
+    @contextlib.asynccontextmanager
+    async def _acknowledged(self, vehicle: Vehicle, what: dict[str, Any]) -> AsyncIterator[None]:
+        """An acknowledgement, in the audit before it is made."""
+        entry = await self._audit.begin("acknowledgement", vehicle.id, vehicle.name, what)
+        try:
+            yield
+        except BaseException as error:
+            self._audit.end(entry, "refused", str(error) or type(error).__name__)
+            raise
+        self._audit.end(entry, "accepted")
 
     async def acknowledge_address(self, vehicle: Vehicle, address: str) -> None:
         """Take an address heard on a vehicle's port for the vehicle's.
@@ -231,11 +263,12 @@ class Transfers:
             before = vehicle.state.address
             if address != before and address not in vehicle.state.strangers:
                 raise ConflictError(f"{vehicle.name}: nobody is heard from {address}")
-            if address != before:
-                await vehicle.begin_anew()
-                await self._kept.hold(vehicle.id, None)
-                await self._kept.send(vehicle.id, None)
-            vehicle.client.acknowledge(address)
+            async with self._acknowledged(vehicle, {"address": address, "before": before}):
+                if address != before:
+                    await self._kept.hold(vehicle.id, None)
+                    await self._kept.send(vehicle.id, None)
+                    await vehicle.begin_anew()
+                vehicle.client.acknowledge(address)
             log.warning("address acknowledged", vehicle=vehicle.name, before=before, address=address)
             vehicle.tell()
 
@@ -247,14 +280,28 @@ class Transfers:
         parts: Sequence[PartName],
         override: str | None,
         findings: tuple[Finding, ...],
+        choice: MissionChoice,
     ) -> UploadReport:
-        number = await self._uploads.begin(vehicle.id, vehicle.name, plan_id, parts, override)
+        meant = HeldMission(plan_id, mission.vehicle, choice.payload, choice.gimbal)
+        what: dict[str, Any] = {"plan_id": plan_id, "parts": list(parts), "plan_vehicle": mission.vehicle}
+        what |= {"payload": choice.payload, "gimbal": choice.gimbal}
+        entries = [await self._audit.begin("upload", vehicle.id, vehicle.name, what)]
+        try:
+            if override is not None:
+                rules = [finding.rule for finding in findings]
+                what = {"plan_id": plan_id, "reason": override, "rules": rules}
+                entries.append(await self._audit.begin("override", vehicle.id, vehicle.name, what))
+            number = await self._uploads.begin(vehicle.id, vehicle.name, plan_id, parts, override, meant)
+        except BaseException:
+            for entry in entries:
+                self._audit.end(entry, "refused", "not sent: it could not be recorded")
+            raise
         if override is not None:
-            rules = [finding.rule for finding in findings]
             log.warning(
                 "upload overrides", vehicle=vehicle.name, plan_id=plan_id, reason=override, rules=rules
             )
         report = new_report(number, plan_id, mission, parts, override, findings)
+        report.payload, report.gimbal, report.entries = choice.payload, choice.gimbal, tuple(entries)
         vehicle.upload = report
         return report
 

@@ -9,6 +9,7 @@ from typing import Any, Final, Literal
 from app.services.errors import RefusedError, UnsafeError
 from app.services.plans.missions import PARTS, PartName, mission_findings
 from app.services.plans.work import finding_json
+from app.services.vehicles.audit import Entry
 from app.services.vehicles.items import difference_json, item_json
 from app.services.vehicles.preflight import Preflight
 from app.services.vehicles.recorder import is_flying
@@ -79,7 +80,7 @@ class PartResult:
 
 @dataclass(slots=True)
 class UploadReport:
-    """One upload and how it stands."""
+    """One upload and how it stands; ``entries`` are those of it in the audit."""
 
     number: int
     plan_id: str
@@ -92,6 +93,7 @@ class UploadReport:
     preflight: Preflight | None = None
     payload: str | None = None
     gimbal: str | None = None
+    entries: tuple[Entry, ...] = ()
 
     @property
     def outcome(self) -> OutcomeName:

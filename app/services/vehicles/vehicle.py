@@ -14,6 +14,7 @@ import structlog
 from app.services.errors import BusyError, ConflictError, LinkError, ServiceError
 from app.services.records import HeldMission, VehicleRecord
 from app.services.store.flights import FlightStore
+from app.services.vehicles.audit import Audit
 from app.services.vehicles.connection import Connection, Home, connect, is_replay, simulated_of
 from app.services.vehicles.forwarding import changes_mission, tell_order
 from app.services.vehicles.order_book import OrderBook
@@ -61,6 +62,8 @@ class Vehicle:
         Asked, once the vehicle is heard, whether it holds the plan it held before; None: nobody can tell.
     identified
         Called when its system id has become known, or is another by somebody's word.
+    audit
+        Where orders are written before they are sent.
     recordings
         Where the link is recorded; None not to. A recording is not recorded again.
     """
@@ -74,6 +77,7 @@ class Vehicle:
         resolved: Callable[[Vehicle], Awaitable[None]],
         still_holds: Callable[[Vehicle, HeldMission], Awaitable[bool | None]],
         identified: Callable[[Vehicle], Awaitable[None]],
+        audit: Audit,
         recordings: Recordings | None = None,
         times: LinkTimes = DEFAULT_TIMES,
     ) -> None:
@@ -98,7 +102,8 @@ class Vehicle:
         self._look_now = asyncio.Event()
         self._recorder = FlightRecorder(flights, record.id, record.name, track_interval_s)
         self.book = OrderBook()
-        self.safety = SensorSafety(record.name, self._recorder, self.tell)
+        self.audit = audit
+        self.safety = SensorSafety(record.id, record.name, self._recorder, audit, self.tell)
         self.lost_since: datetime | None = None
         self._told_s = -math.inf
         # A simulated aircraft is a new one, and holds nothing.
