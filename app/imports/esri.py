@@ -10,8 +10,8 @@ from typing import Any
 
 import shapefile
 
-from app.imports.archive import unpack
 from app.imports.crs import ToWgs84, crs_of_prj, to_wgs84, written_crs
+from app.imports.encodings import codec_of, codec_of_driver, guessed, reads
 from app.imports.errors import file_error
 from app.imports.rings import grouped
 from app.imports.shapes import MAX_SHAPES, Shape, moved
@@ -23,26 +23,6 @@ _LINES = frozenset({3, 13, 23})
 _POINTS = frozenset({1, 11, 21})
 _MULTIPOINTS = frozenset({8, 18, 28})
 _NAMES = ("name", "label", "title", "id")
-
-
-def read_archive(data: bytes, crs: str | None, notes: list[str]) -> list[Shape]:
-    """The shapes of every shapefile in an archive."""
-    members = unpack(data, (".shp", ".prj", ".dbf", ".cpg"))
-    by_stem: dict[str, dict[str, bytes]] = {}
-    for name, content in members.items():
-        path = PurePosixPath(name.replace("\\", "/"))
-        if "__MACOSX" not in path.parts:
-            by_stem.setdefault(str(path.with_suffix("")), {})[path.suffix.lower()] = content
-    layers = {stem: files for stem, files in by_stem.items() if ".shp" in files}
-    if not layers:
-        raise file_error(
-            "no-shapefile", "the archive holds no .shp file", "pack .shp, .prj and .dbf together"
-        )
-    shapes: list[Shape] = []
-    for stem, files in layers.items():
-        layer = PurePosixPath(stem).name
-        shapes += read_shapefile(files[".shp"], files, crs, notes, layer)
-    return shapes
 
 
 def read_shapefile(
@@ -57,7 +37,7 @@ def read_shapefile(
     crs
         Code of the reference system; goes before ``.prj``.
     layer
-        The file's name, which stands for a folder.
+        The file's path without its ending; its parts stand for folders.
 
     Raises
     ------
@@ -70,7 +50,7 @@ def read_shapefile(
         with shapefile.Reader(
             shp=io.BytesIO(data),
             dbf=io.BytesIO(companions[".dbf"]) if ".dbf" in companions else None,
-            encoding=_encoding(companions),
+            encoding=_encoding(companions, notes, layer),
             encodingErrors="replace",
         ) as reader:
             drawn = list(reader.iterShapes())
@@ -87,7 +67,7 @@ def read_shapefile(
     shapes: list[Shape] = []
     for index, one in enumerate(drawn):
         row = {key: str(value).strip() for key, value in records[index].items()} if records else {}
-        shapes += _shapes(one, row, (layer,) if layer else (), move, notes)
+        shapes += _shapes(one, row, PurePosixPath(layer).parts, move, notes)
     return shapes
 
 
@@ -122,13 +102,25 @@ def _crs(companions: Mapping[str, bytes], crs: str | None, layer: str) -> Any:
     return crs_of_prj(companions[".prj"].decode("utf-8", "replace").strip("\ufeff\x00 \r\n\t"))
 
 
-def _encoding(companions: Mapping[str, bytes]) -> str:
-    name = companions.get(".cpg", b"").decode("ascii", "ignore").strip()
-    try:
-        "".encode(name or "utf-8")
-    except LookupError:
-        return "utf-8"
-    return name or "utf-8"
+def _encoding(companions: Mapping[str, bytes], notes: list[str], layer: str) -> str:
+    """The code page of the table: of .cpg, else as the table says, else as its text looks."""
+    table = companions.get(".dbf", b"")
+    named = codec_of(companions.get(".cpg", b"").decode("utf-8", "ignore"))
+    if named == "utf-8" and not reads(_text_of(table), named):
+        notes.append(f"{layer or 'the table'} is not of the code page that its .cpg names")
+        named = None
+    codec = named or codec_of_driver(table)
+    if codec is None:
+        codec = guessed(_text_of(table))
+        if table[29:30] == b"\x00" and not _text_of(table).isascii():
+            notes.append(f"{layer or 'the table'} names no code page and is read as {codec}")
+    return codec
+
+
+def _text_of(table: bytes) -> bytes:
+    """The rows: the head holds numbers."""
+    head = struct.unpack_from("<H", table, 8)[0] if len(table) >= 10 else len(table)
+    return table[head:]
 
 
 def _shapes(

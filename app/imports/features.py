@@ -81,15 +81,18 @@ def features(shapes: Sequence[Shape], options: ImportOptions, notes: list[str]) 
         )
     check_choices(options, shapes)
     made = Made()
-    taken: set[str] = set()
+    given = _Names()
     whole = 0
     for number, (shape, verdict) in enumerate(zip(shapes, verdicts(shapes, options), strict=True), 1):
         names: list[str] = []
+        why = verdict.why
         for piece in _pieces(shape, verdict.role, options, notes):
-            name = _free_name(piece.name or verdict.role, taken, numbered=not piece.name)
+            name = given.free(piece.name or verdict.role, numbered=not piece.name)
             wrong, feature = _feature(name, piece, verdict, options, notes)
             made.findings.extend(wrong)
-            if feature is not None:
+            if feature is None:
+                why = f"{verdict.why}: {verdict.role}, but it {wrong[0].message}"
+            else:
                 made.features.append(feature)
                 names.append(name)
                 whole += not wrong
@@ -100,7 +103,7 @@ def features(shapes: Sequence[Shape], options: ImportOptions, notes: list[str]) 
                 shape.folders,
                 shape.kind,
                 verdict.role if names else NONE,
-                verdict.why,
+                why,
                 bool(verdict.doubt),
                 tuple(names),
             )
@@ -186,13 +189,23 @@ def _feature(
     return wrong, {"type": "Feature", "id": name, "geometry": geometry(shape), "properties": properties}
 
 
-def _free_name(name: str, taken: set[str], *, numbered: bool) -> str:
-    candidate, count = (f"{name} 1" if numbered else name), 1
-    while candidate in taken:
-        count += 1
-        candidate = f"{name} {count}"
-    taken.add(candidate)
-    return candidate
+class _Names:
+    """Names given so far; each feature has one of its own."""
+
+    def __init__(self) -> None:
+        self._taken: set[str] = set()
+        self._counts: dict[str, int] = {}
+
+    def free(self, name: str, *, numbered: bool) -> str:
+        """The name, or else with the next number that nothing has."""
+        count = self._counts.get(name, 1)
+        candidate = f"{name} {count}" if numbered else name
+        while candidate in self._taken:
+            count += 1
+            candidate = f"{name} {count}"
+        self._counts[name] = count
+        self._taken.add(candidate)
+        return candidate
 
 
 def _judge(name: str, role: str, shape: Shape) -> tuple[list[Finding], bool]:

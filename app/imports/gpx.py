@@ -22,7 +22,7 @@ def read_gpx(data: bytes, notes: list[str]) -> list[Shape]:
     RegionFileError
         Where it is no GPX, or a point has no place.
     """
-    root = parse(data)
+    root = parse(data, notes)
     if local_name(root) != "gpx":
         raise file_error("not-gpx", f"the file is a <{local_name(root)[:40]}>, not GPX", "send GPX")
     shapes: list[Shape] = []

@@ -1,18 +1,49 @@
-"""KML (OGC 12-007r2) and KMZ: placemarks in folders."""
+"""KML (OGC 12-007r2, and 2.0 to 2.1) and KMZ: placemarks in folders, of all documents of an archive."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import PurePosixPath
+from urllib.parse import unquote
 from xml.etree.ElementTree import Element
 
 from app.imports.archive import unpack
 from app.imports.errors import file_error
-from app.imports.rings import grouped
-from app.imports.shapes import LonLat, Rings, Shape, labelled, line_of
+from app.imports.placemark import shapes_of
+from app.imports.shapes import Shape
 from app.imports.xml import child_text, children, local_name, parse
 
-_CONTAINERS = ("kml", "Document", "Folder")
-_GEOMETRIES = ("Point", "LineString", "LinearRing", "Polygon", "MultiGeometry", "Track", "MultiTrack")
+_CONTAINERS = ("kml", "Document", "Folder", "NetworkLinkControl", "Update", "Create")
+_IMAGES = ("GroundOverlay", "PhotoOverlay", "ScreenOverlay")
+_MAX_NAME = 500
+
+
+@dataclass
+class _Archive:
+    """Documents of an archive by path, and which of them have been read."""
+
+    documents: Mapping[str, bytes] = field(default_factory=dict)
+    at: str = ""
+    read: set[str] = field(default_factory=set)
+
+    def linked(self, address: str) -> str | None:
+        """The document that a link of the present one leads to; None for one outside."""
+        path = unquote(address.split("#")[0].split("?")[0]).strip().replace("\\", "/")
+        if not path or "://" in path:
+            return None
+        wanted = _flat((PurePosixPath(self.at).parent / path).parts), _flat(PurePosixPath(path).parts)
+        return next((name for name in self.documents if name.casefold() in wanted), None)
+
+
+def _flat(parts: tuple[str, ...]) -> str:
+    kept: list[str] = []
+    for part in parts:
+        if part == "..":
+            del kept[-1:]
+        elif part not in (".", "/"):
+            kept.append(part)
+    return "/".join(kept).casefold()
 
 
 def read_kml(data: bytes, notes: list[str]) -> list[Shape]:
@@ -23,119 +54,112 @@ def read_kml(data: bytes, notes: list[str]) -> list[Shape]:
     RegionFileError
         Where it is no KML, or a coordinate is none.
     """
-    root = parse(data)
-    if local_name(root) != "kml":
-        raise file_error("not-kml", f"the file is a <{local_name(root)[:40]}>, not KML", "send KML")
-    shapes: list[Shape] = []
-    for placemark, folders in _placemarks(root, (), notes):
-        found = _shapes(placemark, folders, notes)
-        if not found:
-            notes.append(f"{child_text(placemark, 'name') or 'a placemark'} has no geometry and is left out")
-        shapes += found
-    return shapes
+    return _read(data, (), _Archive(), notes)
 
 
 def read_kmz(data: bytes, notes: list[str]) -> list[Shape]:
-    """The shapes of the KML document in an archive: ``doc.kml``, or else its first."""
-    documents = unpack(data, (".kml",))
+    """The shapes of every KML document in an archive."""
+    documents = {
+        name: content
+        for name, content in unpack(data, (".kml", ".wpml")).items()
+        if "__MACOSX" not in name and not PurePosixPath(name).name.startswith("._")
+    }
     if not documents:
         raise file_error("no-kml", "the archive holds no .kml file", "pack a doc.kml")
+    return read_documents(documents, notes)
+
+
+def read_documents(documents: Mapping[str, bytes], notes: list[str]) -> list[Shape]:
+    """The shapes of documents that lie together.
+
+    ``doc.kml`` first, or else the first; a document that another links to stands where the link does; those
+    that nothing links to follow, their paths their folders.
+    """
+    # the waylines of a flight of DJI are made of its template
+    template = next((name for name in documents if PurePosixPath(name).name.lower() == "template.kml"), None)
+    if template is not None:
+        beside = [name for name in documents if name.lower().endswith(".wpml")]
+        documents = {name: content for name, content in documents.items() if name not in beside}
+        notes += [f"{name} is made of {template} and is left out" for name in beside]
+    archive = _Archive(documents)
     main = next((name for name in documents if name.lower() == "doc.kml"), next(iter(documents)))
-    if len(documents) > 1:
-        notes.append(f"of {len(documents)} documents in the archive, {main} is read")
-    return read_kml(documents[main], notes)
+    shapes: list[Shape] = []
+    for name in (main, *(name for name in documents if name != main)):
+        if name not in archive.read:
+            path = PurePosixPath(name)
+            folders = () if name == main else (*path.parent.parts, path.stem)
+            archive.at = name
+            archive.read.add(name)
+            shapes += _read(documents[name], folders, archive, notes)
+    return shapes
 
 
-def _placemarks(
-    element: Element, folders: tuple[str, ...], notes: list[str]
-) -> Iterator[tuple[Element, tuple[str, ...]]]:
-    for child in element:
-        kind = local_name(child)
-        if kind == "Placemark":
-            yield child, folders
-        elif kind in _CONTAINERS:
-            name = child_text(child, "name")
-            inside = (*folders, name) if name else folders
-            yield from _placemarks(child, inside, notes)
-        elif kind == "NetworkLink":
-            notes.append("a network link is not followed")
-
-
-def _shapes(placemark: Element, folders: tuple[str, ...], notes: list[str]) -> list[Shape]:
-    name = child_text(placemark, "name")
-    properties = dict(_data(placemark))
-    polygons: list[Rings] = []
-    others: list[Shape] = []
-    for geometry in _flat(placemark):
-        kind = local_name(geometry)
-        if kind == "Polygon":
-            polygons += grouped(_polygon(geometry, name))
-        elif kind == "LinearRing":
-            polygons.append((_coordinates(geometry, name),))
-        elif kind in ("Point", "LineString"):
-            positions = _coordinates(geometry, name)
-            others.append(line_of(positions[:1] if kind == "Point" else positions, name, folders))
-        elif kind == "Track":
-            others.append(line_of(_track(geometry, name), name, folders))
-    shapes = [Shape("polygon", tuple(polygons), name, folders)] if polygons else []
-    shapes += others
-    return labelled([Shape(shape.kind, shape.parts, name, folders, properties) for shape in shapes])
-
-
-def _flat(element: Element) -> Iterator[Element]:
-    for geometry in children(element, *_GEOMETRIES):
-        if local_name(geometry) in ("MultiGeometry", "MultiTrack"):
-            yield from _flat(geometry)
+def _read(data: bytes, folders: tuple[str, ...], archive: _Archive, notes: list[str]) -> list[Shape]:
+    root = parse(data, notes)
+    if local_name(root) not in ("kml", "Document", "Folder", "Placemark"):
+        raise file_error("not-kml", f"the file is a <{local_name(root)[:40]}>, not KML", "send KML")
+    own = _own_kinds(root)
+    shapes: list[Shape] = []
+    for element, inside in _walk([root], folders, own):
+        if local_name(element) == "NetworkLink":
+            shapes += _followed(element, inside, archive, notes)
+        elif local_name(element) in _IMAGES:
+            notes.append(f"{child_text(element, 'name') or 'an overlay'} is an image and is left out")
         else:
-            yield geometry
+            found = shapes_of(element, inside, own.get(local_name(element), {}), notes)
+            if not found:
+                notes.append(
+                    f"{child_text(element, 'name') or 'a placemark'} has no geometry and is left out"
+                )
+            shapes += found
+    return shapes
 
 
-def _polygon(polygon: Element, name: str) -> Rings:
-    outer = [_coordinates(ring, name) for ring in _boundary(polygon, "outerBoundaryIs")]
-    if len(outer) != 1:
-        raise file_error("kml-polygon", f"{name or 'a polygon'} has {len(outer)} outer rings", "give it one")
-    return (*outer, *(_coordinates(ring, name) for ring in _boundary(polygon, "innerBoundaryIs")))
+def _walk(
+    elements: list[Element], folders: tuple[str, ...], own: Mapping[str, object]
+) -> Iterator[tuple[Element, tuple[str, ...]]]:
+    for element in elements:
+        kind = local_name(element)
+        if kind == "Placemark" or kind in own or kind == "NetworkLink" or kind in _IMAGES:
+            yield element, folders
+        elif kind in _CONTAINERS:
+            said = [child_text(element, key)[:_MAX_NAME] for key in ("name", "description")]
+            yield from _walk(list(element), (*folders, *(text for text in said if text)), own)
 
 
-def _boundary(polygon: Element, kind: str) -> Iterator[Element]:
-    for boundary in children(polygon, kind):
-        yield from children(boundary, "LinearRing")
+def _followed(link: Element, folders: tuple[str, ...], archive: _Archive, notes: list[str]) -> list[Shape]:
+    name = child_text(link, "name")
+    inside = (*folders, name) if name else folders
+    address = next(
+        (
+            child_text(holder, "href")
+            for holder in children(link, "Link", "Url")
+            if child_text(holder, "href")
+        ),
+        "",
+    )
+    target = archive.linked(address)
+    if target is None:
+        notes.append(f"the network link {(name or address)[:80]!r} leads elsewhere and is not followed")
+        return []
+    if target in archive.read:
+        return []
+    archive.read.add(target)
+    before, archive.at = archive.at, target
+    shapes = _read(archive.documents[target], inside, archive, notes)
+    archive.at = before
+    return shapes
 
 
-def _coordinates(geometry: Element, name: str) -> tuple[LonLat, ...]:
-    """Longitude, latitude and height by commas, places by white space."""
-    text = child_text(geometry, "coordinates")
-    places = [_numbers(word.split(","), name) for word in text.split()]
-    if not places:
-        raise file_error("kml-coordinates", f"{name or 'a placemark'} has no coordinates", "give it some")
-    return tuple(places)
-
-
-def _track(track: Element, name: str) -> tuple[LonLat, ...]:
-    places = [_numbers((coord.text or "").split(), name) for coord in children(track, "coord")]
-    if not places:
-        raise file_error("kml-coordinates", f"{name or 'a track'} has no coordinates", "give it some")
-    return tuple(places)
-
-
-def _numbers(words: list[str], name: str) -> LonLat:
-    try:
-        if not 2 <= len(words) <= 3:
-            raise ValueError
-        return float(words[0]), float(words[1])
-    except ValueError:
-        found = ",".join(words)[:60]
-        raise file_error(
-            "kml-coordinates",
-            f"{name or 'a placemark'} has the coordinate {found!r}",
-            "write longitude,latitude or longitude,latitude,height, without blanks after the commas",
-        ) from None
-
-
-def _data(placemark: Element) -> Iterator[tuple[str, str]]:
-    for extended in children(placemark, "ExtendedData"):
-        for data in children(extended, "Data"):
-            yield data.get("name", ""), child_text(data, "value")
-        for schema in children(extended, "SchemaData"):
-            for simple in children(schema, "SimpleData"):
-                yield simple.get("name", ""), (simple.text or "").strip()
+def _own_kinds(root: Element) -> dict[str, dict[str, str]]:
+    """Elements that a schema makes placemarks (KML 2.0 and 2.1): fields by the name of the element."""
+    kinds: dict[str, dict[str, str]] = {}
+    for element in root.iter():
+        if local_name(element) != "Schema":
+            continue
+        parent = element.get("parent") or child_text(element, "parent")
+        name = element.get("name") or child_text(element, "name")
+        if parent == "Placemark" and name and name not in _CONTAINERS:
+            fields = [field.get("name", "") or child_text(field, "name") for field in element]
+            kinds[name] = {one: one for one in fields if one}
+    return kinds

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from pathlib import PurePosixPath
 from typing import Any
 
 from app.imports import esri, gpx, kml, plain
-from app.imports.archive import is_zip, unpack
+from app.imports.archive import is_zip
+from app.imports.bundle import read_bundle
 from app.imports.errors import file_error
 from app.imports.features import Account, features
 from app.imports.options import ImportOptions, check_options
@@ -41,7 +43,7 @@ class Imported:
     notes: tuple[str, ...]
 
 
-FORMATS = ("kml", "kmz", "gpx", "shp", "shapefile", "geojson")
+FORMATS = ("kml", "kmz", "gpx", "shp", "shapefile", "zip", "geojson")
 
 
 def import_regions(
@@ -70,9 +72,8 @@ def import_regions(
     """
     options = options or ImportOptions()
     check_options(options)
-    found = form or _format(data)
     notes: list[str] = []
-    shapes = _shapes(found, data, options.crs, companions or {}, notes)
+    found, shapes = _read(data, form, options.crs, companions or {}, notes)
     made = features(shapes, options, notes)
     collection = {"type": "FeatureCollection", "features": made.features}
     return Imported(
@@ -80,17 +81,39 @@ def import_regions(
     )
 
 
+def _read(
+    data: bytes, form: str | None, crs: str | None, companions: Mapping[str, bytes], notes: list[str]
+) -> tuple[str, list[Shape]]:
+    found = form or _format(data)
+    if found in ("zip", "kmz", "shapefile"):
+        wanted = None if form in (None, "zip") else form
+        return read_bundle(data, crs, notes, lambda inner, name: _member(inner, name, crs, notes), wanted)
+    return found, _shapes(found, data, crs, companions, notes)
+
+
+def _member(data: bytes, name: str, crs: str | None, notes: list[str]) -> list[Shape]:
+    """One file of an archive, its path its folders."""
+    found = _format(data)
+    if found == "zip":
+        raise file_error("archive-nested", f"{name} is an archive within an archive", "unpack it")
+    path = PurePosixPath(name)
+    above = (*path.parent.parts, path.stem)
+    return [
+        replace(shape, folders=(*above, *shape.folders)) for shape in _shapes(found, data, crs, {}, notes)
+    ]
+
+
 def _format(data: bytes) -> str:
     if not data.strip():
         raise file_error("empty", "the file is empty", f"send one of {', '.join(FORMATS)}")
     if is_zip(data):
-        return "kmz" if unpack(data, (".kml",)) else "shapefile"
+        return "zip"
     if data[:4] == esri.MAGIC:
         return "shp"
     start = data.lstrip(b"\xef\xbb\xbf \t\r\n")[:1]
     if start in (b"{", b"["):
         return "geojson"
-    if start == b"<" or data[:2] in (b"\xff\xfe", b"\xfe\xff"):
+    if start == b"<" or data[:2] in (b"\xff\xfe", b"\xfe\xff", b"\x00<"):
         return "gpx" if local_name(parse(data)) == "gpx" else "kml"
     raise file_error(
         "unknown-format",
@@ -105,14 +128,10 @@ def _shapes(
     match form:
         case "kml":
             return kml.read_kml(data, notes)
-        case "kmz":
-            return kml.read_kmz(data, notes)
         case "gpx":
             return gpx.read_gpx(data, notes)
         case "shp":
             return esri.read_shapefile(data, companions, crs, notes)
-        case "shapefile":
-            return esri.read_archive(data, crs, notes)
         case "geojson":
             return plain.read_geojson(data, crs, notes)
     raise file_error(

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from shapely import Polygon, contains_xy
+from shapely import Point, Polygon, STRtree
 
 from app.imports.options import NONE, ROLES, ImportOptions, choice_of
 from app.imports.rings import encloses
@@ -61,11 +61,7 @@ class Verdict:
 
 def verdicts(shapes: Sequence[Shape], options: ImportOptions) -> list[Verdict]:
     """The role of each shape, in order."""
-    named: dict[str, list[Polygon]] = {}
-    for shape in shapes:
-        if shape.kind == "polygon":
-            of_name = named.setdefault(shape.name.casefold(), [])
-            of_name += [Polygon(part[0]) for part in shape.parts if encloses(part[0])]
+    named = _named_polygons(shapes)
     found = [_verdict(shape, options, number, named) for number, shape in enumerate(shapes, 1)]
     seen_start = False
     for index, verdict in enumerate(found):
@@ -76,7 +72,7 @@ def verdicts(shapes: Sequence[Shape], options: ImportOptions) -> list[Verdict]:
     return found
 
 
-def _verdict(shape: Shape, options: ImportOptions, number: int, named: dict[str, list[Polygon]]) -> Verdict:
+def _verdict(shape: Shape, options: ImportOptions, number: int, named: Mapping[str, STRtree]) -> Verdict:
     choice = choice_of(options, shape, number)
     if choice is not None:
         return Verdict(choice.role, f"chosen for {choice.which!r}")
@@ -189,9 +185,20 @@ def _closable(shape: Shape, role: str) -> bool:
     return shape.kind == "line" and "polygon" in KINDS[role] and len(line) > 3 and line[0] == line[-1]
 
 
-def _labels(shape: Shape, named: dict[str, list[Polygon]]) -> bool:
+def _labels(shape: Shape, named: Mapping[str, STRtree]) -> bool:
     """Whether it is a point within a polygon of its name that says nothing of its own."""
     if shape.kind != "point" or not shape.name or {"role", "radius_m"} & shape.properties.keys():
         return False
-    lon, lat = shape.parts[0][0][0]
-    return any(bool(contains_xy(polygon, lon, lat)) for polygon in named.get(shape.name.casefold(), ()))
+    tree = named.get(shape.name.casefold())
+    return tree is not None and len(tree.query(Point(shape.parts[0][0][0]), "within")) > 0
+
+
+def _named_polygons(shapes: Sequence[Shape]) -> dict[str, STRtree]:
+    """The polygons of every name that a point has as well."""
+    points = {shape.name.casefold() for shape in shapes if shape.kind == "point"}
+    found: dict[str, list[Polygon]] = {}
+    for shape in shapes:
+        if shape.kind == "polygon" and shape.name.casefold() in points:
+            rings = [Polygon(part[0]) for part in shape.parts if encloses(part[0])]
+            found.setdefault(shape.name.casefold(), []).extend(rings)
+    return {name: STRtree(polygons) for name, polygons in found.items()}

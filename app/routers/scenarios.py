@@ -215,7 +215,7 @@ async def import_regions(
     request: Request,
     desk: DeskDep,
     form: Annotated[
-        Literal["kml", "kmz", "gpx", "shp", "shapefile", "geojson"] | None,
+        Literal["kml", "kmz", "gpx", "shp", "shapefile", "zip", "geojson"] | None,
         Query(
             alias="format", description="Format of the body; found by media type and content when left out."
         ),

@@ -59,6 +59,7 @@ SEEDS = {
     "gpx": GPX,
     "shp": SHAPES[".shp"],
     "shapefile": archive_of(SHAPES),
+    "zip": packed({"a/doc.kml": KML, "b/points.geojson": GEOJSON} | {f"c{e}": d for e, d in SHAPES.items()}),
     "geojson": GEOJSON,
 }
 

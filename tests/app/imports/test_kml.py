@@ -146,7 +146,7 @@ def test_a_closed_line_can_be_a_zone() -> None:
         (b"<html/>", "not-kml"),
         (kml(placemark("x", polygon([(lat, lon + 90) for lon, lat in RING]))), "latitude-out-of-range"),
         (kml(placemark("x", polygon(RING[:2]))), "ring-too-short"),
-        (kml(placemark("x", point(8.5, 47.3))).replace(b"8.5,47.3", b"8.5, 47.3"), "kml-coordinates"),
+        (kml(placemark("x", point(8.5, 47.3))).replace(b"8.5,47.3", b"8.5 47.3"), "kml-coordinates"),
         (kml(placemark("x", polygon(RING))).replace(b"8.5,47.3", b"nan,47.3"), "latitude-out-of-range"),
         (kml(placemark("x", point(8.5, 47.3))), "role-unknown"),
         (kml(placemark("x", "<LineString><coordinates/></LineString>")), "kml-coordinates"),
@@ -180,11 +180,12 @@ def test_entities_are_refused(prolog: str) -> None:
     assert rule_of(f"{prolog}<kml><Placemark/></kml>".encode()) == "xml-entities"
 
 
-def test_a_kmz_is_read_from_its_main_document() -> None:
-    """doc.kml goes before other documents; images beside it do not matter."""
+def test_every_document_of_a_kmz_is_read() -> None:
+    """doc.kml goes before other documents, whose paths are folders; images beside them do not matter."""
     main, other = kml(placemark("main", polygon(RING))), kml(placemark("other", polygon(RING)))
     data = packed({"a/other.kml": other, "doc.kml": main, "files/icon.png": b"\x89PNG"})
-    assert [f["id"] for f in imported(data)] == ["main"]
+    assert [f["id"] for f in imported(data)] == ["main", "other"]
+    assert import_regions(data).shapes[1].folders == ("a", "other", "d")
     assert [f["id"] for f in imported(packed({"x.kml": other}))] == ["other"]
 
 

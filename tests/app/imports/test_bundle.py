@@ -1,0 +1,138 @@
+"""Archives: every file of regions in them is read."""
+
+from __future__ import annotations
+
+import json
+import zipfile
+from io import BytesIO
+
+import pytest
+from shapely.geometry import Polygon, shape
+
+from app.imports import Imported, ImportOptions, RegionFileError, import_regions
+from app.imports.rings import grouped
+from tests.app.imports.samples import GPX, HOLE, RING, folder, kml, packed, placemark, polygon, shapefiles
+
+SHAPES = shapefiles([[RING[::-1]]], ["meadow"])
+GEOJSON = json.dumps({"type": "Polygon", "coordinates": [RING]}).encode()
+
+
+def link(address: str, name: str = "") -> str:
+    return f"<NetworkLink><name>{name}</name><Link><href>{address}</href></Link></NetworkLink>"
+
+
+def names_of(found: Imported) -> list[str]:
+    return [account.name for account in found.shapes]
+
+
+def test_all_files_of_an_archive_are_read() -> None:
+    """KML, a shapefile, GPX, GeoJSON and an archive of KML in one: none is passed over."""
+    inner = packed({"doc.kml": kml(placemark("inner", polygon(RING)))})
+    members = {
+        "fields.kml": kml(placemark("field", polygon(RING))),
+        "NFZ/zone.geojson": GEOJSON,
+        "t.gpx": GPX,
+    }
+    members |= {"in.kmz": inner} | {f"gis/land{ending}": content for ending, content in SHAPES.items()}
+    found = import_regions(packed(members), ImportOptions(width_m=10.0))
+    assert found.format == "zip"
+    assert set(names_of(found)) == {"field", "inner", "meadow", "", "river", "power line", "mast"}
+    by_name = {account.name: account for account in found.shapes}
+    assert by_name[""].role == "no_fly"
+    assert by_name["meadow"].folders == ("gis", "land")
+
+
+def test_what_macos_keeps_beside_is_passed_over() -> None:
+    """Neither __MACOSX nor ._ files are anybody's regions."""
+    members = {
+        "__MACOSX/._doc.kml": b"\x00\x05\x16\x07",
+        "__MACOSX/fields.shp": b"x",
+        "._fields.shp": b"\x00",
+    }
+    members |= {"doc.kml": kml(placemark("field", polygon(RING)))}
+    assert names_of(import_regions(packed(members))) == ["field"]
+    members |= {f"fields{ending}": content for ending, content in SHAPES.items()}
+    assert names_of(import_regions(packed(members))) == ["field", "meadow"]
+
+
+def test_links_within_an_archive_are_followed() -> None:
+    """Documents stand where the link does, in its folder; each once, in circles too; no link leads out."""
+    main = kml(
+        folder(
+            "Zones",
+            link("layers/A%20b.KML", "no fly"),
+            link("http://127.0.0.1/x.kml"),
+            link("../../etc/x.kml"),
+        )
+    )
+    inner = kml(placemark("inside", polygon(RING)), link("../doc.kml"), link("./c.kml"))
+    data = packed(
+        {"doc.kml": main, "layers/a b.kml": inner, "layers/c.kml": kml(placemark("c", polygon(RING)))}
+    )
+    found = import_regions(data)
+    assert [(a.name, a.role) for a in found.shapes] == [("inside", "no_fly"), ("c", "no_fly")]
+    assert sum("leads elsewhere" in note for note in found.notes) == 2
+
+
+def test_names_that_differ_in_case_belong_together() -> None:
+    """FIELDS.SHP has its table and reference system in fields.Dbf and Fields.PRJ."""
+    members = {"FIELDS.SHP": SHAPES[".shp"], "fields.Dbf": SHAPES[".dbf"], "Fields.PRJ": SHAPES[".prj"]}
+    assert names_of(import_regions(packed(members))) == ["meadow"]
+
+
+def test_paths_of_any_code_page_say_what_they_say() -> None:
+    """A folder name in GBK, which the archive doesn't declare, forbids like any other."""
+    buffer = BytesIO()
+    with zipfile.ZipFile(buffer, "w") as archive:
+        archive.writestr("QQQ/zone.geojson", GEOJSON)
+    word = "禁飞".encode("gbk")
+    assert import_regions(buffer.getvalue()).shapes[0].role == "roi"
+    data = buffer.getvalue().replace(b"QQQ/zone", word + b"/one")
+    assert import_regions(data).shapes[0].role == "no_fly"
+
+
+def test_a_bad_file_of_an_archive_is_named() -> None:
+    """What is wrong says in which file."""
+    data = packed({"a.geojson": GEOJSON, "b.gpx": b"<gpx><wpt/></gpx>"})
+    with pytest.raises(RegionFileError) as caught:
+        import_regions(data)
+    assert caught.value.findings[0].feature == "b.gpx"
+
+
+@pytest.mark.parametrize("turned", [(False, False), (True, True), (False, True), (True, False)])
+def test_rings_have_holes_whatever_way_they_run(turned: tuple[bool, bool]) -> None:
+    """A shapefile's rings in any direction and order are one polygon with its hole, and an island in that."""
+    island = [(8.525, 47.325), (8.535, 47.325), (8.535, 47.335), (8.525, 47.325)]
+    outer, hole = (ring[::-1] if turn else ring for ring, turn in zip((RING, HOLE), turned, strict=True))
+    wanted = Polygon(RING, [HOLE]).union(Polygon(island))
+    for rings in ([outer, hole, island], [island, hole, outer], [hole, island, outer]):
+        files = shapefiles([rings], ["x"])
+        (feature,) = import_regions(packed({f"x{e}": c for e, c in files.items()})).collection["features"]
+        assert shape(feature["geometry"]).symmetric_difference(wanted).area < 1e-12
+        (feature,) = import_regions(
+            json.dumps({"type": "Polygon", "coordinates": rings}).encode()
+        ).collection["features"]
+        assert shape(feature["geometry"]).symmetric_difference(wanted).area < 1e-12
+
+
+def test_rings_that_cross_and_rings_drawn_twice_are_no_holes() -> None:
+    """Only what lies wholly in another is cut out of it."""
+    away = [(lon + 0.05, lat) for lon, lat in RING]
+    assert [len(part) for part in grouped([tuple(RING), tuple(away)])] == [1, 1]
+    assert [len(part) for part in grouped([tuple(RING), tuple(RING), tuple(HOLE)])] == [2]
+
+
+def test_rings_within_rings_have_an_end() -> None:
+    """Thousands of rings side by side are grouped, thousands within each other refused by name."""
+    many = [
+        tuple((8.0 + i * 1e-3 + x * 1e-4, 47.0 + y * 1e-4) for x, y in ((0, 0), (1, 0), (1, 1), (0, 0)))
+        for i in range(4000)
+    ]
+    assert len(grouped(many)) == 4000
+    nested = [
+        tuple((8.0 + i * x, 47.0 + i * y) for x, y in ((-1, -1), (1, -1), (0, 1), (-1, -1)))
+        for i in range(1, 2000)
+    ]
+    with pytest.raises(RegionFileError) as caught:
+        grouped(nested)
+    assert caught.value.findings[0].rule == "rings-nested"
