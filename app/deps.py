@@ -8,7 +8,8 @@ from fastapi import Depends, Request
 
 from app.services.desk import Desk
 from app.services.flights.service import FlightService
-from app.services.house import House
+from app.services.house import House, Whereabouts
+from app.services.links.house import LinksHouse
 from app.services.plans.planning import PlanningService
 from app.services.scenarios.kept import ScenarioService
 from app.services.store.audit import AuditStore
@@ -35,16 +36,24 @@ async def _scenarios(house: Annotated[House, Depends(_house)]) -> ScenarioServic
     return house.scenarios
 
 
-async def _fleet(house: Annotated[House, Depends(_house)]) -> Fleet:
-    return house.fleet
+async def _links_house(request: Request) -> LinksHouse:
+    return cast(LinksHouse, request.app.state.house)
 
 
-async def _transfers(house: Annotated[House, Depends(_house)]) -> Transfers:
-    return house.transfers
+async def _whereabouts(house: Annotated[House, Depends(_house)]) -> Whereabouts:
+    return house.whereabouts
 
 
-async def _checks(house: Annotated[House, Depends(_house)]) -> Checks:
-    return house.checks
+async def _fleet(house: Annotated[House | LinksHouse, Depends(_house)]) -> Fleet:
+    return house.station.fleet
+
+
+async def _transfers(house: Annotated[House | LinksHouse, Depends(_house)]) -> Transfers:
+    return house.station.transfers
+
+
+async def _checks(house: Annotated[House | LinksHouse, Depends(_house)]) -> Checks:
+    return house.station.checks
 
 
 async def _flights(house: Annotated[House, Depends(_house)]) -> FlightService:
@@ -68,6 +77,8 @@ SettingsDep = Annotated[Settings, Depends(_settings)]
 DeskDep = Annotated[Desk, Depends(_desk)]
 PlanningDep = Annotated[PlanningService, Depends(_planning)]
 ScenariosDep = Annotated[ScenarioService, Depends(_scenarios)]
+LinksHouseDep = Annotated[LinksHouse, Depends(_links_house)]
+WhereaboutsDep = Annotated[Whereabouts, Depends(_whereabouts)]
 FleetDep = Annotated[Fleet, Depends(_fleet)]
 TransfersDep = Annotated[Transfers, Depends(_transfers)]
 ChecksDep = Annotated[Checks, Depends(_checks)]

@@ -37,5 +37,5 @@ def configure(level: str) -> None:
     root = logging.getLogger()
     root.handlers = [handler]
     root.setLevel(level.upper())
-    for noisy in ("uvicorn.access", "aiosqlite", "alembic", "sse_starlette"):
+    for noisy in ("uvicorn.access", "aiosqlite", "alembic", "sse_starlette", "httpx", "httpcore"):
         logging.getLogger(noisy).setLevel(logging.WARNING)

@@ -13,13 +13,13 @@ from fastapi.staticfiles import StaticFiles
 from starlette.routing import Match, Mount
 from starlette.types import Scope
 
-from app import middleware, problems
+from app import problems
+from app.assembly import assemble, limits_of
 from app.routers import artefacts, audit, flights, health, interface, plans, scenarios, terrain, vehicles
-from app.services.house import House, Limits
-from app.services.vehicles.recordings import Recordings
+from app.services.house import House
+from app.services.limits import Limits
 from app.settings import Settings
 from app.version import VERSION
-from mavlink.links.recording import TlogLimits
 
 DESCRIPTION = """Plans how an aircraft sees regions of interest with a side-looking sensor, among threats, and
 puts the mission into an ArduPilot or PX4 vehicle.
@@ -44,30 +44,6 @@ starts the service.</p>
 <p>The interface for programs is described at <a href="/docs">/docs</a>.</p>"""
 
 
-def limits_of(settings: Settings) -> Limits:
-    """What the services need to know of the settings."""
-    return Limits(
-        database=settings.database,
-        workers=settings.workers,
-        plan_time_limit_s=settings.plan_time_limit_s,
-        max_queued_plans=settings.max_queued_plans,
-        track_interval_s=settings.track_interval_s,
-        plan_memory_bytes=settings.plan_memory_bytes,
-        request_workers=settings.request_workers,
-        request_time_limit_s=settings.request_time_limit_s,
-        request_memory_bytes=settings.request_memory_bytes,
-        recordings=_recordings_of(settings),
-    )
-
-
-def _recordings_of(settings: Settings) -> Recordings | None:
-    if not settings.record_links:
-        return None
-    total_bytes = settings.log_total_bytes
-    limits = TlogLimits(min(settings.log_file_bytes, total_bytes), total_bytes)
-    return Recordings(settings.log_dir or settings.database.parent / "logs", limits)
-
-
 def create_app(settings: Settings | None = None, build_house: Callable[[Limits], House] = House) -> FastAPI:
     """The application for some settings; services start with its lifespan."""
     settings = settings or Settings()
@@ -86,30 +62,17 @@ def create_app(settings: Settings | None = None, build_house: Callable[[Limits],
         finally:
             await house.close()
 
-    app = FastAPI(
+    modules = (plans, artefacts, scenarios, terrain, vehicles, flights, audit, health, interface)
+    app = assemble(
+        settings,
+        lifespan,
+        [module.router for module in modules],
         title="Swathplan",
         version=VERSION,
         description=DESCRIPTION,
         openapi_tags=TAGS,
-        lifespan=lifespan,
-        docs_url=None,
-        redoc_url=None,
     )
-    app.state.settings = settings
-    problems.install(app)
-    for module in (plans, artefacts, scenarios, terrain, vehicles, flights, audit, health, interface):
-        app.include_router(module.router)
     _add_map(app, settings)
-    # The last added stands outermost.
-    app.add_middleware(
-        middleware.BodyCap,
-        max_bytes=settings.max_body_bytes,
-        larger={"/api/v1/terrain": settings.max_terrain_bytes},
-    )
-    app.add_middleware(
-        middleware.Guard, allowed_hosts=settings.allowed_hosts, allowed_origins=settings.allowed_origins
-    )
-    app.add_middleware(middleware.RequestLog)
     app.openapi = lambda: _openapi(app)  # type: ignore[method-assign]
     return app
 

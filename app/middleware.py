@@ -80,7 +80,7 @@ class RequestLog:
             route = getattr(scope.get("route"), "path", "unmatched")
             REQUESTS.labels(method=scope["method"], route=route, status=str(status)).inc()
             REQUEST_SECONDS.labels(route=route).observe(took_s)
-            level = "debug" if route.startswith(("/health", "/metrics")) else "info"
+            level = "debug" if route.startswith(("/health", "/metrics", "/links")) else "info"
             getattr(log, level)(
                 "request", method=scope["method"], path=scope["path"], status=status, took_s=round(took_s, 4)
             )

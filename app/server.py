@@ -7,23 +7,30 @@ import hashlib
 import socket
 from collections.abc import Callable, Coroutine, Mapping
 from dataclasses import dataclass
-from itertools import count
 from typing import Any
 
 import structlog
 import uvicorn
+from fastapi import FastAPI
 
+from app.apart import keeper_of
+from app.doorkeeper import DoorProcess
 from app.logging import configure
 from app.main import create_app
 from app.services.documents import write_json
 from app.services.errors import ServiceError
-from app.services.house import House, Limits
+from app.services.house import House
+from app.services.limits import Limits
+from app.services.links.keeper import Keeper
+from app.services.links.place import place_of
+from app.services.vehicles.greeting import Wishes, greet
+from app.serving import GRACE_S, Server, private_socket
 from app.settings import Settings
 
 log = structlog.get_logger(__name__)
 
-#: Open event streams are cut this long after the signal to end.
-GRACE_S = 5
+#: So many connections wait to be accepted while nobody does.
+BACKLOG = 1024
 
 
 class StartError(Exception):
@@ -31,49 +38,22 @@ class StartError(Exception):
 
 
 @dataclass(frozen=True, slots=True)
-class Welcome:
-    """What a fresh service does by itself: connect vehicles, plan a scenario.
+class Welcome(Wishes):
+    """What a fresh service does by itself: connect vehicles, plan a scenario."""
 
-    Parameters
-    ----------
-    vehicle
-        Address of a vehicle to connect unless it is known already; kept for the next start.
-    forward
-        Where to forward its link to, or else that of the simulated aircraft: addresses, and whether stations
-        there may command.
-    """
-
-    simulated: int = 0
-    sim_url: str = "sim:"
     scenario: Mapping[str, Any] | None = None
-    vehicle: str | None = None
-    forward: tuple[tuple[str, bool], ...] = ()
 
 
 async def _greet(house: House, welcome: Welcome) -> None:
     try:
         if welcome.scenario is not None:
             await _plan_sample(house, welcome.scenario)
-        forward = welcome.forward
-        if welcome.vehicle is not None:
-            await _connect(house, welcome.vehicle, forward)
-            forward = ()
-        for number in range(1, welcome.simulated + 1):
-            await house.fleet.connect(f"sim-{number}", welcome.sim_url, keep=False, forward=forward)
+        if house.keeper is not None:
+            await house.keeper.greet()
     except ServiceError as error:
         log.error("start-up wish not fulfilled", reason=str(error))
-
-
-async def _connect(house: House, url: str, forward: tuple[tuple[str, bool], ...]) -> None:
-    """Connect a vehicle; one known from before is only forwarded, where that is wished for."""
-    known = {vehicle.url: vehicle for vehicle in house.fleet.all()}
-    if url in known:
-        if forward:
-            await house.fleet.forward(known[url].id, forward)
-        return
-    names = {vehicle.name for vehicle in known.values()}
-    name = next(name for number in count(1) if (name := f"uav-{number}") not in names)
-    await house.fleet.connect(name, url, forward=forward)
+    if house.keeper is None:
+        await greet(house.fleet, welcome)
 
 
 async def _plan_sample(house: House, scenario: Mapping[str, Any]) -> None:
@@ -84,33 +64,8 @@ async def _plan_sample(house: House, scenario: Mapping[str, Any]) -> None:
         await house.planning.submit(scenario)
 
 
-class _Server(uvicorn.Server):
-    """Tells when it listens, then greets."""
-
-    def __init__(
-        self,
-        config: uvicorn.Config,
-        listening: Callable[[], Coroutine[Any, Any, None]],
-        ending: Callable[[], Coroutine[Any, Any, None]],
-    ) -> None:
-        super().__init__(config)
-        self._listening = listening
-        self._ending = ending
-        self._greeting: asyncio.Task[None] | None = None
-
-    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
-        await super().startup(sockets)
-        if self.started:
-            self._greeting = asyncio.create_task(self._listening())
-
-    async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
-        # Before the services close: what is still being connected would outlive them.
-        if self._greeting is not None:
-            self._greeting.cancel()
-            await asyncio.gather(self._greeting, return_exceptions=True)
-        # Requests that wait for a vehicle get their answer now; in GRACE_S they would be cut.
-        await self._ending()
-        await super().shutdown(sockets)
+def _house_apart(limits: Limits, keeper: Keeper) -> House:
+    return House(limits, keeper=keeper)
 
 
 def listen(config: uvicorn.Config) -> socket.socket:
@@ -141,6 +96,8 @@ def run_server(
 ) -> None:
     """Serve until a signal; ``announce`` gets the address once requests are answered.
 
+    The links to the vehicles are held in this process.
+
     Raises
     ------
     StartError
@@ -148,7 +105,73 @@ def run_server(
     """
     configure(settings.log_level)
     app = create_app(settings, build_house)
-    config = uvicorn.Config(
+    config = _config(app, settings)
+    listener = listen(config)
+    address = _address(settings, listener)
+
+    async def listening() -> None:
+        announce(address)
+        await _greet(app.state.house, welcome)
+
+    _run(app, Server(config, listening, app_ending(app)), listener)
+
+
+def run_apart(
+    settings: Settings,
+    welcome: Welcome,
+    announce: Callable[[str], None],
+    build_house: Callable[[Limits, Keeper], House] = _house_apart,
+    *,
+    keep_links: bool = False,
+) -> None:
+    """The same with the links in a process of their own, and a door before both that goes to either.
+
+    Parameters
+    ----------
+    keep_links
+        Whether that process stays when this one ends in good order; it stays anyway while a vehicle is armed.
+
+    Raises
+    ------
+    StartError
+        As ``run_server``, and when the process of the links does not begin.
+    """
+    configure(settings.log_level)
+    wishes = Wishes(welcome.simulated, welcome.sim_url, welcome.vehicle, welcome.forward)
+    keeper = keeper_of(settings, wishes, keep=keep_links)
+    app = create_app(settings, lambda limits: build_house(limits, keeper))
+    config = _config(app, settings)
+    listener = listen(config)
+    listener.listen(BACKLOG)
+    address = _address(settings, listener)
+    place = place_of(settings.database)
+    door = DoorProcess(listener, place)
+
+    async def listening() -> None:
+        await door.open()
+        announce(address)
+        await asyncio.gather(_greet(app.state.house, welcome), door.watch())
+
+    with listener:
+        try:
+            place.web.parent.mkdir(parents=True, exist_ok=True)
+            _run(app, Server(config, listening, app_ending(app)), private_socket(place.web))
+        finally:
+            door.close()
+            place.web.unlink(missing_ok=True)
+
+
+def app_ending(app: FastAPI) -> Callable[[], Coroutine[Any, Any, None]]:
+    """What an application's services do before its server ends."""
+
+    async def ending() -> None:
+        await app.state.house.let_go()
+
+    return ending
+
+
+def _config(app: FastAPI, settings: Settings) -> uvicorn.Config:
+    return uvicorn.Config(
         app,
         host=settings.host,
         port=settings.port,
@@ -157,18 +180,14 @@ def run_server(
         server_header=False,
         timeout_graceful_shutdown=GRACE_S,
     )
-    listener = listen(config)
-    port = listener.getsockname()[1]
+
+
+def _address(settings: Settings, listener: socket.socket) -> str:
     name = f"[{settings.host}]" if ":" in settings.host else settings.host
+    return f"http://{name}:{listener.getsockname()[1]}"
 
-    def listening() -> Coroutine[Any, Any, None]:
-        announce(f"http://{name}:{port}")
-        return _greet(app.state.house, welcome)
 
-    async def ending() -> None:
-        await app.state.house.fleet.close()
-
-    server = _Server(config, listening, ending)
+def _run(app: FastAPI, server: Server, listener: socket.socket) -> None:
     try:
         server.run(sockets=[listener])
     except SystemExit as error:  # uvicorn's end after a failed start

@@ -22,6 +22,7 @@ class Benchmark(StrEnum):
     TRANSIT = "transit"
     KERNELS = "kernels"
     START = "start"
+    ISOLATION = "isolation"
 
 
 def _options(pairs: list[str]) -> dict[str, Any]:

@@ -43,6 +43,14 @@ def serve(
     scenario: Annotated[
         str | None, typer.Option(help="Plan this scenario at the start.", metavar="FILE")
     ] = None,
+    keep_links: Annotated[
+        bool,
+        typer.Option(
+            "--keep-links",
+            help="Let the process that holds the links to the vehicles go on when this command ends. It does "
+            "so anyway while a vehicle is armed; the next serve finds it again.",
+        ),
+    ] = False,
     as_json: Json = False,
 ) -> None:
     """Serve the map and the HTTP interface.
@@ -69,7 +77,7 @@ def serve(
     forwards = [(url, False) for url in forward or ()] + [(url, True) for url in forward_write or ()]
     _check_vehicle(vehicle, forwards, sim_count if sim else 0)
 
-    from app.server import StartError, Welcome, run_server
+    from app.server import StartError, Welcome, run_apart
 
     welcome = Welcome(
         simulated=sim_count if sim else 0,
@@ -83,7 +91,7 @@ def serve(
         emit(f'{{"address": "{address}"}}' if as_json else f"Swathplan is at {address}")
 
     try:
-        run_server(settings, welcome, announce)
+        run_apart(settings, welcome, announce, keep_links=keep_links)
     except StartError as error:
         raise CommandError(str(error)) from error
 

@@ -7,7 +7,7 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Query, Response
 from fastapi.responses import HTMLResponse
 
-from app.deps import FleetDep, FlightsDep, PlanningDep, SettingsDep
+from app.deps import FlightsDep, PlanningDep, SettingsDep, WhereaboutsDep
 from app.problems import responses
 from app.routers.streams import page_answer
 from app.schemas.flights import FlightList, FlightOut
@@ -90,7 +90,7 @@ async def report(flight_id: str, flights: FlightsDep) -> HTMLResponse:
 async def refly(
     flight_id: str,
     flights: FlightsDep,
-    fleet: FleetDep,
+    whereabouts: WhereaboutsDep,
     planning: PlanningDep,
     settings: SettingsDep,
     response: Response,
@@ -101,7 +101,7 @@ async def refly(
     A new scenario, named `<name>-refly`: the unseen parts of the regions, slivers left out, among the same
     threats and zones. 409 when nothing is left to fly again for.
     """
-    scenario = await flights.refly(flight_id, fleet.place_in_flight(flight_id))
+    scenario = await flights.refly(flight_id, await whereabouts.place_in_flight(flight_id))
     record = await planning.submit(scenario)
     if wait > 0 and not record.ended:
         record = await planning.wait(record.id, min(wait, settings.max_wait_s))

@@ -41,6 +41,8 @@ async def ready(house: HouseDep, response: Response) -> Health:
         "database": await house.database.answers(),
         "workers": all(pool.ready for pool in pools),
     }
+    if house.keeper is not None:
+        checks["links"] = await house.keeper.client.answers()
     if all(checks.values()):
         return Health(status="ok", version=VERSION, checks=checks)
     response.status_code = 503

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from typing import Protocol
 
 import structlog
 
 from app.services.desk import Desk
+from app.services.errors import LinkError
 from app.services.flights.service import FlightService
+from app.services.limits import Limits
+from app.services.links.keeper import Keeper
 from app.services.plans import work
 from app.services.plans.planning import BoundTask, PlanningService, Task
 from app.services.plans.pool import Pool, WorkerPool
@@ -23,27 +27,11 @@ from app.services.store.plans import PlanStore
 from app.services.store.scenarios import ScenarioStore
 from app.services.store.terrain import TerrainStore
 from app.services.terrain.service import TerrainService
-from app.services.vehicles.recordings import Recordings
+from app.services.vehicles.fleet import Fleet
 from app.services.vehicles.station import Station
 from app.services.vehicles.times import DEFAULT_TIMES, LinkTimes
 
 log = structlog.get_logger(__name__)
-
-
-@dataclass(frozen=True, slots=True)
-class Limits:
-    """How much the services take on."""
-
-    database: Path
-    workers: int
-    plan_time_limit_s: float
-    max_queued_plans: int
-    track_interval_s: float
-    plan_memory_bytes: int = 8_000_000_000
-    request_workers: int = 3
-    request_time_limit_s: float = 30.0
-    request_memory_bytes: int = 2_000_000_000
-    recordings: Recordings | None = None
 
 
 def terrain_folder(database: Path) -> Path:
@@ -51,8 +39,21 @@ def terrain_folder(database: Path) -> Path:
     return database.resolve().with_name(database.stem + "-terrain")
 
 
+class Whereabouts(Protocol):
+    """Who knows where vehicles in flight are."""
+
+    async def place_in_flight(self, flight_id: str) -> tuple[float, float, float | None] | None:
+        """Longitude, latitude and course in degrees of the vehicle on a flight; None when none is."""
+
+
 class House:
-    """The services, wired."""
+    """The services, wired.
+
+    Parameters
+    ----------
+    keeper
+        Keeps the process that holds the links to the vehicles; None where they are held here.
+    """
 
     def __init__(
         self,
@@ -64,6 +65,7 @@ class House:
         initialiser: Callable[[], None] = work.initialise,
         pool: Pool | None = None,
         times: LinkTimes = DEFAULT_TIMES,
+        keeper: Keeper | None = None,
     ) -> None:
         self.database = Database(limits.database)
         self.pool = pool or WorkerPool(
@@ -90,23 +92,55 @@ class House:
         )
         self.audit = AuditStore(self.database)
         self.flights = FlightService(FlightStore(self.database), self.planning, self.desk)
-        station = Station(
-            self.database, self.planning.library, limits.track_interval_s, limits.recordings, times
+        self.keeper = keeper
+        self._station = (
+            Station(self.database, self.planning.library, limits.track_interval_s, limits.recordings, times)
+            if keeper is None
+            else None
         )
-        self.checks, self.transfers, self.fleet = station.checks, station.transfers, station.fleet
+
+    @property
+    def station(self) -> Station:
+        """The vehicles; raises LinkError where another process holds them."""
+        if self._station is None:
+            raise LinkError("the links to the vehicles are held by another process")
+        return self._station
+
+    @property
+    def fleet(self) -> Fleet:
+        """The vehicles held here."""
+        return self.station.fleet
+
+    @property
+    def whereabouts(self) -> Whereabouts:
+        """Who knows where vehicles in flight are."""
+        return self.station.fleet if self.keeper is None else self.keeper.client
 
     async def open(self) -> None:
         """Open the database, start the workers, take up waiting plans."""
         await self.database.open()
-        self.pool.warm()
-        self.desk.pool.warm()
-        await self.planning.start()
-        await self.fleet.open()
+        async with asyncio.TaskGroup() as opening:
+            if self.keeper is not None:
+                # Before the workers: it takes its time to begin, and the vehicles wait for it.
+                opening.create_task(self.keeper.open())
+                await asyncio.sleep(0)
+            self.pool.warm()
+            self.desk.pool.warm()
+            await self.planning.start()
+        if self.keeper is None:
+            await self.fleet.open()
 
     async def close(self) -> None:
         """Stop everything, in the opposite order."""
-        await self.fleet.close()
+        await self.let_go()
         await self.planning.stop()
         await self.desk.pool.stop()
         await self.pool.stop()
         await self.database.close()
+
+    async def let_go(self) -> None:
+        """Let the vehicles go, or whoever holds them; once is enough, again is harmless."""
+        if self.keeper is None:
+            await self.fleet.close()
+        else:
+            await self.keeper.close()

@@ -17,6 +17,7 @@ from app.logging import configure
 from app.main import create_app
 from app.routers.bodies import EXAMPLE
 from app.services.house import House, Limits
+from app.services.links.keeper import Keeper
 from app.services.plans.work import plan_scenario
 from app.services.vehicles.times import LinkTimes
 from app.settings import Settings
@@ -48,7 +49,7 @@ def impatient_house(limits: Limits) -> House:
     return fake_house(limits, IMPATIENT)
 
 
-def pooled_house(limits: Limits) -> House:
+def pooled_house(limits: Limits, keeper: Keeper | None = None) -> House:
     """Services whose planner is a stand-in, in planning processes that can be killed."""
     return House(
         limits,
@@ -56,6 +57,7 @@ def pooled_house(limits: Limits) -> House:
         bound_task=fakes.bound,
         judge_scenario=fakes.judge,
         initialiser=fakes.no_warm_up,
+        keeper=keeper,
     )
 
 

@@ -1,5 +1,7 @@
 """A service process whose planner is a stand-in: ``python -m tests.app.fake_server DATABASE``.
 
+With ``apart`` behind it the links are held in a process of their own, as by ``swathplan serve``.
+
 Planning processes import this module anew, so it imports nothing at its top.
 """
 
@@ -14,17 +16,20 @@ def announce(address: str) -> None:
     sys.stdout.flush()
 
 
-def main(database: str) -> None:
+def main(database: str, apart: str | None = None) -> None:
     """Serve until a signal."""
     from pathlib import Path
 
-    from app.server import Welcome, run_server
+    from app.server import Welcome, run_apart, run_server
     from app.settings import Settings
     from tests.app.conftest import pooled_house
 
     settings = Settings(database=Path(database), workers=1, port=0, log_level="error")
-    run_server(settings, Welcome(), announce, pooled_house)
+    if apart is None:
+        run_server(settings, Welcome(), announce, pooled_house)
+    else:
+        run_apart(settings, Welcome(), announce, pooled_house)
 
 
 if __name__ == "__main__":
-    main(sys.argv[1])
+    main(*sys.argv[1:])

@@ -63,10 +63,16 @@ class Database:
 
     One service at a time: a lock file beside the database keeps a second one out, because each takes the
     plans it finds running at start for its predecessor's.
+
+    Parameters
+    ----------
+    alone
+        Whether this is the service; a process beside it neither locks nor migrates.
     """
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, *, alone: bool = True) -> None:
         self.path = path.resolve()
+        self._alone = alone
         self._engine: AsyncEngine | None = None
         self._sessions: async_sessionmaker[AsyncSession] | None = None
         self._lock: int | None = None
@@ -75,6 +81,18 @@ class Database:
 
     async def open(self) -> None:
         """Lock, migrate, connect; raises StorageError where the file cannot be used."""
+        if self._alone:
+            await self._take()
+        self._engine = create_async_engine(
+            f"sqlite+aiosqlite:///{self.path}",
+            pool_size=_CONNECTIONS,
+            max_overflow=0,
+            pool_timeout=BUSY_S,
+        )
+        event.listen(self._engine.sync_engine, "connect", _on_connect)
+        self._sessions = async_sessionmaker(self._engine, expire_on_commit=False)
+
+    async def _take(self) -> None:
         try:
             self.path.parent.mkdir(parents=True, exist_ok=True)
             lock = os.open(self.path.with_name(self.path.name + ".lock"), os.O_RDWR | os.O_CREAT, 0o600)
@@ -90,14 +108,6 @@ class Database:
             await asyncio.to_thread(migrate, self.path)
         except sql_errors.DatabaseError as error:
             raise StorageError(f"{self.path}: {storage_error(error)}") from error
-        self._engine = create_async_engine(
-            f"sqlite+aiosqlite:///{self.path}",
-            pool_size=_CONNECTIONS,
-            max_overflow=0,
-            pool_timeout=BUSY_S,
-        )
-        event.listen(self._engine.sync_engine, "connect", _on_connect)
-        self._sessions = async_sessionmaker(self._engine, expire_on_commit=False)
 
     @asynccontextmanager
     async def reading(self) -> AsyncIterator[AsyncSession]:

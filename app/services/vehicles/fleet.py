@@ -232,7 +232,18 @@ class Fleet:
                     vehicle = queue.get_nowait()
                 yield vehicle
 
-    def place_in_flight(self, flight_id: str) -> tuple[float, float, float | None] | None:
+    def heard(self) -> bool:
+        """Whether a vehicle is heard that is neither simulated nor a recording."""
+        return any(vehicle.state.connected for vehicle in self._real())
+
+    def in_use(self) -> tuple[str, ...]:
+        """Names of those vehicles, of them, that are armed or in flight, also where they are out of reach."""
+        return tuple(v.name for v in self._real() if v.state.armed or v.flight_id is not None)
+
+    def _real(self) -> list[Vehicle]:
+        return [v for v in self._vehicles.values() if v.simulated is None and not v.replay]
+
+    async def place_in_flight(self, flight_id: str) -> tuple[float, float, float | None] | None:
         """Longitude, latitude and course in degrees of the vehicle on a flight; None when none is."""
         for vehicle in self._vehicles.values():
             state = vehicle.state
