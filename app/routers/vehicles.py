@@ -248,10 +248,12 @@ async def command(vehicle_id: str, body: CommandIn, fleet: FleetDep) -> CommandO
     Answered once the vehicle shows it (`done`), or `pending` after `wait_s`. Refused and overtaken commands
     are a 409, those nobody can tell of a 504, each a problem with the command's members and, in `errors`,
     the rule and the way out: `not-armed` (start), `mode-would-take-off` (arm), `no-landing` (land of a fixed
-    wing), `command-refused` (the vehicle said no), and whatever `doubt` of the vehicle says.
+    wing), `mission-differs`, `mission-unknown`, `mission-unread` (start, arm: the vehicle is asked what is on
+    board, and it is not what was sent; `as_held` passes), `command-refused` (the vehicle said no), and
+    whatever `doubt` of the vehicle says.
     """
     vehicle = fleet.get(vehicle_id)
-    wish = Wish(body.command, body.seq, body.arm_first, body.hold_first, body.payload)
+    wish = Wish(body.command, body.seq, body.arm_first, body.hold_first, body.payload, body.as_held)
     return CommandOut.of(vehicle, await give_order(vehicle, wish, body.wait_s))
 
 

@@ -98,6 +98,10 @@ class CommandIn(Strict):
     hold_first: bool = Field(
         default=False, description="With arm: first into a mode that keeps the aircraft on the ground."
     )
+    as_held: bool = Field(
+        default=False,
+        description="With start and arm: whatever mission is on board, though it is not the one last sent.",
+    )
     payload: str | None = Field(
         default=None,
         max_length=200,

@@ -72,6 +72,8 @@ class VehicleState:
         Something was heard from it lately; decided by the client.
     other_system
         System id of another autopilot that answers while the vehicle is silent: a swapped aircraft.
+    restarts
+        How often it has started anew since it was heard first: what it held then may be gone.
     address
         Where it is heard from, on a port where anybody may speak.
     strangers
@@ -118,6 +120,7 @@ class VehicleState:
     component_id: int = 0
     connected: bool = False
     other_system: int | None = None
+    restarts: int = 0
     address: str | None = None
     strangers: tuple[str, ...] = ()
     doubt: Doubt | None = None

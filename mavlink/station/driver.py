@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import Any, Final
 
-from mavlink.errors import BusyError, CodecError, DoubtError, LinkError, NotConnectedError, ReadOnlyError
+from mavlink.errors import CodecError, LinkError, NotConnectedError
 from mavlink.links.link import DirectLink, Link, ReplayLink
 from mavlink.state.events import EVENT_MESSAGES, EventOrder
 from mavlink.state.link_quality import LinkQuality
@@ -26,6 +26,8 @@ from mavlink.station.forward.hub import Forwards
 from mavlink.station.identity import Identity
 from mavlink.station.jobs import Job
 from mavlink.station.list_ids import ListIds
+from mavlink.station.requirements import Requirements
+from mavlink.station.restarts import Restarts
 from mavlink.station.trust import Trust
 from mavlink.station.under_way import UnderWay
 from mavlink.transfer.command import CommandMachine, CommandOutcome
@@ -40,7 +42,7 @@ _ACTIVE: Final = 4  # MAV_STATE_ACTIVE
 _MOST_WAITING: Final = 256
 
 
-class Driver:
+class Driver(Requirements):
     """Drives machines over a link on behalf of one ground station and one vehicle.
 
     Parameters
@@ -89,6 +91,9 @@ class Driver:
         self.list_ids = ListIds()
         self.sensor = SensorWatch()
         self.quality = LinkQuality()
+        self._restarts = Restarts()
+        #: Changes with whatever may change the vehicle's lists unseen: a loss, a start, another aircraft.
+        self.epoch = 0
 
     def start(self) -> None:
         """Begin to read and to send heartbeats; again is harmless."""
@@ -150,33 +155,6 @@ class Driver:
             return contextlib.nullcontext()
         return self._forwards.reserved(changes=changes)
 
-    def require_free(self) -> None:
-        """Raise BusyError when a transfer is under way, and what ``require_connected`` raises."""
-        self.require_connected()
-        if self._under_way.transferring:
-            raise BusyError("another transfer with this vehicle is under way")
-
-    def require_connected(self) -> None:
-        """Raise NotConnectedError unless the vehicle is there, ReadOnlyError when it is a recording."""
-        if self.read_only:
-            raise ReadOnlyError(f"{self._link.url} is a recording: it takes no transfers and no commands")
-        if self._failure is not None:
-            raise NotConnectedError(self._failure)
-        if not self.state.connected:
-            raise NotConnectedError(self.absence)
-
-    @property
-    def absence(self) -> str:
-        """Why a vehicle that is not connected cannot be talked to."""
-        return self._failure or self._trust.absence or self._identity.absence(self.state)
-
-    def require_certain(self) -> None:
-        """Raise DoubtError unless the vehicle meant hears, and it alone; NotConnectedError without one."""
-        self.require_connected()
-        doubt = self.state.doubt
-        if doubt is not None:
-            raise DoubtError(doubt.rule, doubt.message, doubt.fix)
-
     def acknowledge(self, address: str) -> None:
         """Take an address for the vehicle's, whoever else says that it is there.
 
@@ -208,6 +186,8 @@ class Driver:
         self.events, self.list_ids, self.quality = EventOrder(), ListIds(), LinkQuality()
         self.sensor = SensorWatch()
         self._identity.adopt(system_id)
+        self._restarts = Restarts()
+        self.epoch += 1
         self._set_state(VehicleState())
         self._trust.adopt(system_id)
 
@@ -336,6 +316,8 @@ class Driver:
             return
         state = self.list_ids.watched(updated(self.state, message, now_s), message, now_s)
         state = self.sensor.watched(state, message, now_s)
+        if self._restarts.noticed(self.state, state, message):
+            state = self._restarted(state)
         if not self.state.connected:
             self._trust.connected()
             self._set_state(self._trust.told(replace(state, connected=True, other_system=None)))
@@ -358,8 +340,18 @@ class Driver:
             self._outgoing.extend([self._codec.pack(request) for request in requests])
         return new
 
+    def _restarted(self, state: VehicleState) -> VehicleState:
+        """It began anew: it counts its events anew, and has to be asked for its telemetry again."""
+        self.epoch += 1
+        self.events = EventOrder()
+        self.quality.forget()
+        if self.state.connected:
+            self._on_connect()
+        return self.sensor.unknown(replace(state, restarts=state.restarts + 1))
+
     def _lose(self) -> None:
         """The vehicle has vanished: nobody can tell what it still took in."""
+        self.epoch += 1
         self.quality.forget()
         self._trust.lost()
         self._set_state(self._trust.told(self.sensor.unknown(replace(self.state, connected=False))))

@@ -22,6 +22,7 @@ from mavlink.station.verify import (
     upload_and_verify,
 )
 from mavlink.transfer.clear import ClearMachine, SetCurrentMachine, flown_for
+from mavlink.transfer.count import CountMachine
 from mavlink.transfer.download import DownloadMachine
 from mavlink.transfer.machine import Progress, TransferSettings
 from mavlink.transfer.outcome import Accepted, Outcome, Unknown
@@ -48,7 +49,7 @@ class MissionTransfers(ABC):
         """Nothing is known of what the vehicle holds."""
         self._pending: Pending | None = None
         self._read_id: int | None = None
-        self._held_mission: tuple[MissionItem, ...] | None = None
+        self._read_mission: tuple[int, tuple[MissionItem, ...]] | None = None
         self._rejected: tuple[tuple[MissionItem, ...], tuple[str, ...]] | None = None
 
     @property
@@ -166,8 +167,30 @@ class MissionTransfers(ABC):
             raise TransferFailedError(f"download of the {mission_type.name.lower()}", outcome)
         self._read_id = machine.opaque_id
         if mission_type is MissionType.MISSION:
-            self._held_mission = machine.items
+            self._read_mission = self._driver.epoch, machine.items
         return machine.items
+
+    @property
+    def _held_mission(self) -> tuple[MissionItem, ...] | None:
+        """The mission as read last, unless the vehicle was lost, restarted or replaced since."""
+        if self._read_mission is None or self._read_mission[0] != self._driver.epoch:
+            return None
+        return self._read_mission[1]
+
+    async def count_held(self) -> tuple[int, int | None]:
+        """How many items the vehicle's mission has, and the vehicle's id of it; None where it gives none.
+
+        Raises
+        ------
+        TransferFailedError, BusyError, NotConnectedError
+            It was not told.
+        """
+        machine = CountMachine(MissionType.MISSION, *self._target(), self._settings)
+        with self.reserved(changes=False):
+            outcome = await self._driver.transfer(machine)
+        if outcome.kind != "accepted":
+            raise TransferFailedError("asking for the number of items", outcome)
+        return machine.count, machine.opaque_id
 
     async def mission_held(self, *, anew: bool = False) -> tuple[MissionItem, ...]:
         """The mission as read last, or read now where it was not, or is not to be believed any more.
@@ -177,9 +200,8 @@ class MissionTransfers(ABC):
         TransferFailedError, BusyError, NotConnectedError
             It could not be read.
         """
-        if self._held_mission is None or anew:
-            return await self.download(MissionType.MISSION)
-        return self._held_mission
+        known = self._held_mission
+        return await self.download(MissionType.MISSION) if known is None or anew else known
 
     async def clear(self, mission_type: MissionType) -> Outcome:
         """Empty one of the vehicle's lists. Raises BusyError, DoubtError, NotConnectedError."""
@@ -194,7 +216,7 @@ class MissionTransfers(ABC):
     def _forget(self, mission_type: MissionType) -> None:
         """What was read of a list no longer counts: it is being changed."""
         if mission_type is MissionType.MISSION:
-            self._held_mission = None
+            self._read_mission = None
 
     async def set_current(self, seq: int) -> Outcome:
         """Make an item the one flown next. Raises BusyError, NotConnectedError.

@@ -44,6 +44,8 @@ class Wish:
         ``start`` arms a disarmed aircraft.
     hold_first
         ``arm`` first puts the aircraft into a mode that keeps it where it is.
+    as_held
+        ``start`` and ``arm`` are given whatever mission is on board.
     payload
         What ``sensor_off`` switches; None for that of the mission held.
     """
@@ -53,6 +55,7 @@ class Wish:
     arm_first: bool = False
     hold_first: bool = False
     payload: str | None = None
+    as_held: bool = False
 
 
 class OrderRefusedError(Exception):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from typing import Final
 
 import structlog
@@ -86,6 +86,16 @@ def tell_order(vehicle: str, outlet: Outlet, message: Message) -> None:
         message=message.name,
         command=command,
     )
+
+
+def tell_forwards(
+    vehicle: str, addresses: Sequence[ForwardAddress], before: Collection[ForwardAddress]
+) -> None:
+    """Log where a vehicle's link is forwarded to since now."""
+    for address in addresses:
+        if address not in before:
+            tell = log.warning if address.write else log.info
+            tell("link forwarded", vehicle=vehicle, to=address.url, may_command=address.write)
 
 
 def changes_mission(message: Message) -> bool:

@@ -18,6 +18,7 @@ from app.services.errors import (
     RefusedError,
     ServiceError,
 )
+from app.services.vehicles.aboard import ASKED, NotAboardError, require_aboard
 from app.services.vehicles.flight_orders import CARRY_OUT, OrderRefusedError, Wish
 from app.services.vehicles.order_book import FLYING, SAFE, Order
 from app.services.vehicles.vehicle import Vehicle
@@ -96,6 +97,10 @@ def _judge(wish: Wish) -> None:
     if wish.command == "goto_item" and wish.seq is None:
         message = "goto_item needs the number of an item in seq"
         raise RefusedError(message, (Finding("seq", "seq-missing", message, "send seq"),))
+    if wish.as_held and wish.command not in ASKED:
+        message = f"as_held says nothing to {wish.command}"
+        fix = "send it with start or arm alone"
+        raise RefusedError(message, (Finding("as_held", "option", message, fix),))
     for option, command in (("arm_first", "start"), ("hold_first", "arm")):
         if getattr(wish, option) and wish.command != command:
             message = f"{option} says nothing to {wish.command}"
@@ -117,11 +122,15 @@ async def _follow(vehicle: Vehicle, wish: Wish, order: Order) -> None:
     try:
         _require_certain(vehicle, wish)
         with vehicle.turns.ordering(wish.command) if flies else nullcontext():
+            if wish.command in ASKED and not wish.as_held:
+                await require_aboard(vehicle)
             outcome, reason = await CARRY_OUT[wish.command](vehicle, wish, order)
         order.end(outcome, reason)
     except asyncio.CancelledError:
         # Overtaken, which is noted already; or the vehicle is let go.
         order.end("unknown", "given up before it was settled; it may have been carried out")
+    except NotAboardError as error:
+        order.end("refused", str(error), (Finding("command", error.rule, error.message, error.fix),))
     except OrderRefusedError as error:
         order.end("refused", str(error), (error.finding,))
     except PayloadError as error:

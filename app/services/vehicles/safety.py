@@ -12,7 +12,8 @@ from app.services.records import SensorAction
 from app.services.vehicles.audit import SERVICE, Audit
 from app.services.vehicles.recorder import FlightRecorder
 from mavlink.encoding.payload import Payload
-from mavlink.errors import CodecError, LinkError, NotConnectedError, ReadOnlyError
+from mavlink.errors import BusyError, CodecError, LinkError, NotConnectedError, ReadOnlyError
+from mavlink.state.outputs import SensorOutput
 from mavlink.state.telemetry import VehicleState
 from mavlink.station.client import VehicleClient
 from mavlink.station.sensor_guard import SensorGuard
@@ -63,6 +64,14 @@ class SensorSafety:
     def hold(self, payload: Payload, passes: Sequence[range], items: int) -> None:
         """The vehicle holds a mission from here."""
         self._guard.hold(payload, passes, items)
+
+    async def output(self, client: VehicleClient, payload: Payload) -> SensorOutput | None:
+        """Where the vehicle shows whether a payload is on; None where it does not, or could not be asked."""
+        try:
+            return await client.sensor_output(payload)
+        except (BusyError, NotConnectedError) as error:
+            log.warning("output of the payload not known", vehicle=self._vehicle, reason=str(error))
+            return None
 
     def interrupt(self, reason: str) -> None:
         """A pass is broken off in a way that the vehicle does not show."""

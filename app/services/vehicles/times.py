@@ -6,6 +6,9 @@ from dataclasses import dataclass
 
 from mavlink.transfer.machine import DEFAULT_SETTINGS, TransferSettings
 
+#: Whoever watches a vehicle that says nothing is told so at least this often.
+TELL_S = 1.0
+
 
 @dataclass(frozen=True, slots=True)
 class LinkTimes:

@@ -15,6 +15,7 @@ from app.services.plans.missions import PARTS, MissionChoice, PartName
 from app.services.records import HeldMission, SentMission
 from app.services.store.uploads import UploadStore
 from app.services.store.vehicles import VehicleStore
+from app.services.vehicles.aboard import Meant
 from app.services.vehicles.audit import Audit
 from app.services.vehicles.brief import Brief, brief_of
 from app.services.vehicles.checks import for_vehicle
@@ -98,6 +99,7 @@ class Transfers:
 
             if "mission" in parts:
                 vehicle.holds_unknown()
+                vehicle.aboard.meant = None
             try:
                 await send_parts(vehicle.client, report, tell)
             finally:
@@ -127,6 +129,7 @@ class Transfers:
                     outcomes[name] = await vehicle.client.clear(PARTS[name])
                     if name == "mission":
                         vehicle.holds_unknown()
+                        vehicle.aboard.meant = None
                         if outcomes[name].kind == "accepted":
                             vehicle.sent = None
                         await self._cleared(vehicle)
@@ -154,7 +157,9 @@ class Transfers:
         held = HeldMission(report.plan_id, report.plan_vehicle, report.payload, report.gimbal)
         if mission is not None:
             if mission.verified:
-                await vehicle.hold(held, report.mission.items_of(PARTS["mission"]))
+                meant = report.mission.items_of(PARTS["mission"])
+                vehicle.aboard.meant = Meant(held, tuple(meant), comparing(report.mission.dialect))
+                await vehicle.hold(held, meant)
             vehicle.found(None if mission.differences is None else not mission.differences)
             vehicle.sent = SentMission(report.plan_id, vehicle.sent_id if mission.verified else None)
         outcome = "unknown" if report.outcome == "not_attempted" else report.outcome
@@ -195,6 +200,7 @@ class Transfers:
             return None
         mission = brief.mission
         meant = mission.items_of(PARTS["mission"])
+        vehicle.aboard.meant = Meant(held, tuple(meant), comparing(mission.dialect))
         found = await vehicle.client.download(PARTS["mission"])
         same = not comparing(mission.dialect)(meant, found)
         if same:

@@ -14,16 +14,17 @@ import structlog
 from app.services.errors import BusyError, ConflictError, LinkError, ServiceError
 from app.services.records import HeldMission, VehicleRecord
 from app.services.store.flights import FlightStore
+from app.services.vehicles.aboard import Aboard
 from app.services.vehicles.audit import Audit
 from app.services.vehicles.connection import Connection, Home, connect, is_replay, simulated_of
-from app.services.vehicles.forwarding import changes_mission, tell_order
+from app.services.vehicles.forwarding import changes_mission, tell_forwards, tell_order
 from app.services.vehicles.order_book import OrderBook
 from app.services.vehicles.recorder import FlightRecorder, HeldPlan
 from app.services.vehicles.recordings import Recordings, Tape
 from app.services.vehicles.safety import SensorSafety
 from app.services.vehicles.simulated import SimulatedAircraft
 from app.services.vehicles.standing import Shown, Standing, standing_of
-from app.services.vehicles.times import DEFAULT_TIMES, LinkTimes
+from app.services.vehicles.times import DEFAULT_TIMES, TELL_S, LinkTimes
 from app.services.vehicles.turns import Turns
 from app.services.vehicles.uploads import UploadReport, read_back
 from mavlink import errors as mavlink_errors
@@ -42,9 +43,6 @@ log = structlog.get_logger(__name__)
 
 #: An upload's unknown outcome is read back so often each time the vehicle comes back.
 RESOLVE_TRIES = 3
-
-#: Whoever watches a vehicle that says nothing is told so at least this often.
-TELL_S = 1.0
 
 
 class Vehicle:
@@ -104,6 +102,7 @@ class Vehicle:
         self.book = OrderBook()
         self.audit = audit
         self.safety = SensorSafety(record.id, record.name, self._recorder, audit, self.tell)
+        self.aboard = Aboard()
         self.lost_since: datetime | None = None
         self._told_s = -math.inf
         # A simulated aircraft is a new one, and holds nothing.
@@ -247,23 +246,22 @@ class Vehicle:
         except mavlink_errors.LinkError as error:
             raise ConflictError(f"forward {error}") from error
         self._forward = addresses
-        for address in addresses:
-            if address not in before:
-                tell = log.warning if address.write else log.info
-                tell("link forwarded", vehicle=self.name, to=address.url, may_command=address.write)
+        tell_forwards(self.name, addresses, before)
 
     def _station_said(self, outlet: Outlet, message: Message) -> None:
         """Another ground station has spoken to it: tell what it orders, and doubt what it changes."""
         tell_order(self.name, outlet, message)
         if changes_mission(message):
-            held = self.held
-            if held is not None:
-                self._believed = HeldMission(held.plan_id, held.plan_vehicle, held.payload, held.gimbal)
-            believed = self._believed
-            self.holds_unknown()
-            # Read back once the station is done.
-            self._believed = believed
-            self.tell()
+            self._doubt_held("another ground station changes it")
+
+    def _doubt_held(self, reason: str) -> None:
+        """Believe no more that it holds what it held, until it is read back."""
+        log.warning("mission in doubt", vehicle=self.name, reason=reason)
+        meant = self.aboard.meant
+        believed = meant.held if self._believed is None and meant is not None else self._believed
+        self.holds_unknown()
+        self._believed = believed
+        self.tell()
 
     def holds_unknown(self) -> None:
         """Believe nothing about the mission it holds: it is being changed."""
@@ -275,7 +273,7 @@ class Vehicle:
         """Another aircraft is in its place: what was known of this one is not that one's."""
         await self._recorder.end("interrupted")
         self.holds_unknown()
-        self.sent = self.upload = None
+        self.sent = self.upload = self.aboard.meant = None
 
     def found(self, same: bool | None) -> None:
         """Reading back has shown whether it holds what was sent; None: it has not."""
@@ -330,6 +328,9 @@ class Vehicle:
                 elif self.lost_since is None and math.isfinite(client.silent_s):
                     self.lost_since = datetime.now(UTC) - timedelta(seconds=client.silent_s)
                 self.tell()
+                if self.sent is not None and not self.turns.changing and (why := self.aboard.lost(state)):
+                    tries = RESOLVE_TRIES
+                    self._doubt_held(why)
                 if not state.connected:
                     tries = RESOLVE_TRIES
                     # What comes back may be another aircraft, or this one with another mission.
@@ -350,7 +351,7 @@ class Vehicle:
     async def _confirm(self, held: HeldMission, *, last: bool) -> None:
         """Read back whether it holds what it held before; a vehicle that does not answer is not believed."""
         try:
-            async with self.turns.busy("reading back the mission held before the restart"):
+            async with self.turns.busy("reading back the mission it held"):
                 self.found(await self._still_holds(self, held))
         except (ServiceError, mavlink_errors.TransferFailedError) as error:
             log.warning("mission not read back", vehicle=self.name, reason=str(error))
@@ -363,11 +364,7 @@ class Vehicle:
     async def hold(self, held: HeldMission, items: Sequence[MissionItem]) -> None:
         """Take it that the vehicle holds a plan as these items, and find out where it shows its payload."""
         payload = DEFAULT_PAYLOAD if held.payload is None else parse_payload(held.payload)
-        output = None
-        try:
-            output = await self.client.sensor_output(payload)
-        except (mavlink_errors.BusyError, mavlink_errors.NotConnectedError) as error:
-            log.warning("output of the payload not known", vehicle=self.name, reason=str(error))
+        output = await self.safety.output(self.client, payload)
         self.held = HeldPlan(held.plan_id, held.plan_vehicle, held.payload, output, held.gimbal)
         self.safety.hold(payload, passes_of(items, payload, self.state.autopilot), len(items))
         # A shutter released by distance shows in its photos alone, and not when it rests.

@@ -1,0 +1,140 @@
+"""What should be on board by what was sent from here, and whether it is: asked before it is flown."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import structlog
+
+from app.services.records import HeldMission
+from mavlink.dialects.compare import Difference
+from mavlink.errors import TransferFailedError
+from mavlink.state.telemetry import VehicleState
+from mavlink.wire.items import MissionItem, MissionType
+
+if TYPE_CHECKING:
+    from app.services.vehicles.vehicle import Vehicle
+
+log = structlog.get_logger(__name__)
+
+#: Orders that have an aircraft fly what it holds, or make it ready to.
+ASKED: Final = frozenset({"start", "arm"})
+#: A report of the number of items may be older than an upload; a second one is not.
+_REPORTS: Final = 2
+#: Another operation is waited for so long.
+_LOOKS: Final = 600
+_LOOK_S: Final = 0.05
+
+Compare = Callable[[tuple[MissionItem, ...], tuple[MissionItem, ...]], tuple[Difference, ...]]
+
+
+class NotAboardError(Exception):
+    """The vehicle does not hold what was sent to it, or nobody can tell."""
+
+    def __init__(self, rule: str, message: str, fix: str) -> None:
+        self.rule, self.message, self.fix = rule, message, fix
+        super().__init__(message)
+
+
+@dataclass(frozen=True, slots=True)
+class Meant:
+    """The mission of a plan as it was read back from the vehicle, and how another one is compared with it."""
+
+    held: HeldMission
+    items: tuple[MissionItem, ...]
+    compare: Compare
+
+
+class Aboard:
+    """Watches one vehicle for signs that it holds something else than was sent to it.
+
+    Attributes
+    ----------
+    meant
+        What was sent and read back last; None where nothing was, or where that is not known.
+    """
+
+    def __init__(self) -> None:
+        self.meant: Meant | None = None
+        self._restarts = 0
+        self._strange = 0
+
+    def lost(self, state: VehicleState) -> str | None:
+        """Why what it holds has to be read anew, told once; None where nothing speaks for it."""
+        if state.restarts != self._restarts:
+            again = state.restarts > self._restarts
+            self._restarts = state.restarts
+            if again:
+                return "it has started anew"
+        expected = None if self.meant is None else len(self.meant.items)
+        gone = bool(expected) and state.mission_state == "none"
+        other = expected is not None and state.mission_total not in (None, expected)
+        self._strange = self._strange + 1 if gone or other else 0
+        if self._strange != _REPORTS:
+            return None
+        return "it holds no mission" if gone else f"it holds {state.mission_total} items, not {expected}"
+
+
+async def require_aboard(vehicle: Vehicle) -> None:
+    """Ask the vehicle what it holds; nothing is asked where nothing was sent from here.
+
+    Of a mission that was read back since the vehicle was last lost, started or changed by anybody, the number
+    of items and the vehicle's own id are asked; every other one is read whole.
+
+    Raises
+    ------
+    NotAboardError
+        It holds something else than was sent, or does not tell.
+    """
+    if vehicle.sent is None:
+        return
+    meant = vehicle.aboard.meant
+    if meant is None:
+        raise NotAboardError(
+            "mission-unknown",
+            f"plan {vehicle.sent.plan_id} was sent to the vehicle, and never read back whole as it was meant",
+            "upload it again; or clear the mission; or order it with as_held to fly whatever is held",
+        )
+    # What else is read of it ends by itself; whoever ordered this waits no longer than for an answer.
+    for _ in range(_LOOKS):
+        if vehicle.turns.operation is None:
+            break
+        await asyncio.sleep(_LOOK_S)
+    try:
+        async with vehicle.turns.busy("asking what is on board"):
+            if vehicle.standing()[0] == "held" and await _counted(vehicle, meant):
+                return
+            found = await vehicle.client.download(MissionType.MISSION)
+    except TransferFailedError as error:
+        raise NotAboardError(
+            "mission-unread",
+            f"the vehicle does not tell what it holds: {error}",
+            "send it again; or order it with as_held to fly whatever is held",
+        ) from error
+    differences = meant.compare(meant.items, found)
+    if differences:
+        vehicle.holds_unknown()
+    else:
+        vehicle.client.recognise(MissionType.MISSION)
+    vehicle.found(not differences)
+    vehicle.tell()
+    if not differences:
+        return
+    log.warning("not on board", vehicle=vehicle.name, plan_id=meant.held.plan_id, held=len(found))
+    what = "no mission" if not found else f"another mission of {len(found)} items"
+    raise NotAboardError(
+        "mission-differs",
+        f"the vehicle holds {what}, and not the {len(meant.items)} items of plan {meant.held.plan_id}: "
+        f"{differences[0]}",
+        "upload the plan again; or order it with as_held to fly what is held",
+    )
+
+
+async def _counted(vehicle: Vehicle, meant: Meant) -> bool:
+    """Whether the number of items, and the id where there is one, are those of what was read back."""
+    count, list_id = await vehicle.client.count_held()
+    known = vehicle.sent_id
+    return count == len(meant.items) and (known is None or list_id in (None, known))
