@@ -111,7 +111,7 @@ _ROI_WITH_PLACE, _ROI_WITHOUT = (0.0, 3.0), (0.0, 1.0, 2.0)
 
 _ARDUPILOT_FRAMES = frozenset({0, 2, 3, 5, 6, 10, 11})
 _PX4_FRAMES = frozenset({0, 3, 5, 6})
-_NAN_TAKEN = {
+_NAN_TAKEN: dict[int, set[int]] = {
     Command.NAV_WAYPOINT: {4},
     Command.NAV_TAKEOFF: {4},
     Command.NAV_LAND: {4},

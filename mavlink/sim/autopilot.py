@@ -2,20 +2,26 @@
 
 from __future__ import annotations
 
+from mavlink.sim.camera import COMPONENT as CAMERA
+from mavlink.sim.camera import Camera
 from mavlink.sim.commands import CommandResult, carry_out, change_mode, order_of
 from mavlink.sim.dynamics import AircraftState
 from mavlink.sim.executor import Do, Landed, Reached, Said, place_of
 from mavlink.sim.faults import Fault, parse_faults
 from mavlink.sim.geodesy import Place
+from mavlink.sim.gimbal import COMPONENT as GIMBAL
+from mavlink.sim.gimbal import Gimbal
 from mavlink.sim.missions import MissionServer
 from mavlink.sim.models import build_dynamics
 from mavlink.sim.modes import Flavour, Mode, mode_of
 from mavlink.sim.parameters import Parameters
 from mavlink.sim.payload import Payload
 from mavlink.sim.pilot import Pilot
-from mavlink.sim.replies import received_item, status_text
+from mavlink.sim.replies import received_item, sender, status_text
 from mavlink.sim.settings import SimSettings
-from mavlink.sim.telemetry import OF_THE_PAYLOAD, STREAMS, Snapshot, Streams, build
+from mavlink.sim.small_talk import answer
+from mavlink.sim.streams import OF_THE_GIMBAL, OF_THE_PAYLOAD, STREAMS, Streams
+from mavlink.sim.telemetry import Snapshot, build
 from mavlink.wire.items import MissionItem, MissionResult, MissionType
 from mavlink.wire.messages import Message
 
@@ -28,8 +34,8 @@ class SimulatedAircraft:
 
     Two clocks: ``now_s`` of ``receive`` and ``advance`` is the link's, by which the mission protocol repeats
     and gives up; the simulated time runs ``settings.speedup`` times as fast while armed, and with it flight,
-    timestamps and telemetry rates. It stands still until armed, and leaves the ground only for a mission's
-    take-off.
+    timestamps and telemetry rates. It stands still until armed, and leaves the ground only for a take-off, of
+    its mission or ordered.
     """
 
     def __init__(self, settings: SimSettings) -> None:
@@ -38,7 +44,9 @@ class SimulatedAircraft:
         self._dynamics = build_dynamics(settings)
         self.pilot = Pilot(settings)
         self.payload = Payload(settings, self._faults)
-        self.streams = Streams()
+        self.gimbal = Gimbal(settings.system_id) if settings.gimbal else None
+        self._camera = Camera(settings.system_id, self.payload) if settings.camera else None
+        self.streams = Streams(settings.autopilot)
         self.missions = MissionServer(
             settings.autopilot,
             settings.home,
@@ -92,7 +100,11 @@ class SimulatedAircraft:
 
     def receive(self, message: Message, now_s: float) -> list[Message]:
         """Answers to one message; none to those addressed to another system."""
-        if self.missions.silent(now_s) or not self._addressed(message):
+        if self.missions.silent(now_s):
+            return []
+        if message.fields.get("target_component") in (CAMERA, GIMBAL):
+            return self._to_payload(message)
+        if not self._addressed(message):
             return []
         match message.name:
             case "COMMAND_LONG" | "COMMAND_INT":
@@ -112,9 +124,34 @@ class SimulatedAircraft:
                 return self._fly_here(message)
         if message.name.startswith("MISSION_") and self.state.time_s < self._settings.boot_s:
             return []
-        answers = self.missions.receive(message, now_s) or self._parameters.receive(message)
+        answers = self.missions.receive(message, now_s) or self._set_or_told(message)
         self._reload()
+        return answers or answer(message, self.state.time_s, self.streams)
+
+    def _set_or_told(self, message: Message) -> list[Message]:
+        """The parameter protocol; what is set is flown by."""
+        answers = self._parameters.receive(message)
+        if self._parameters.settings is not self._settings:
+            self._settings = self._parameters.settings
+            self.pilot.retune(self._settings)
         return answers
+
+    def _to_payload(self, message: Message) -> list[Message]:
+        """Orders to the camera or the gimbal instead of the autopilot."""
+        camera, gimbal = self._camera, self.gimbal
+        if message.name != "COMMAND_LONG" or message.integer("target_system") != self._settings.system_id:
+            return []
+        order, asker = order_of(message), sender(message)
+        params = (order.param1, order.param2, order.param3, order.param4)
+        if message.integer("target_component") == CAMERA and camera is not None:
+            said = camera.handle(order.command, params, self.state)
+            result = CommandResult.UNSUPPORTED if said is None else CommandResult.ACCEPTED
+            return [*(said or []), camera.acknowledgement(order.command, asker, result)]
+        if message.integer("target_component") == GIMBAL and gimbal is not None:
+            told = gimbal.told(order.command, order.param1, self.state)
+            result = CommandResult.UNSUPPORTED if told is None else CommandResult.ACCEPTED
+            return [*([told] if told else []), gimbal.acknowledgement(order.command, asker, result)]
+        return []
 
     def advance(self, now_s: float) -> list[Message]:
         """Fly up to a time of the link's clock; everything sent meanwhile, in order.
@@ -142,6 +179,8 @@ class SimulatedAircraft:
         """A telemetry message as of now; None when there is none of that name."""
         if name in OF_THE_PAYLOAD:
             return next(iter(self.payload.reports(name, self.state)), None)
+        if name in OF_THE_GIMBAL:
+            return next(iter(self.gimbal.reports(name, self.state)), None) if self.gimbal else None
         return build(name, self._snapshot(), self._settings) if name in STREAMS else None
 
     def move_home(self, home: Place) -> None:
@@ -156,6 +195,8 @@ class SimulatedAircraft:
         state = self._dynamics.step(step_s, command)
         self._consumed_j += state.power_w * step_s
         out += self.payload.step(state)
+        for part in (self._camera, self.gimbal):
+            out += part.step(state) if part is not None else []
         self.missions.flying = pilot.armed and pilot.mode is Mode.AUTO
         due = self.streams.due(state.time_s)
         if due:
@@ -163,6 +204,8 @@ class SimulatedAircraft:
             for name in due:
                 if name in OF_THE_PAYLOAD:
                     out += self.payload.reports(name, state)
+                elif name in OF_THE_GIMBAL:
+                    out += self.gimbal.reports(name, state) if self.gimbal is not None else []
                 else:
                     out.append(build(name, snapshot, self._settings))
         return out
@@ -190,13 +233,19 @@ class SimulatedAircraft:
         return out
 
     def _do(self, item: MissionItem) -> list[Message]:
+        itself = (self._settings.system_id, self._settings.component_id)
+        if self.gimbal is not None and self.gimbal.handle(item, itself):
+            return []
         params = (item.param1, item.param2, item.param3, item.param4)
-        return self.payload.handle(item.command, params, self.state) or []
+        said = self.payload.handle(item.command, params, self.state)
+        if said is None and self._camera is not None:
+            said = self._camera.handle(item.command, params, self.state)
+        return said or []
 
     def _command(self, message: Message) -> list[Message]:
         order = order_of(message)
         try:
-            result, said = carry_out(self, order)
+            result, said = carry_out(self, order, sender(message))
         except (ValueError, OverflowError):
             # A NaN or an infinity where a whole number is meant.
             result = CommandResult.DENIED
@@ -255,5 +304,6 @@ class SimulatedAircraft:
             total=len(self.missions.items()),
             mission_complete=pilot.mission_complete,
             paused=pilot.paused,
+            fenced=bool(self.missions.items(MissionType.FENCE)),
             list_ids=tuple(self.missions.opaque_id(kind) for kind in MissionType),
         )

@@ -13,12 +13,13 @@ from typing import Protocol
 from mavlink.sim.dynamics import AircraftState
 from mavlink.sim.executor import place_of
 from mavlink.sim.geodesy import MOST_LATITUDE_DEG, Place
+from mavlink.sim.gimbal import Gimbal
 from mavlink.sim.modes import Flavour, Mode, mode_of_command
 from mavlink.sim.payload import Payload
 from mavlink.sim.pilot import Pilot
 from mavlink.sim.replies import status_text
 from mavlink.sim.settings import SimSettings
-from mavlink.sim.telemetry import NAMES, Streams
+from mavlink.sim.streams import NAMES, Streams
 from mavlink.wire.items import Command, Frame, MissionItem
 from mavlink.wire.messages import Message
 
@@ -83,6 +84,7 @@ class Aircraft(Protocol):
 
     pilot: Pilot
     payload: Payload
+    gimbal: Gimbal | None
     streams: Streams
 
     @property
@@ -107,12 +109,19 @@ class Aircraft(Protocol):
 Outcome = tuple[CommandResult, list[Message]]
 #: ArduCopter arms in none of these, AUTO unless AUTO_OPTIONS allows it; planes and PX4 arm in any.
 _NOT_ARMABLE = frozenset({Mode.AUTO, Mode.RTL, Mode.LAND, Mode.BRAKE})
+_GET_MESSAGE_INTERVAL = 510
+#: GET_HOME_POSITION and REQUEST_AUTOPILOT_CAPABILITIES are older than REQUEST_MESSAGE; what they ask for.
+_ASKED = {410: 242, 520: 148}
+_ASKS = {Command.SET_MESSAGE_INTERVAL, _GET_MESSAGE_INTERVAL, Command.REQUEST_MESSAGE, *_ASKED}
 _OK: Outcome = (CommandResult.ACCEPTED, [])
 
 
-def carry_out(aircraft: Aircraft, order: Order) -> Outcome:
+def carry_out(aircraft: Aircraft, order: Order, sender: tuple[int, int]) -> Outcome:
     """Do what is ordered; the result for COMMAND_ACK and what else is to be said."""
     pilot, state = aircraft.pilot, aircraft.state
+    asked = _asked(aircraft, order)
+    if asked is not None:
+        return asked
     match order.command:
         case Command.COMPONENT_ARM_DISARM:
             return _arm(aircraft) if order.param1 == 1.0 else _disarm(aircraft)
@@ -128,8 +137,13 @@ def carry_out(aircraft: Aircraft, order: Order) -> Outcome:
             if not pilot.pause(state, on=order.param1 != 1.0):
                 return _denied("Pause denied: no mission is flown")
             return CommandResult.ACCEPTED, _now(aircraft, "MISSION_CURRENT")
-        case Command.NAV_LAND if aircraft.settings.hovers:
+        case Command.NAV_TAKEOFF:
+            return _take_off(aircraft, order)
+        case Command.NAV_LAND if aircraft.settings.hovers or aircraft.settings.autopilot is Flavour.PX4:
             return change_mode(aircraft, Mode.LAND)
+        case Command.NAV_LAND:
+            # ArduPlane lands by DO_LAND_START or by its mission.
+            return CommandResult.UNSUPPORTED, []
         case Command.DO_PAUSE_CONTINUE:
             return change_mode(aircraft, Mode.AUTO if order.param1 == 1.0 else Mode.LOITER)
         case Command.NAV_RETURN_TO_LAUNCH:
@@ -151,18 +165,31 @@ def carry_out(aircraft: Aircraft, order: Order) -> Outcome:
             return _set_home(aircraft, order)
         case Command.DO_FENCE_ENABLE if aircraft.settings.autopilot is Flavour.ARDUPILOT:
             return CommandResult.ACCEPTED, [status_text(_WARNING, "Fence is stored, not enforced, here")]
-        case Command.SET_MESSAGE_INTERVAL:
-            name = NAMES.get(int(order.param1))
-            if name is None:
-                return CommandResult.UNSUPPORTED, []
-            aircraft.streams.set_interval(name, order.param2)
-            return _OK
-        case Command.REQUEST_MESSAGE:
-            message = aircraft.message(NAMES.get(int(order.param1), ""))
-            return (CommandResult.ACCEPTED, [message]) if message else (CommandResult.UNSUPPORTED, [])
+    if aircraft.gimbal is not None and aircraft.gimbal.handle(order.item, sender):
+        return _OK
     params = (order.param1, order.param2, order.param3, order.param4)
     said = aircraft.payload.handle(order.command, params, state)
     return (CommandResult.UNSUPPORTED, []) if said is None else (CommandResult.ACCEPTED, said)
+
+
+def _asked(aircraft: Aircraft, order: Order) -> Outcome | None:
+    """What messages are asked for, once or at a rate; None when it is another order."""
+    if order.command not in _ASKS:
+        return None
+    number = _ASKED.get(order.command, int(order.param1))
+    name = NAMES.get(number)
+    if order.command == _GET_MESSAGE_INTERVAL:
+        # 0 is "not available".
+        interval_us = aircraft.streams.interval_us(name) if name is not None else 0
+        answer = Message("MESSAGE_INTERVAL", {"message_id": number, "interval_us": interval_us})
+        return CommandResult.ACCEPTED, [answer]
+    if name is None:
+        return CommandResult.UNSUPPORTED, []
+    if order.command == Command.SET_MESSAGE_INTERVAL:
+        aircraft.streams.set_interval(name, order.param2)
+        return _OK
+    message = aircraft.message(name)
+    return (CommandResult.ACCEPTED, [message]) if message else (CommandResult.UNSUPPORTED, [])
 
 
 def change_mode(aircraft: Aircraft, mode: Mode | None) -> Outcome:
@@ -211,6 +238,24 @@ def _start(aircraft: Aircraft) -> Outcome:
     result, more = change_mode(aircraft, Mode.AUTO)
     aircraft.pilot.start()
     return result, said + more
+
+
+def _take_off(aircraft: Aircraft, order: Order) -> Outcome:
+    """PX4 takes the altitude above sea level, ArduCopter above home, and only in GUIDED and armed."""
+    pilot, state, settings = aircraft.pilot, aircraft.state, aircraft.settings
+    if not state.on_ground:
+        return _denied("Takeoff denied: in flight")
+    if settings.autopilot is Flavour.PX4:
+        named_m = order.z if math.isfinite(order.z) and order.z > state.altitude_m else None
+        pilot.take_off(
+            state.altitude_m + settings.take_off_height_m if named_m is None else named_m, aircraft.state
+        )
+    elif _is_copter(aircraft) and pilot.mode is Mode.GUIDED and pilot.armed and order.z > 0.0:
+        pilot.take_off(pilot.home.altitude_m + order.z, state)
+    else:
+        # ArduPlane without rotors takes off in its mission alone.
+        return CommandResult.FAILED, []
+    return CommandResult.ACCEPTED, _now(aircraft, "HEARTBEAT")
 
 
 def _is_copter(aircraft: Aircraft) -> bool:

@@ -26,10 +26,12 @@ class Mode(Enum):
     GUIDED = "GUIDED"
     BRAKE = "BRAKE"
     LAND = "LAND"
+    TAKEOFF = "TAKEOFF"
 
 
 _PX4_MANUAL = 1
 _PX4_AUTO = 4
+_PX4_SUB_TAKEOFF = 2
 _PX4_SUB_LOITER = 3
 _PX4_SUB_MISSION = 4
 _PX4_SUB_RTL = 5
@@ -53,17 +55,16 @@ _PX4 = {
     Mode.RTL: (_PX4_AUTO, _PX4_SUB_RTL),
     # PX4 flies DO_REPOSITION in its Hold mode.
     Mode.GUIDED: (_PX4_AUTO, _PX4_SUB_LOITER),
+    Mode.TAKEOFF: (_PX4_AUTO, _PX4_SUB_TAKEOFF),
+    Mode.LAND: (_PX4_AUTO, _PX4_SUB_LAND),
 }
-
-
-_PX4_MULTIROTOR = _PX4 | {Mode.LAND: (_PX4_AUTO, _PX4_SUB_LAND)}
 
 
 def custom_mode(flavour: Flavour, mode: Mode, *, hovers: bool = False) -> int:
     """``custom_mode`` of HEARTBEAT for a mode; KeyError for one this aircraft has not."""
     if flavour is Flavour.ARDUPILOT:
         return (_ARDUCOPTER if hovers else _ARDUPLANE)[mode]
-    main, sub = (_PX4_MULTIROTOR if hovers else _PX4)[mode]
+    main, sub = _PX4[mode]
     return main << 16 | sub << 24
 
 
@@ -72,8 +73,7 @@ def mode_of(flavour: Flavour, custom: int, *, hovers: bool = False) -> Mode | No
     if flavour is Flavour.ARDUPILOT:
         known = _ARDUCOPTER if hovers else _ARDUPLANE
         return next((mode for mode, number in known.items() if number == custom), None)
-    modes = _PX4_MULTIROTOR if hovers else _PX4
-    numbers = {main << 16 | sub << 24: mode for mode, (main, sub) in reversed(modes.items())}
+    numbers = {main << 16 | sub << 24: mode for mode, (main, sub) in reversed(_PX4.items())}
     return numbers.get(custom)
 
 

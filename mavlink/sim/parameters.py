@@ -1,4 +1,4 @@
-"""The few parameters a ground station asks a vehicle for; read only.
+"""The few parameters a ground station asks a vehicle for; those that the flight goes by can be set.
 
 Source: MAVLink parameter protocol; names of ArduPlane and ArduCopter 4.6 and PX4 1.16.
 """
@@ -6,18 +6,48 @@ Source: MAVLink parameter protocol; names of ArduPlane and ArduCopter 4.6 and PX
 from __future__ import annotations
 
 import math
+from dataclasses import replace
+from typing import Any
 
 from mavlink.sim.modes import Flavour
 from mavlink.sim.settings import SimSettings
 from mavlink.wire.messages import Message
 
 _REAL32 = 9
+#: Parameters that the flight goes by: the setting, and how many of its units one of theirs is.
+_FLOWN_BY: dict[str, tuple[str, float]] = {
+    "RTL_ALTITUDE": ("rtl_altitude_m", 1.0),
+    "RTL_ALT": ("rtl_altitude_m", 0.01),
+    "RTL_RETURN_ALT": ("rtl_altitude_m", 1.0),
+    "AIRSPEED_CRUISE": ("airspeed_m_s", 1.0),
+    "FW_AIRSPD_TRIM": ("airspeed_m_s", 1.0),
+    "WPNAV_SPEED": ("airspeed_m_s", 0.01),
+    "MPC_XY_CRUISE": ("airspeed_m_s", 1.0),
+    "WP_LOITER_RAD": ("turn_radius_m", 1.0),
+    "NAV_LOITER_RAD": ("turn_radius_m", 1.0),
+    "TECS_CLMB_MAX": ("climb_m_s", 1.0),
+    "TECS_SINK_MAX": ("sink_m_s", 1.0),
+    "FW_T_CLMB_R_SP": ("climb_m_s", 1.0),
+    "FW_T_SINK_R_SP": ("sink_m_s", 1.0),
+    "WPNAV_SPEED_UP": ("climb_m_s", 0.01),
+    "WPNAV_SPEED_DN": ("sink_m_s", 0.01),
+    "MPC_Z_V_AUTO_UP": ("climb_m_s", 1.0),
+    "MPC_Z_V_AUTO_DN": ("sink_m_s", 1.0),
+    "MIS_TAKEOFF_ALT": ("take_off_height_m", 1.0),
+}
 
 
 class Parameters:
-    """Answers PARAM_REQUEST_READ, PARAM_REQUEST_LIST and PARAM_SET (which changes nothing and says so)."""
+    """Answers PARAM_REQUEST_READ, PARAM_REQUEST_LIST and PARAM_SET.
+
+    Attributes
+    ----------
+    settings
+        Those started from, with what was set since; a value that the aircraft cannot fly by is not kept.
+    """
 
     def __init__(self, settings: SimSettings) -> None:
+        self.settings = settings
         ardupilot = settings.autopilot is Flavour.ARDUPILOT
         of_the_kind = (
             (_copter if settings.hovers else _plane)
@@ -38,8 +68,24 @@ class Parameters:
             return [self._value(index)] if 0 <= index < len(names) else []
         if message.name == "PARAM_SET":
             index = self._index(message.text("param_id"))
+            if index >= 0:
+                self._set(names[index], message.number("param_value"))
             return [self._value(index)] if index >= 0 else []
         return []
+
+    def _set(self, name: str, value: float) -> None:
+        """Keep a value, and fly by it where it says how."""
+        if not math.isfinite(value):
+            return
+        field, unit = _FLOWN_BY.get(name, ("", 1.0))
+        if field:
+            try:
+                changes: dict[str, Any] = {field: value * unit}
+                self.settings = replace(self.settings, **changes)
+            except ValueError:
+                # Refused, as the old value in the answer says.
+                return
+        self._values[name] = value
 
     def _index(self, name: str) -> int:
         names = list(self._values)
@@ -119,6 +165,7 @@ def _px4(settings: SimSettings) -> dict[str, float]:
             "MAV_SYS_ID": float(settings.system_id),
             "NAV_LOITER_RAD": settings.turn_radius_m,
             "RTL_RETURN_ALT": settings.rtl_altitude_m,
+            "MIS_TAKEOFF_ALT": settings.take_off_height_m,
             "GF_ACTION": 3.0,
             "TRIG_MODE": 4.0,
             "MNT_MODE_IN": 4.0,

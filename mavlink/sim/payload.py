@@ -58,6 +58,11 @@ class Payload:
         self._last_photo_s = 0.0
         self._photos = 0
 
+    @property
+    def photos(self) -> int:
+        """Photos taken so far."""
+        return self._photos
+
     def handle(self, command: int, params: Params, state: AircraftState) -> list[Message] | None:
         """Carry out a payload command; None when it is none, or names an output that is not there.
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 
 from mavlink.sim.acceptance import infeasible
 from mavlink.sim.dynamics import AircraftState, FlightCommand
@@ -13,7 +14,7 @@ from mavlink.sim.kinds import craft_of
 from mavlink.sim.manoeuvres import Manoeuvre
 from mavlink.sim.modes import Flavour, Mode
 from mavlink.sim.settings import SimSettings
-from mavlink.wire.items import Command, MissionItem
+from mavlink.wire.items import Command, Frame, MissionItem
 
 #: MAV_SEVERITY_INFO
 _INFO = 6
@@ -22,7 +23,8 @@ _INFO = 6
 class Pilot:
     """Turns mode, mission and state into a flight command.
 
-    The aircraft leaves the ground only when it is armed, in AUTO, and the mission begins with a take-off.
+    The aircraft leaves the ground only when it is armed, and in AUTO with a mission that begins with a
+    take-off, or ordered to take off.
 
     Attributes
     ----------
@@ -44,6 +46,7 @@ class Pilot:
         self._airspeed_m_s = settings.airspeed_m_s
         self._ground_speed_m_s: float | None = None
         self._waits = False
+        self._lifting = False
 
     @property
     def _copter(self) -> bool:
@@ -127,6 +130,7 @@ class Pilot:
             self._seq = self._run.current
         self.mode = mode
         self._run = self._manoeuvre = None
+        self._lifting = False
         if mode is Mode.AUTO and (state.on_ground or self._seq >= len(self._items)):
             # Whatever is left of an earlier flight, a start from the ground begins with the take-off.
             self._seq = self._first
@@ -142,6 +146,17 @@ class Pilot:
             self._manoeuvre = self._craft.touch_down(state)
         elif mode is Mode.GUIDED:
             self._manoeuvre = self._craft.go(state, goto) if goto else self._craft.wait(state)
+
+    def take_off(self, altitude_m: float, state: AircraftState) -> None:
+        """Straight up, or along the run, to an altitude above sea level, and wait there; PX4 first arms."""
+        self.set_mode(Mode.GUIDED if self._copter else Mode.TAKEOFF, state)
+        item = MissionItem(0, Frame.GLOBAL, Command.NAV_TAKEOFF)
+        self._manoeuvre = self._craft.takeoff(item, replace(state.place, altitude_m=altitude_m), state)
+        self._lifting = True
+
+    def retune(self, settings: SimSettings) -> None:
+        """Fly by other settings from the next manoeuvre on."""
+        self._settings, self._craft = settings, craft_of(settings)
 
     def start(self) -> None:
         """MISSION_START: what waits on the ground in AUTO waits no longer."""
@@ -181,11 +196,22 @@ class Pilot:
         if self._manoeuvre is None:
             return FlightCommand(0.0, airspeed_m_s, 0.0)
         command = self._manoeuvre.command(state, airspeed_m_s)
+        lifting, self._lifting = self._lifting, self._lifting and not self._manoeuvre.done
         if self._manoeuvre.done:
-            self._manoeuvre = None
-            self.events.append(Landed())
-        # Only a take-off of the mission leaves the ground.
-        return FlightCommand() if state.on_ground else command
+            if self._manoeuvre.lands:
+                self._manoeuvre = None
+                self.events.append(Landed())
+            else:
+                self._hold(state)
+        # Only a take-off leaves the ground.
+        return command if lifting or not state.on_ground else FlightCommand()
+
+    def _hold(self, state: AircraftState) -> None:
+        """Behind a take-off PX4 goes over to Hold; ArduCopter stays in GUIDED."""
+        if self.mode is Mode.TAKEOFF:
+            self.set_mode(Mode.LOITER, state)
+        else:
+            self._manoeuvre = self._craft.wait(state)
 
     def _fly_from(self, seq: int, state: AircraftState) -> None:
         self._run = MissionRun(self._items, self._settings, self._craft, self.home)

@@ -6,6 +6,7 @@ import argparse
 import asyncio
 import signal
 import sys
+import time
 from dataclasses import replace
 
 from mavlink.errors import CodecError, LinkError
@@ -54,6 +55,8 @@ async def serve_link(
     """The same on a link that is open already, and stays so."""
     if speedup is not None:
         settings = replace(settings, speedup=speedup)
+    if settings.started_unix_s == 0.0:
+        settings = replace(settings, started_unix_s=time.time())
     session = _Session(link, SimulatedAircraft(settings), Codec(settings.system_id, settings.component_id))
     stop = stop or asyncio.Event()
     tasks = [
@@ -78,6 +81,7 @@ class _Session:
         self._link = link
         self._aircraft = aircraft
         self._codec = codec
+        self._others: dict[tuple[int, int], Codec] = {}
         self._now_s = 0.0
         self._paced = link if isinstance(link, PacedLink) else None
 
@@ -111,10 +115,8 @@ class _Session:
         """Pack many frames into few datagrams: fast flights would else spend their time in system calls."""
         batch = bytearray()
         for message in messages:
-            foreign = message.system_id not in (0, self._codec.system_id)
-            codec = Codec(message.system_id, message.component_id) if foreign else self._codec
             try:
-                frame = codec.pack(message)
+                frame = self._codec_of(message).pack(message)
             except CodecError as error:
                 _say(f"{message.name} not sent: {error}")
                 continue
@@ -124,6 +126,13 @@ class _Session:
             batch += frame
         if batch:
             await self._link.send(bytes(batch))
+
+    def _codec_of(self, message: Message) -> Codec:
+        """The sender's: the autopilot's, a component's, or that of a station that meddles."""
+        named = message.system_id, message.component_id
+        if message.system_id == 0 or named == (self._codec.system_id, self._codec.component_id):
+            return self._codec
+        return self._others.setdefault(named, Codec(*named))
 
 
 def parser() -> argparse.ArgumentParser:

@@ -63,6 +63,8 @@ class SimSettings:
         Fastest that it climbs and descends; 0: as its autopilot does by default.
     l1_period_s
         Period of the lateral guidance; None: 7 s, and 12 s under JSBSim, whose roll is slower.
+    rtl_altitude_m, take_off_height_m
+        Heights above home of a return, and of PX4's take-off that names none.
     acceptance_m
         How far before a waypoint it counts as reached, where the item does not say; 0: when abeam of it, and
         2 m for a multirotor.
@@ -76,6 +78,10 @@ class SimSettings:
         Whether the sensor says by itself that it is on (``SAR_ON``); most do not.
     max_items
         Mission capacity; None: 655 for ArduPilot, 1000 for PX4.
+    camera, gimbal
+        Whether it carries a camera and a gimbal that are MAVLink components of their own.
+    started_unix_s
+        The time of day at its start, in seconds since 1970; 0: it does not know.
     faults
         Names of ``mavlink.sim.faults.Fault``.
     vanish_after_items, vanish_for_s
@@ -105,11 +111,15 @@ class SimSettings:
     cruise_power_w: float = 250.0
     mass_kg: float = 8.0
     rtl_altitude_m: float = 100.0
+    take_off_height_m: float = 10.0
     acceptance_m: float = 0.0
     sensor_relay: int | None = None
     sensor_servo: int | None = None
     sensor_actuator: int = 1
     sensor_command: int = 31010
+    camera: bool = True
+    gimbal: bool = True
+    started_unix_s: float = 0.0
     boot_s: float = 0.0
     sensor_reports: bool = True
     max_items: int | None = None

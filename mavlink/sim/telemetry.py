@@ -1,4 +1,4 @@
-"""Messages the simulated aircraft sends by itself, built from its state, and when each is due.
+"""Messages the simulated aircraft sends by itself, built from its state.
 
 Source: MAVLink ``common.xml`` for units and scales.
 """
@@ -23,37 +23,17 @@ _ARMED_FLAG, _CUSTOM_FLAG, _AUTO_FLAG, _STABILIZE_FLAG, _GUIDED_FLAG = 128, 1, 4
 #: ArduPlane's mode while it starts, and MAV_STATE then: ArduPlane says "calibrating", PX4 "booting".
 _INITIALISING = 16
 _BOOTING = {Flavour.ARDUPILOT: 2, Flavour.PX4: 1}
-_SENSORS = 1 | 2 | 4 | 8 | 32 | 64
+#: MAV_SYS_STATUS: gyroscopes, accelerometers, compass, static and pitot pressure, GPS; logging is none here.
+_SENSORS = 1 | 2 | 4 | 8 | 16 | 32
+_FENCE = 1 << 20
+_PREARM_CHECK = 1 << 28
 _CAPABILITIES = 1 | 2 | 4 | 8 | 8192 | 16384 | 32768
-
-#: Message number and default rate in hertz of simulated time; 0: only on request.
-STREAMS: dict[str, tuple[int, float]] = {
-    "HEARTBEAT": (0, 1.0),
-    "SYS_STATUS": (1, 1.0),
-    "SYSTEM_TIME": (2, 0.0),
-    "GPS_RAW_INT": (24, 2.0),
-    "ATTITUDE": (30, 4.0),
-    "GLOBAL_POSITION_INT": (33, 5.0),
-    "SERVO_OUTPUT_RAW": (36, 0.0),
-    "MISSION_CURRENT": (42, 1.0),
-    "VFR_HUD": (74, 2.0),
-    "BATTERY_STATUS": (147, 0.5),
-    "AUTOPILOT_VERSION": (148, 0.0),
-    "WIND": (168, 0.5),
-    "HOME_POSITION": (242, 0.1),
-    "EXTENDED_SYS_STATE": (245, 1.0),
-    "NAMED_VALUE_INT": (252, 2.0),
-    "CAMERA_CAPTURE_STATUS": (262, 0.0),
-    "RELAY_STATUS": (376, 0.5),
-}
-#: Those that tell of the payload, and come from it.
-OF_THE_PAYLOAD = frozenset({"NAMED_VALUE_INT", "RELAY_STATUS", "SERVO_OUTPUT_RAW", "CAMERA_CAPTURE_STATUS"})
-NAMES = {number: name for name, (number, _) in STREAMS.items()}
 
 
 @dataclass(frozen=True, slots=True)
 class Snapshot:
-    """What telemetry is built from; ``list_ids`` are those of mission, fence and rally points."""
+    """What telemetry is built from; ``list_ids`` are those of mission, fence and rally points;
+    ``fenced`` is whether a fence is stored."""
 
     state: AircraftState
     home: Place
@@ -65,38 +45,7 @@ class Snapshot:
     mission_complete: bool
     paused: bool = False
     list_ids: tuple[int, ...] = (0, 0, 0)
-
-
-class Streams:
-    """Which message is due when; rates count simulated time."""
-
-    def __init__(self) -> None:
-        self._period_s = {name: 1.0 / rate for name, (_, rate) in STREAMS.items() if rate > 0.0}
-        self._due_s = dict.fromkeys(self._period_s, 0.0)
-        self._next_s = 0.0
-
-    def set_interval(self, name: str, interval_us: float) -> None:
-        """SET_MESSAGE_INTERVAL: -1 stops a message, 0 restores its default rate."""
-        rate = STREAMS[name][1]
-        if interval_us < 0.0 or (interval_us == 0.0 and rate <= 0.0):
-            self._period_s.pop(name, None)
-            self._due_s.pop(name, None)
-            return
-        self._period_s[name] = 1.0 / rate if interval_us == 0.0 else max(interval_us / 1e6, 0.02)
-        self._due_s[name] = 0.0
-        self._next_s = 0.0
-
-    def due(self, time_s: float) -> list[str]:
-        """Names due at a simulated time."""
-        if time_s + 1e-9 < self._next_s:
-            return []
-        names = [name for name, due_s in self._due_s.items() if time_s + 1e-9 >= due_s]
-        for name in names:
-            period_s = self._period_s[name]
-            later_s = self._due_s[name] + period_s
-            self._due_s[name] = later_s if later_s > time_s else time_s + period_s
-        self._next_s = min(self._due_s.values(), default=math.inf)
-        return names
+    fenced: bool = False
 
 
 def build(name: str, snapshot: Snapshot, settings: SimSettings) -> Message:
@@ -143,12 +92,15 @@ def _battery(snapshot: Snapshot, settings: SimSettings) -> tuple[int, float, flo
 
 def _sys_status(snapshot: Snapshot, settings: SimSettings) -> Message:
     percent, volts, amperes = _battery(snapshot, settings)
+    sensors = _SENSORS | _PREARM_CHECK
+    enabled = sensors | _FENCE if snapshot.fenced else sensors
     return Message(
         "SYS_STATUS",
         {
-            "onboard_control_sensors_present": _SENSORS,
-            "onboard_control_sensors_enabled": _SENSORS,
-            "onboard_control_sensors_health": _SENSORS,
+            # The fence is kept, whether or not it is in force: nothing here leaves it.
+            "onboard_control_sensors_present": sensors | _FENCE,
+            "onboard_control_sensors_enabled": enabled,
+            "onboard_control_sensors_health": sensors | _FENCE,
             "load": 100,
             "voltage_battery": round(volts * 1000.0),
             "current_battery": min(round(amperes * 100.0), 32767),
@@ -216,6 +168,40 @@ def _attitude(snapshot: Snapshot, settings: SimSettings) -> Message:
             "rollspeed": 0.0,
             "pitchspeed": 0.0,
             "yawspeed": state.turn_rate_rad_s,
+        },
+    )
+
+
+def _attitude_quaternion(snapshot: Snapshot, settings: SimSettings) -> Message:
+    state = snapshot.state
+    q1, q2, q3, q4 = quaternion(state.bank_rad, state.pitch_rad, state.heading_rad)
+    return Message(
+        "ATTITUDE_QUATERNION",
+        {
+            "time_boot_ms": _ms(snapshot),
+            **{"q1": q1, "q2": q2, "q3": q3, "q4": q4},
+            "rollspeed": 0.0,
+            "pitchspeed": 0.0,
+            "yawspeed": state.turn_rate_rad_s,
+        },
+    )
+
+
+def _altitude(snapshot: Snapshot, settings: SimSettings) -> Message:
+    state = snapshot.state
+    above_home_m = state.altitude_m - snapshot.home.altitude_m
+    above_ground_m = state.altitude_m - settings.home.altitude_m
+    return Message(
+        "ALTITUDE",
+        {
+            "time_usec": round(state.time_s * 1e6),
+            "altitude_monotonic": state.altitude_m,
+            "altitude_amsl": state.altitude_m,
+            "altitude_local": above_home_m,
+            "altitude_relative": above_home_m,
+            # The ground is flat here, as high as where it started.
+            "altitude_terrain": above_ground_m,
+            "bottom_clearance": above_ground_m,
         },
     )
 
@@ -317,7 +303,9 @@ def _wind(snapshot: Snapshot, settings: SimSettings) -> Message:
 
 
 def _system_time(snapshot: Snapshot, settings: SimSettings) -> Message:
-    return Message("SYSTEM_TIME", {"time_unix_usec": 0, "time_boot_ms": _ms(snapshot)})
+    # 0 is "not known", as before the first fix.
+    unix_s = settings.started_unix_s + snapshot.state.time_s if settings.started_unix_s > 0.0 else 0.0
+    return Message("SYSTEM_TIME", {"time_unix_usec": round(unix_s * 1e6), "time_boot_ms": _ms(snapshot)})
 
 
 def _autopilot_version(snapshot: Snapshot, settings: SimSettings) -> Message:
@@ -347,6 +335,8 @@ _BUILDERS: dict[str, Callable[[Snapshot, SimSettings], Message]] = {
     "SYSTEM_TIME": _system_time,
     "GPS_RAW_INT": _gps_raw,
     "ATTITUDE": _attitude,
+    "ATTITUDE_QUATERNION": _attitude_quaternion,
+    "ALTITUDE": _altitude,
     "GLOBAL_POSITION_INT": _global_position,
     "MISSION_CURRENT": _mission_current,
     "VFR_HUD": _vfr_hud,

@@ -192,8 +192,9 @@ class Station:
     def texts(self) -> list[str]:
         return [message.text("text") for message in self.heard if message.name == "STATUSTEXT"]
 
-    def named(self, name: str) -> list[Message]:
-        return [message for message in self.heard if message.name == name]
+    def named(self, name: str, component_id: int = 0) -> list[Message]:
+        """Messages of a name: the autopilot's own, or those of another component."""
+        return [each for each in self.heard if each.name == name and each.component_id == component_id]
 
     def reached(self) -> list[int]:
         return [message.integer("seq") for message in self.named("MISSION_ITEM_REACHED")]

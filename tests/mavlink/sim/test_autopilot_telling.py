@@ -9,7 +9,7 @@ import pytest
 
 from mavlink.sim.modes import Flavour
 from mavlink.sim.settings import SimSettings
-from mavlink.sim.telemetry import STREAMS
+from mavlink.sim.streams import STREAMS
 from mavlink.wire.items import Command
 from tests.mavlink.sim.helpers import (
     HOME,

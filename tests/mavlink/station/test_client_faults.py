@@ -24,7 +24,7 @@ from mavlink.wire.items import Command, MissionItem, MissionType
 # The count and questions are repeated early; the patience with a vehicle that asks again each second stays.
 QUICK = TransferSettings(timeout_s=0.3, retries=3, silence_s=4.0, acknowledgement_s=2.5)
 #: So many aircraft at once: on a busy machine more would keep each other waiting longer than that.
-AT_ONCE = 12
+AT_ONCE = 6
 ITEMS = (
     MissionItem(0, 0, Command.NAV_WAYPOINT, x=473_977_000, y=85_456_000, z=488.0),
     MissionItem(1, 3, Command.NAV_TAKEOFF, 15.0, x=473_990_000, y=85_456_000, z=80.0),

@@ -51,7 +51,7 @@ class MavProxy:
         """The lines up to the one that matches."""
         assert self._process.stdout is not None
         lines: list[str] = []
-        async with asyncio.timeout(20.0):
+        async with asyncio.timeout(60.0):
             while not lines or not re.search(pattern, lines[-1]):
                 line = await self._process.stdout.readline()
                 assert line, f"MAVProxy has ended: {lines}"
@@ -150,3 +150,20 @@ async def test_mavproxy_agrees_item_by_item(tmp_path: Path) -> None:
                 # MAVProxy cuts places to the wire's 1e-7 degrees, where we round.
                 assert (abs(their.x - our.x) <= 1, abs(their.y - our.y) <= 1) == (True, True)
                 assert replace(their, x=our.x, y=our.y) == our
+
+
+async def test_a_standard_session(tmp_path: Path) -> None:
+    """Parameters are fetched and set, modes change, it is armed, and no fence is said to be broken."""
+    async with contextlib.AsyncExitStack() as stack:
+        port = await stack.enter_async_context(simulated_plane(Place(47.0, 8.0, 400.0)))
+        proxy = await stack.enter_async_context(mavproxy(port, tmp_path))
+        # It fetches them at once.
+        said = await proxy.order("module load param", r"Saved \d+ parameters")
+        for module in ("mode", "arm", "misc"):
+            said += await proxy.order(f"module load {module}", f"Loaded module {module}")
+        # Setting says nothing when it has worked.
+        said += await proxy.order("param set WP_LOITER_RAD 120\nmode LOITER", "DO_SET_MODE: ACCEPTED")
+        said += await proxy.order("param show WP_LOITER_RAD", r"WP_LOITER_RAD +120")
+        said += await proxy.order("arm throttle", "ARMED")
+        said += await proxy.order("fence list", "Requesting 0 fence items")
+        assert not [line for line in said if "breach" in line.lower()]
