@@ -26,7 +26,7 @@ from mavlink.state.track import Track
 from mavlink.station.client import VehicleClient
 from mavlink.station.verify import VerifiedUpload
 from mavlink.wire.items import MissionType
-from planner.coverage.flown import FlownCoverage
+from planner.as_flown.coverage import FlownCoverage
 from planner.plan import Plan
 from planner.scenario import Scenario
 

@@ -18,7 +18,7 @@ from mavlink.sim.autopilot import SimulatedAircraft
 from mavlink.sim.geodesy import Place
 from mavlink.sim.modes import Flavour
 from mavlink.sim.settings import SimSettings
-from planner.coverage.flown import TrackSample
+from planner.as_flown.track import TrackSample
 from planner.geojson import read_scenario
 from planner.pipeline import make_plan
 from planner.plan import Plan

@@ -10,12 +10,13 @@ from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
+from shapely import union_all
 from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
 from app.services.flights.photos import MISSING_PART, Spacing, place_of
 from app.services.records import FlightEvent, TrackSample
-from planner.coverage.flown import FlownCoverage
+from planner.as_flown.coverage import GRID_M, FlownCoverage
 from planner.plan import Collect, Plan
 from planner.scenario import Scenario
 
@@ -226,7 +227,9 @@ def gaps(scenario: Scenario, result: FlownCoverage) -> tuple[Gap, ...]:
     """
     found = []
     for region in scenario.regions:
-        for part in _polygons(result.unseen[region.name]):
+        # What nobody knows to have been seen is flown again for, too.
+        left = [result.unseen[region.name], result.unknown.get(region.name, Polygon())]
+        for part in _polygons(union_all(left, grid_size=GRID_M)):
             if part.area < SLIVER_M2 or part.buffer(-SLIVER_M).is_empty:
                 continue
             hull = part.convex_hull.buffer(SLIVER_M, join_style="mitre").intersection(region.area)

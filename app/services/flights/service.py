@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
@@ -23,7 +24,8 @@ from app.services.reports.report import write_flight_report
 from app.services.store.flights import FlightStore
 from app.services.terrain.rasters import stored_terrain
 from planner.airspace.terrain import Terrains
-from planner.coverage import flown
+from planner.as_flown import track as record_of
+from planner.as_flown.coverage import FlownCoverage
 from planner.geojson import read_scenario
 from planner.geojson.geometry import written
 from planner.geojson.sheet import continued
@@ -207,15 +209,15 @@ def _runs(samples: tuple[TrackSample, ...]) -> list[list[TrackSample]]:
     return [run for run in runs if len(run) > 1]
 
 
-def seen_by(scenario: Scenario, plan: Plan, samples: tuple[TrackSample, ...]) -> flown.FlownCoverage:
-    """The ground a track saw; heights count from home, and the ground is flat at home's height."""
+def seen_by(scenario: Scenario, plan: Plan, samples: tuple[TrackSample, ...]) -> FlownCoverage:
+    """The ground a track saw; without a height or a roll nothing is seen."""
     track = [
-        flown.TrackSample(
+        record_of.TrackSample(
             time_s=sample.time_s,
             lon_deg=sample.lon_deg,
             lat_deg=sample.lat_deg,
-            height_m=sample.altitude_home_m or 0.0,
-            roll_deg=sample.roll_deg or 0.0,
+            height_m=math.nan if sample.altitude_home_m is None else sample.altitude_home_m,
+            roll_deg=math.nan if sample.roll_deg is None else sample.roll_deg,
             sensor_on=sample.sensor_on,
             heading_deg=sample.heading_deg,
         )

@@ -10,8 +10,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from planner.as_flown.track import TrackSample
 from planner.check import footprint
-from planner.coverage.flown import TrackSample
 from planner.coverage.strips.neighbourhood import check_sensor
 from planner.errors import InfeasibleError, ScenarioError
 from planner.geojson import read_scenario

@@ -22,7 +22,7 @@ from app.services.plans.missions import plan_of
 from app.services.records import TrackSample
 from app.services.store.flights import FlightStore
 from app.settings import Settings
-from planner.coverage.flown import FlownCoverage
+from planner.as_flown.coverage import FlownCoverage
 from planner.geojson import read_scenario
 from planner.plan import Plan
 from tests.app.conftest import fake_house, serving

@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from planner.coverage.flown import FlownCoverage, TrackSample
+from planner.as_flown.coverage import FlownCoverage
+from planner.as_flown.track import TrackSample
 from planner.frames import LocalFrame
 from planner.geojson import read_scenario
 from planner.pipeline import make_plan

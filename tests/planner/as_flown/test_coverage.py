@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 from shapely.geometry import Polygon
 
-from planner.coverage.flown import FlownCoverage, TrackSample
+from planner.as_flown.coverage import FlownCoverage
+from planner.as_flown.track import TrackSample
 from planner.geojson import read_scenario
 from planner.pipeline import make_plan
 from planner.plan import Plan

@@ -1,0 +1,318 @@
+"""The ground really seen: records of a plan's flights, to what of each region was seen, missed or neither.
+
+Nothing fails open: what the record does not tell, or what a processor cannot focus, is not seen. Where
+nothing was recorded it is not known, which is told apart from what was missed.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+from shapely import difference, get_parts, intersection, union_all
+from shapely.geometry import MultiPolygon, Polygon
+from shapely.geometry.base import BaseGeometry
+
+from planner.airspace.airspace import Airspace
+from planner.as_flown import ground, spot, unknown
+from planner.as_flown.limits import MAX_BANK_RAD, MAX_PITCH_RAD
+from planner.as_flown.passes import FlownPass, PlannedPass, Reason, flown_pass, matched, runs
+from planner.as_flown.track import Gap, Line, Record, TrackSample, gaps_of
+from planner.as_flown.unknown import UnknownPart
+from planner.frames import LocalFrame
+from planner.plan import Collect, Plan
+from planner.sensors.sar import SarSensor
+from planner.sensors.suite import Suite
+from planner.vehicle.aircraft import Aircraft
+from planner.vehicle.model import FlightModel
+from planner.wishes import Region
+
+__all__ = ["Asked", "FlownCoverage", "FlownPass", "NotCounted", "Record", "TrackSample", "flown_coverage"]
+
+Rows = NDArray[np.int64]
+
+#: Overlays are done on a grid: without one, outlines equal but for rounding can be taken for disjoint.
+GRID_M = 1e-6
+
+
+@dataclass(frozen=True, slots=True)
+class Asked:
+    """What was to be seen, with what, where."""
+
+    frame: LocalFrame
+    regions: tuple[Region, ...]
+    suite: Suite
+    aircraft: tuple[Aircraft, ...]
+    airspace: Airspace
+
+
+@dataclass(frozen=True, slots=True)
+class NotCounted:
+    """A stretch with the sensor on that counts for nothing.
+
+    Parameters
+    ----------
+    record
+        Which of the records, from 0.
+    samples
+        First and last sample of it.
+    """
+
+    record: int
+    samples: tuple[int, int]
+    reason: Reason
+    start_s: float
+    end_s: float
+    length_m: float
+
+
+@dataclass(frozen=True, slots=True)
+class FlownCoverage:
+    """What was seen at full resolution, in the local frame.
+
+    ``seen``, ``unknown`` and ``unseen`` make up each region; ``unseen`` was missed for certain. ``fraction``
+    and ``unknown_fraction`` are of the region's area, never above 1. ``gaps`` are those of each record.
+    """
+
+    fraction: dict[str, float]
+    seen: dict[str, BaseGeometry]
+    unseen: dict[str, BaseGeometry]
+    passes: tuple[FlownPass, ...]
+    unknown: dict[str, BaseGeometry] = field(default_factory=dict)
+    unknown_fraction: dict[str, float] = field(default_factory=dict)
+    unknown_parts: tuple[UnknownPart, ...] = ()
+    gaps: tuple[tuple[Gap, ...], ...] = ()
+    not_counted: tuple[NotCounted, ...] = ()
+
+
+def flown_coverage(asked: Asked, plan: Plan, records: Sequence[Record]) -> FlownCoverage:
+    """Ground seen by flights of one plan, together.
+
+    Parameters
+    ----------
+    records
+        One for each flight.
+    """
+    judge = _Judge(asked, plan)
+    for number, record in enumerate(records):
+        judge.take(number, record)
+    return judge.verdict()
+
+
+class _Judge:
+    """Takes records one by one."""
+
+    def __init__(self, asked: Asked, plan: Plan) -> None:
+        self._asked, self._plan = asked, plan
+        self._home_m = asked.airspace.home_amsl_m or 0.0
+        self._models = {a.name: FlightModel.of(a, asked.airspace.wind) for a in asked.aircraft}
+        self._passes = tuple(PlannedPass.of(c, asked.frame, self._beside_m(c)) for c in plan.collects)
+        self._ground: dict[str, list[Polygon]] = {}
+        self._flown: dict[tuple[str, int], list[ground.Floats]] = {}
+        self._lines: dict[str | None, list[tuple[Line, tuple[Gap, ...]]]] = {}
+        self._gaps: list[tuple[Gap, ...]] = []
+        self._not_counted: list[NotCounted] = []
+
+    def _beside_m(self, collect: Collect) -> float:
+        """A swath's width aside, nothing of what the pass was to see is seen."""
+        sensor = self._asked.suite.named(collect.sensor).whole()
+        return max(sensor.swath_m(collect.line[0][2] - self._home_m), 1.0)
+
+    def _speed_m_s(self, vehicle: str | None) -> float:
+        """The most it flies over the ground."""
+        wind_m_s = self._asked.airspace.wind.speed_m_s
+        return wind_m_s + max(
+            a.airspeed_m_s for a in self._asked.aircraft if vehicle is None or a.name == vehicle
+        )
+
+    def take(self, number: int, record: Record) -> None:
+        """One flight."""
+        names = {a.name for a in self._asked.aircraft}
+        vehicle = record.vehicle if record.vehicle in names else None
+        line = Line.of(record, self._asked.frame, self._speed_m_s(vehicle))
+        gaps = gaps_of(record.samples, line) + (() if record.gap_after is None else (record.gap_after,))
+        self._gaps.append(gaps)
+        self._lines.setdefault(vehicle, []).append((line, gaps))
+        passes = tuple(p for p in self._passes if vehicle is None or p.collect.vehicle == vehicle)
+        in_pass = matched(line, passes)
+        label = _labels(in_pass, passes)
+        why = self._obstacles(line, in_pass)
+        counted = np.zeros(len(line.places), dtype=bool)
+        reasons = np.array(why, dtype=object)
+        for run in runs(line.sensor_on & np.array([w is None for w in why], dtype=bool), line, label):
+            rows = _moving(line, run)
+            if len(rows) < 2:
+                reasons[run] = "too-short"
+                continue
+            found = self._stretch(line, rows, passes[int(in_pass[rows[len(rows) // 2]])], passes, in_pass)
+            counted[rows[found.counted]] = True
+            reasons[run] = found.reason
+        for row, planned in enumerate(passes):
+            stretches = [line.places[r] for r in runs(line.sensor_on & (in_pass == row), line)]
+            if sum(len(each) for each in stretches) > 1:
+                self._flown.setdefault(planned.key, []).extend(stretches)
+        self._leave_out(number, line, counted, reasons)
+
+    def _obstacles(self, line: Line, in_pass: Rows) -> list[Reason | None]:
+        """What keeps each place from counting by itself."""
+        found: list[Reason | None] = []
+        rows = zip(line.height_m, line.roll_rad, line.pitch_rad, in_pass.tolist(), strict=True)
+        for height_m, roll_rad, pitch_rad, row in rows:
+            reason: Reason | None = None
+            if math.isnan(height_m):
+                reason = "height-unknown"
+            elif math.isnan(roll_rad):
+                reason = "attitude-unknown"
+            elif abs(roll_rad) > MAX_BANK_RAD:
+                reason = "bank"
+            elif abs(pitch_rad) > MAX_PITCH_RAD:
+                reason = "pitch"
+            elif row < 0:
+                reason = "no-planned-pass"
+            found.append(reason)
+        return found
+
+    def _stretch(
+        self,
+        line: Line,
+        rows: Rows,
+        planned: PlannedPass,
+        passes: Sequence[PlannedPass],
+        in_pass: Rows,
+    ) -> ground.Judged:
+        collect = planned.collect
+        sensor = self._asked.suite.named(collect.sensor)
+        if not isinstance(sensor, SarSensor):
+            return ground.Judged((), np.zeros(len(rows), dtype=bool), "not-judged")
+        model = self._models[collect.vehicle]
+        places = line.places[rows]
+        middle = places[len(places) // 2]
+        # Where north is on the map here; it changes little along one pass.
+        north_rad = self._asked.frame.angle_rad(float(middle[0]), float(middle[1]), 0.0)
+        heights_m = np.empty(len(rows))
+        for row in np.unique(in_pass[rows]).tolist():
+            here = in_pass[rows] == row
+            heights_m[here] = passes[row].height_m(places[here], self._home_m)
+        stretch = ground.Stretch(
+            sensor.whole().in_wind(model.drift, model.wind.toward_rad),
+            "left" if collect.look == "left" else "right",
+            self._asked.frame.to_local([place[:2] for place in collect.line]),
+            places,
+            line.height_m[rows],
+            heights_m,
+            line.roll_rad[rows],
+            line.pitch_rad[rows],
+            north_rad - line.heading_rad[rows],
+            self._asked.airspace.terrain,
+            self._home_m,
+        )
+        found = ground.judged(stretch) if sensor.turned_rad is None else spot.judged_spot(stretch)
+        self._ground.setdefault(collect.sensor, []).extend(found.seen)
+        return found
+
+    def _leave_out(
+        self, number: int, line: Line, counted: NDArray[np.bool_], reasons: NDArray[np.object_]
+    ) -> None:
+        """Name what was flown with the sensor on and does not count."""
+        left = line.sensor_on & ~counted
+        words = {str(reason): k for k, reason in enumerate(dict.fromkeys(reasons.tolist()))}
+        label = np.array([words[str(reason)] for reason in reasons.tolist()], dtype=np.int64)
+        for run in runs(left, line, label):
+            places = line.places[run]
+            length_m = float(np.hypot(*np.diff(places, axis=0).T).sum())
+            reason = reasons[run.start]
+            if len(places) > 1 and reason is not None:
+                start_s, end_s = float(line.time_s[run.start]), float(line.time_s[run.stop - 1])
+                ends = (run.start, run.stop - 1)
+                self._not_counted.append(NotCounted(number, ends, reason, start_s, end_s, length_m))
+
+    def verdict(self) -> FlownCoverage:
+        """What all of them saw."""
+        seen_by = {name: _areal(union_all(parts, grid_size=GRID_M)) for name, parts in self._ground.items()}
+        parts = tuple(self._unknown_parts())
+        nobody_knows = self._unknown_ground(parts)
+        fraction, seen, unseen, dark, dark_fraction = {}, {}, {}, {}, {}
+        nothing = Polygon()
+        for region in self._asked.regions:
+            name, sensor = region.name, self._asked.suite.of(region).name
+            found = seen_by.get(sensor, nothing)
+            seen[name] = _areal(intersection(region.area, found, grid_size=GRID_M))
+            missing = _areal(difference(region.area, found, grid_size=GRID_M))
+            unclear = nobody_knows.get(sensor, nothing)
+            dark[name] = _areal(intersection(missing, unclear, grid_size=GRID_M))
+            unseen[name] = _areal(difference(missing, dark[name], grid_size=GRID_M))
+            fraction[name] = _share(seen[name], region.area)
+            dark_fraction[name] = _share(dark[name], region.area)
+        by_key = {planned.key: planned for planned in self._passes}
+        flown = [flown_pass(by_key[key], stretches) for key, stretches in self._flown.items()]
+        return FlownCoverage(
+            fraction, seen, unseen, tuple(sorted(flown, key=lambda p: (p.seq, p.vehicle))),
+            dark, dark_fraction, parts, tuple(self._gaps), tuple(self._not_counted),
+        )  # fmt: skip
+
+    def _unknown_parts(self) -> Iterable[UnknownPart]:
+        everybody = self._lines.get(None, [])
+        for name in {planned.collect.vehicle for planned in self._passes}:
+            told = [*self._lines.get(name, []), *everybody]
+            gaps = [gap for _, gaps in told for gap in gaps]
+            if gaps:
+                passes = [planned for planned in self._passes if planned.collect.vehicle == name]
+                lines = [line for line, _ in told]
+                yield from unknown.unknown_parts(
+                    passes, lines, gaps, self._asked.frame, self._speed_m_s(name)
+                )
+
+    def _unknown_ground(self, parts: Sequence[UnknownPart]) -> dict[str, BaseGeometry]:
+        """Ground that may have been seen, sensor by sensor."""
+        if not parts:
+            return {}
+        rings: dict[tuple[str, int], list[Polygon]] = {}
+        for print_ in self._plan.footprints:
+            local = self._asked.frame.to_local
+            outline = Polygon(local(print_.ring), [local(hole) for hole in print_.holes])
+            rings.setdefault((print_.vehicle, print_.seq), []).append(outline)
+        prints = {planned.key: union_all(rings.get(planned.key, [])) for planned in self._passes}
+        margins = {planned.key: self._margins_m(planned.collect) for planned in self._passes}
+        by_key = {planned.key: planned for planned in self._passes}
+        found: dict[str, list[BaseGeometry]] = {}
+        for key, shape in unknown.unknown_ground(parts, by_key, prints, margins).items():
+            found.setdefault(by_key[key].collect.sensor, []).append(shape)
+        return {name: _areal(union_all(shapes, grid_size=GRID_M)) for name, shapes in found.items()}
+
+    def _margins_m(self, collect: Collect) -> tuple[float, float]:
+        """How far behind and ahead of a place ground lies whose aperture has the place in it."""
+        sensor = self._asked.suite.named(collect.sensor)
+        if not isinstance(sensor, SarSensor) or sensor.turned_rad is not None:
+            return math.inf, math.inf
+        whole, height_m = sensor.whole(), collect.line[0][2] - self._home_m
+        return whole.run_out_m(height_m), whole.run_in_m(height_m)
+
+
+def _labels(in_pass: Rows, passes: Sequence[PlannedPass]) -> Rows:
+    """One number for all passes that look to one side with one sensor: those may be flown as one."""
+    looks = [(p.collect.sensor, p.collect.look, p.collect.vehicle) for p in passes]
+    numbers = np.array([*(looks.index(look) for look in looks), -1], dtype=np.int64)
+    found: Rows = numbers[in_pass]
+    return found
+
+
+def _moving(line: Line, run: slice) -> Rows:
+    """The rows of a run whose places differ from the one before."""
+    rows = np.arange(run.start, run.stop)
+    moved = np.hypot(*np.diff(line.places[run], axis=0).T) > 0.0
+    kept: Rows = rows[np.concatenate([[True], moved])]
+    return kept
+
+
+def _areal(shape: BaseGeometry) -> BaseGeometry:
+    """Without the points and lines that overlays leave where outlines touch."""
+    parts = [part for part in get_parts(shape).tolist() if isinstance(part, Polygon) and part.area > 0.0]
+    return parts[0] if len(parts) == 1 else MultiPolygon(parts)
+
+
+def _share(part: BaseGeometry, whole: BaseGeometry) -> float:
+    """Its area by the whole's, rounding kept within 0 and 1."""
+    return min(max(float(part.area / whole.area), 0.0), 1.0) if whole.area > 0.0 else 0.0

@@ -1,0 +1,138 @@
+"""The record of a flight: where the aircraft was, and where nobody knows."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planner.frames import LocalFrame
+
+Floats = NDArray[np.float64]
+
+#: Between two places further apart in time than this, and than three times the record's own step, nothing is
+#: known; records are no sparser than the second. At 20 m/s it is a third of the aperture of Li et al. (2018).
+LONGEST_STEP_S, LONGEST_STEPS, LONGEST_AT_ALL_S = 2.0, 3.0, 5.0
+#: Two places that no aircraft of this many times the speed reaches from each other are not of one line.
+JUMP_SPEEDS, JUMP_M = 3.0, 50.0
+
+
+@dataclass(frozen=True, slots=True)
+class TrackSample:
+    """Where the aircraft was, and whether the sensor was on.
+
+    ``height_m`` is over the ground, on terrain over home; ``roll_deg`` is positive with the right wing down,
+    ``pitch_deg`` with the nose up; ``heading_deg`` is where the nose points, clockwise from true north, None
+    where unknown. Without a roll (NaN) nothing is seen; without a pitch it counts as level.
+    """
+
+    time_s: float
+    lon_deg: float
+    lat_deg: float
+    height_m: float
+    roll_deg: float
+    sensor_on: bool
+    heading_deg: float | None = None
+    pitch_deg: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Gap:
+    """A time of which nothing is recorded.
+
+    Parameters
+    ----------
+    start_s, end_s
+        By the record's clock; ``end_s`` is None where the record ends while the aircraft flies on.
+    duration_s
+        None where nobody knows: the clock began anew, or the record has no end.
+    places
+        Longitude and latitude before and after; the second is None where the record has no end.
+    """
+
+    start_s: float
+    end_s: float | None
+    duration_s: float | None
+    places: tuple[tuple[float, float], tuple[float, float] | None]
+
+
+@dataclass(frozen=True, slots=True)
+class Record:
+    """What was recorded of one flight of one aircraft.
+
+    Parameters
+    ----------
+    samples
+        In order; the time goes back only where the aircraft's clock began anew.
+    vehicle
+        Its name in the plan; None for any.
+    gap_after
+        Where the flight went on when the record had ended.
+    """
+
+    samples: tuple[TrackSample, ...]
+    vehicle: str | None = None
+    gap_after: Gap | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """A record in a local frame, one row a sample; rows of one ``piece`` follow each other without a gap."""
+
+    time_s: Floats
+    places: Floats
+    height_m: Floats
+    roll_rad: Floats
+    pitch_rad: Floats
+    heading_rad: Floats
+    sensor_on: NDArray[np.bool_]
+    piece: NDArray[np.int64]
+
+    @classmethod
+    def of(cls, record: Record, frame: LocalFrame, speed_m_s: float) -> Self:
+        """The line of a record flown at a speed over the ground at most."""
+        samples = record.samples
+        places = frame.to_local(np.array([(s.lon_deg, s.lat_deg) for s in samples]).reshape(-1, 2))
+        time_s = np.array([s.time_s for s in samples])
+        broken = gaps_in(time_s, places, speed_m_s)
+        return cls(
+            time_s,
+            places,
+            np.array([s.height_m for s in samples]),
+            np.radians([s.roll_deg for s in samples]),
+            np.radians([0.0 if s.pitch_deg is None else s.pitch_deg for s in samples]),
+            np.radians([np.nan if s.heading_deg is None else s.heading_deg for s in samples]),
+            np.array([s.sensor_on for s in samples], dtype=bool),
+            np.concatenate([[0], np.cumsum(broken)]) if len(samples) else np.zeros(0, dtype=np.int64),
+        )
+
+    def pieces(self) -> NDArray[np.bool_]:
+        """Which steps from one sample to the next are recorded."""
+        recorded: NDArray[np.bool_] = self.piece[1:] == self.piece[:-1]
+        return recorded
+
+
+def gaps_in(time_s: Floats, places: Floats, speed_m_s: float) -> NDArray[np.bool_]:
+    """Which steps of a record are gaps: too long, back in time, or further than the aircraft flies."""
+    steps_s = np.diff(time_s)
+    known = steps_s[steps_s > 0.0]
+    usual_s = float(np.median(known)) if len(known) else 0.0
+    longest_s = min(max(LONGEST_STEP_S, LONGEST_STEPS * usual_s), LONGEST_AT_ALL_S)
+    moved_m = np.hypot(*np.diff(places, axis=0).T)
+    jumped = moved_m > JUMP_SPEEDS * speed_m_s * np.maximum(steps_s, 0.0) + JUMP_M
+    found: NDArray[np.bool_] = (steps_s > longest_s) | (steps_s < 0.0) | jumped
+    return found
+
+
+def gaps_of(samples: Sequence[TrackSample], line: Line) -> tuple[Gap, ...]:
+    """The gaps within a record."""
+    found = []
+    for k in np.flatnonzero(~line.pieces()).tolist():
+        before, after = samples[k], samples[k + 1]
+        lasted_s = after.time_s - before.time_s
+        there = ((before.lon_deg, before.lat_deg), (after.lon_deg, after.lat_deg))
+        found.append(Gap(before.time_s, after.time_s, lasted_s if lasted_s >= 0.0 else None, there))
+    return tuple(found)
