@@ -29,7 +29,12 @@ class RoleChoice(StrEnum):
 
 Metres = Annotated[float | None, typer.Option(help="For shapes that do not say theirs.", metavar="M")]
 RegionFile = Annotated[
-    str, typer.Argument(help=".kml, .kmz, .gpx, .shp, .zip or .geojson; - is standard input.", metavar="FILE")
+    str,
+    typer.Argument(
+        help="KML, KMZ, GPX, GML, .shp, .zip, GeoJSON, Esri JSON, WKT, CSV, fences and rally points; "
+        "- is standard input.",
+        metavar="FILE",
+    ),
 ]
 MissionFile = Annotated[
     str, typer.Argument(help=".plan, .mission or .waypoints; - is standard input.", metavar="IN")
@@ -120,7 +125,7 @@ def import_(
     ] = None,
     as_json: Json = False,
 ) -> None:
-    """Turn regions drawn elsewhere into features of a scenario: KML, KMZ, GPX, shapefile, GeoJSON.
+    """Turn regions drawn elsewhere into features of a scenario: KML, GML, GPX, shapefiles, GeoJSON and more.
 
     Writes a GeoJSON FeatureCollection to be merged into a scenario, and says what every shape became and why.
     Lines become corridors of --width-m, threats and no-fly circles have --radius-m, footprints of buildings

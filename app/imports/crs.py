@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable
+from functools import lru_cache
 
 from pyproj import CRS
 from pyproj.exceptions import CRSError, ProjError
@@ -47,6 +48,7 @@ def named_crs(name: str) -> CRS:
     return _checked(lambda: CRS.from_user_input(name.strip()), name)
 
 
+@lru_cache(maxsize=64)
 def written_crs(name: str) -> CRS:
     """The reference system that a file names: a code, a URN or an address of OGC, or WGS 84 by name.
 
@@ -72,6 +74,7 @@ def written_crs(name: str) -> CRS:
     return named_crs(text)
 
 
+@lru_cache(maxsize=64)
 def crs_of_prj(text: str) -> CRS:
     """The reference system that a ``.prj`` file describes as well-known text."""
     return _checked(lambda: CRS.from_wkt(text), "the .prj file")
@@ -95,13 +98,24 @@ def _checked(make: Callable[[], CRS], name: str) -> CRS:
 
 def mover(crs: CRS, notes: list[str]) -> ToWgs84 | None:
     """As :func:`to_wgs84`; None where the places are in WGS 84 already."""
-    return None if crs == CRS.from_epsg(4326) else to_wgs84(crs, notes)
+    return None if _is_wgs84(crs) else to_wgs84(crs, notes)
+
+
+@lru_cache(maxsize=64)
+def _is_wgs84(crs: CRS) -> bool:
+    return bool(crs == CRS.from_epsg(4326))
+
+
+@lru_cache(maxsize=64)
+def _group(crs: CRS) -> TransformerGroup:
+    """Ways to WGS 84; to find them takes longer than to use them."""
+    return TransformerGroup(crs, CRS.from_epsg(4326), always_xy=True)
 
 
 def to_wgs84(crs: CRS, notes: list[str]) -> ToWgs84:
     """A function that brings the corners of a line or ring to WGS 84, edges staying where they are."""
     try:
-        group = TransformerGroup(crs, CRS.from_epsg(4326), always_xy=True)
+        group = _group(crs)
         transformer = group.transformers[0]
     except (ProjError, IndexError) as error:
         raise file_error("crs", f"there is no way from {crs.name} to WGS 84", "send it in WGS 84") from error

@@ -11,7 +11,7 @@ from xml.etree.ElementTree import Element
 from app.imports.archive import unpack
 from app.imports.errors import file_error
 from app.imports.placemark import shapes_of
-from app.imports.shapes import Shape
+from app.imports.shapes import LonLat, Shape, line_of
 from app.imports.xml import child_text, children, local_name, parse
 
 _CONTAINERS = ("kml", "Document", "Folder", "NetworkLinkControl", "Update", "Create")
@@ -75,17 +75,15 @@ def read_documents(documents: Mapping[str, bytes], notes: list[str]) -> list[Sha
     ``doc.kml`` first, or else the first; a document that another links to stands where the link does; those
     that nothing links to follow, their paths their folders.
     """
-    # the waylines of a flight of DJI are made of its template
-    template = next((name for name in documents if PurePosixPath(name).name.lower() == "template.kml"), None)
-    if template is not None:
-        beside = [name for name in documents if name.lower().endswith(".wpml")]
-        documents = {name: content for name, content in documents.items() if name not in beside}
-        notes += [f"{name} is made of {template} and is left out" for name in beside]
     archive = _Archive(documents)
-    main = next((name for name in documents if name.lower() == "doc.kml"), next(iter(documents)))
+    # what an aircraft of DJI flies is made of the template beside it
+    order = sorted(documents, key=lambda name: (name.lower().endswith(".wpml"), name.lower() != "doc.kml"))
+    main = order[0]
     shapes: list[Shape] = []
-    for name in (main, *(name for name in documents if name != main)):
-        if name not in archive.read:
+    for name in order:
+        if name.lower().endswith(".wpml") and shapes:
+            notes.append(f"{name} is the route made of the others and is left out")
+        elif name not in archive.read:
             path = PurePosixPath(name)
             folders = () if name == main else (*path.parent.parts, path.stem)
             archive.at = name
@@ -99,7 +97,8 @@ def _read(data: bytes, folders: tuple[str, ...], archive: _Archive, notes: list[
     if local_name(root) not in ("kml", "Document", "Folder", "Placemark"):
         raise file_error("not-kml", f"the file is a <{local_name(root)[:40]}>, not KML", "send KML")
     own = _own_kinds(root)
-    shapes: list[Shape] = []
+    shapes = _take_off(root)
+    ways: dict[tuple[str, ...], list[LonLat]] = {}
     for element, inside in _walk([root], folders, own):
         if local_name(element) == "NetworkLink":
             shapes += _followed(element, inside, archive, notes)
@@ -107,12 +106,32 @@ def _read(data: bytes, folders: tuple[str, ...], archive: _Archive, notes: list[
             notes.append(f"{child_text(element, 'name') or 'an overlay'} is an image and is left out")
         else:
             found = shapes_of(element, inside, own.get(local_name(element), {}), notes)
-            if not found:
+            is_waypoint = next(children(element, "index"), None) is not None
+            if is_waypoint and len(found) == 1 and found[0].kind == "point":
+                ways.setdefault(inside, []).append(found.pop().parts[0][0][0])
+            elif not found:
                 notes.append(
                     f"{child_text(element, 'name') or 'a placemark'} has no geometry and is left out"
                 )
             shapes += found
+    for folders, places in ways.items():
+        notes.append(f"{len(places)} waypoints of a route are one line")
+        shapes.append(line_of(tuple(places), "waypoints", folders))
     return shapes
+
+
+def _take_off(root: Element) -> list[Shape]:
+    """The place of DJI's take-off, latitude first."""
+    for element in root.iter():
+        if local_name(element) == "takeOffRefPoint":
+            words = (element.text or "").split(",")
+            try:
+                return [line_of(((float(words[1]), float(words[0])),), "take-off")]
+            except (ValueError, IndexError):
+                raise file_error(
+                    "kml-coordinates", f"takeOffRefPoint is {element.text!r:.40}", "write latitude,longitude"
+                ) from None
+    return []
 
 
 def _walk(

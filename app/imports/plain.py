@@ -10,22 +10,11 @@ from app.imports.crs import ToWgs84, mover, written_crs
 from app.imports.errors import file_error
 from app.imports.rings import grouped
 from app.imports.shapes import LonLat, Rings, Shape, labelled, moved
-from app.services.documents import read_object
-from app.services.errors import RefusedError
 
 _NAMES = ("name", "title", "label", "id")
 _TITLES = ("name", "title", "description")
 _MAX_DEPTH = 10
 _MAX_NESTED = 4_000
-
-
-def read_geojson(data: bytes, crs: str | None, notes: list[str]) -> list[Shape]:
-    """The shapes of a FeatureCollection, a Feature or a geometry (RFC 7946; 2008 with ``crs``)."""
-    try:
-        document = read_object(data)
-    except RefusedError as error:
-        raise file_error("json-syntax", str(error), "send GeoJSON") from error
-    return shapes_of(document, crs, notes)
 
 
 def shapes_of(document: Mapping[str, Any], crs: str | None, notes: list[str]) -> list[Shape]:
@@ -66,8 +55,8 @@ def _of_feature(
         return []
     if geometry is not feature and isinstance(geometry, dict):
         move = _mover(geometry, crs, notes) or move
-    drawn = [Shape(s.kind, s.parts, name, folders, texts) for s in _shapes(geometry, name, 0)]
-    return labelled([moved(shape, move) for shape in drawn])
+    found = [Shape(s.kind, s.parts, name, folders, texts) for s in drawn(geometry, name)]
+    return labelled([moved(shape, move) for shape in found])
 
 
 def texts_of(properties: Mapping[str, Any]) -> dict[str, str]:
@@ -98,7 +87,8 @@ def _mover(holder: Mapping[str, Any], crs: str | None, notes: list[str]) -> ToWg
     )
 
 
-def _shapes(geometry: Any, name: str, depth: int) -> list[Shape]:
+def drawn(geometry: Any, name: str, depth: int = 0) -> list[Shape]:
+    """The shapes of a geometry, named and moved by nobody yet."""
     kind = geometry.get("type") if isinstance(geometry, dict) else None
     value = geometry.get("coordinates") if isinstance(geometry, dict) else None
     if value == [] or (kind == "GeometryCollection" and geometry.get("geometries") == []):
@@ -109,16 +99,16 @@ def _shapes(geometry: Any, name: str, depth: int) -> list[Shape]:
         case "MultiPoint":
             return [Shape("point", (((_place(one, name),),),)) for one in _list(value, name)]
         case "LineString":
-            return [Shape("line", ((_places(value, name),),))]
+            return [Shape("line", ((places_of(value, name),),))]
         case "MultiLineString":
-            return [Shape("line", ((_places(one, name),),)) for one in _list(value, name)]
+            return [Shape("line", ((places_of(one, name),),)) for one in _list(value, name)]
         case "Polygon":
             return [Shape("polygon", grouped(_polygon(value, name)))]
         case "MultiPolygon":
             return [Shape("polygon", sum((grouped(_polygon(one, name)) for one in _list(value, name)), ()))]
         case "GeometryCollection" if depth < _MAX_DEPTH:
             inner = _list(geometry.get("geometries"), name)
-            return [shape for one in inner for shape in _shapes(one, name, depth + 1)]
+            return [shape for one in inner for shape in drawn(one, name, depth + 1)]
     raise file_error("geojson", f"{name or 'a feature'} has the geometry {str(kind)[:40]!r}", "send GeoJSON")
 
 
@@ -143,9 +133,10 @@ def _place(value: Any, name: str) -> LonLat:
         raise file_error("geojson", f"{name or 'a feature'} has a huge number", "send degrees") from None
 
 
-def _places(value: Any, name: str) -> tuple[LonLat, ...]:
+def places_of(value: Any, name: str) -> tuple[LonLat, ...]:
+    """A list of positions, heights left out."""
     return tuple(_place(one, name) for one in _list(value, name))
 
 
 def _polygon(value: Any, name: str) -> Rings:
-    return tuple(_places(ring, name) for ring in _list(value, name))
+    return tuple(places_of(ring, name) for ring in _list(value, name))

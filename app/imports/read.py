@@ -7,14 +7,21 @@ from dataclasses import dataclass, replace
 from pathlib import PurePosixPath
 from typing import Any
 
-from app.imports import esri, gpx, kml, plain
+from app.imports import esri, gml, gpx, kml
 from app.imports.archive import is_zip
 from app.imports.bundle import read_bundle
+from app.imports.encodings import guessed
 from app.imports.errors import file_error
 from app.imports.features import Account, features
+from app.imports.gml import is_gml
+from app.imports.jsons import read_json_file
+from app.imports.missions import shapes_of_mission
 from app.imports.options import ImportOptions, check_options
 from app.imports.shapes import Shape
+from app.imports.tables import is_table, read_table
+from app.imports.wkt import is_wkt, read_wkt
 from app.imports.xml import local_name, parse
+from mavlink.formats.point_lists import is_point_list
 from planner.errors import Finding
 
 
@@ -43,7 +50,10 @@ class Imported:
     notes: tuple[str, ...]
 
 
-FORMATS = ("kml", "kmz", "gpx", "shp", "shapefile", "zip", "geojson")
+FORMATS = (
+    "kml", "kmz", "gpx", "gml", "shp", "shapefile", "zip", "geojson", "geojsonl", "esrijson", "wkt",
+    "csv", "mission",
+)  # fmt: skip
 
 
 def import_regions(
@@ -88,7 +98,7 @@ def _read(
     if found in ("zip", "kmz", "shapefile"):
         wanted = None if form in (None, "zip") else form
         return read_bundle(data, crs, notes, lambda inner, name: _member(inner, name, crs, notes), wanted)
-    return found, _shapes(found, data, crs, companions, notes)
+    return _shapes(found, data, crs, companions, notes)
 
 
 def _member(data: bytes, name: str, crs: str | None, notes: list[str]) -> list[Shape]:
@@ -98,9 +108,8 @@ def _member(data: bytes, name: str, crs: str | None, notes: list[str]) -> list[S
         raise file_error("archive-nested", f"{name} is an archive within an archive", "unpack it")
     path = PurePosixPath(name)
     above = (*path.parent.parts, path.stem)
-    return [
-        replace(shape, folders=(*above, *shape.folders)) for shape in _shapes(found, data, crs, {}, notes)
-    ]
+    _, shapes = _shapes(found, data, crs, {}, notes)
+    return [replace(shape, folders=(*above, *shape.folders)) for shape in shapes]
 
 
 def _format(data: bytes) -> str:
@@ -110,30 +119,69 @@ def _format(data: bytes) -> str:
         return "zip"
     if data[:4] == esri.MAGIC:
         return "shp"
-    start = data.lstrip(b"\xef\xbb\xbf \t\r\n")[:1]
-    if start in (b"{", b"["):
+    start = _start(data)
+    if start in ("{", "[", "\x1e"):
         return "geojson"
-    if start == b"<" or data[:2] in (b"\xff\xfe", b"\xfe\xff", b"\x00<"):
-        return "gpx" if local_name(parse(data)) == "gpx" else "kml"
-    raise file_error(
-        "unknown-format",
-        "the file is of no known format",
-        "send KML, KMZ, GPX, GeoJSON or a zipped shapefile",
-    )
+    if start == "<":
+        root = parse(data)
+        if local_name(root) == "gpx":
+            return "gpx"
+        return "gml" if local_name(root) != "kml" and is_gml(root) else "kml"
+    text = _text(data, [])
+    if text.lstrip("\ufeff \r\n").startswith("QGC WPL") or is_point_list(text):
+        return "mission"
+    if is_wkt(text):
+        return "wkt"
+    if is_table(text):
+        return "csv"
+    raise file_error("unknown-format", "the file is of no known format", f"send one of {', '.join(FORMATS)}")
+
+
+def _start(data: bytes) -> str:
+    """The first character that is no blank."""
+    head = data[:2000]
+    if head[:2] in (b"\xff\xfe", b"\xfe\xff"):
+        text = head[: len(head) // 2 * 2].decode("utf-16", "replace")
+    else:
+        # UTF-16 without its mark, too
+        text = head.replace(b"\x00", b"").decode("utf-8-sig", "replace")
+    return text.lstrip(" \t\r\n\ufeff")[:1]
+
+
+def _text(data: bytes, notes: list[str]) -> str:
+    if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
+        return data.decode("utf-16", "replace")
+    if b"\x00" in data:
+        raise file_error(
+            "unknown-format", "the file is of no known format", f"send one of {', '.join(FORMATS)}"
+        )
+    codec = guessed(data)
+    if codec != "utf-8":
+        notes.append(f"the text names no code page, is no UTF-8, and is read as {codec}")
+    return data.decode(codec, "replace").removeprefix("\ufeff")
 
 
 def _shapes(
     form: str, data: bytes, crs: str | None, companions: Mapping[str, bytes], notes: list[str]
-) -> list[Shape]:
+) -> tuple[str, list[Shape]]:
+    """The format that it is in the end, and the shapes."""
     match form:
         case "kml":
-            return kml.read_kml(data, notes)
+            return form, kml.read_kml(data, notes)
         case "gpx":
-            return gpx.read_gpx(data, notes)
+            return form, gpx.read_gpx(data, notes)
+        case "gml":
+            return form, gml.read_gml(data, crs, notes)
         case "shp":
-            return esri.read_shapefile(data, companions, crs, notes)
-        case "geojson":
-            return plain.read_geojson(data, crs, notes)
+            return form, esri.read_shapefile(data, companions, crs, notes)
+        case "geojson" | "geojsonl" | "esrijson":
+            return read_json_file(data, crs, notes)
+        case "wkt":
+            return form, read_wkt(_text(data, notes), crs, notes)
+        case "csv":
+            return form, read_table(_text(data, notes), crs, notes)
+        case "mission":
+            return form, shapes_of_mission(data, notes)
     raise file_error(
         "unknown-format", f"there is no format {form[:40]!r}", f"use one of {', '.join(FORMATS)}"
     )

@@ -201,6 +201,10 @@ IMPORT_ANSWER: dict[int | str, dict[str, Any]] = {
         },
     }
 }
+RegionFormat = Literal[
+    "kml", "kmz", "gpx", "gml", "shp", "shapefile", "zip", "geojson", "geojsonl", "esrijson", "wkt", "csv",
+    "mission",
+]  # fmt: skip
 Metres = Annotated[float | None, Query(gt=0, description="For shapes that do not say theirs.")]
 
 
@@ -215,7 +219,7 @@ async def import_regions(
     request: Request,
     desk: DeskDep,
     form: Annotated[
-        Literal["kml", "kmz", "gpx", "shp", "shapefile", "zip", "geojson"] | None,
+        RegionFormat | None,
         Query(
             alias="format", description="Format of the body; found by media type and content when left out."
         ),

@@ -33,7 +33,10 @@ FORMAT_OF_MEDIA_TYPE = {
     "application/vnd.google-earth.kml+xml": "kml",
     "application/vnd.google-earth.kmz": "kmz",
     "application/gpx+xml": "gpx",
+    "application/gml+xml": "gml",
     "application/geo+json": "geojson",
+    "application/geo+json-seq": "geojsonl",
+    "text/csv": "csv",
 }
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import random
 import warnings
 
 import pytest
@@ -13,6 +14,7 @@ from hypothesis import strategies as st
 from app.imports import FORMATS, ImportOptions, RegionFileError, import_regions
 from mavlink.encoding.encode import encode
 from mavlink.formats import FormatError, read_plan, read_waypoints, write_waypoints
+from tests.app.imports.mutations import of_any
 from tests.app.imports.samples import (
     GPX,
     HOLE,
@@ -30,7 +32,7 @@ from tests.app.imports.samples import (
 from tests.mavlink.formats.test_qgc_complex import LANDING, STRUCTURE, SURVEY, plan_of, simple
 from tests.mavlink.plans import make_plan
 
-FUZZ = settings(max_examples=120, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+FUZZ = settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 OPTIONS = ImportOptions(width_m=10.0, radius_m=10.0, height_m=10.0, crs="EPSG:32632")
 WITH_PRJ = ImportOptions(width_m=10.0, radius_m=10.0, height_m=10.0)
 KML = kml(
@@ -53,6 +55,25 @@ GEOJSON = json.dumps(
         ],
     }
 ).encode()
+FEATURE = json.dumps(json.loads(GEOJSON)["features"][0]).encode()
+ESRI = json.dumps(
+    {
+        "geometryType": "esriGeometryPolygon",
+        "spatialReference": {"wkid": 32632},
+        "features": [{"attributes": {"name": "x"}, "geometry": {"rings": [RING, HOLE]}}],
+    }
+).encode()
+GML = (
+    b'<c xmlns="u" xmlns:g="http://www.opengis.net/gml"><g:featureMember><f><name>x</name>'
+    b'<g:Polygon srsName="EPSG:4326"><g:exterior><g:LinearRing><g:posList>8 47 8 48 9 48 8 47</g:posList>'
+    b"</g:LinearRing></g:exterior></g:Polygon></f></g:featureMember>"
+    b'<g:featureMember><f><g:Curve srsName="EPSG:4326"><g:segments><g:CircleByCenterPoint>'
+    b'<g:pos>8 47</g:pos><g:radius uom="m">90</g:radius></g:CircleByCenterPoint></g:segments></g:Curve></f>'
+    b"</g:featureMember></c>"
+)
+WKT = b"SRID=4326;POLYGON ((8 47, 8 48, 9 48, 8 47))\nMULTIPOINT ((8 47), (9 47))\n"
+CSV = b"name,lat,lon,radius_m\nno fly,47.5,8.5,30\nroi,47.6,8.6,\n"
+FENCE = b"47.35 8.55\n47.3 8.5\n47.3 8.6\n47.4 8.6\n47.3 8.5\n"
 SEEDS = {
     "kml": KML,
     "kmz": packed({"doc.kml": KML}),
@@ -61,6 +82,12 @@ SEEDS = {
     "shapefile": archive_of(SHAPES),
     "zip": packed({"a/doc.kml": KML, "b/points.geojson": GEOJSON} | {f"c{e}": d for e, d in SHAPES.items()}),
     "geojson": GEOJSON,
+    "geojsonl": b"\n".join([FEATURE, FEATURE]),
+    "esrijson": ESRI,
+    "gml": GML,
+    "wkt": WKT,
+    "csv": CSV,
+    "mission": FENCE,
 }
 
 
@@ -126,6 +153,15 @@ def test_spoiled_files_are_read_or_refused(form: str) -> None:
     run()
 
 
+@pytest.mark.parametrize("form", FORMATS)
+def test_files_changed_in_their_structure_are_read_or_refused(form: str) -> None:
+    """So do 500 files of each format whose parts were taken out, doubled, exchanged or replaced."""
+    dice = random.Random(form)
+    for _ in range(500):
+        data = of_any(SEEDS[form], dice)
+        check(data, dice.choice([OPTIONS, WITH_PRJ]), dice.choice([None, form]))
+
+
 BEGINNINGS = [b"", *(seed[:40] for seed in SEEDS.values())]
 
 
@@ -137,7 +173,7 @@ def test_any_bytes_are_read_or_refused(data: bytes, form: str | None, start: byt
 
 
 @given(spoiled(SHAPES[".dbf"]), spoiled(SHAPES[".prj"]), spoiled(b"UTF-8"))
-@FUZZ
+@settings(FUZZ, max_examples=40)
 def test_spoiled_companions_are_read_or_refused(dbf: bytes, prj: bytes, cpg: bytes) -> None:
     """So does damage to what lies beside a shapefile."""
     check(SHAPES[".shp"], WITH_PRJ, "shp", companions={".dbf": dbf, ".prj": prj, ".cpg": cpg})
