@@ -14,7 +14,7 @@ from app.cli.output import CommandError, Exit, Json, Output, emit, emit_bytes, e
 
 if TYPE_CHECKING:
     from app.services.plans.missions import MissionChoice
-    from planner.plan import Plan
+    from mavlink.dialects import VehicleType
 
 PlanFile = Annotated[str, typer.Argument(help="Plan GeoJSON; - is standard input.", metavar="PLAN")]
 VehicleName = Annotated[str | None, typer.Option(help="Vehicle of the plan; its first when left out.")]
@@ -73,17 +73,6 @@ class PartChoice(StrEnum):
     RALLY = "rally"
 
 
-def read_plan_file(source: str) -> Plan:
-    """A plan from a file or standard input."""
-    from planner.errors import ScenarioError
-    from planner.geojson import read_plan
-
-    try:
-        return read_plan(read_document(source))
-    except ScenarioError as error:
-        raise CommandError(f"{source} is no plan", Exit.BAD_INPUT, error.findings) from error
-
-
 def run_async(work: Coroutine[Any, Any, Result]) -> Result:
     """Run to the end, with the services' errors as messages."""
     from app.services import errors
@@ -116,13 +105,15 @@ def export(
 
     With --json and -o FILE the file's name, format and size go to standard output.
     """
-    from app.services.plans.missions import MissionChoice, mission_bytes
+    from app.cli.filing import given
+    from app.services.plans.mission_scene import FileChoice
+    from app.services.plans.missions import MissionChoice, exported
 
-    document = read_plan_file(plan)
+    found = given(plan, FileChoice(), None, None)
     choice = MissionChoice(vehicle, autopilot.value if autopilot else None, payload, gimbal)
 
     async def write() -> bytes:
-        return mission_bytes(document, choice, form.value)
+        return exported(found.text, choice, form.value)
 
     content = run_async(write())
     emit_bytes(content, output)
@@ -145,25 +136,46 @@ def upload(
     ] = None,
     scenario: Annotated[
         str | None,
-        typer.Option(help="Refuse the plan as stale unless it is made of this scenario.", metavar="FILE"),
+        typer.Option(
+            help="Refuse the plan as stale unless it is made of this scenario; judge a mission file by its "
+            "zones, area, ground and aircraft.",
+            metavar="FILE",
+        ),
     ] = None,
     vehicle: VehicleName = None,
+    vehicle_type: Annotated[
+        TypeChoice | None, typer.Option("--type", help="Of a mission file that does not say its vehicle.")
+    ] = None,
+    terrain: Annotated[
+        str | None, typer.Option(help="Elevation file to judge a mission file over.", metavar="FILE")
+    ] = None,
+    airspeed_m_s: Annotated[
+        float | None, typer.Option(min=0.1, help="Of a mission file's vehicle; else what the file says.")
+    ] = None,
+    min_turn_radius_m: Annotated[
+        float | None, typer.Option(min=0.1, help="Of a mission file's vehicle; else by its autopilot's bank.")
+    ] = None,
     payload: Payload = None,
     gimbal: Gimbal = None,
     timeout_s: Timeout = 10.0,
     as_json: Json = False,
 ) -> None:
-    """Upload a plan to a vehicle, read it back and compare.
+    """Upload a plan or a mission file (.plan, .mission, .waypoints) to a vehicle, read it back and compare.
 
+    A mission file is judged first, like a plan: its fence, a scenario's zones and area, the ground, turns.
     Exits with 0 when the vehicle holds what was meant, else with 1. Nothing arms or moves the vehicle.
     """
+    from app.cli.filing import given
+    from app.services.plans.mission_scene import FileChoice
     from app.services.plans.missions import MissionChoice
 
-    document = read_plan_file(plan)
+    kind: VehicleType | None = vehicle_type.value if vehicle_type else None
+    asked = FileChoice(plan, None, kind, vehicle, airspeed_m_s, min_turn_radius_m)
+    found = given(plan, asked, scenario, terrain)
     names = list(dict.fromkeys(choice.value for choice in part or [PartChoice.MISSION]))
     choice = MissionChoice(vehicle, None, payload, gimbal)
-    stale = None if scenario is None else _staleness(document, scenario)
-    report = run_async(_upload(document, to, names, choice, override, timeout_s, stale))
+    stale = None if scenario is None or found.is_mission else _staleness(found.text, scenario)
+    report = run_async(_upload(found.text, to, names, choice, override, timeout_s, stale))
     if as_json:
         emit_json(report)
     for name, result in report["parts"].items():
@@ -182,17 +194,18 @@ def upload(
         raise typer.Exit(int(Exit.FAILED))
 
 
-def _staleness(plan: Plan, scenario: str) -> str | None:
+def _staleness(plan_text: str, scenario: str) -> str | None:
     """Why a plan is not that of a scenario's file; None when it is."""
+    from app.services.plans.missions import plan_of
     from planner.geojson import scenario_hash
 
-    if scenario_hash(read_document(scenario)) == plan.scenario_hash:
+    if scenario_hash(read_document(scenario)) == plan_of(plan_text).scenario_hash:
         return None
     return f"{scenario} is another than the scenario it was made of"
 
 
 async def _upload(
-    plan: Plan,
+    plan_text: str,
     url: str,
     parts: list[Any],
     choice: MissionChoice,
@@ -200,15 +213,19 @@ async def _upload(
     timeout_s: float,
     stale: str | None,
 ) -> dict[str, Any]:
-    from app.services.plans.missions import encode_plan
+    from app.services.plans.missions import mission_of, plan_of
     from app.services.vehicles.connection import connected
     from app.services.vehicles.uploads import judge_upload, new_report, report_json, send_parts
+    from mavlink.dialects.fit import fitted
 
+    plan = plan_of(plan_text)
     async with connected(url, (plan.home[1], plan.home[0], 0.0), timeout_s) as client:
         autopilot = client.state.autopilot
         if autopilot != "generic":
             choice = replace(choice, autopilot=autopilot)
-        mission = encode_plan(plan, choice)
+        if client.state.type != "other":
+            choice = replace(choice, vehicle_type=client.state.type)
+        mission = fitted(mission_of(plan_text, choice))
         findings = judge_upload(plan, mission, parts, client.state, override, stale)
         for finding in findings:
             say(f"{'overridden' if finding.severity == 'error' else 'note'}: {finding}")

@@ -99,7 +99,7 @@ class Needs:
     settle_m
         Straight flight the plan leaves before each collect; None when not known.
     payload
-        How the sensor is switched, as the autopilot switches it.
+        How the sensor is switched, as the autopilot switches it; None for a mission that switches none.
     commands
         Of the mission's items.
     highest_m, farthest_m
@@ -111,7 +111,7 @@ class Needs:
     airspeed_m_s: float
     turn_radius_m: float
     settle_m: float | None
-    payload: Payload
+    payload: Payload | None
     commands: frozenset[int]
     fence: bool
     highest_m: float = 0.0
@@ -120,7 +120,7 @@ class Needs:
     heights: HeightNeeds = field(default_factory=HeightNeeds)
 
 
-def needs_of(plan: Plan, mission: Mission, payload: Payload, settle_m: float | None = None) -> Needs:
+def needs_of(plan: Plan, mission: Mission, payload: Payload | None, settle_m: float | None = None) -> Needs:
     """What a plan's mission needs."""
     vehicle = next(vehicle for vehicle in plan.vehicles if vehicle.name == mission.vehicle)
     if mission.autopilot == "px4" and isinstance(payload, RelayPayload):
@@ -141,7 +141,9 @@ def needs_of(plan: Plan, mission: Mission, payload: Payload, settle_m: float | N
 
 
 def _gimbal(plan: Plan, mission: Mission) -> GimbalNeeds | None:
-    """What a mission's items ask of the gimbal; the yaws by the sides the passes look to."""
+    """What a mission's items ask of the gimbal; the yaws by the sides the passes look to, if any do."""
+    if not plan.collects_of(mission.vehicle):
+        return None
     for item in mission.mission:
         protocol = protocol_of(item)
         if protocol is None:

@@ -8,7 +8,17 @@ shapely, the footprint drawn anew from the sensor's angles.
 from planner.check.coverage import seen_times
 from planner.check.footprints import footprint
 from planner.check.kinematics import turn_radius_m
+from planner.check.line import judge_line, tight_turns
 from planner.check.times import line_s
 from planner.check.verdict import Verdict, judge
 
-__all__ = ["Verdict", "footprint", "judge", "line_s", "seen_times", "turn_radius_m"]
+__all__ = [
+    "Verdict",
+    "footprint",
+    "judge",
+    "judge_line",
+    "line_s",
+    "seen_times",
+    "tight_turns",
+    "turn_radius_m",
+]

@@ -9,6 +9,8 @@ from typing import Literal
 
 from app.services.documents import read_object
 from app.services.errors import NotFoundError, RefusedError
+from app.services.plans.filed_mission import filed_mission
+from mavlink.dialects import VehicleType
 from mavlink.dialects.mission import Mission
 from mavlink.encoding.encode import EncodeError, EncodeOptions, encode
 from mavlink.encoding.gimbal import GimbalError, parse_gimbal
@@ -43,12 +45,15 @@ class MissionChoice:
         How the sensor is switched, e.g. ``relay:0``; None for the autopilot's default.
     gimbal
         What points the sensor, e.g. ``manager:tilt=45``; None, or ``none``, where it is bolted on.
+    vehicle_type
+        Of the vehicle that is there, for a mission file that does not say for whom it is.
     """
 
     vehicle: str | None = None
     autopilot: AutopilotName | None = None
     payload: str | None = None
     gimbal: str | None = None
+    vehicle_type: VehicleType | None = None
 
 
 def encode_plan(plan: Plan, choice: MissionChoice) -> Mission:
@@ -78,38 +83,45 @@ def encode_plan(plan: Plan, choice: MissionChoice) -> Mission:
         raise RefusedError(str(error), (Finding("plan", "cannot-be-encoded", str(error), fix),)) from error
 
 
+def mission_of(text: str, choice: MissionChoice) -> Mission:
+    """The mission of a plan document's text: its mission file's own items, else the plan encoded.
+
+    Raises
+    ------
+    NotFoundError, RefusedError
+        As :func:`encode_plan`.
+    """
+    mission = filed_mission(read_object(text), choice.autopilot, choice.vehicle_type)
+    if mission is None:
+        return encode_plan(plan_of(text), choice)
+    if choice.vehicle not in (None, mission.vehicle):
+        raise NotFoundError("vehicle in the plan called", str(choice.vehicle))
+    return mission
+
+
 @lru_cache(maxsize=8)
 def plan_of(text: str) -> Plan:
     """The plan of a plan document's text."""
     return read_plan(read_object(text))
 
 
-def mission_text(plan: Plan, choice: MissionChoice, form: str) -> str:
-    """A plan's mission in a format: ``plan`` (QGroundControl), ``waypoints`` (QGC WPL 110) or ``kml``."""
-    from mavlink.formats import kml, qgc_plan, waypoints
+def exported(text: str, choice: MissionChoice, form: str) -> bytes:
+    """The mission of a plan document's text in a format.
+
+    ``plan`` (QGroundControl), ``waypoints`` (QGC WPL 110), ``kml`` or ``kmz``.
+    """
+    from mavlink.formats import kml, kmz, qgc_plan, waypoints
 
     match form:
         case "plan":
-            return qgc_plan.write_plan(encode_plan(plan, choice))
+            return qgc_plan.write_plan(mission_of(text, choice)).encode()
         case "waypoints":
-            return waypoints.write_waypoints(encode_plan(plan, choice))
+            return waypoints.write_waypoints(mission_of(text, choice)).encode()
         case "kml":
-            return kml.write_kml(plan, _vehicle_of(plan, choice.vehicle))
+            return kml.write_kml(plan_of(text), _vehicle_of(plan_of(text), choice.vehicle)).encode()
+        case "kmz":
+            return kmz.write_kmz(plan_of(text), _vehicle_of(plan_of(text), choice.vehicle))
     raise ValueError(f"unknown format {form}")
-
-
-def mission_bytes(plan: Plan, choice: MissionChoice, form: str) -> bytes:
-    """A plan's mission in any format: those of :func:`mission_text`, or ``kmz``."""
-    from mavlink.formats import kmz
-
-    if form == "kmz":
-        return kmz.write_kmz(plan, _vehicle_of(plan, choice.vehicle))
-    return mission_text(plan, choice, form).encode()
-
-
-def exported(text: str, choice: MissionChoice, form: str) -> bytes:
-    """:func:`mission_bytes` of a plan document's text."""
-    return mission_bytes(plan_of(text), choice, form)
 
 
 def _vehicle_of(plan: Plan, name: str | None) -> str:

@@ -7,11 +7,13 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from app.services.documents import read_object
-from app.services.plans.missions import MissionChoice, encode_plan, plan_of
+from app.services.plans.missions import MissionChoice, mission_of, plan_of
 from app.services.vehicles.preflight import settle_m
+from mavlink.dialects.fit import fitted
 from mavlink.dialects.mission import Mission
 from mavlink.encoding.options import DEFAULT_PAYLOAD
-from mavlink.encoding.payload import parse_payload
+from mavlink.encoding.payload import Payload, parse_payload
+from mavlink.encoding.payload_in import payload_in
 from mavlink.rules.table import Needs, needs_of
 from planner.plan import LonLat, Plan
 
@@ -35,9 +37,9 @@ class Brief:
 
 
 def brief_of(plan_text: str, scenario_text: str, choice: MissionChoice) -> Brief:
-    """Read both, encode the mission; raises as ``missions.encode_plan``."""
+    """Read both, encode the mission, or fit that of a file; raises as ``missions.mission_of``."""
     plan, scenario = plan_of(plan_text), read_object(scenario_text)
-    mission = encode_plan(plan, choice)
+    mission = fitted(mission_of(plan_text, choice))
     needs = mission_needs(plan, scenario, mission, choice)
     paths = tuple(replace(path, line=(), segments=()) for path in plan.paths)
     plan = replace(plan, paths=paths, transits=(), footprints=(), uncovered=())
@@ -47,7 +49,9 @@ def brief_of(plan_text: str, scenario_text: str, choice: MissionChoice) -> Brief
 
 def mission_needs(plan: Plan, scenario: Mapping[str, Any], mission: Mission, choice: MissionChoice) -> Needs:
     """What a mission needs of its vehicle."""
-    payload = DEFAULT_PAYLOAD if choice.payload is None else parse_payload(choice.payload)
+    payload: Payload | None = DEFAULT_PAYLOAD if mission.declared is None else payload_in(mission)
+    if choice.payload is not None:
+        payload = parse_payload(choice.payload)
     return needs_of(plan, mission, payload, settle_m(scenario, mission.vehicle))
 
 

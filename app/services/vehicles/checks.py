@@ -70,8 +70,10 @@ def _as_sent(vehicle: Vehicle, plan_id: str, mission: Mission, choice: MissionCh
 
 
 def for_vehicle(vehicle: Vehicle, choice: MissionChoice) -> MissionChoice:
-    """The choice, encoded for the autopilot that is really there."""
-    autopilot = vehicle.state.autopilot
+    """The choice, encoded for the autopilot that is really there, and for its kind where a file says none."""
+    autopilot, kind = vehicle.state.autopilot, vehicle.state.type
+    if kind != "other":
+        choice = replace(choice, vehicle_type=kind)
     if choice.autopilot is not None or autopilot == "generic":
         return choice
     return replace(choice, autopilot=autopilot)

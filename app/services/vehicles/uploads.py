@@ -185,6 +185,10 @@ def judge_upload(
         Finding(violation.feature, violation.constraint, violation.message, _AGAIN)
         for violation in plan.hard_violations
     ]
+    for part in parts:
+        if PARTS[part] in mission.unread:
+            message = f"the file's {part} could not be read whole, and not all of it would go up"
+            dangers.append(Finding(part, f"{part}-unread", message, f"mend the file's {part}, or override"))
     if stale is not None:
         dangers.append(Finding("plan", "plan-stale", f"the plan is stale: {stale}", _STALE))
     if "mission" in parts and state.type not in ("other", mission.vehicle_type):

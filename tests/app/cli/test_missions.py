@@ -122,3 +122,52 @@ def test_demo_says_why_it_flies_no_vtol(swathplan: Command, scenario_file: Path)
     ended = swathplan("demo", str(scenario_file))
     assert ended.code == 2
     assert "no vtol is simulated" in ended.err
+
+
+def test_a_mission_file_is_judged_and_uploaded_as_it_is(swathplan: Command, tmp_path: Path) -> None:
+    """The items of a .waypoints go up, are read back and compared; out of its own fence only with a reason."""
+    place = "\t{}\t0\t3\t{}\t{}\t0\t0\t0\t{}\t{}\t{}\t1"
+    route = ["0\t1\t0\t16\t0\t0\t0\t0\t47.1\t8.2\t450\t1"]
+    route += [place.format(0, 16, 0, 47.105, 8.2, 60)[1:], place.format(0, 16, 0, 47.105, 8.21, 60)[1:]]
+    square = [(47.0, 8.1), (47.2, 8.1), (47.2, 8.3), (47.0, 8.3)]
+    fence = [place.format(0, 5001, 4, lat, lon, 0)[1:] for lat, lon in square]
+    file = tmp_path / "flight.waypoints"
+    file.write_text("\n".join(["QGC WPL 110", "# a survey", *route, *fence]))
+    ended = swathplan(
+        *("upload", str(file), "--to", "sim:", "--part", "mission", "--part", "fence", "--json")
+    )  # fmt: skip
+    assert ended.code == 0, ended.err
+    parts = json.loads(ended.out)["parts"]
+    assert [parts[name]["meant"] for name in ("mission", "fence")] == [3, 4]
+    assert all(part["verified"] for part in parts.values())
+    assert "line 2: the comments are left out" in ended.err
+    file.write_text("\n".join(["QGC WPL 110", *route, *fence]).replace("8.3\t", "8.205\t"))
+    refused = swathplan("upload", str(file), "--to", "sim:")
+    assert refused.code == 1
+    assert "are flown outside the operating area (area)" in refused.err
+
+
+def test_a_mission_file_is_judged_in_a_scenario(
+    swathplan: Command, scenario_file: Path, tmp_path: Path
+) -> None:
+    """Hard zones of --scenario hold for a file too; what cannot be read exits with 2."""
+    scenario = json.loads(scenario_file.read_text())
+    start = next(f for f in scenario["features"] if f["properties"]["role"] == "start")
+    lon, lat = start["geometry"]["coordinates"][:2]
+    zone = {"type": "Point", "coordinates": [lon, lat + 0.004]}
+    scenario["features"].append(
+        {"type": "Feature", "geometry": zone, "id": "mast", "properties": {"role": "no_fly", "radius_m": 50}}
+    )
+    zoned = tmp_path / "zoned.geojson"
+    zoned.write_text(json.dumps(scenario))
+    file = tmp_path / "flight.waypoints"
+    rows = [
+        f"0\t1\t0\t16\t0\t0\t0\t0\t{lat}\t{lon}\t0\t1",
+        f"1\t0\t3\t16\t0\t0\t0\t0\t{lat + 0.01}\t{lon}\t60\t1",
+    ]
+    file.write_text("\n".join(["QGC WPL 110", *rows]))
+    refused = swathplan("upload", str(file), "--to", "sim:", "--scenario", str(zoned))
+    assert refused.code == 1
+    assert "inside mast" in refused.err
+    file.write_text("QGC WPL 110\n0\t1\n")
+    assert swathplan("upload", str(file), "--to", "sim:").code == 2
