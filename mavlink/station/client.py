@@ -25,6 +25,7 @@ from mavlink.state.track import TrackRecorder
 from mavlink.station.driver import Driver
 from mavlink.station.flight import FlightCommands
 from mavlink.station.forward.hub import Forwards
+from mavlink.station.terrain import Heights, TerrainServer
 from mavlink.station.transfers import MissionTransfers
 from mavlink.transfer.command import CommandMachine, CommandOutcome
 from mavlink.transfer.machine import DEFAULT_SETTINGS, Progress, TransferSettings
@@ -99,6 +100,7 @@ class VehicleClient(MissionTransfers, FlightCommands):
         self._settings = settings
         self._clock = clock
         self._watched_hz: dict[int, float] = {}
+        self._terrain: TerrainServer | None = None
 
     async def __aenter__(self) -> Self:
         return self
@@ -216,6 +218,12 @@ class VehicleClient(MissionTransfers, FlightCommands):
         """Stop feeding a recorder; its track stays."""
         self._driver.stop_recording(recorder)
 
+    def serve_terrain(self, heights: Heights) -> None:
+        """Answer the vehicle's requests for the ground's heights; on recordings nothing is said."""
+        if not self._driver.read_only and self._terrain is None:
+            self._terrain = TerrainServer(heights, self._driver.say)
+            self._driver.record(self._terrain)
+
     async def command(self, command: int, parameters: Sequence[float] = ()) -> CommandOutcome:
         """Send a command (COMMAND_LONG) until it is answered. Raises NotConnectedError, CodecError."""
         return await self._driver.command(
@@ -260,6 +268,8 @@ class VehicleClient(MissionTransfers, FlightCommands):
 
     async def close(self) -> None:
         """End the task, fail whoever waits, close the link; closing twice is harmless."""
+        if self._terrain is not None:
+            self._terrain.close()
         await self._driver.close()
 
     @property

@@ -21,11 +21,12 @@ from mavlink.state.modes import GROUND_STATION_TYPE, NO_AUTOPILOT
 from mavlink.state.outputs import SensorOutput
 from mavlink.state.sensor import SensorWatch
 from mavlink.state.telemetry import VehicleState, updated
-from mavlink.state.track import CAMERA_MESSAGES, TrackRecorder
+from mavlink.state.track import CAMERA_MESSAGES
 from mavlink.station.forward.hub import Forwards
 from mavlink.station.identity import Identity
 from mavlink.station.jobs import Job
 from mavlink.station.list_ids import ListIds
+from mavlink.station.listener import Listener
 from mavlink.station.requirements import Requirements
 from mavlink.station.restarts import Restarts
 from mavlink.station.trust import Trust
@@ -86,7 +87,7 @@ class Driver(Requirements):
         self._heartbeat_s = -math.inf
         self._under_way = UnderWay(clock, self._queue, self._wake)
         self._watchers: set[asyncio.Event] = set()
-        self._recorders: set[TrackRecorder] = set()
+        self._recorders: set[Listener] = set()
         self.events = EventOrder()
         self.list_ids = ListIds()
         self.sensor = SensorWatch()
@@ -134,7 +135,7 @@ class Driver(Requirements):
         return self._under_way.post(machine)
 
     def pass_on(self, frame: bytes) -> bool:
-        """Send another ground station's frame as it is, and record it; False when too many wait."""
+        """Send a frame as it is, and record it; False when too many wait."""
         if self._failure is not None or len(self._outgoing) >= _MOST_WAITING:
             return False
         if self._codec.tap is not None:
@@ -142,6 +143,11 @@ class Driver(Requirements):
         self._outgoing.append(frame)
         self._wake()
         return True
+
+    def say(self, messages: list[Message]) -> None:
+        """Send messages that nothing answers."""
+        for message in messages:
+            self.pass_on(self._codec.pack(message))
 
     def reserved(self, *, changes: bool) -> contextlib.AbstractContextManager[None]:
         """Keep the vehicle's lists to this station while within.
@@ -207,11 +213,11 @@ class Driver(Requirements):
         link = self._link
         return (lambda: link.clock_s) if isinstance(link, ReplayLink) else None
 
-    def record(self, recorder: TrackRecorder) -> None:
-        """Feed a recorder from now on."""
+    def record(self, recorder: Listener) -> None:
+        """Feed whoever takes the vehicle's messages from now on."""
         self._recorders.add(recorder)
 
-    def stop_recording(self, recorder: TrackRecorder) -> None:
+    def stop_recording(self, recorder: Listener) -> None:
         """Stop feeding a recorder."""
         self._recorders.discard(recorder)
 
