@@ -99,8 +99,8 @@ def serve(
 def _check_wishes(scenario: dict[str, Any] | None, database: Path, sim_url: str) -> None:
     """Refuse before anything is started what would be refused afterwards, where nobody looks."""
     from app.services.errors import RefusedError
-    from app.services.house import terrain_folder
     from app.services.scenarios.validation import judge
+    from app.services.terrain.ground import terrain_folder
     from app.services.vehicles.connection import simulated_of
 
     try:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable
 from functools import partial
-from pathlib import Path
 from typing import Protocol
 
 import structlog
@@ -26,17 +25,13 @@ from app.services.store.flights import FlightStore
 from app.services.store.plans import PlanStore
 from app.services.store.scenarios import ScenarioStore
 from app.services.store.terrain import TerrainStore
+from app.services.terrain.ground import GroundService, terrain_folder
 from app.services.terrain.service import TerrainService
 from app.services.vehicles.fleet import Fleet
 from app.services.vehicles.station import Station
 from app.services.vehicles.times import DEFAULT_TIMES, LinkTimes
 
 log = structlog.get_logger(__name__)
-
-
-def terrain_folder(database: Path) -> Path:
-    """Where the posts of uploaded rasters lie: beside the database, each raster in a file of its own."""
-    return database.resolve().with_name(database.stem + "-terrain")
 
 
 class Whereabouts(Protocol):
@@ -94,7 +89,14 @@ class House:
         self.flights = FlightService(FlightStore(self.database), self.planning, self.desk)
         self.keeper = keeper
         self._station = (
-            Station(self.database, self.planning.library, limits.track_interval_s, limits.recordings, times)
+            Station(
+                self.database,
+                self.planning.library,
+                limits.track_interval_s,
+                limits.recordings,
+                times,
+                GroundService(folder, self.desk).heights,
+            )
             if keeper is None
             else None
         )

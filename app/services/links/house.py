@@ -13,6 +13,7 @@ from app.services.plans.library import PlanLibrary
 from app.services.plans.pool import WorkerPool
 from app.services.store.database import Database
 from app.services.store.plans import PlanStore
+from app.services.terrain.ground import GroundService, terrain_folder
 from app.services.vehicles.station import Station
 from app.services.vehicles.times import DEFAULT_TIMES
 
@@ -33,7 +34,12 @@ class LinksHouse:
         self._desk = Desk(pool, 1, limits.request_time_limit_s)
         library = PlanLibrary(PlanStore(self._database), self._desk)
         self.station = Station(
-            self._database, library, limits.track_interval_s, limits.recordings, DEFAULT_TIMES
+            self._database,
+            library,
+            limits.track_interval_s,
+            limits.recordings,
+            DEFAULT_TIMES,
+            GroundService(terrain_folder(limits.database), self._desk).heights,
         )
         self.fleet = self.station.fleet
         self.needed_s = time.monotonic()

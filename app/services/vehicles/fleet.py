@@ -30,6 +30,7 @@ from app.services.vehicles.vehicle import Vehicle
 from mavlink.encoding.payload import parse_payload
 from mavlink.state.outputs import output_of
 from mavlink.station.forward.address import ForwardAddress
+from mavlink.station.terrain import Heights
 
 log = structlog.get_logger(__name__)
 
@@ -54,7 +55,9 @@ class Fleet:
         track_interval_s: float,
         recordings: Recordings | None = None,
         times: LinkTimes = DEFAULT_TIMES,
+        heights: Heights | None = None,
     ) -> None:
+        self._heights = heights
         self._plans = plans
         self._transfers = transfers
         self._flights = flights
@@ -299,12 +302,11 @@ class Fleet:
             self._flights,
             self._track_interval_s,
             self._publish,
-            self._transfers.record,
-            self._transfers.still_holds,
-            self._transfers.identified,
+            self._transfers,
             self._audit,
             self._recordings,
             self._times,
+            self._heights,
         )
 
     def _publish(self, vehicle: Vehicle) -> None:

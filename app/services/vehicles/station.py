@@ -14,6 +14,7 @@ from app.services.vehicles.fleet import Fleet
 from app.services.vehicles.recordings import Recordings
 from app.services.vehicles.times import LinkTimes
 from app.services.vehicles.transfers import Transfers
+from mavlink.station.terrain import Heights
 
 
 class Station:
@@ -27,6 +28,8 @@ class Station:
         Vehicle time between two recorded points of a track.
     recordings
         Where their links are recorded; None for nowhere.
+    heights
+        Where the ground's heights come from, for vehicles that ask.
     """
 
     def __init__(
@@ -36,11 +39,20 @@ class Station:
         track_interval_s: float,
         recordings: Recordings | None,
         times: LinkTimes,
+        heights: Heights | None = None,
     ) -> None:
         kept = VehicleStore(database)
         audit = Audit(AuditStore(database))
         self.checks = Checks(plans)
         self.transfers = Transfers(plans, UploadStore(database), kept, audit)
         self.fleet = Fleet(
-            plans, self.transfers, FlightStore(database), kept, audit, track_interval_s, recordings, times
+            plans,
+            self.transfers,
+            FlightStore(database),
+            kept,
+            audit,
+            track_interval_s,
+            recordings,
+            times,
+            heights,
         )

@@ -6,7 +6,7 @@ import asyncio
 import contextlib
 import math
 import time
-from collections.abc import Awaitable, Callable, Sequence
+from collections.abc import Callable, Sequence
 from datetime import UTC, datetime, timedelta
 
 import structlog
@@ -18,6 +18,7 @@ from app.services.vehicles.aboard import Aboard
 from app.services.vehicles.audit import Audit
 from app.services.vehicles.connection import Connection, Home, connect, is_replay, simulated_of
 from app.services.vehicles.forwarding import changes_mission, tell_forwards, tell_order
+from app.services.vehicles.memory import Memory
 from app.services.vehicles.order_book import OrderBook
 from app.services.vehicles.recorder import FlightRecorder, HeldPlan
 from app.services.vehicles.recordings import Recordings, Tape
@@ -36,6 +37,7 @@ from mavlink.station.client import VehicleClient
 from mavlink.station.forward.address import ForwardAddress
 from mavlink.station.forward.hub import Forwards
 from mavlink.station.forward.outlet import Outlet
+from mavlink.station.terrain import Heights
 from mavlink.wire.items import MissionItem, MissionType
 from mavlink.wire.messages import Message
 
@@ -54,16 +56,14 @@ class Vehicle:
         What it is called and where it is; with ``held`` the plan it held before the service was restarted.
     publish
         Called when its state has changed, no more often than ``times.telemetry_s``.
-    resolved
-        Called when an upload whose outcome was unknown has been resolved by reading back.
-    still_holds
-        Asked, once the vehicle is heard, whether it holds the plan it held before; None: nobody can tell.
-    identified
-        Called when its system id has become known, or is another by somebody's word.
+    memory
+        What remembers for it over restarts.
     audit
         Where orders are written before they are sent.
     recordings
         Where the link is recorded; None not to. A recording is not recorded again.
+    heights
+        Where the ground's heights come from, if it asks; None for nowhere.
     """
 
     def __init__(
@@ -72,12 +72,11 @@ class Vehicle:
         flights: FlightStore,
         track_interval_s: float,
         publish: Callable[[Vehicle], None],
-        resolved: Callable[[Vehicle], Awaitable[None]],
-        still_holds: Callable[[Vehicle, HeldMission], Awaitable[bool | None]],
-        identified: Callable[[Vehicle], Awaitable[None]],
+        memory: Memory,
         audit: Audit,
         recordings: Recordings | None = None,
         times: LinkTimes = DEFAULT_TIMES,
+        heights: Heights | None = None,
     ) -> None:
         self.id = record.id
         self.name = record.name
@@ -91,7 +90,8 @@ class Vehicle:
         self.replay = is_replay(url)
         #: Another system is not taken for it; 0 while it was not heard, and for what is no aircraft.
         self.system_id = record.system_id if self._is_itself else 0
-        self._identified = identified
+        self._memory = memory
+        self._heights = heights
         self.forwards = Forwards(self._station_said)
         self.turns = Turns(record.name, self.replay, self.forwards)
         self._forward = record.forward
@@ -110,9 +110,7 @@ class Vehicle:
         self.sent = None if self.simulated is not None else record.sent
         self.read_back_at: datetime | None = None
         self._found: bool | None = None
-        self._still_holds = still_holds
         self._publish = publish
-        self._resolved = resolved
         self._connection: Connection | None = None
         self._tasks: list[asyncio.Task[None]] = []
 
@@ -215,6 +213,8 @@ class Vehicle:
         )
         if self._is_itself:
             self.system_id = connection.client.state.system_id or self.system_id
+        if self._heights is not None:
+            connection.client.serve_terrain(self._heights)
         return connection
 
     async def close(self) -> None:
@@ -337,7 +337,7 @@ class Vehicle:
                     self.found(None)
                 elif self._is_itself and state.system_id != self.system_id:
                     self.system_id = state.system_id
-                    await self._identified(self)
+                    await self._memory.identified(self)
                 elif self.turns.operation is not None or self.forwards.exchanging is not None:
                     pass  # somebody is at the lists: what they hold is read afterwards
                 elif self.pending and tries:
@@ -352,7 +352,7 @@ class Vehicle:
         """Read back whether it holds what it held before; a vehicle that does not answer is not believed."""
         try:
             async with self.turns.busy("reading back the mission it held"):
-                self.found(await self._still_holds(self, held))
+                self.found(await self._memory.still_holds(self, held))
         except (ServiceError, mavlink_errors.TransferFailedError) as error:
             log.warning("mission not read back", vehicle=self.name, reason=str(error))
             if not last:
@@ -381,7 +381,7 @@ class Vehicle:
                 await read_back(client, report)
         if not self.pending:
             log.info("unknown upload resolved", vehicle=self.name, outcome=report.outcome)
-            await self._resolved(self)
+            await self._memory.record(self)
 
     async def _record(self) -> None:
         while True:

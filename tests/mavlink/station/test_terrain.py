@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 from pymavlink.dialects.v20 import ardupilotmega as dialect
 from pyproj import Geod
 
-from mavlink.station.terrain import BLOCKS, MOST_BLOCKS, POSTS, TerrainServer, Wanted
 from mavlink.state.telemetry import VehicleState
+from mavlink.station.terrain import BLOCKS, MOST_BLOCKS, POSTS, TerrainServer, Wanted
 from mavlink.wire.codec import Codec
 from mavlink.wire.messages import Message
 
@@ -34,9 +34,7 @@ def request(lat_deg: float, lon_deg: float, spacing_m: int, mask: int) -> Messag
     spacing_m=st.integers(1, 200),
     block=st.integers(0, BLOCKS - 1),
 )
-def test_posts_lie_where_pyproj_puts_them(
-    lat_deg: float, lon_deg: float, spacing_m: int, block: int
-) -> None:
+def test_posts_lie_where_pyproj_puts_them(lat_deg: float, lon_deg: float, spacing_m: int, block: int) -> None:
     """Rows northwards of the south-west corner, posts eastwards in a row, to half a spacing."""
     places = Wanted.of(request(lat_deg, lon_deg, spacing_m, 1 << block)).places_deg(block)
     for number, (lon, lat) in enumerate(places):
