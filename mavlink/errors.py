@@ -11,6 +11,7 @@
     │   └── ReadOnlyError    a transfer or command asked of a recording that is being replayed
     ├── UnsupportedError     asked of an autopilot that does not do it; nothing was sent
     ├── DoubtError           it is doubted who would hear: the vehicle meant, and it alone; nothing was sent
+    ├── SigningError         the vehicle has not taken a key, or goes on signing
     ├── BusyError            another transfer with this vehicle is under way
     └── TransferFailedError  a download ended without all items; carries the outcome
 
@@ -63,6 +64,10 @@ class DoubtError(MavlinkError):
     def __init__(self, rule: str, message: str, fix: str) -> None:
         self.rule, self.message, self.fix = rule, message, fix
         super().__init__(f"{message}: {fix}")
+
+
+class SigningError(MavlinkError):
+    """The vehicle has not taken a key, or goes on signing; all is as before."""
 
 
 class BusyError(MavlinkError):

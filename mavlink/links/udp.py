@@ -29,7 +29,7 @@ class Sieve(Protocol):
     """Says which senders on a listening port are believed."""
 
     @property
-    def address(self) -> Address | None:
+    def answered(self) -> Address | None:
         """Where alone to send to; None: nowhere yet."""
 
     def sift(self, sender: Address, data: bytes) -> bytes:
@@ -85,7 +85,7 @@ class UdpLink:
             return (self._fixed_peer,)
         if self._sieve is None:
             return tuple(self._peers)
-        return () if self._sieve.address is None else (self._sieve.address,)
+        return () if self._sieve.answered is None else (self._sieve.answered,)
 
     def believe(self, sieve: Sieve) -> None:
         """Let a sieve say from now on who is heard and answered on a listening port."""

@@ -8,6 +8,7 @@ import signal
 import sys
 import time
 from dataclasses import replace
+from pathlib import Path
 
 from mavlink.errors import CodecError, LinkError
 from mavlink.links.link import Link, PacedLink, open_link, parse_address
@@ -15,9 +16,11 @@ from mavlink.sim.autopilot import SimulatedAircraft
 from mavlink.sim.faults import Fault
 from mavlink.sim.geodesy import Place
 from mavlink.sim.modes import Flavour
+from mavlink.sim.replies import status_text
 from mavlink.sim.settings import SimSettings
 from mavlink.wire.codec import Codec
 from mavlink.wire.messages import Message
+from mavlink.wire.signing import Signing, SigningKey, parse_key
 
 _TICK_S = 0.01
 # A slower machine flies slower instead of falling ever further behind.
@@ -57,7 +60,10 @@ async def serve_link(
         settings = replace(settings, speedup=speedup)
     if settings.started_unix_s == 0.0:
         settings = replace(settings, started_unix_s=time.time())
-    session = _Session(link, SimulatedAircraft(settings), Codec(settings.system_id, settings.component_id))
+    codec = Codec(settings.system_id, settings.component_id)
+    if settings.signing_key:
+        codec.signing = Signing(SigningKey(settings.signing_key), time.time)
+    session = _Session(link, SimulatedAircraft(settings), codec)
     stop = stop or asyncio.Event()
     tasks = [
         asyncio.create_task(session.listen()),
@@ -90,12 +96,27 @@ class _Session:
             data = await self._link.receive()
             answers: list[Message] = []
             for message in self._codec.feed(data):
+                if message.name == "SETUP_SIGNING":
+                    answers += self._take_key(message)
+                    continue
                 try:
                     answers += self._aircraft.receive(message, self._now_s)
                 except (KeyError, TypeError, ValueError, OverflowError) as error:
                     # Nonsense from the link must not down the aircraft.
                     _say(f"{message.name} ignored: {error!r}")
             await self._send(answers)
+
+    def _take_key(self, message: Message) -> list[Message]:
+        """Sign with this key from now on, or no more: as ArduPilot, not while armed, and not for another."""
+        if message.integer("target_system") != self._codec.system_id:
+            return []
+        if self._aircraft.armed:
+            return [status_text(3, "ERROR: Won't setup signing when armed")]
+        secret = message.fields["secret_key"]
+        assert isinstance(secret, tuple)
+        key = bytes(int(byte) for byte in secret)
+        self._codec.signing = Signing(SigningKey(key), time.time) if any(key) else None
+        return []
 
     async def fly(self) -> None:
         clock = asyncio.get_running_loop().time
@@ -132,7 +153,9 @@ class _Session:
         named = message.system_id, message.component_id
         if message.system_id == 0 or named == (self._codec.system_id, self._codec.component_id):
             return self._codec
-        return self._others.setdefault(named, Codec(*named))
+        other = self._others.setdefault(named, Codec(*named))
+        other.signing = self._codec.signing if message.system_id == self._codec.system_id else None
+        return other
 
 
 def parser() -> argparse.ArgumentParser:
@@ -198,6 +221,13 @@ def parser() -> argparse.ArgumentParser:
     p.add_argument("--battery-wh", type=float, default=defaults.battery_wh)
     p.add_argument("--seed", type=int, default=0)
     p.add_argument(
+        "--signing-key",
+        type=_key,
+        default=b"",
+        metavar="FILE",
+        help="sign with the key in this file from the start, and hear nothing that is not signed with it",
+    )
+    p.add_argument(
         "--fault",
         action="append",
         default=[],
@@ -229,6 +259,7 @@ def settings_of(arguments: argparse.Namespace) -> SimSettings:
         dynamics=arguments.dynamics,
         battery_wh=arguments.battery_wh,
         sensor_reports=arguments.sensor_reports == "yes",
+        signing_key=arguments.signing_key,
         faults=tuple(arguments.fault),
     )
 
@@ -271,6 +302,13 @@ def _home(text: str) -> Place:
     if len(parts) != 3 or not (abs(parts[0]) <= 90.0 and abs(parts[1]) <= 180.0):
         raise argparse.ArgumentTypeError(f"{text!r} is not latitude,longitude,altitude")
     return Place(*parts)
+
+
+def _key(name: str) -> bytes:
+    try:
+        return parse_key(Path(name).read_text(encoding="utf-8")).reveal()
+    except (OSError, ValueError) as error:
+        raise argparse.ArgumentTypeError(f"{name}: {error}") from error
 
 
 def _wind(text: str) -> tuple[float, float]:

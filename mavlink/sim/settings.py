@@ -82,6 +82,9 @@ class SimSettings:
         Whether it carries a camera and a gimbal that are MAVLink components of their own.
     started_unix_s
         The time of day at its start, in seconds since 1970; 0: it does not know.
+    signing_key
+        32 bytes: it signs with this key, and hears nothing else, until another one is handed to it; empty: it
+        signs once it is handed one.
     faults
         Names of ``mavlink.sim.faults.Fault``.
     vanish_after_items, vanish_for_s
@@ -123,6 +126,7 @@ class SimSettings:
     boot_s: float = 0.0
     sensor_reports: bool = True
     max_items: int | None = None
+    signing_key: bytes = field(default=b"", repr=False)
     faults: tuple[str, ...] = ()
     vanish_after_items: int = 3
     vanish_for_s: float = 10.0

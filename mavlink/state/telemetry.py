@@ -78,6 +78,10 @@ class VehicleState:
         Where it is heard from, on a port where anybody may speak.
     strangers
         Other addresses heard there lately: neither believed nor sent to.
+    signing
+        ``verified``: its frames are signed with the key known here. ``no_key``: they are signed, and no key
+        is known. ``unsigned``, ``wrong_key``, ``replayed``: a key is known, and for this they do not count.
+        None: it does not sign.
     doubt
         Why orders are refused that make it fly or change what it holds; None where all is certain.
     heard_s
@@ -123,6 +127,7 @@ class VehicleState:
     restarts: int = 0
     address: str | None = None
     strangers: tuple[str, ...] = ()
+    signing: str | None = None
     doubt: Doubt | None = None
     heard_s: float | None = None
     position_heard_s: float | None = None

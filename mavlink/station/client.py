@@ -11,7 +11,7 @@ from typing import Final, Self
 
 from mavlink.encoding.payload import Payload
 from mavlink.errors import NotConnectedError, TransferFailedError, VehicleNotFoundError
-from mavlink.links.link import Link
+from mavlink.links.link import Link, ReplayLink
 from mavlink.state.outputs import (
     INTERVALS_HZ,
     SensorOutput,
@@ -25,6 +25,7 @@ from mavlink.state.track import TrackRecorder
 from mavlink.station.driver import Driver
 from mavlink.station.flight import FlightCommands
 from mavlink.station.forward.hub import Forwards
+from mavlink.station.signing_setup import SigningSetup
 from mavlink.station.terrain import Heights, TerrainServer
 from mavlink.station.transfers import MissionTransfers
 from mavlink.transfer.command import CommandMachine, CommandOutcome
@@ -32,6 +33,7 @@ from mavlink.transfer.machine import DEFAULT_SETTINGS, Progress, TransferSetting
 from mavlink.transfer.parameters import Parameter, ParameterListMachine, ParametersMachine
 from mavlink.wire.codec import Codec
 from mavlink.wire.items import Command
+from mavlink.wire.signing import Signing
 
 # Messages asked for at connection, and how often a second.
 _INTERVALS_HZ: Final = {
@@ -51,7 +53,7 @@ _PARAMETER_RETRIES: Final = 2
 _PARAMETER_TIMEOUT_S: Final = 0.8
 
 
-class VehicleClient(MissionTransfers, FlightCommands):
+class VehicleClient(MissionTransfers, FlightCommands, SigningSetup):
     """One vehicle at the other end of a link.
 
     Parameters
@@ -72,6 +74,8 @@ class VehicleClient(MissionTransfers, FlightCommands):
         Called with every frame of the link, both ways, e.g. ``TlogWriter.write``.
     forwards
         Other ground stations that hear the vehicle too; stays open when the client is closed.
+    signing
+        Signs what is sent; nothing that is not signed with its key counts. None: nothing is signed.
 
     Notes
     -----
@@ -90,9 +94,12 @@ class VehicleClient(MissionTransfers, FlightCommands):
         lost_after_s: float = 5.0,
         tap: Callable[[bytes], None] | None = None,
         forwards: Forwards | None = None,
+        signing: Signing | None = None,
     ) -> None:
         codec = Codec(system_id)
         codec.tap = tap
+        # A recording is read as it is: its times are past.
+        codec.signing = None if isinstance(link, ReplayLink) else signing
         super().__init__()
         self._driver = Driver(
             link, codec, clock, self._ask_for_telemetry, vehicle_system, lost_after_s, forwards
@@ -271,6 +278,8 @@ class VehicleClient(MissionTransfers, FlightCommands):
         if self._terrain is not None:
             self._terrain.close()
         await self._driver.close()
+        if self._driver.signing is not None:
+            self._driver.signing.close()
 
     @property
     def _bytewise(self) -> bool:

@@ -22,12 +22,12 @@ from mavlink.state.outputs import SensorOutput
 from mavlink.state.sensor import SensorWatch
 from mavlink.state.telemetry import VehicleState, updated
 from mavlink.state.track import CAMERA_MESSAGES
+from mavlink.station.believing import Believing
 from mavlink.station.forward.hub import Forwards
 from mavlink.station.identity import Identity
 from mavlink.station.jobs import Job
 from mavlink.station.list_ids import ListIds
 from mavlink.station.listener import Listener
-from mavlink.station.requirements import Requirements
 from mavlink.station.restarts import Restarts
 from mavlink.station.trust import Trust
 from mavlink.station.under_way import UnderWay
@@ -43,7 +43,7 @@ _ACTIVE: Final = 4  # MAV_STATE_ACTIVE
 _MOST_WAITING: Final = 256
 
 
-class Driver(Requirements):
+class Driver(Believing):
     """Drives machines over a link on behalf of one ground station and one vehicle.
 
     Parameters
@@ -78,6 +78,8 @@ class Driver(Requirements):
         self._on_connect = on_connect
         self._identity = Identity(vehicle_system, lost_after_s)
         self._trust = Trust(link, vehicle_system, clock, self._doubt)
+        self._trust.verify(codec.signing)
+        codec.noted = self._trust.noted
         self._lost_after_s = lost_after_s
         self._task: asyncio.Task[None] | None = None
         self._timeout: asyncio.Timeout | None = None
@@ -138,16 +140,20 @@ class Driver(Requirements):
         """Send a frame as it is, and record it; False when too many wait."""
         if self._failure is not None or len(self._outgoing) >= _MOST_WAITING:
             return False
+        signed = self._codec.signed(frame)
+        if signed is None:
+            return False
         if self._codec.tap is not None:
-            self._codec.tap(frame)
-        self._outgoing.append(frame)
+            self._codec.tap(signed)
+        self._outgoing.append(signed)
         self._wake()
         return True
 
     def say(self, messages: list[Message]) -> None:
-        """Send messages that nothing answers."""
-        for message in messages:
-            self.pass_on(self._codec.pack(message))
+        """Send messages that nothing answers, unless too many wait."""
+        if self._failure is None and len(self._outgoing) < _MOST_WAITING:
+            self._outgoing.extend([self._codec.pack(message) for message in messages])
+            self._wake()
 
     def reserved(self, *, changes: bool) -> contextlib.AbstractContextManager[None]:
         """Keep the vehicle's lists to this station while within.
@@ -160,21 +166,6 @@ class Driver(Requirements):
         if self._forwards is None:
             return contextlib.nullcontext()
         return self._forwards.reserved(changes=changes)
-
-    def acknowledge(self, address: str) -> None:
-        """Take an address for the vehicle's, whoever else says that it is there.
-
-        Raises
-        ------
-        NotConnectedError
-            Nobody was heard from there lately.
-        """
-        if self._failure is not None or not self._trust.acknowledge(address):
-            raise NotConnectedError(self._failure or f"nobody is heard from {address}")
-
-    def _doubt(self) -> None:
-        """Tell what is doubted now."""
-        self._change(self._trust.told(self.state))
 
     def adopt(self, system_id: int) -> None:
         """Take the system heard in the vehicle's place for the vehicle, of which nothing is known yet.
@@ -325,7 +316,7 @@ class Driver(Requirements):
         if self._restarts.noticed(self.state, state, message):
             state = self._restarted(state)
         if not self.state.connected:
-            self._trust.connected()
+            self._trust.connected(message.system_id)
             self._set_state(self._trust.told(replace(state, connected=True, other_system=None)))
             self._on_connect()
         else:

@@ -15,6 +15,7 @@ from typing import Any, Final
 from mavlink.station.identity import is_autopilot
 from mavlink.wire.codec import Codec
 from mavlink.wire.messages import Message
+from mavlink.wire.signing import Signing, Verdict
 
 Address = tuple[Any, ...]
 
@@ -59,6 +60,8 @@ class Peers:
     ----------
     address
         The vehicle's; None while it is not known.
+    signing
+        Verifies the frames of those that are not believed yet; None where nobody signs.
     acknowledged
         Somebody said that the vehicle is there: others who say that they are it are no matter.
     """
@@ -71,6 +74,16 @@ class Peers:
         self._changed = changed
         self._lost = False
         self._strangers: dict[Address, Stranger] = {}
+        self.signing: Signing | None = None
+        self._behind: Address | None = None
+
+    @property
+    def answered(self) -> Address | None:
+        """Where alone to send to.
+
+        A vehicle whose clock is behind hears what time it is from there, and is believed with the next frame.
+        """
+        return self.address or self._behind
 
     @property
     def place(self) -> str | None:
@@ -105,6 +118,14 @@ class Peers:
         codec.heard = lambda frame, message: None if message is None else frames.append((frame, message))
         codec.feed(data)
         claims = [(frame, message) for frame, message in frames if is_autopilot(message)]
+        if self.signing is not None:
+            verdicts = [(self.signing.check(frame), frame, message) for frame, message in claims]
+            claims = [(frame, message) for verdict, frame, message in verdicts if verdict is Verdict.GENUINE]
+            if self.address is None and any(verdict is Verdict.REPLAYED for verdict, _, _ in verdicts):
+                self._behind = sender
+            if not claims and (self.address is None or self._lost):
+                # Nothing of it counts; what its signature says is told, by whoever reads it.
+                return b"".join(frame for _, frame, message in verdicts)
         mine = [message for _, message in claims if self._system_id in (0, message.system_id)]
         if mine and self._may_be_the_vehicle(sender):
             self._bind(sender, mine[0].system_id)
@@ -115,8 +136,13 @@ class Peers:
         return b"".join(frame for frame, message in claims if message.system_id != self._system_id)
 
     def _may_be_the_vehicle(self, sender: Address) -> bool:
-        """At first whoever comes first; afterwards the same machine on another port, once all is silent."""
-        return self.address is None or (self._lost and sender[0] == self.address[0])
+        """At first whoever comes first; afterwards the same machine on another port, once all is silent.
+
+        Whoever signs with the vehicle's key may have moved further.
+        """
+        if self.address is None:
+            return True
+        return self._lost and (self.signing is not None or sender[0] == self.address[0])
 
     def _bind(self, sender: Address, system_id: int) -> None:
         self._strangers.pop(sender, None)

@@ -19,6 +19,7 @@ from pymavlink.dialects.v20 import ardupilotmega as dialect
 from mavlink.errors import CodecError
 from mavlink.wire.extra_messages import EXTRA_FIELDS, EXTRA_MESSAGES, Definition
 from mavlink.wire.messages import Message, Value
+from mavlink.wire.signing import SIGNATURE_BYTES, SIGNED, Signing, Verdict
 
 _MAGIC_V1: Final = 0xFE
 _MAGIC_V2: Final = 0xFD
@@ -26,9 +27,9 @@ _MAGIC_V2: Final = 0xFD
 MAGIC: Final = re.compile(rb"[\xfd\xfe]")
 _HEADER_V1: Final = struct.Struct("<BBBBBB")
 _HEADER_V2: Final = struct.Struct("<BBBBBBBHB")
-_SIGNED: Final = 0x01
-_SIGNATURE_BYTES: Final = 13
 _CRC_BYTES: Final = 2
+#: Not for recordings: it holds a key.
+_SECRET: Final = frozenset({"SETUP_SIGNING"})
 #: What pymavlink's own class calls where it is installed: CRC-16/MCRF4XX in one call.
 _FAST_CRC: Final[Callable[[bytes], int] | None] = getattr(dialect, "mcrf4xx", None)
 
@@ -134,6 +135,13 @@ class Codec:
         Called with every whole frame taken in or packed, as it is on the wire; None to do without.
     heard
         Called with every whole frame taken in, and its message: None where the dialect does not define it.
+    signing
+        Signs what is packed and verifies what is fed; then nothing unsigned, wrongly signed or played again
+        is taken in. None: frames go unsigned, and signatures are not looked at.
+    noted
+        Called with what the signature of every known message says; not of unsigned ones without ``signing``.
+    refused_frames
+        Frames not taken in for their signature, or for want of one.
     """
 
     def __init__(self, system_id: int = 255, component_id: int = 190) -> None:
@@ -146,6 +154,9 @@ class Codec:
         self.unknown_frames = 0
         self.tap: Callable[[bytes], None] | None = None
         self.heard: Callable[[bytes, Message | None], None] | None = None
+        self.signing: Signing | None = None
+        self.noted: Callable[[Message, Verdict], None] | None = None
+        self.refused_frames = 0
         self._sequence = 0
         self._buffer = bytearray()
 
@@ -180,7 +191,7 @@ class Codec:
         header = _HEADER_V2.pack(
             _MAGIC_V2,
             len(payload),
-            0,
+            0 if self.signing is None else SIGNED,
             0,
             self._sequence,
             self.system_id,
@@ -191,9 +202,22 @@ class Codec:
         self._sequence = (self._sequence + 1) & 0xFF
         body = header + payload
         frame = body + _crc(body[1:] + layout.crc_extra)
-        if self.tap is not None:
+        if self.signing is not None:
+            frame += self.signing.signature(frame)
+        if self.tap is not None and message.name not in _SECRET:
             self.tap(frame)
         return frame
+
+    def signed(self, frame: bytes) -> bytes | None:
+        """Another sender's frame, signed from here where it is not; None where it cannot be."""
+        if self.signing is None or (frame[0] == _MAGIC_V2 and frame[2] & SIGNED):
+            return frame
+        layout = _BY_ID.get(int.from_bytes(frame[7:10], "little")) if frame[0] == _MAGIC_V2 else None
+        if layout is None:
+            return None
+        body = frame[:2] + bytes([SIGNED]) + frame[3:-_CRC_BYTES]
+        frame = body + _crc(body[1:] + layout.crc_extra)
+        return frame + self.signing.signature(frame)
 
     def feed(self, data: bytes) -> list[Message]:
         """Decode what is complete; keep the rest for the next call. Never raises, whatever the bytes.
@@ -213,10 +237,14 @@ class Codec:
             known = len(messages)
             taken = self._decode(buffer, position, end, messages) if end > position else False
             if taken:
-                if self.tap is not None:
-                    self.tap(bytes(buffer[position:end]))
-                if self.heard is not None:
-                    self.heard(bytes(buffer[position:end]), messages[-1] if len(messages) > known else None)
+                frame, message = bytes(buffer[position:end]), messages[-1] if len(messages) > known else None
+                if not self._trusts(frame, message):
+                    del messages[known:]
+                else:
+                    if self.tap is not None:
+                        self.tap(frame)
+                    if self.heard is not None:
+                        self.heard(frame, message)
                 position = end
             else:
                 self.bad_frames += 1
@@ -225,6 +253,19 @@ class Codec:
             position = len(buffer)
         del buffer[:position]
         return messages
+
+    def _trusts(self, frame: bytes, message: Message | None) -> bool:
+        """Whether a frame is to be taken in for its signature."""
+        if self.signing is not None:
+            verdict = self.signing.take(frame)
+            self.refused_frames += verdict is not Verdict.GENUINE
+        elif frame[0] == _MAGIC_V2 and frame[2] & SIGNED:
+            verdict = Verdict.UNVERIFIED
+        else:
+            return True
+        if message is not None and self.noted is not None:
+            self.noted(message, verdict)
+        return verdict in (Verdict.GENUINE, Verdict.UNVERIFIED)
 
     def _decode(self, buffer: bytearray, start: int, end: int, messages: list[Message]) -> bool:
         """Decode the frame at ``start``; False when it is none."""
@@ -235,7 +276,7 @@ class Codec:
             )
             message_id = low | high << 16
             body = start + _HEADER_V2.size
-            signature = _SIGNATURE_BYTES if flags & _SIGNED else 0
+            signature = SIGNATURE_BYTES if flags & SIGNED else 0
         else:
             _, length, sequence, system_id, component_id, message_id = _HEADER_V1.unpack_from(buffer, start)
             body = start + _HEADER_V1.size
@@ -279,9 +320,9 @@ def frame_end(buffer: bytes | bytearray, start: int) -> int | None:
         if available < 3:
             return None
         flags = buffer[start + 2]
-        if flags & ~_SIGNED:
+        if flags & ~SIGNED:
             return start
-        size = _HEADER_V2.size + buffer[start + 1] + _CRC_BYTES + (_SIGNATURE_BYTES if flags else 0)
+        size = _HEADER_V2.size + buffer[start + 1] + _CRC_BYTES + (SIGNATURE_BYTES if flags else 0)
     return start + size if available >= size else None
 
 

@@ -1,12 +1,13 @@
 """What of other ground stations' frames goes on to the vehicle. No socket, no clock.
 
 A station on a read-only forward is heard by nobody. One on a read-write forward speaks to the vehicle as over
-a radio of its own, with two exceptions:
+a radio of its own, with three exceptions:
 
 - While a list is exchanged from here, its frames of the mission protocol are held back: the vehicle knows one
   partner at a time, and ArduPilot keeps half a list when two get in each other's way. They are not kept for
   later, as an announcement its sender has given up would begin an upload that nobody serves; the protocol's
   own repeats bring them through afterwards. While a list is changed, so are its orders to fly the mission.
+- No key passes: it would shut this station out.
 - While a station exchanges a list, no transfer is begun from here: ``reserve`` raises BusyError.
 """
 
@@ -84,6 +85,8 @@ class Guard:
         """What becomes of a frame; ``write`` says whether its station may command the vehicle."""
         if not write or not _for_vehicle(message, state):
             return Verdict.REFUSED
+        if message.name == "SETUP_SIGNING":
+            return Verdict.REFUSED  # keys come from here alone, and are in no recording
         if message.name in _LISTS:
             if self._reading or self._changing:
                 return Verdict.HELD_BACK
