@@ -9,12 +9,12 @@ from typing import Any
 from fastapi import FastAPI
 from fastapi.openapi.utils import get_openapi
 from fastapi.responses import HTMLResponse
-from fastapi.staticfiles import StaticFiles
 from starlette.routing import Match, Mount
 from starlette.types import Scope
 
 from app import problems
 from app.assembly import assemble, limits_of
+from app.map_files import MapFiles
 from app.routers import artefacts, audit, flights, health, interface, plans, scenarios, terrain, vehicles
 from app.services.house import House
 from app.services.limits import Limits
@@ -91,12 +91,13 @@ class _MapMount(Mount):
 def _add_map(app: FastAPI, settings: Settings) -> None:
     folder = settings.web_map
     if folder is not None:
-        app.router.routes.append(_MapMount("/", StaticFiles(directory=folder, html=True), name="map"))
+        app.router.routes.append(_MapMount("/", MapFiles(directory=folder, html=True), name="map"))
         return
 
     @app.get("/", include_in_schema=False)
     async def no_map() -> HTMLResponse:
-        return HTMLResponse(NO_MAP)
+        policy = "default-src 'none'; style-src 'unsafe-inline'; frame-ancestors 'none'"
+        return HTMLResponse(NO_MAP, headers={"Content-Security-Policy": policy})
 
 
 def _openapi(app: FastAPI) -> dict[str, Any]:

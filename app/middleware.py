@@ -16,13 +16,25 @@ import structlog
 from starlette.datastructures import Headers, MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from app.hosts import is_loopback
 from app.problems import MEDIA_TYPE, problem_body
 from app.services.metrics import REQUEST_SECONDS, REQUESTS
-from app.settings import is_loopback
 
 log = structlog.get_logger("app.access")
 
 REQUEST_ID = re.compile(r"[A-Za-z0-9._-]{1,64}")
+#: Of each answer that says nothing else: it is no page, so a browser shows nothing of it, runs nothing, and
+#: shows it in no other page.
+SAFE_HEADERS: Final = {
+    "content-security-policy": "default-src 'none'; frame-ancestors 'none'",
+    "x-content-type-options": "nosniff",
+    "x-frame-options": "DENY",
+    "referrer-policy": "no-referrer",
+    "cross-origin-opener-policy": "same-origin",
+    "cross-origin-resource-policy": "same-origin",
+}
+#: Any other word may be sent as a method; figures are not kept for each.
+_METHODS: Final = frozenset({"GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS"})
 #: A body over the cap is read to its end, and dropped, up to this many times the cap: a client that is
 #: still sending does not look for an answer.
 DRAIN_FACTOR = 20
@@ -64,7 +76,8 @@ class RequestLog:
                 status = message["status"]
                 headers = MutableHeaders(scope=message)
                 headers["x-request-id"] = request_id
-                headers["x-content-type-options"] = "nosniff"
+                for name, value in SAFE_HEADERS.items():
+                    headers.setdefault(name, value)
             await send(message)
 
         try:
@@ -78,7 +91,8 @@ class RequestLog:
         finally:
             took_s = time.perf_counter() - started_s
             route = getattr(scope.get("route"), "path", "unmatched")
-            REQUESTS.labels(method=scope["method"], route=route, status=str(status)).inc()
+            method = scope["method"] if scope["method"] in _METHODS else "other"
+            REQUESTS.labels(method=method, route=route, status=str(status)).inc()
             REQUEST_SECONDS.labels(route=route).observe(took_s)
             level = "debug" if route.startswith(("/health", "/metrics", "/links")) else "info"
             getattr(log, level)(

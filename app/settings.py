@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-import ipaddress
 import os
 import re
 from pathlib import Path
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Any, Literal, Self, get_args
 
 from pydantic import Field, field_validator, model_validator
 from pydantic_settings import BaseSettings, NoDecode, SettingsConfigDict
+
+from app.hosts import is_loopback, is_place
 
 PACKAGE = Path(__file__).resolve().parent
 
@@ -18,15 +19,7 @@ def _spare_cores() -> int:
     return max(1, (os.cpu_count() or 2) - 1)
 
 
-def is_loopback(host: str) -> bool:
-    """Whether a host name or address means this machine alone."""
-    if host == "localhost" or host.endswith(".localhost"):
-        return True
-    try:
-        return ipaddress.ip_address(host.strip("[]")).is_loopback
-    except ValueError:
-        return False
-
+LinkKind = Literal["udpin", "udpout", "tcp", "tcpin", "serial", "sim", "replay"]
 
 #: What a browser sends as Origin: no path, not even a slash; "null" is what any sandboxed page sends.
 _ORIGIN = re.compile(r"https?://([A-Za-z0-9._-]+|\[[0-9A-Fa-f:]+\])(:[0-9]{1,5})?")
@@ -52,8 +45,8 @@ class Settings(BaseSettings):
     port: int = Field(default=8000, ge=0, le=65535, description="TCP port to listen on; 0 takes a free one.")
     allow_remote: bool = Field(
         default=False,
-        description="Listen beyond this machine although the service knows no users: whoever reaches it "
-        "commands the vehicles.",
+        description="Listen beyond this machine, the service and vehicles' links, although the service knows "
+        "no users: whoever reaches it commands the vehicles.",
     )
     allowed_hosts: Annotated[tuple[str, ...], NoDecode] = Field(
         default=(),
@@ -65,6 +58,26 @@ class Settings(BaseSettings):
         description="Origins whose pages may send requests, and so command vehicles, beside the service's "
         "own: `https://ops.example:8443`, with commas between them. Needed where a proxy before the service "
         "changes the `Host` header.",
+    )
+    link_kinds: Annotated[tuple[LinkKind, ...], NoDecode] = Field(
+        default=get_args(LinkKind),
+        description="Kinds of links that requests may open; with commas between them.",
+    )
+    link_hosts: Annotated[tuple[str, ...], NoDecode] = Field(
+        default=(),
+        description="Hosts, beyond this machine, that links of requests may call: names, addresses, networks "
+        "(`192.168.1.0/24`), with commas between them. Links that listen beyond this machine need "
+        "`SWATHPLAN_ALLOW_REMOTE`.",
+    )
+    serial_ports: Annotated[tuple[str, ...], NoDecode] = Field(
+        default=(),
+        description="Serial ports that requests may open, `*` for any name: `/dev/ttyACM*`; with commas "
+        "between them.",
+    )
+    replay_folders: Annotated[tuple[Path, ...], NoDecode] = Field(
+        default=(),
+        description="Folders whose recordings requests may watch, beside the service's own, with commas "
+        "between them; any recording when there are none.",
     )
     database: Path = Field(default=Path("var/swathplan.db"), description="Database file; made when absent.")
     workers: int = Field(
@@ -118,7 +131,15 @@ class Settings(BaseSettings):
         default=2_000_000_000, ge=1_000_000, description="Size of all recordings; the oldest go first."
     )
 
-    @field_validator("allowed_hosts", "allowed_origins", mode="before")
+    @field_validator(
+        "allowed_hosts",
+        "allowed_origins",
+        "link_kinds",
+        "link_hosts",
+        "serial_ports",
+        "replay_folders",
+        mode="before",
+    )
     @classmethod
     def _split(cls, value: Any) -> Any:
         return (
@@ -137,6 +158,16 @@ class Settings(BaseSettings):
                     "https://ops.example:8443"
                 )
         return tuple(origin.lower() for origin in origins)
+
+    @field_validator("link_hosts")
+    @classmethod
+    def _places(cls, places: tuple[str, ...]) -> tuple[str, ...]:
+        for place in places:
+            if not is_place(place):
+                raise ValueError(
+                    f"{place} is no host: write a name, an address or a network, as in 192.168.1.0/24"
+                )
+        return places
 
     @model_validator(mode="after")
     def _refuse_unsafe(self) -> Self:

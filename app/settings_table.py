@@ -46,6 +46,8 @@ def _default(field: FieldInfo) -> str:
         return "unset"
     if field.default == ():
         return "none"
+    if isinstance(field.default, tuple):
+        return f"`{','.join(field.default)}`"
     return f"`{str(field.default).lower() if isinstance(field.default, bool) else field.default}`"
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -77,6 +78,8 @@ def serve(
     forwards = [(url, False) for url in forward or ()] + [(url, True) for url in forward_write or ()]
     _check_vehicle(vehicle, forwards, sim_count if sim else 0)
 
+    # What the service writes is for its own user: recordings, rasters, sockets.
+    os.umask(0o077)
     from app.server import StartError, Welcome, run_apart
 
     welcome = Welcome(

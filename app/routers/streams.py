@@ -36,7 +36,7 @@ def file_stream(path: Path, media_type: str) -> StreamingResponse:
 def page_answer(page: str) -> HTMLResponse:
     """A report, in which nothing runs and which fetches nothing."""
     policy = "default-src 'none'; style-src 'unsafe-inline'; frame-ancestors 'self'"
-    return HTMLResponse(page, headers={"Content-Security-Policy": policy})
+    return HTMLResponse(page, headers={"Content-Security-Policy": policy, "X-Frame-Options": "SAMEORIGIN"})
 
 
 def event_stream(events: AsyncGenerator[ServerSentEvent, None]) -> EventSourceResponse:

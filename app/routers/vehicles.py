@@ -10,7 +10,7 @@ from fastapi import APIRouter, Query, Response
 from fastapi.responses import StreamingResponse
 from sse_starlette import EventSourceResponse, ServerSentEvent
 
-from app.deps import ChecksDep, FleetDep, TransfersDep
+from app.deps import ChecksDep, FleetDep, PermitsDep, TransfersDep
 from app.problems import responses
 from app.routers.streams import event_stream, file_stream
 from app.schemas.forwards import ForwardsIn, ForwardsOut
@@ -40,11 +40,14 @@ Parts = Annotated[list[Part], Query(description="Repeat for several.")]
 
 
 @router.post("", status_code=201, summary="Connect a vehicle", responses=responses(409, 422))
-async def connect(body: VehicleIn, fleet: FleetDep, response: Response) -> VehicleOut:
+async def connect(body: VehicleIn, fleet: FleetDep, permits: PermitsDep, response: Response) -> VehicleOut:
     """Open the link and wait for a heartbeat.
 
-    A vehicle that stays silent is listed as not connected, and connects when it is heard.
+    A vehicle that stays silent is listed as not connected, and connects when it is heard. Links beyond this
+    machine, serial ports and recordings are opened as far as the settings allow (`link-not-allowed`).
     """
+    permits.require(body.url)
+    permits.require_forwards(each.url for each in body.forward)
     forward = [(each.url, each.write) for each in body.forward]
     vehicle = await fleet.connect(body.name, body.url, body.timeout_s, forward=forward)
     response.headers["Location"] = f"/api/v1/vehicles/{vehicle.id}"
@@ -76,12 +79,16 @@ async def list_forwards(vehicle_id: str, fleet: FleetDep) -> ForwardsOut:
 
 
 @router.put("/{vehicle_id}/forward", summary="Forward to others", responses=responses(404, 409, 422))
-async def set_forwards(vehicle_id: str, body: ForwardsIn, fleet: FleetDep) -> ForwardsOut:
+async def set_forwards(
+    vehicle_id: str, body: ForwardsIn, fleet: FleetDep, permits: PermitsDep
+) -> ForwardsOut:
     """Forward the link to these addresses and no others; those there already stay open.
 
     Stations only watch unless `write` says otherwise: then they may arm and move the vehicle as over a radio
-    of their own. What they send is recorded with the rest.
+    of their own. What they send is recorded with the rest. Addresses beyond this machine are opened as far as
+    the settings allow.
     """
+    permits.require_forwards(each.url for each in body.forward)
     forward = [(each.url, each.write) for each in body.forward]
     return ForwardsOut.of(await fleet.forward(vehicle_id, forward))
 

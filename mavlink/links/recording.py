@@ -120,12 +120,15 @@ class TlogWriter:
         if self._file is not None:
             self._file.close()
             self._file = None
-        self.folder.mkdir(parents=True, exist_ok=True)
+        self.folder.mkdir(mode=0o700, parents=True, exist_ok=True)
         stamp = datetime.fromtimestamp(self._last_us / _MICROSECONDS, UTC).strftime("%Y%m%dT%H%M%S")
         number = 1
         while True:
             try:
-                self._file = (self.folder / f"{stamp}-{number:03d}{SUFFIX}").open("xb")
+                path = self.folder / f"{stamp}-{number:03d}{SUFFIX}"
+                # Where an aircraft has been, and what it was told, is for this user alone.
+                path.touch(mode=0o600, exist_ok=False)
+                self._file = path.open("wb")
                 break
             except FileExistsError:
                 number += 1

@@ -79,8 +79,14 @@ def _quiet_logs() -> None:
 
 @pytest.fixture
 def settings(tmp_path: Path) -> Settings:
-    """Settings of a small service."""
-    return Settings(database=tmp_path / "plans.db", workers=1, static_dir=tmp_path, log_level="error")
+    """Settings of a small service that may open what tests make."""
+    return Settings(
+        database=tmp_path / "plans.db",
+        workers=1,
+        static_dir=tmp_path,
+        log_level="error",
+        serial_ports=(str(tmp_path / "*"), "/dev/none"),
+    )
 
 
 @pytest.fixture

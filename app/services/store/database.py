@@ -96,6 +96,8 @@ class Database:
         try:
             self.path.parent.mkdir(parents=True, exist_ok=True)
             lock = os.open(self.path.with_name(self.path.name + ".lock"), os.O_RDWR | os.O_CREAT, 0o600)
+            # SQLite gives what it lays beside a database the mode of that.
+            os.close(os.open(self.path, os.O_RDWR | os.O_CREAT, 0o600))
         except OSError as error:
             raise StorageError(f"{error.filename} cannot be written: {error.strerror}") from error
         try:

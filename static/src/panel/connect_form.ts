@@ -25,10 +25,10 @@ function simulated(type: "fixed_wing" | "multirotor"): string {
 
 const SIMULATED = "Flies on this computer, ten times as fast as life, as the scenario's aircraft says; it stands where the plan begins. Also understood: home=lat,lon, wind=speed,from, speedup=1.";
 const KINDS: Record<string, Kind> = {
-  udpin: { label: "UDP, listen for it (radios, simulators)", address: () => "udpin:0.0.0.0:14550", hint: "The vehicle, its radio or a simulator sends to this port. 0.0.0.0 listens on every network; another ground station must not hold the port." },
-  udpout: { label: "UDP, call it", address: () => "udpout:192.168.1.10:14550", hint: "Address and port of the vehicle or its bridge, where it listens." },
+  udpin: { label: "UDP, listen for it (radios, simulators)", address: () => "udpin:127.0.0.1:14550", hint: "The vehicle, its radio or a simulator sends to this port; another ground station must not hold it. 0.0.0.0 listens on every network, where the service's settings allow it." },
+  udpout: { label: "UDP, call it", address: () => "udpout:192.168.1.10:14550", hint: "Address and port of the vehicle or its bridge, where it listens; beyond this computer it has to be in SWATHPLAN_LINK_HOSTS." },
   tcp: { label: "TCP, call it (SITL, bridges)", address: () => "tcp:127.0.0.1:5760", hint: "Address and port of the vehicle's or simulator's TCP server." },
-  serial: { label: "Serial port (USB, telemetry radio)", address: () => "serial:/dev/ttyUSB0:57600", hint: "Device and baud rate: 57600 for most radios, 115200 by USB. The port is that of the computer the service runs on." },
+  serial: { label: "Serial port (USB, telemetry radio)", address: () => "serial:/dev/ttyUSB0:57600", hint: "Device and baud rate: 57600 for most radios, 115200 by USB. The port is that of the computer the service runs on, and has to be in SWATHPLAN_SERIAL_PORTS." },
   sim_fixed_wing: { label: "Simulated fixed wing", address: () => simulated("fixed_wing"), hint: SIMULATED },
   sim_multirotor: { label: "Simulated multirotor", address: () => simulated("multirotor"), hint: SIMULATED },
   replay: { label: "Recording (.tlog), played back", address: () => "replay:/path/to/flight.tlog?speedup=10", hint: "A file on the computer the service runs on. With &plan=<id> what it saw of that plan is judged. It takes no commands." },

@@ -60,7 +60,7 @@ def test_what_is_simulated_is_chosen(flying: Page, service: Service) -> None:
     """The form offers each kind of simulated aircraft, flown as the scenario says, under a free name."""
     flying.locator("summary", has_text="Connect a vehicle").click()
     address = flying.locator("#v-url")
-    expect(address).to_have_value("udpin:0.0.0.0:14550")
+    expect(address).to_have_value("udpin:127.0.0.1:14550")
     flying.select_option("#v-kind", "sim_fixed_wing")
     expect(address).to_have_value(
         "sim:?speedup=10&type=fixed_wing&airspeed=20&turn_radius=100&autopilot=ardupilot"
