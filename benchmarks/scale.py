@@ -87,6 +87,7 @@ def _document(name: str, features: list[dict[str, Any]], seed: int) -> dict[str,
             }
         ],
         "altitude_m": 500.0,
+        "clearance_m": 0.0,
         "seed": seed,
     }
 

@@ -122,8 +122,8 @@ class Collect:
 class Transit:
     """The line between two collects, or from the start, or to the end.
 
-    ``clearance_m`` is proven: the line comes no nearer to any hard zone, obstacles counted with their
-    clearance; None where there is none.
+    ``clearance_m`` is proven: the line comes no nearer to anything hard at its level; None where there is
+    none.
     """
 
     vehicle: str

@@ -9,10 +9,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 import shapely
 from numpy.typing import ArrayLike
-from shapely.geometry import LinearRing, MultiPolygon, Polygon
+from shapely.geometry import LinearRing, LineString, MultiPolygon, Polygon
+from shapely.geometry.base import BaseGeometry
 
 from planner.airspace.airspace import Airspace, Level
-from planner.airspace.shapes import DiscShape, banded_shapes
+from planner.airspace.shapes import DiscShape, banded_shapes, without_holes
 from planner.airspace.terrain import Ground
 from planner.airspace.zones import keep_out
 from planner.flown import flown_path, line_between
@@ -115,7 +116,8 @@ def collects_and_transits(
     collects, transits = [], []
     footprints: list[Footprint] = []
     level, flight = chart.level, composed.flight
-    zones = replace(keep_out(airspace, level, soft=False), area=None)
+    # Its distance from the things themselves, whatever was to be kept from them.
+    zones = replace(keep_out(replace(airspace, clearance_m=0.0), level, soft=False), area=None)
     for seq, (leg, (from_m, until_m)) in enumerate(zip(legs, composed.legs_m, strict=True), start=1):
         path = cut(flight.path, from_m, until_m)
         missile, radar = risks(flight, from_m, until_m, airspace.threats, level)
@@ -200,10 +202,18 @@ def uncovered(
     )
 
 
-def fence(chart: Chart, airspace: Airspace) -> Fence:
-    """The operating area and everything hard up to the route's level; with a ceiling what is flown over."""
+def fence(chart: Chart, airspace: Airspace, flown: BaseGeometry) -> Fence:
+    """The operating area and everything hard up to the route's level; with a ceiling what is flown over.
+
+    Fences know no holes: those of the area are zones, and zones are cut through holes that something of
+    ``flown`` lies in.
+    """
     inclusion = () if airspace.area is None else (_zone(chart, "area", airspace.area),)
-    polygons, circles = [], []
+    holes = () if airspace.area is None else airspace.area.interiors
+    polygons, circles = (
+        [_zone(chart, f"hole {k} of the area", Polygon(h)) for k, h in enumerate(holes, 1)],
+        [],
+    )
     level = chart.level
     for banded in banded_shapes(airspace, level.amsl_m - level.height_m):
         shape = banded.shape
@@ -214,7 +224,9 @@ def fence(chart: Chart, airspace: Airspace) -> Fence:
             centre = chart.lonlats([shape.centre])[0]
             circles.append(ZoneCircle(shape.name, centre, shape.radius_m, ceiling_m=ceiling_m))
         else:
-            polygons.append(replace(_zone(chart, shape.name, shape.area), ceiling_m=ceiling_m))
+            whole = Polygon(shape.area.exterior)
+            parts = without_holes(shape.area) if flown.intersects(whole.difference(shape.area)) else [whole]
+            polygons.extend(replace(_zone(chart, shape.name, part), ceiling_m=ceiling_m) for part in parts)
     return Fence(inclusion, tuple(polygons), tuple(circles))
 
 
@@ -263,7 +275,7 @@ def assemble(
         transits=transits,
         footprints=footprints,
         uncovered=(),
-        fence=fence(chart, airspace),
+        fence=fence(chart, airspace, LineString(flight.path.sample(10.0)[:, :2])),
         metrics=metrics,
         violations=(),
         methods=methods,

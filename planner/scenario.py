@@ -54,13 +54,14 @@ class Scenario:
     home_amsl_m: float | None = None
     warnings: tuple[Finding, ...] = ()
     terrain: Ground | None = None
+    over_ground_m: float = 0.0
 
     @property
     def airspace(self) -> Airspace:
         """Where one may fly."""
         return Airspace(
             self.area, self.threats, self.no_fly, self.obstacles, self.clearance_m, self.terrain, self.wind,
-            self.home_amsl_m,
+            self.home_amsl_m, self.over_ground_m,
         )  # fmt: skip
 
     @property

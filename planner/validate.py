@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Iterable
 from typing import Any
 
 from planner.airspace.terrain import Terrains
@@ -20,16 +21,22 @@ MANY_PASSES = 120
 MOST_PASSES = 1000
 
 
-def findings(document: Any, terrains: Terrains | None = None) -> tuple[Finding, ...]:
+def findings(
+    document: Any,
+    terrains: Terrains | None = None,
+    besides: Callable[[Scenario], Iterable[Finding]] | None = None,
+) -> tuple[Finding, ...]:
     """Every finding about a scenario document, errors and warnings; plans nothing.
 
-    Besides the rules of reading, each region must be seen by some pass that stays in the operating area.
+    Besides the rules of reading, each region must be seen by some pass that stays in the operating area; and
+    ``besides`` may have more to say of the scenario.
     """
     try:
         scenario = read_scenario(document, terrains)
     except ScenarioError as error:
         return error.findings
-    return scenario.warnings + unseeable(scenario) + laborious(scenario)
+    more = () if besides is None else tuple(besides(scenario))
+    return scenario.warnings + more + unseeable(scenario) + laborious(scenario)
 
 
 def read_valid(document: Any, terrains: Terrains | None = None) -> Scenario:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 import time
+from dataclasses import replace
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -111,6 +112,7 @@ def make(
     bound: Bound = Bound.NONE,
 ) -> dict[str, Any]:
     """Plan a scenario in this process; returns the plan document."""
+    from app.services.plans.fences import fence_notes
     from planner import errors
     from planner.geojson import write_plan
     from planner.pipeline import make_plan, time_for_bound_s, with_bound
@@ -128,6 +130,7 @@ def make(
             stop=limit,
             clock=time.perf_counter,
         )
+        plan = replace(plan, warnings=(*plan.warnings, *fence_notes(plan)))
         if bound is not Bound.NONE:
             narrator("bound", 1.0)
             spare_s = time_for_bound_s(time.monotonic() - began_s, scenario.time_budget_s)

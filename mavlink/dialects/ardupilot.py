@@ -23,6 +23,7 @@ from mavlink.dialects.base import (
     place_findings,
     unlisted_finding,
 )
+from mavlink.dialects.stores import ARDUCOPTER_STORE, ARDUPLANE_STORE, FenceStore
 from mavlink.wire.items import Command, Frame, MissionItem, MissionResult, MissionType
 
 Keep = Callable[[float], float]
@@ -202,6 +203,11 @@ class ArduPilotDialect:
     firmware_type: int = 3
     home_row: bool = True
 
+    @property
+    def fence_store(self) -> FenceStore:
+        """Room for a fence on the boards that are common."""
+        return ARDUCOPTER_STORE if self.vehicle_type == "multirotor" else ARDUPLANE_STORE
+
     def knows(self, command: int) -> bool:
         """Whether a table says if the command is taken in missions."""
         return command in self.table or command in self.refused
@@ -235,7 +241,7 @@ class ArduPilotDialect:
         yield from list_findings(items, self.limits)
         kind = mission_type_of(items)
         if kind == MissionType.FENCE:
-            yield from fence_findings(items)
+            yield from fence_findings(items, self.fence_store)
         elif kind == MissionType.RALLY:
             yield from _rally_findings(items)
         elif items:

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Literal, Protocol
 
+from mavlink.dialects.stores import FenceStore
 from mavlink.wire.items import Command, Frame, MissionItem, MissionResult, MissionType
 
 Autopilot = Literal["ardupilot", "px4"]
@@ -88,6 +89,10 @@ class Dialect(Protocol):
     @property
     def limits(self) -> Mapping[MissionType, int]:
         """Most items of a list, home row included; a type that is absent has no known limit."""
+
+    @property
+    def fence_store(self) -> FenceStore:
+        """Room for a fence on the boards that are common."""
 
     def knows(self, command: int) -> bool:
         """Whether a table says if the command is taken in missions."""
@@ -196,9 +201,15 @@ def jump_findings(items: tuple[MissionItem, ...], first: int) -> Iterator[Dialec
             yield DialectFinding("jump-target", f"jumps to {target:g} of {len(items)} items", item.seq)
 
 
-def fence_findings(items: tuple[MissionItem, ...]) -> Iterator[DialectFinding]:
-    """Vertex counts and radii; a NaN radius stops some autopilots altogether."""
-    for command, shape in fence_shapes(items):
+def fence_findings(items: tuple[MissionItem, ...], store: FenceStore) -> Iterator[DialectFinding]:
+    """Size, vertex counts and radii; a NaN radius stops some autopilots altogether."""
+    shapes = list(fence_shapes(items))
+    polygons = [len(shape) for command, shape in shapes if is_polygon(command)]
+    lacks = store.lacks(polygons, len(shapes) - len(polygons))
+    if lacks and store.size_bytes is not None:
+        fix = "draw no-fly zones and the area with fewer corners, leave zones out, or store fences on a card"
+        yield DialectFinding("fence-storage", lacks, fix=f"{fix} (BRD_SD_FENCE)")
+    for command, shape in shapes:
         first = shape[0]
         if is_polygon(command):
             if not math.isfinite(first.param1) or len(shape) != round(first.param1):

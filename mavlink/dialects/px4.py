@@ -19,6 +19,7 @@ from mavlink.dialects.base import (
     unlisted_finding,
 )
 from mavlink.dialects.px4_feasibility import feasibility_findings
+from mavlink.dialects.stores import PX4_STORE, FenceStore
 from mavlink.wire.items import Command, Frame, MissionItem, MissionResult, MissionType
 
 #: Items of a mission on boards of unknown size; SITL holds 10000, v6x, v6c and Cube 1000.
@@ -147,6 +148,11 @@ class Px4Dialect:
     firmware_type: int = 12
     home_row: bool = False
 
+    @property
+    def fence_store(self) -> FenceStore:
+        """Room for a fence."""
+        return PX4_STORE
+
     def knows(self, command: int) -> bool:
         """Whether a table says if the command is taken in missions."""
         return any(
@@ -188,7 +194,7 @@ class Px4Dialect:
                     "unsupported-frame", f"frame {item.frame} on command {item.command}", item.seq
                 )
         if kind == MissionType.FENCE:
-            yield from fence_findings(items)
+            yield from fence_findings(items, self.fence_store)
         elif kind == MissionType.RALLY:
             yield from _rally_findings(items)
         elif items:

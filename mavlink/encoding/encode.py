@@ -94,7 +94,7 @@ def encode(
     )
     home = [home_item(plan.home, options.home_altitude_m)] if task.dialect.home_row else []
     flight = _flight(task, stops, on, off, pointing)
-    fence, fence_notes = fence_items(plan, (task.path,))
+    fence, fence_notes = fence_items(plan, (task.path,), task.dialect.fence_store)
     return Mission(
         mission=numbered([*home, *_placed([*first.items, *flight, *last.items])]),
         fence=tuple(_placed(fence)),

@@ -10,36 +10,64 @@ from shapely.geometry.base import BaseGeometry
 from shapely.ops import unary_union
 
 from mavlink.dialects.mission import numbered, placed
+from mavlink.dialects.stores import FenceStore
+from mavlink.encoding.fit import Piece, fitted
 from mavlink.encoding.options import EncodeError
 from mavlink.wire.geometry import LocalMap, Xy
 from mavlink.wire.items import Command, Frame, MissionItem, MissionType
 from planner.plan import Fence, FlownPath, LonLat, Plan, ZoneCircle, ZonePolygon
 
 
-def fence_items(plan: Plan, paths: tuple[FlownPath, ...]) -> tuple[tuple[MissionItem, ...], tuple[str, ...]]:
-    """The fence of a plan as NAV_FENCE items, and notes on zones that it cannot say.
+def fence_items(
+    plan: Plan, paths: tuple[FlownPath, ...], store: FenceStore | None = None
+) -> tuple[tuple[MissionItem, ...], tuple[str, ...]]:
+    """The fence of a plan as NAV_FENCE items, and notes on what of it is not as drawn.
 
     Fences of both autopilots are horizontal. A zone with a floor or a ceiling that the paths fly over or
-    under would stop the vehicle in flight, so it is left out, with a note.
+    under would stop the vehicle in flight, so it is left out, with a note. What does not fit into ``store``
+    is made smaller where that is safe: see ``fit``.
     """
-    items: list[MissionItem] = []
-    notes: list[str] = []
-    for zone in plan.fence.inclusion:
-        items += _polygon(Command.NAV_FENCE_POLYGON_VERTEX_INCLUSION, zone)
     local = LocalMap(plan.home)
     lines = [LineString([local.xy((lon, lat)) for lon, lat, _ in path.line]) for path in paths]
-    for zone in plan.fence.exclusion:
-        if _is_flown_over(zone, zone_shape(zone, local), lines):
+    zones: dict[str, ZonePolygon | ZoneCircle] = {}
+    drawn = [Piece.polygon(_key(zones, zone), zone_shape(zone, local), True) for zone in plan.fence.inclusion]
+    notes: list[str] = []
+    exclusion: tuple[ZonePolygon | ZoneCircle, ...] = plan.fence.exclusion + plan.fence.exclusion_circles
+    for zone in exclusion:
+        shape = zone_shape(zone, local)
+        if _is_flown_over(zone, shape, lines):
             notes.append(_left_out(zone.name))
+        elif isinstance(zone, ZoneCircle):
+            drawn.append(Piece(_key(zones, zone), shape))
         else:
-            items += _polygon(Command.NAV_FENCE_POLYGON_VERTEX_EXCLUSION, zone)
-    for circle in plan.fence.exclusion_circles:
-        if _is_flown_over(circle, zone_shape(circle, local), lines):
-            notes.append(_left_out(circle.name))
-        else:
-            item = placed(Command.NAV_FENCE_CIRCLE_EXCLUSION, circle.centre, 0.0, Frame.GLOBAL)
-            items.append(replace(item, param1=_radius_m(circle)))
-    return numbered(items, MissionType.FENCE), tuple(notes)
+            drawn.append(Piece.polygon(_key(zones, zone), shape, False))
+    pieces, of_size = fitted(drawn, lines, store)
+    items = [item for piece in pieces for item in _items(piece, zones[piece.name], local)]
+    return numbered(items, MissionType.FENCE), (*notes, *of_size)
+
+
+def _items(piece: Piece, zone: ZonePolygon | ZoneCircle, local: LocalMap) -> list[MissionItem]:
+    if isinstance(zone, ZoneCircle):
+        item = placed(Command.NAV_FENCE_CIRCLE_EXCLUSION, zone.centre, 0.0, Frame.GLOBAL)
+        return [replace(item, param1=_radius_m(zone))]
+    command = (
+        Command.NAV_FENCE_POLYGON_VERTEX_INCLUSION
+        if piece.inside
+        else Command.NAV_FENCE_POLYGON_VERTEX_EXCLUSION
+    )
+    if piece.thinned_m == 0.0:
+        return _polygon(command, zone)
+    ring = tuple(local.lonlat((x, y)) for x, y in piece.shape.exterior.coords[:-1])
+    return _polygon(command, replace(zone, ring=ring))
+
+
+def _key(zones: dict[str, ZonePolygon | ZoneCircle], zone: ZonePolygon | ZoneCircle) -> str:
+    """A name for a zone that no other has, kept for it."""
+    name = zone.name
+    while name in zones:
+        name += "'"
+    zones[name] = zone
+    return name
 
 
 def _radius_m(circle: ZoneCircle) -> float:
@@ -74,7 +102,7 @@ def _left_out(name: str) -> str:
     return f"fence: zone {name!r} is passed above or below, and fences have no heights: left out"
 
 
-def zone_shape(zone: ZonePolygon | ZoneCircle, local: LocalMap) -> BaseGeometry:
+def zone_shape(zone: ZonePolygon | ZoneCircle, local: LocalMap) -> Polygon:
     """A zone in local metres."""
     if isinstance(zone, ZoneCircle):
         return Point(local.xy(zone.centre)).buffer(_radius_m(zone), quad_segs=32)

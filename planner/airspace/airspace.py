@@ -75,7 +75,9 @@ class Airspace:
     area
         Everything flown stays inside; None where not limited.
     clearance_m
-        Kept over the ground, and from obstacles.
+        Kept from everything hard, beside it, over it and under it: obstacles, no-fly zones, hard threats.
+    over_ground_m
+        Kept over terrain.
     terrain
         The ground's heights; flat at the height of home where None.
     home_amsl_m
@@ -90,6 +92,7 @@ class Airspace:
     terrain: Ground | None = None
     wind: Wind = STILL_AIR
     home_amsl_m: float | None = None
+    over_ground_m: float = 0.0
 
     def level(self, altitude_m: float, reference: AltitudeReference) -> Level:
         """The level of an altitude.

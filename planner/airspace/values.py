@@ -30,7 +30,10 @@ class Threat:
 
 @dataclass(frozen=True, slots=True)
 class NoFlyZone:
-    """Never entered between ``floor_m`` and ``ceiling_m`` amsl. A disc where ``radius_m`` is set."""
+    """Never entered between ``floor_m`` and ``ceiling_m`` amsl. A disc where ``radius_m`` is set.
+
+    ``of_ground``: high ground, with what is kept over it in the shape already; it is not grown once more.
+    """
 
     name: str
     area: Polygon | None
@@ -38,11 +41,12 @@ class NoFlyZone:
     radius_m: float | None = None
     floor_m: float = float("-inf")
     ceiling_m: float = float("inf")
+    of_ground: bool = False
 
 
 @dataclass(frozen=True, slots=True)
 class Obstacle:
-    """Something standing on the ground; kept clear by the airspace's ``clearance_m``."""
+    """Something standing on the ground."""
 
     name: str
     area: Polygon

@@ -18,6 +18,7 @@ from shapely.geometry import MultiPolygon, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from planner.airspace.airspace import Airspace, Level
+from planner.airspace.shapes import DiscShape, banded_shapes
 from planner.airspace.zone_kernels import depths, is_clear
 from planner.route import Line, Point
 
@@ -224,40 +225,38 @@ def keep_out(
     margin_m: float = 0.0,
     soft: bool = True,
     lowest: Level | None = None,
+    edge_m: float | None = None,
 ) -> KeepOut:
     """What is forbidden at a level, or anywhere from a lower one up to it.
 
     Parameters
     ----------
     level
-        Decides which zones count: threats up to their ``height_m`` (a cylinder), obstacles whose top with
-        clearance reaches it, no-fly zones whose band holds it. Of several levels flown: zones that count
-        at all of them.
+        Decides which zones count: those whose heights, clearance included, hold it. Of several levels flown:
+        zones that count at all of them.
     margin_m
-        Every zone grows and the area shrinks by this much, besides the clearance of obstacles.
+        Every zone grows by this much, besides the clearance of what is hard.
     soft
         Whether soft threats are among the zones, with ``hard=False``.
     lowest
         The lower level; None for the one level alone.
+    edge_m
+        The area shrinks by this much; by the margin where not given.
     """
-    clearance_m = airspace.clearance_m
-    lowest, floor_to_m = (level, level.lowest.amsl_m) if lowest is None else (lowest, level.amsl_m)
+    lowest, floor_to_m = (level, level.lowest.height_m) if lowest is None else (lowest, level.height_m)
     discs: list[Disc] = []
     polygons: list[PolygonZone] = []
-    for threat in airspace.threats:
-        if (threat.hard or soft) and lowest.height_m <= threat.height_m:
-            discs.append(Disc(threat.name, *threat.centre, threat.radius_m + margin_m, threat.hard))
-    for zone in airspace.no_fly:
-        if zone.floor_m > floor_to_m or zone.ceiling_m < lowest.amsl_m:
+    for banded in banded_shapes(airspace, level.amsl_m - level.height_m):
+        if not (banded.hard or soft) or not banded.counts(lowest.height_m, floor_to_m):
             continue
-        if zone.centre is not None and zone.radius_m is not None:
-            discs.append(Disc(zone.name, *zone.centre, zone.radius_m + margin_m, True))
-        if zone.area is not None:
-            polygons.extend(_inflated(zone.name, zone.area, margin_m))
-    for obstacle in airspace.obstacles:
-        if lowest.height_m <= obstacle.base_m + obstacle.height_m + clearance_m:
-            polygons.extend(_inflated(obstacle.name, obstacle.area, margin_m + clearance_m))
-    return KeepOut(tuple(discs), tuple(polygons), inner_area(airspace.area, margin_m))
+        shape, grown_m = banded.shape, banded.kept_m + margin_m
+        if isinstance(shape, DiscShape):
+            discs.append(Disc(shape.name, *shape.centre, shape.radius_m + grown_m, banded.hard))
+        else:
+            polygons.extend(_inflated(shape.name, shape.area, grown_m))
+    return KeepOut(
+        tuple(discs), tuple(polygons), inner_area(airspace.area, margin_m if edge_m is None else edge_m)
+    )
 
 
 def inner_area(area: Polygon | None, margin_m: float) -> Polygon | MultiPolygon | None:

@@ -6,10 +6,11 @@ import math
 from collections.abc import Iterator
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
-from shapely.geometry import LineString
+from shapely.geometry import LineString, Point
 
-from planner.airspace.shapes import banded_shapes
+from planner.airspace.shapes import Banded, DiscShape, banded_shapes
 from planner.check.heights import between
 from planner.check.places import PLACE_TOLERANCE_M, lonlat, middle
 from planner.plan import FlownPath, Plan, Violation
@@ -19,7 +20,7 @@ from planner.scenario import Scenario
 def place_violations(
     scenario: Scenario, path: FlownPath, line_m: NDArray[np.float64], heights_m: NDArray[np.float64]
 ) -> Iterator[Violation]:
-    """What of a line is outside the operating area, in a hard zone or in a soft threat.
+    """What of a line is outside the operating area, in or too near to what is hard, or in a soft threat.
 
     Parameters
     ----------
@@ -44,6 +45,7 @@ def place_violations(
         low = between(line_m, heights_m, banded.low_m, banded.high_m)
         depth_m = 0.0 if low.is_empty else shape.depth_m(low)
         if depth_m <= 0.0:
+            yield from _too_near(scenario, banded, line_m, heights_m)
             continue
         inside = low.intersection(shape.polygon())
         yield Violation(
@@ -55,6 +57,31 @@ def place_violations(
             middle(scenario, inside),
             hard=banded.hard,
         )
+
+
+def _too_near(
+    scenario: Scenario, banded: Banded, line_m: NDArray[np.float64], heights_m: NDArray[np.float64]
+) -> Iterator[Violation]:
+    """Where a line that stays out of something hard comes nearer to it than ``clearance_m``."""
+    kept_m, shape = banded.kept_m, banded.shape
+    if not banded.hard or kept_m <= 0.0:
+        return
+    beside = between(line_m, heights_m, banded.low_m - kept_m, banded.high_m + kept_m)
+    if beside.is_empty:
+        return
+    away_m = shape.away_m(beside)
+    if away_m >= kept_m - PLACE_TOLERANCE_M:
+        return
+    core = Point(shape.centre) if isinstance(shape, DiscShape) else shape.area
+    place = shapely.shortest_line(beside, core).coords[0]
+    yield Violation(
+        "clearance",
+        shape.name,
+        f"the line comes to {away_m:.1f} m from {shape.name}, of which {kept_m:g} m are to be kept clear",
+        kept_m - away_m,
+        "m",
+        lonlat(scenario, (place[0], place[1])),
+    )
 
 
 def clearance_violations(
@@ -88,12 +115,12 @@ def clearance_violations(
             lonlat(scenario, places[int(np.argmax(unknown))]),
         )
     clear_m = np.where(unknown, np.inf, clear_m)
-    high = np.flatnonzero(clear_m >= scenario.clearance_m)
+    high = np.flatnonzero(clear_m >= scenario.over_ground_m)
     if len(high) == 0:
-        wanted_m = np.full(len(clear_m), scenario.clearance_m)
+        wanted_m = np.full(len(clear_m), scenario.over_ground_m)
     else:
         wanted_m = np.zeros(len(clear_m))
-        wanted_m[high[0] : high[-1] + 1] = scenario.clearance_m
+        wanted_m[high[0] : high[-1] + 1] = scenario.over_ground_m
     worst = int(np.argmin(clear_m - wanted_m))
     if clear_m[worst] < wanted_m[worst] - PLACE_TOLERANCE_M:
         yield Violation(

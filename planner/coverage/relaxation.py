@@ -48,6 +48,7 @@ def explained(
             region.centroid,
         )
     ways = sorted((_ways(airspace, level, region, name, seen) for name in alone), key=lambda way: way[0])
+    ways = _keeping_less(airspace, level, seen) + ways
     return InfeasibleError(
         "hard-zone",
         region.label,
@@ -57,6 +58,17 @@ def explained(
         "; or ".join(text for _, text in ways),
         region.centroid,
     )
+
+
+def _keeping_less(airspace: Airspace, level: Level, seen: Seen) -> list[tuple[float, str]]:
+    """The most that may be kept from everything hard, where keeping less is enough."""
+    kept_m = airspace.clearance_m
+    if kept_m < STEP_M:
+        return []
+    less_m = _least(kept_m, lambda by_m: seen(replace(airspace, clearance_m=max(kept_m - by_m, 0.0)), level))
+    if not math.isfinite(less_m):
+        return []
+    return [(less_m, f"set clearance_m to {max(kept_m - less_m, 0.0):g} instead of {kept_m:g}")]
 
 
 def _ways(airspace: Airspace, level: Level, region: MergedRegion, name: str, seen: Seen) -> tuple[float, str]:
@@ -169,11 +181,12 @@ def _changed(
 
 def _altitudes(airspace: Airspace, level: Level, name: str) -> list[float]:
     """Altitudes over the level's own reference, just over or under a zone."""
-    over_amsl = [zone.ceiling_m + CLEAR_M for zone in airspace.no_fly if zone.name == name]
-    under_amsl = [zone.floor_m - CLEAR_M for zone in airspace.no_fly if zone.name == name]
-    over_ground = [threat.height_m + CLEAR_M for threat in airspace.threats if threat.name == name]
+    past_m = airspace.clearance_m + CLEAR_M
+    over_amsl = [zone.ceiling_m + past_m for zone in airspace.no_fly if zone.name == name]
+    under_amsl = [zone.floor_m - past_m for zone in airspace.no_fly if zone.name == name]
+    over_ground = [threat.height_m + past_m for threat in airspace.threats if threat.name == name]
     over_ground += [
-        obstacle.base_m + obstacle.height_m + airspace.clearance_m + CLEAR_M
+        obstacle.base_m + obstacle.height_m + past_m
         for obstacle in airspace.obstacles
         if obstacle.name == name
     ]

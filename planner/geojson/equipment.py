@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from planner.airspace.values import Wind
@@ -96,6 +96,11 @@ def named_steadiness(raw: Any) -> Steadiness | None:
     if autopilot not in AUTOPILOTS or kind not in VEHICLE_TYPES:
         return None
     return steadiness_of(autopilot, kind)
+
+
+def kept_m(aircraft: Iterable[Aircraft | None]) -> float:
+    """Kept from everything hard where a scenario does not say: what each of its autopilots needs."""
+    return max((steadiness_of(a.autopilot, a.type).kept_m for a in aircraft if a is not None), default=0.0)
 
 
 def _turn_radius_m(fields: Fields, airspeed_m_s: float | None, kind: str | None) -> float | None:

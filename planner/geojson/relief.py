@@ -16,6 +16,7 @@ from itertools import pairwise
 import shapely
 from shapely.geometry.base import BaseGeometry
 
+from planner.airspace.shapes import without_holes
 from planner.airspace.terrain import Ground, Terrain, local_ground
 from planner.airspace.values import NoFlyZone, Obstacle, Threat
 from planner.geojson.fields import Findings
@@ -23,7 +24,7 @@ from planner.scenario import Scenario
 from planner.wishes import Region
 
 #: Kept over the ground where the scenario names no ``clearance_m``.
-DEFAULT_CLEARANCE_M = 30.0
+OVER_GROUND_M = 30.0
 #: Without an operating area the flight may go this far beyond what is on the map; with one, only the look
 #: at the ground beside it may.
 OPEN_MARGIN_M = 5_000.0
@@ -40,7 +41,7 @@ def set_on_terrain(
     Parameters
     ----------
     clearance_given
-        Whether the document named a clearance; else ``DEFAULT_CLEARANCE_M`` holds.
+        Whether the document named a clearance; else ``OVER_GROUND_M`` is kept over the ground.
     """
     ground = local_ground(terrain, scenario.frame, _bounds(scenario))
     home_amsl_m = float(ground.at(scenario.start.position))
@@ -62,7 +63,7 @@ def set_on_terrain(
             f"has heights over {terrain.datum}, taken for heights over mean sea level",
             "Check them against a known height.",
         )
-    clearance_m = scenario.clearance_m if clearance_given else DEFAULT_CLEARANCE_M
+    clearance_m = scenario.clearance_m if clearance_given else OVER_GROUND_M
     reference = scenario.altitude_reference
     highest_m = max(tops_m.values())
     level_m = scenario.altitude_m + {"amsl": 0.0, "home": home_amsl_m, "terrain": highest_m}[reference]
@@ -94,7 +95,7 @@ def set_on_terrain(
         altitude_m=level_m,
         altitude_reference="amsl",
         home_amsl_m=home_amsl_m,
-        clearance_m=clearance_m,
+        over_ground_m=clearance_m,
         terrain=ground,
         no_fly=scenario.no_fly + _high_ground(scenario, ground, levels_m, clearance_m),
         threats=tuple(_raised_threat(threat, ground, home_amsl_m) for threat in scenario.threats),
@@ -165,13 +166,14 @@ def _high_ground(
     zones: list[NoFlyZone] = []
     for level_m, next_m in pairwise([*levels_m, math.inf]):
         high = ground.above(level_m - clearance_m, within)
-        parts = [part for zone in high for part in _without_holes(zone)]
+        parts = [part for zone in high for part in without_holes(zone)]
         parts.sort(key=lambda polygon: -polygon.area)
         zones += [
             NoFlyZone(
                 f"terrain-{len(zones) + number}",
                 part,
                 ceiling_m=_ceiling_m(part, ground, next_m, clearance_m),
+                of_ground=True,
             )
             for number, part in enumerate(parts[:MAX_ZONES], start=1)
         ]
@@ -185,22 +187,6 @@ def _ceiling_m(part: shapely.Polygon, ground: Ground, next_m: float, clearance_m
     below_m = math.nextafter(next_m, -math.inf)
     top_m = ground.range_over(part)[1]
     return below_m if math.isnan(top_m) else min(below_m, top_m + clearance_m)
-
-
-def _without_holes(zone: shapely.Polygon) -> list[shapely.Polygon]:
-    """The zone cut through its holes: a fence knows outer rings alone."""
-    if not zone.interiors:
-        return [zone]
-    west, south, east, north = zone.bounds
-    cut_m = zone.interiors[0].centroid.x
-    halves = (shapely.box(west, south, cut_m, north), shapely.box(cut_m, south, east, north))
-    parts = [part for half in halves for part in shapely.get_parts(zone.intersection(half))]
-    return [
-        piece
-        for part in parts
-        if isinstance(part, shapely.Polygon) and part.area > 0.0
-        for piece in _without_holes(part)
-    ]
 
 
 def _raised_threat(threat: Threat, ground: Ground, home_amsl_m: float) -> Threat:

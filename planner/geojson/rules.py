@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import itertools
+import math
 
 from shapely.geometry import Point
 
 from planner.airspace.airspace import Level
-from planner.airspace.shapes import hard_shapes
+from planner.airspace.shapes import banded_shapes
 from planner.geojson.fields import Findings
 from planner.route import Terminal
 from planner.scenario import Scenario
 
+#: Left between a start or end and what is kept clear of it: what lines keep besides.
+ROOM_M = 2.0
 #: A region may stick out of the area by this much: the rounding of coordinates, not a wish.
 AREA_TOLERANCE_M = 0.05
 
@@ -125,15 +128,34 @@ def _area(scenario: Scenario, findings: Findings) -> None:
 
 
 def _terminals(scenario: Scenario, findings: Findings) -> None:
-    for shape in hard_shapes(scenario.airspace, scenario.level):
+    """Neither end lies in what is hard, nor nearer to it than is to be kept."""
+    level = scenario.level
+    for banded in banded_shapes(scenario.airspace, level.amsl_m - level.height_m):
+        if not banded.hard or not banded.counts(level.height_m, level.lowest.height_m):
+            continue
+        shape = banded.shape
         for terminal in _ends(scenario):
-            if shape.depth_m(Point(terminal.position)) > 0.0:
+            end = "start" if terminal is scenario.start else "end"
+            away_m = shape.away_m(Point(terminal.position))
+            if away_m <= 0.0:
                 findings.error(
                     terminal.name,
-                    f"{'start' if terminal is scenario.start else 'end'}-in-hard-zone",
+                    f"{end}-in-hard-zone",
                     f"lies inside {shape.name}, which may never be entered",
                     f"Move it out of {shape.name}.",
                 )
+            elif away_m < banded.kept_m:
+                findings.error(
+                    terminal.name,
+                    f"{end}-within-clearance",
+                    f"lies {away_m:.1f} m from {shape.name}, of which {banded.kept_m:g} m are kept clear",
+                    f"Move it away, or set clearance_m to {_whole_or_tenths(away_m - ROOM_M):g} at most.",
+                )
+
+
+def _whole_or_tenths(length_m: float) -> float:
+    """A length rounded down, never below 0."""
+    return max(0.0, math.floor(length_m) if length_m >= 1.0 else math.floor(10.0 * length_m) / 10.0)
 
 
 def _ends(scenario: Scenario) -> tuple[Terminal, ...]:

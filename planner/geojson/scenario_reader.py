@@ -18,6 +18,7 @@ from planner.geojson.fields import Fields, Findings
 from planner.geojson.home import home_amsl_m, kept_clear
 from planner.geojson.relief import set_on_terrain
 from planner.geojson.rules import check_together
+from planner.geojson.slots import check_slots
 from planner.route import Terminal
 from planner.scenario import Scenario
 from planner.tasks.registry import TASKS
@@ -144,7 +145,7 @@ def _read(document: Any, findings: Findings, terrains: Terrains | None) -> Scena
             "Send the raster first and name it by its id; without terrain the ground is flat at the height "
             "of home.",
         )  # fmt: skip
-    clearance_m = top.number("clearance_m", 0.0, minimum=0.0)
+    clearance_m = top.number("clearance_m", equipment.kept_m(aircraft), minimum=0.0)
     budget_s = top.number("time_budget_s", None, above=0.0)
     name = top.text("name", "scenario")
     seed = top.integer("seed", 0, minimum=0)
@@ -189,6 +190,7 @@ def _read(document: Any, findings: Findings, terrains: Terrains | None) -> Scena
         scenario = kept_clear(scenario, findings)
     scenario = replace(scenario, regions=_at_their_altitudes(scenario.regions, scenario.altitude_m))
     check_together(scenario, findings)
+    check_slots(scenario, findings)
     return replace(scenario, warnings=findings.warnings)
 
 

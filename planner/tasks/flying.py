@@ -105,8 +105,12 @@ class FlightLevels:
         return self.home_ground_m if math.isnan(there_m) else there_m - self.datum_amsl_m
 
     def zones(self, margin_m: float, lowest: Level | None = None) -> KeepOut:
-        """What is to be kept out of at the level, or anywhere from a lower one up to it."""
-        return keep_out(self.airspace, self.level, margin_m, lowest=lowest)
+        """What is to be kept out of at the level, or anywhere from a lower one up to it.
+
+        What is kept from everything hard counts towards the margin; lines keep theirs besides.
+        """
+        besides_m = max(TRANSIT_MARGIN_M, margin_m - self.airspace.clearance_m)
+        return keep_out(self.airspace, self.level, besides_m, lowest=lowest, edge_m=margin_m)
 
     @property
     def ground(self) -> Level:
@@ -259,7 +263,7 @@ class _Layers:
             connect,
             self.cost_m,
             airspace.terrain,
-            airspace.clearance_m,
+            airspace.over_ground_m,
             self.stop,
         )
 

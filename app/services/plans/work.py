@@ -13,7 +13,7 @@ import os
 import resource
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -108,6 +108,7 @@ def finding_json(finding: Any) -> dict[str, str]:
 
 def plan_scenario(scenario_text: str, progress_path: str, terrain_folder: str | None = None) -> WorkResult:
     """Plan one scenario, reporting into the pipe at ``progress_path``; rasters are in ``terrain_folder``."""
+    from app.services.plans.fences import fence_notes
     from app.services.terrain.rasters import stored_terrain
     from planner import errors
     from planner.geojson import read_scenario, write_plan
@@ -121,6 +122,7 @@ def plan_scenario(scenario_text: str, progress_path: str, terrain_folder: str | 
         scenario = read_scenario(json.loads(scenario_text), terrains)
         frame = scenario.frame
         plan = make_plan(scenario, progress=progress, clock=time.perf_counter)
+        plan = replace(plan, warnings=(*plan.warnings, *fence_notes(plan)))
         return _written(write_plan(plan))
     except errors.ScenarioError as error:
         return WorkResult(

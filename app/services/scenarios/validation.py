@@ -23,10 +23,12 @@ def judge(document: Mapping[str, Any], terrain_folder: str | None = None) -> Ver
 
     ``terrain_folder`` is where uploaded rasters are.
     """
+    from app.services.plans.fences import fence_findings
     from app.services.terrain.rasters import stored_terrain
     from planner.validate import findings
 
-    found = findings(document, None if terrain_folder is None else partial(stored_terrain, terrain_folder))
+    terrains = None if terrain_folder is None else partial(stored_terrain, terrain_folder)
+    found = findings(document, terrains, fence_findings)
     return Verdict(
         errors=tuple(finding for finding in found if finding.severity == "error"),
         warnings=tuple(finding for finding in found if finding.severity == "warning"),

@@ -164,17 +164,31 @@ def scenario() -> Scenario:
 
 def test_keep_out_takes_what_counts_at_the_flight_altitude() -> None:
     """Low threats, low obstacles and bands above or below the flight do not count, in either datum."""
-    asked = scenario()
+    asked = dataclasses.replace(scenario(), clearance_m=0.0)
     zones = keep_out(asked.airspace, asked.level)
     assert [disc.name for disc in zones.discs] == ["soft", "hard", "disc"]
     assert [disc.hard for disc in zones.discs] == [False, True, True]
-    assert [zone.name for zone in zones.polygons] == ["mast"]
+    assert [zone.name for zone in zones.polygons] == []
     assert [disc.name for disc in keep_out(asked.airspace, asked.level, soft=False).discs] == ["hard", "disc"]
     high = dataclasses.replace(asked, home_amsl_m=200.0)
-    assert [zone.name for zone in keep_out(high.airspace, high.level).polygons] == ["band", "mast"]
+    assert [zone.name for zone in keep_out(high.airspace, high.level).polygons] == ["band"]
     amsl = dataclasses.replace(asked, altitude_reference="amsl", home_amsl_m=460.0)
-    assert [zone.name for zone in keep_out(amsl.airspace, amsl.level).polygons] == ["mast", "shed"]
+    assert [zone.name for zone in keep_out(amsl.airspace, amsl.level).polygons] == ["mast"]
     assert "low" in [disc.name for disc in keep_out(amsl.airspace, amsl.level).discs]
+
+
+def test_what_is_kept_counts_over_and_under_too() -> None:
+    """With 30 m kept a threat, a mast and a band count as much higher and lower, a soft threat does not."""
+    zones = keep_out(scenario().airspace, scenario().level)
+    radii_m = {disc.name: disc.radius_m for disc in zones.discs}
+    assert radii_m == {"soft": 100.0, "hard": 230.0, "low": 330.0, "disc": 80.0}
+    assert [zone.name for zone in zones.polygons] == ["mast"]
+    under = dataclasses.replace(scenario(), home_amsl_m=71.0)
+    assert [zone.name for zone in keep_out(under.airspace, under.level).polygons] == ["band", "mast"]
+    low = dataclasses.replace(scenario(), altitude_reference="amsl", home_amsl_m=460.0)
+    assert [zone.name for zone in keep_out(low.airspace, low.level).polygons] == ["mast", "shed"]
+    far_under = dataclasses.replace(scenario(), home_amsl_m=69.0)
+    assert [zone.name for zone in keep_out(far_under.airspace, far_under.level).polygons] == ["mast"]
 
 
 def test_margins_hold_the_buffered_shapes() -> None:
@@ -184,7 +198,7 @@ def test_margins_hold_the_buffered_shapes() -> None:
     zones = keep_out(asked.airspace, asked.level, margin_m=15.0)
     assert zones.discs[0].radius_m == 115.0
     band, mast = (zone.polygon for zone in zones.polygons)
-    assert band.buffer(1e-9).covers(asked.no_fly[1].area.buffer(15.0))
+    assert band.buffer(1e-9).covers(asked.no_fly[1].area.buffer(45.0))
     assert mast.buffer(1e-9).covers(asked.obstacles[0].area.buffer(45.0))
     assert zones.area is not None
     assert zones.area.equals(box(-985, -985, 985, 985))

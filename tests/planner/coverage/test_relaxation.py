@@ -34,7 +34,7 @@ ZONES: dict[str, dict[str, Any]] = {
 
 def behind(kind: str, *more: dict[str, Any], **members: Any) -> Scenario:
     """The small scenario with a zone over region A; home is at sea level."""
-    document = small(ZONES[kind], *more, **members)
+    document = small(ZONES[kind], *more, **{"clearance_m": 0.0} | members)
     for start in (f for f in document["features"] if f["properties"]["role"] == "start"):
         start["geometry"]["coordinates"].append(0.0)
     return read_scenario(document)

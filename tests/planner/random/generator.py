@@ -30,6 +30,8 @@ SIZES = (
 )
 
 
+#: The most that is kept from what is hard where a scenario does not say.
+KEPT_M = 30.0
 #: Areas are drawn round what is no wider than this.
 MOST_M = 330_000.0
 
@@ -298,7 +300,7 @@ def _zones(world: _World, amsl_m: float, document: dict[str, Any]) -> bool:
     low_e, low_n, high_e, high_n = kept.buffer(world.reach_m).bounds
     size_m = world.swath_m
     free = not world.chance(0.3)
-    apart_m = world.reach_m if free else 0.15 * size_m + 5.0
+    apart_m = KEPT_M + (world.reach_m if free else 0.15 * size_m + 5.0)
     for index in range(int(world.rng.integers(0, 5))):
         middle = (world.between(low_e, high_e), world.between(low_n, high_n))
         radius_m = size_m * world.between(0.1, 0.8)
@@ -326,13 +328,13 @@ def _zones(world: _World, amsl_m: float, document: dict[str, Any]) -> bool:
             band = {"floor_m": round(amsl_m - world.between(50.0, 500.0), 1)} if world.chance(0.5) else {}
             world.add(name, "no_fly", "Polygon", world.rings(blob), **band)
         elif form == 3:
-            band = {"floor_m": round(amsl_m + 30.0, 1)}
+            band = {"floor_m": round(amsl_m + KEPT_M + 15.0, 1)}
             if world.chance(0.5):
-                band = {"ceiling_m": round(amsl_m - 30.0, 1)}
+                band = {"ceiling_m": round(amsl_m - KEPT_M - 15.0, 1)}
             world.add(name, "no_fly", "Point", world.degrees(middle), radius_m=round(radius_m, 1), **band)
         elif form == 4:
             document["clearance_m"] = 20.0
-            tall = blob.distance(kept) > apart_m + 20.0 and world.chance(0.5)
+            tall = blob.distance(kept) > apart_m and world.chance(0.5)
             height_m = world.height_m + 50.0 if tall else max(world.height_m - 25.0, 5.0)
             world.add(name, "obstacle", "Polygon", world.rings(blob), height_m=round(height_m, 1))
         elif form == 5 and disc.distance(kept) > apart_m:

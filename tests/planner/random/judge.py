@@ -94,23 +94,31 @@ def heights_m(ground: Ground) -> tuple[float, float]:
 
 
 def hard_zones(ground: Ground) -> dict[str, BaseGeometry]:
-    """What may never be entered at the flight's height."""
+    """What may never be entered at the flight's height, with what is kept from it all round."""
     height_m, amsl_m = heights_m(ground)
+    clear_m = kept_m(ground.document)
     zones: dict[str, BaseGeometry] = {}
     for feature in ground.document["features"]:
         properties, name = feature["properties"], feature["id"]
-        low_m, high_m, flown_m, clear_m = -math.inf, -math.inf, height_m, 0.0
+        low_m, high_m, flown_m = -math.inf, -math.inf, height_m
         if properties["role"] == "threat" and properties.get("hard"):
             high_m = properties.get("height_m", math.inf)
         elif properties["role"] == "no_fly":
             low_m, high_m, flown_m = properties.get("floor_m", -math.inf), math.inf, amsl_m
             high_m = properties.get("ceiling_m", math.inf)
         elif properties["role"] == "obstacle":
-            clear_m = ground.document.get("clearance_m", 0.0)
-            high_m = properties["height_m"] + properties.get("base_m", 0.0) + clear_m
-        if low_m <= flown_m <= high_m:
+            high_m = properties["height_m"] + properties.get("base_m", 0.0)
+        if low_m - clear_m <= flown_m <= high_m + clear_m:
             zones[name] = ground.shape(feature).buffer(clear_m)
     return zones
+
+
+def kept_m(document: dict[str, Any]) -> float:
+    """What is kept from everything hard: as stated, else what the autopilot is flown off its line."""
+    vehicle = document["vehicles"][0]
+    wing = {"ardupilot": 30.0, "px4": 20.0}[vehicle.get("autopilot", "ardupilot")]
+    default_m = 5.0 if vehicle.get("type") == "multirotor" else wing
+    return float(document.get("clearance_m", default_m))
 
 
 def wind_m_s(ground: Ground) -> Floats:

@@ -151,7 +151,9 @@ def test_no_line_costs_infinitely_much() -> None:
 
 def test_a_way_round_a_hard_zone_is_longer_than_straight_on() -> None:
     """A zone between two ends costs what the convex hull of ends and zone says, arcs of entry apart."""
-    scenario = read_scenario(small(feature("Z", "no_fly", "Point", [0.02, 0.02], radius_m=400.0)))
+    scenario = read_scenario(
+        small(feature("Z", "no_fly", "Point", [0.02, 0.02], radius_m=400.0), clearance_m=0.0)
+    )
     ((east_m, north_m),) = scenario.frame.to_local([(0.02, 0.02)])
     start, goal = (
         Anchor(float(east_m) - 1500.0, float(north_m)),
