@@ -14,7 +14,7 @@ from app.version import VERSION
 
 #: Settings that only the service itself takes notice of: another value needs no other process.
 _OF_THE_SERVICE = {
-    "host", "port", "allow_remote", "workers", "plan_time_limit_s", "max_queued_plans", "plan_memory_bytes",
+    "host", "port", "workers", "plan_time_limit_s", "max_queued_plans", "plan_memory_bytes",
     "request_workers", "max_wait_s", "max_terrain_bytes", "static_dir",
 }  # fmt: skip
 
@@ -22,7 +22,12 @@ _OF_THE_SERVICE = {
 def settings_text(settings: Settings) -> str:
     """Settings for another process, wherever that one works."""
     log_dir = None if settings.log_dir is None else settings.log_dir.resolve()
-    whole = settings.model_copy(update={"database": settings.database.resolve(), "log_dir": log_dir})
+    places = {
+        "database": settings.database.resolve(),
+        "log_dir": log_dir,
+        "replay_folders": tuple(folder.resolve() for folder in settings.replay_folders),
+    }
+    whole = settings.model_copy(update=places)
     return whole.model_dump_json()
 
 

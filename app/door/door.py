@@ -14,16 +14,22 @@ from app.door.lanes import CrowdedError, Lanes, lane_of
 
 log = logging.getLogger(__name__)
 
+#: More connections than the first are served hurriedly, more than the second not at all.
+HURRIED_CONNECTIONS: Final = 200
 MOST_CONNECTIONS: Final = 600
 _CHUNK_BYTES: Final = 1 << 16
 
 
 @dataclass(frozen=True, slots=True)
 class Patience:
-    """How long a client may take for its next request, a head, a part of a body, of an answer."""
+    """How long a client may take for its next request, a head, a part of a body, of an answer.
+
+    ``hurried_s`` stands for the first two where there are many clients.
+    """
 
     idle_s: float = 60.0
     head_s: float = 15.0
+    hurried_s: float = 3.0
     body_s: float = 30.0
     answer_s: float = 60.0
 
@@ -94,11 +100,12 @@ class Door:
 
     async def _exchange(self, client: _Incoming, writer: asyncio.StreamWriter) -> bool:
         """One request and its answer; whether the connection goes on."""
-        async with asyncio.timeout(self._patience.idle_s):
+        hurried = self._open > HURRIED_CONNECTIONS
+        async with asyncio.timeout(self._patience.hurried_s if hurried else self._patience.idle_s):
             if not client.held and not await client.more():
                 return False
         try:
-            async with asyncio.timeout(self._patience.head_s):
+            async with asyncio.timeout(self._patience.hurried_s if hurried else self._patience.head_s):
                 head = await client.head()
             if head is None:
                 return False

@@ -5,10 +5,11 @@ from __future__ import annotations
 import contextlib
 
 from fastapi import APIRouter, Response
-from prometheus_client import CONTENT_TYPE_LATEST, generate_latest
+from prometheus_client import CONTENT_TYPE_LATEST
 
 from app.deps import HouseDep
 from app.schemas.health import Health
+from app.services.metrics import exposition
 from app.services.plans.pool import WorkerDiedError
 from app.version import VERSION
 
@@ -55,6 +56,7 @@ async def ready(house: HouseDep, response: Response) -> Health:
     response_class=Response,
     responses={200: {"content": {"text/plain": {"schema": {"type": "string"}}}}},
 )
-async def metrics() -> Response:
+async def metrics(house: HouseDep) -> Response:
     """Counters and gauges in the Prometheus text format."""
-    return Response(generate_latest(), headers={"Content-Type": CONTENT_TYPE_LATEST})
+    others = "" if house.keeper is None else await house.keeper.metrics()
+    return Response(exposition(others), headers={"Content-Type": CONTENT_TYPE_LATEST})

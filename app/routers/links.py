@@ -11,8 +11,8 @@ from fastapi import APIRouter, Depends, Request
 from prometheus_client import generate_latest
 from pydantic import BaseModel
 
-from app.deps import LinksHouseDep
 from app.services.vehicles.greeting import Wishes, greet
+from app.vehicle_deps import LinksHouseDep
 
 
 async def _needed(house: LinksHouseDep) -> None:

@@ -10,7 +10,6 @@ from fastapi import APIRouter, Query, Response
 from fastapi.responses import StreamingResponse
 from sse_starlette import EventSourceResponse, ServerSentEvent
 
-from app.deps import ChecksDep, FleetDep, PermitsDep, TransfersDep
 from app.problems import responses
 from app.routers.streams import event_stream, file_stream
 from app.schemas.forwards import ForwardsIn, ForwardsOut
@@ -31,6 +30,7 @@ from app.schemas.vehicles import (
 from app.services.plans.missions import MissionChoice
 from app.services.vehicles.flight_orders import Wish
 from app.services.vehicles.orders import give_order
+from app.vehicle_deps import ChecksDep, FleetDep, PermitsDep, TransfersDep
 
 router = APIRouter(prefix="/api/v1/vehicles", tags=["vehicles"])
 

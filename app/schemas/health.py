@@ -16,5 +16,6 @@ class Health(BaseModel):
     version: str
     checks: dict[str, bool] = Field(
         default_factory=dict,
-        description="`database`: it can be read and written. `workers`: planning processes are warm.",
+        description="`database`: it can be read and written. `workers`: planning processes are warm. "
+        "`links`: the process that holds the links to the vehicles answers.",
     )

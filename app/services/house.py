@@ -121,16 +121,22 @@ class House:
     async def open(self) -> None:
         """Open the database, start the workers, take up waiting plans."""
         await self.database.open()
-        async with asyncio.TaskGroup() as opening:
-            if self.keeper is not None:
-                # Before the workers: it takes its time to begin, and the vehicles wait for it.
-                opening.create_task(self.keeper.open())
-                await asyncio.sleep(0)
-            self.pool.warm()
-            self.desk.pool.warm()
-            await self.planning.start()
         if self.keeper is None:
+            await self._open_all()
             await self.fleet.open()
+            return
+        # Before the workers: it takes its time to begin, and the vehicles wait for it.
+        links = asyncio.create_task(self.keeper.open())
+        try:
+            await asyncio.sleep(0)
+            await self._open_all()
+        finally:
+            await links
+
+    async def _open_all(self) -> None:
+        self.pool.warm()
+        self.desk.pool.warm()
+        await self.planning.start()
 
     async def close(self) -> None:
         """Stop everything, in the opposite order."""

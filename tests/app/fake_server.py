@@ -24,7 +24,7 @@ def main(database: str, apart: str | None = None) -> None:
     from app.settings import Settings
     from tests.app.conftest import pooled_house
 
-    settings = Settings(database=Path(database), workers=1, port=0, log_level="error")
+    settings = Settings(database=Path(database), workers=1, request_workers=2, port=0, log_level="error")
     if apart is None:
         run_server(settings, Welcome(), announce, pooled_house)
     else:

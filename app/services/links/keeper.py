@@ -85,6 +85,14 @@ class Keeper:
         if self._wishes is not None:
             await self.client.greet(self._wishes)
 
+    async def metrics(self) -> str:
+        """Its figures for Prometheus; none while it does not answer."""
+        try:
+            return await self.client.metrics()
+        except LinkError as error:
+            log.warning("figures of the links not told", reason=str(error))
+            return ""
+
     async def close(self) -> None:
         """End the process, or let it be where a vehicle is in use or it shall be kept; again is harmless."""
         if self._watching is not None:

@@ -17,7 +17,6 @@ from mavlink.encoding.gimbal import GimbalError, parse_gimbal
 from mavlink.encoding.payload import PayloadError, parse_payload
 from mavlink.wire.items import MissionType
 from planner.errors import Finding
-from planner.geojson import read_plan
 from planner.plan import Plan
 
 AutopilotName = Literal["ardupilot", "px4"]
@@ -102,6 +101,9 @@ def mission_of(text: str, choice: MissionChoice) -> Mission:
 @lru_cache(maxsize=8)
 def plan_of(text: str) -> Plan:
     """The plan of a plan document's text."""
+    # Here: it brings all the planner with it, and who only puts missions into vehicles reads no plan.
+    from planner.geojson import read_plan
+
     return read_plan(read_object(text))
 
 

@@ -12,8 +12,6 @@ from pathlib import Path
 from typing import Any
 
 import structlog
-from alembic import command
-from alembic.config import Config
 from sqlalchemy import create_engine, event, text
 from sqlalchemy import exc as sql_errors
 from sqlalchemy.ext.asyncio import AsyncEngine, AsyncSession, async_sessionmaker, create_async_engine
@@ -31,6 +29,8 @@ MIGRATIONS = Path(__file__).resolve().parents[2] / "migrations"
 BUSY_S = 15
 #: A connection is a thread; this many may read at once, and one write.
 _CONNECTIONS = 12
+#: So much is written before a process beside the service moves it into the file; the service does at 1000.
+_CHECKPOINT_PAGES = 20_000
 
 
 class DatabaseInUseError(RuntimeError):
@@ -44,9 +44,20 @@ def _on_connect(connection: Any, record: object) -> None:
     cursor.close()
 
 
+def _leave_checkpoints(connection: Any, record: object) -> None:
+    """Let the service move what was written into the file, which waits for the disk; unless there is none."""
+    cursor = connection.cursor()
+    cursor.execute(f"PRAGMA wal_autocheckpoint={_CHECKPOINT_PAGES}")
+    cursor.close()
+
+
 def migrate(path: Path) -> None:
     """Bring the tables of a database file up to date, creating the file when it is absent."""
     engine = create_engine(f"sqlite:///{path}", poolclass=NullPool)
+    # Here: who opens a database that is up to date needs none of it.
+    from alembic import command
+    from alembic.config import Config
+
     # Once and for all: who connects while another program writes could not change it.
     with engine.connect() as connection:
         connection.exec_driver_sql("PRAGMA journal_mode=WAL")
@@ -90,6 +101,8 @@ class Database:
             pool_timeout=BUSY_S,
         )
         event.listen(self._engine.sync_engine, "connect", _on_connect)
+        if not self._alone:
+            event.listen(self._engine.sync_engine, "connect", _leave_checkpoints)
         self._sessions = async_sessionmaker(self._engine, expire_on_commit=False)
 
     async def _take(self) -> None:

@@ -15,7 +15,6 @@ from mavlink.rules.table import Needs, ParameterFinding, judge_parameters
 from mavlink.state.telemetry import VehicleState
 from mavlink.wire.geometry import distance_m
 from planner.errors import Finding
-from planner.geojson.equipment import named_steadiness
 from planner.plan import Plan
 
 Status = Literal["ok", "warning", "failed"]
@@ -243,6 +242,9 @@ def settle_m(scenario: Mapping[str, Any], name: str) -> float | None:
     value = vehicle.get("settle_m")
     if isinstance(value, (int, float)):
         return float(value)
+    # Here: it brings all the planner with it, and who only puts missions into vehicles reads no scenario.
+    from planner.geojson.equipment import named_steadiness
+
     steady, airspeed_m_s = named_steadiness(vehicle), vehicle.get("airspeed_m_s")
     if steady is None or not isinstance(airspeed_m_s, (int, float)):
         return None
