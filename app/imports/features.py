@@ -8,13 +8,15 @@ from typing import Any
 
 from app.imports.drawing import closed, forbidden_area, geometry, mended, on_earth
 from app.imports.errors import RegionFileError, file_error
-from app.imports.options import NONE, ImportOptions, check_choices
+from app.imports.options import NONE, ImportOptions
 from app.imports.roles import KEEP_AWAY, KINDS, Verdict, verdicts
 from app.imports.shapes import MAX_POSITIONS, MAX_SHAPES, Shape
 from app.imports.values import add_values
 from planner.errors import Finding
 
 _LIMIT_FINDINGS = 20
+#: Characters of a folder's text in the account of a shape; all of it counts.
+_MOST_SHOWN = 200
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,7 +81,6 @@ def features(shapes: Sequence[Shape], options: ImportOptions, notes: list[str]) 
             f"the file holds {len(shapes)} shapes with {sum(s.positions for s in shapes)} positions",
             f"keep to {MAX_SHAPES} shapes and {MAX_POSITIONS} positions",
         )
-    check_choices(options, shapes)
     made = Made()
     given = _Names()
     whole = 0
@@ -100,7 +101,7 @@ def features(shapes: Sequence[Shape], options: ImportOptions, notes: list[str]) 
             Account(
                 number,
                 shape.name,
-                shape.folders,
+                tuple(folder[:_MOST_SHOWN] for folder in shape.folders),
                 shape.kind,
                 verdict.role if names else NONE,
                 why,

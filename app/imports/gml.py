@@ -10,11 +10,11 @@ from app.imports.crs import ToWgs84, mover, written_crs
 from app.imports.errors import file_error
 from app.imports.gml_geometry import GEOMETRIES, Positions, shapes_in
 from app.imports.shapes import Shape, labelled, moved
-from app.imports.xml import children, local_name, parse
+from app.imports.xml import child_text, children, local_name, parse
 
 _MEMBERS = ("featureMember", "featureMembers", "member", "hasMember")
 _NAMES = ("name", "title", "label", "bezeichnung", "nom", "fieldname", "id")
-_MAX_TEXT = 4_000
+_MAX_TEXT = 20_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,8 +40,10 @@ def read_gml(data: bytes, crs: str | None, notes: list[str]) -> list[Shape]:
     """
     root = parse(data, notes)
     shapes: list[Shape] = []
+    above = tuple(text for key in ("name", "description") if (text := child_text(root, key)))
     for feature, given in _features(root, _given(root, _Given())):
-        shapes += _of_feature(feature, given, crs, notes)
+        folders = (local_name(feature),) if feature is root else (*above, local_name(feature))
+        shapes += _of_feature(feature, folders, given, crs, notes)
     return shapes
 
 
@@ -68,7 +70,9 @@ def _given(element: Element, above: _Given) -> _Given:
     return _Given(system, int(dimension))
 
 
-def _of_feature(feature: Element, given: _Given, crs: str | None, notes: list[str]) -> list[Shape]:
+def _of_feature(
+    feature: Element, folders: tuple[str, ...], given: _Given, crs: str | None, notes: list[str]
+) -> list[Shape]:
     texts = dict(_texts(feature))
     name = next((texts[key] for key in _NAMES if texts.get(key)), "")
     if not name:
@@ -87,7 +91,7 @@ def _of_feature(feature: Element, given: _Given, crs: str | None, notes: list[st
         move, north_first = _mover(system, crs, notes)
         positions = Positions(about.dimension or 2, north_first, name)
         for shape in shapes_in(geometry, positions):
-            drawn = Shape(shape.kind, shape.parts, name, (local_name(feature),), texts)
+            drawn = Shape(shape.kind, shape.parts, name, folders, texts)
             found.append(moved(drawn, move))
     if not found:
         notes.append(f"{name or local_name(feature)} has no geometry and is left out")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from xml.etree.ElementTree import Element
 
 from shapely.geometry import LineString
@@ -25,18 +26,32 @@ def read_gpx(data: bytes, notes: list[str]) -> list[Shape]:
     root = parse(data, notes)
     if local_name(root) != "gpx":
         raise file_error("not-gpx", f"the file is a <{local_name(root)[:40]}>, not GPX", "send GPX")
+    above = _said(root, "name", "desc") + tuple(
+        text
+        for metadata in children(root, "metadata")
+        for text in _said(metadata, "name", "desc", "keywords")
+    )
     shapes: list[Shape] = []
     for track in children(root, "trk"):
-        name = child_text(track, "name")
         segments = [_points(segment, "trkpt") for segment in children(track, "trkseg")]
-        shapes += [line_of(_plain(segment), name) for segment in segments if segment]
+        shapes += [_shape(_plain(segment), track, above) for segment in segments if segment]
     for route in children(root, "rte"):
         points = _points(route, "rtept")
         if points:
-            shapes.append(line_of(_plain(points), child_text(route, "name")))
+            shapes.append(_shape(_plain(points), route, above))
     for waypoint in children(root, "wpt"):
-        shapes.append(line_of((_place(waypoint),), child_text(waypoint, "name")))
+        shapes.append(_shape((_place(waypoint),), waypoint, above))
     return shapes
+
+
+def _shape(places: tuple[LonLat, ...], element: Element, folders: tuple[str, ...]) -> Shape:
+    values = {key: child_text(element, key) for key in ("desc", "cmt", "type", "sym", "src")}
+    shape = line_of(places, child_text(element, "name"), folders)
+    return replace(shape, properties={key: value for key, value in values.items() if value})
+
+
+def _said(element: Element, *keys: str) -> tuple[str, ...]:
+    return tuple(text for key in keys if (text := child_text(element, key)))
 
 
 def _points(element: Element, kind: str) -> tuple[LonLat, ...]:

@@ -16,7 +16,6 @@ from app.imports.xml import child_text, children, local_name, parse
 
 _CONTAINERS = ("kml", "Document", "Folder", "NetworkLinkControl", "Update", "Create")
 _IMAGES = ("GroundOverlay", "PhotoOverlay", "ScreenOverlay")
-_MAX_NAME = 500
 
 
 @dataclass
@@ -142,7 +141,7 @@ def _walk(
         if kind == "Placemark" or kind in own or kind == "NetworkLink" or kind in _IMAGES:
             yield element, folders
         elif kind in _CONTAINERS:
-            said = [child_text(element, key)[:_MAX_NAME] for key in ("name", "description")]
+            said = [child_text(element, key) for key in ("name", "description")]
             yield from _walk(list(element), (*folders, *(text for text in said if text)), own)
 
 

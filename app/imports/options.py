@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 from app.imports.errors import file_error
-from app.imports.shapes import Shape
+from app.imports.shapes import MAX_SHAPES, Shape
 
 ROLES = ("roi", "threat", "no_fly", "area", "obstacle", "start", "end", "base", "importance")
+_LIST = re.compile(r"#\d{1,6}(?:-\d{1,6})?(?:,\d{1,6}(?:-\d{1,6})?)*")
 #: In place of a role: the shape takes no part.
 NONE = "none"
 
@@ -21,8 +23,8 @@ class RoleChoice:
     Parameters
     ----------
     which
-        ``#3`` for the third shape of the file; else a shape's name, or the name of a folder, layer, document
-        or file it lies in, in any case.
+        ``#3`` for the third shape of the file, ``#3-5,8`` for several; else a shape's name, or the name of a
+        folder, layer, document or file it lies in, in any case.
     role
         One of ``ROLES``, or ``none``.
     """
@@ -95,23 +97,51 @@ def check_options(options: ImportOptions) -> None:
             raise file_error("bad-option", f"{name} is {value}", "give a positive number of metres")
 
 
-def choice_of(options: ImportOptions, shape: Shape, number: int) -> RoleChoice | None:
-    """The choice that concerns a shape: by number, by name, by folder from within."""
-    if not options.roles:
-        return None
-    of = {choice.which.casefold(): choice for choice in options.roles}
-    names = (f"#{number}", shape.name, *reversed(shape.folders), options.file_name)
-    return next((of[name.casefold()] for name in names if name and name.casefold() in of), None)
+class Choices:
+    """Choices by number and by name.
+
+    Raises
+    ------
+    RegionFileError
+        Rule ``bad-option``, where a choice concerns no shape: a slip of the pen would leave a zone to be
+        flown over.
+    """
+
+    def __init__(self, options: ImportOptions, shapes: Sequence[Shape]) -> None:
+        self._file_name = options.file_name
+        self._by_number: dict[int, RoleChoice] = {}
+        self._by_name: dict[str, RoleChoice] = {}
+        names = {name.casefold() for shape in shapes for name in (shape.name, *shape.folders)}
+        names.add(options.file_name.casefold())
+        for choice in options.roles:
+            numbers = _numbers(choice.which)
+            if choice.which.casefold() in names:
+                self._by_name[choice.which.casefold()] = choice
+            elif numbers and numbers[0] >= 1 and numbers[-1] <= len(shapes):
+                self._by_number.update(dict.fromkeys(numbers, choice))
+            else:
+                raise file_error(
+                    "bad-option",
+                    f"no shape or folder of the file is called {choice.which[:60]!r}",
+                    "give a name as it stands in the file, or #1 for the first shape",
+                )
+
+    def of(self, shape: Shape, number: int) -> RoleChoice | None:
+        """The choice that concerns a shape: by number, by name, by folder from within."""
+        if number in self._by_number:
+            return self._by_number[number]
+        names = (shape.name, *reversed(shape.folders), self._file_name)
+        return next(
+            (self._by_name[name.casefold()] for name in names if name.casefold() in self._by_name), None
+        )
 
 
-def check_choices(options: ImportOptions, shapes: Sequence[Shape]) -> None:
-    """Refuse choices that concern no shape: a slip of the pen would leave a zone to be flown over."""
-    known = {f"#{number}" for number in range(1, len(shapes) + 1)} | {options.file_name.casefold()}
-    known |= {name.casefold() for shape in shapes for name in (shape.name, *shape.folders)}
-    for choice in options.roles:
-        if choice.which.casefold() not in known:
-            raise file_error(
-                "bad-option",
-                f"no shape or folder of the file is called {choice.which[:60]!r}",
-                "give a name as it stands in the file, or #1 for the first shape",
-            )
+def _numbers(which: str) -> list[int]:
+    """``#3-5,8`` as 3, 4, 5, 8; empty where it is no list of numbers."""
+    if not _LIST.fullmatch(which):
+        return []
+    found: set[int] = set()
+    for part in which[1:].split(","):
+        first, _, last = part.partition("-")
+        found.update(range(int(first), min(int(last or first), MAX_SHAPES + 1) + 1))
+    return sorted(found)

@@ -12,9 +12,9 @@ from app.imports.rings import grouped
 from app.imports.shapes import LonLat, Rings, Shape, labelled, moved
 
 _NAMES = ("name", "title", "label", "id")
-_TITLES = ("name", "title", "description")
+_TITLES = ("name", "title", "description", "metadata", "properties")
 _MAX_DEPTH = 10
-_MAX_NESTED = 4_000
+_MAX_NESTED = 20_000
 
 
 def shapes_of(document: Mapping[str, Any], crs: str | None, notes: list[str]) -> list[Shape]:
@@ -24,7 +24,8 @@ def shapes_of(document: Mapping[str, Any], crs: str | None, notes: list[str]) ->
         features = document.get("features")
         if not isinstance(features, list):
             raise file_error("geojson", "the collection has no list of features", "send GeoJSON")
-        folders = tuple(str(document[key])[:500] for key in _TITLES if isinstance(document.get(key), str))
+        titles = texts_of({key: document[key] for key in _TITLES if key in document})
+        folders = tuple(text for text in titles.values() if text)
     else:
         features = [document]
     whole = _mover(document, crs, notes)

@@ -8,7 +8,7 @@ from typing import Literal
 
 from shapely import Point, Polygon, STRtree
 
-from app.imports.options import NONE, ROLES, ImportOptions, choice_of
+from app.imports.options import NONE, ROLES, Choices, ImportOptions, RoleChoice
 from app.imports.rings import encloses
 from app.imports.shapes import Shape
 from app.imports.words import forbids, is_false, keeps_inside, plain, role_of, says_either, threatens
@@ -62,7 +62,10 @@ class Verdict:
 def verdicts(shapes: Sequence[Shape], options: ImportOptions) -> list[Verdict]:
     """The role of each shape, in order."""
     named = _named_polygons(shapes)
-    found = [_verdict(shape, options, number, named) for number, shape in enumerate(shapes, 1)]
+    choices = Choices(options, shapes)
+    found = [
+        _verdict(shape, options, choices.of(shape, number), named) for number, shape in enumerate(shapes, 1)
+    ]
     seen_start = False
     for index, verdict in enumerate(found):
         if verdict.role == "start" and shapes[index].kind == "point":
@@ -72,8 +75,9 @@ def verdicts(shapes: Sequence[Shape], options: ImportOptions) -> list[Verdict]:
     return found
 
 
-def _verdict(shape: Shape, options: ImportOptions, number: int, named: Mapping[str, STRtree]) -> Verdict:
-    choice = choice_of(options, shape, number)
+def _verdict(
+    shape: Shape, options: ImportOptions, choice: RoleChoice | None, named: Mapping[str, STRtree]
+) -> Verdict:
     if choice is not None:
         return Verdict(choice.role, f"chosen for {choice.which!r}")
     if shape.label or _labels(shape, named):
@@ -103,7 +107,8 @@ def _told(shape: Shape, options: ImportOptions) -> Verdict | None:
         where, word = forbidden
         why = f"{where} says {word!r}"
         if said is None or said.role in KEEP_AWAY:
-            return said if said is not None and said.role != "no_fly" else Verdict("no_fly", why)
+            # over an obstacle and through a threat one may fly
+            return Verdict("no_fly", why)
         if shape.kind == "point" and said.role in _TERMINALS:
             return said
         return Verdict("no_fly", f"{why}, but {said.why}", "contradiction")

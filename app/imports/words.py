@@ -147,6 +147,7 @@ def plain(text: str) -> str:
     return re.sub(r"\bn f z\b", "nfz", bare).strip()
 
 
+@lru_cache(maxsize=1024)
 def forbids(text: str) -> str | None:
     """The word that forbids flying there; None where there is none."""
     words = _NEGATED.sub(" ", plain(text))
@@ -154,12 +155,14 @@ def forbids(text: str) -> str | None:
     return found.group().strip() if found else None
 
 
+@lru_cache(maxsize=1024)
 def keeps_inside(text: str) -> str | None:
     """The word that means a fence to stay inside of."""
     found = _INSIDE.search(plain(text))
     return found.group() if found else None
 
 
+@lru_cache(maxsize=1024)
 def says_either(text: str) -> str | None:
     """A word of restriction that leaves open in which sense, or denies it."""
     found = _EITHER.search(plain(text)) or _NEGATED.search(plain(text))

@@ -3,13 +3,30 @@ import { byId } from "./dom";
 import { mayLeave } from "./leaving";
 import { news, report } from "./notices";
 import { importRegions, isRegionFile } from "./regions";
+import { ROLE_WORDS } from "./role_words";
 import { parseScenario, scenarios } from "./scenario";
 
+const GEOMETRY = /^(Feature|(Multi)?(Point|LineString|Polygon)|GeometryCollection)$/;
 const LIMIT_BYTES = 20_000_000;
 
 /** Open a scenario in place of the one shown, or add another program's regions to it. */
 export async function openFile(file: File): Promise<boolean> {
-  return isRegionFile(file) ? importRegions(file) : openScenario(file);
+  return isRegionFile(file) || (await isDrawnElsewhere(file)) ? importRegions(file) : openScenario(file);
+}
+
+/** Whether it is GeoJSON, or Esri JSON, whose shapes have no roles of a scenario: they are regions to be read. */
+async function isDrawnElsewhere(file: File): Promise<boolean> {
+  if (file.size > LIMIT_BYTES) return false;
+  try {
+    const document = JSON.parse(await file.text()) as { type?: unknown; features?: unknown; rings?: unknown } | null;
+    if (!document || typeof document !== "object" || "vehicles" in document) return false;
+    if (document.type !== "FeatureCollection") return document.type !== undefined ? GEOMETRY.test(String(document.type)) : "rings" in document || "geometryType" in document;
+    if (!Array.isArray(document.features) || document.features.length === 0) return false;
+    return document.features.some((feature: { properties?: { role?: unknown } } | null) => !(String(feature?.properties?.role) in ROLE_WORDS));
+  } catch {
+    // no JSON: the scenario's reader says so in its words
+    return false;
+  }
 }
 
 async function openScenario(file: File): Promise<boolean> {

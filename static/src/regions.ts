@@ -1,47 +1,56 @@
 /** Regions drawn in other programs: the service reads the file, its features join the scenario. */
 import { ApiError, sendFile } from "./api";
-import { button, h } from "./dom";
 import { news, report } from "./notices";
+import { askImport, isOpen, type LengthQuestion, type ShapeAccount } from "./roles";
 import { scenarios } from "./scenario";
-import type { ScenarioFeature } from "./types";
+import type { Finding, ScenarioFeature } from "./types";
 
 /** Files that go to the service to be read. */
-export const REGION_FILES = ".kml,.kmz,.gpx,.zip,.shp";
+export const REGION_FILES = ".kml,.kmz,.wpml,.gpx,.gml,.zip,.shp,.geojsonl,.ndjson,.wkt,.csv,.tsv";
 
 interface Imported {
   features: ScenarioFeature[];
   format: string;
+  shapes: ShapeAccount[];
+  left_out: Finding[];
   notes: string[];
 }
 
-/** What shapes can need and a file may not say: the rule of the refusal is the length's name and "-missing". */
-const LENGTHS = {
+/** What shapes can need and a file may not say: the rule of the finding is the length's name and "-missing". */
+const LENGTHS: Record<string, LengthQuestion> = {
   width_m: { label: "Width of corridors, m", proposal: "200" },
   radius_m: { label: "Radius of threats and circles, m", proposal: "500" },
   height_m: { label: "Height of obstacles, m", proposal: "30" },
-} as const;
-type Length = keyof typeof LENGTHS;
+};
 
 export function isRegionFile(file: File): boolean {
   return REGION_FILES.split(",").some((ending) => file.name.toLowerCase().endsWith(ending));
 }
 
-/** Read the file and add its features; false when it was refused or the operator stepped back. */
+/** Read the file, ask what it does not say, add its features; false when it was refused or the operator stepped back. */
 export async function importRegions(file: File): Promise<boolean> {
-  const lengths: Partial<Record<Length, string>> = {};
+  const query = new URLSearchParams({ name: file.name });
+  let rolesAsked = false;
   try {
     for (;;) {
-      try {
-        const found = await sendFile<Imported>(`/scenarios/import?${new URLSearchParams(lengths)}`, file);
+      const { found, findings } = await read(file, query);
+      const missing = Object.fromEntries(
+        Object.entries(LENGTHS).filter(([name]) => !query.has(name) && findings.some(({ rule }) => rule === `${name}-missing`)),
+      );
+      const shapes = rolesAsked ? [] : (found?.shapes ?? pointsOf(findings));
+      if (!shapes.some(isOpen) && Object.keys(missing).length === 0) {
+        if (!found) throw new Error(findings.map(({ feature, message }) => `${feature}: ${message}`).join("; "));
         scenarios.merge(found.features);
-        news([`Added ${found.features.length} features of ${file.name}.`, ...found.notes].join(" · "));
+        news([`Added ${found.features.length} features of ${file.name}.`, ...told(found)].join(" · "));
         return true;
-      } catch (error) {
-        const missing = missingLengths(error).filter((name) => lengths[name] === undefined);
-        if (missing.length === 0) throw error;
-        const answer = await askLengths(file.name, missing);
-        if (answer === null) return false;
-        Object.assign(lengths, answer);
+      }
+      const answer = await askImport(file.name, shapes, missing);
+      if (answer === null) return false;
+      rolesAsked = true;
+      for (const [name, value] of Object.entries(answer.lengths)) query.set(name, value);
+      for (const role of answer.roles) {
+        if (found) query.append("role_of", role);
+        else query.set("role", role.slice(role.lastIndexOf("=") + 1));
       }
     }
   } catch (error) {
@@ -50,38 +59,37 @@ export async function importRegions(file: File): Promise<boolean> {
   }
 }
 
-/** The lengths asked for, where nothing else is wrong. */
-function missingLengths(error: unknown): Length[] {
-  if (!(error instanceof ApiError) || error.errors.length === 0) return [];
-  const rules = new Set(error.errors.map((finding) => finding.rule));
-  const names = (Object.keys(LENGTHS) as Length[]).filter((name) => rules.delete(`${name}-missing`));
-  return rules.size === 0 ? names : [];
+/** What the service makes of it; of a file of which nothing can be taken as it is, the findings alone. */
+async function read(file: File, query: URLSearchParams): Promise<{ found: Imported | null; findings: Finding[] }> {
+  try {
+    const found = await sendFile<Imported>(`/scenarios/import?${query}`, file);
+    return { found, findings: found.left_out };
+  } catch (error) {
+    if (!(error instanceof ApiError) || !error.errors.every(({ rule }) => rule === "role-unknown" || rule.endsWith("-missing"))) throw error;
+    if (error.errors.length === 0) throw error;
+    return { found: null, findings: error.errors };
+  }
 }
 
-function askLengths(fileName: string, names: Length[]): Promise<Partial<Record<Length, string>> | null> {
-  return new Promise((resolve) => {
-    const inputs = names.map((name) =>
-      h("input", { id: `import-${name}`, type: "number", min: "0", step: "any", required: true, value: LENGTHS[name].proposal }),
-    );
-    const finish = (answer: Partial<Record<Length, string>> | null): void => {
-      dialog.close();
-      dialog.remove();
-      resolve(answer);
-    };
-    const go = (): void => {
-      const bad = inputs.find((input) => !(Number(input.value) > 0));
-      if (bad) return bad.focus();
-      finish(Object.fromEntries(names.map((name, index) => [name, inputs[index]!.value])));
-    };
-    const dialog = h(
-      "dialog",
-      { "aria-labelledby": "import-title" },
-      h("h2", { id: "import-title" }, `What ${fileName} does not say`),
-      ...names.flatMap((name, index) => [h("label", { for: `import-${name}` }, LENGTHS[name].label), inputs[index]!]),
-      h("div", { class: "row" }, button("Cancel", () => finish(null)), button("Add", go, { class: "primary", id: "import-go" })),
-    );
-    dialog.addEventListener("cancel", () => finish(null));
-    document.body.append(dialog);
-    dialog.showModal();
-  });
+/** A file that holds nothing but points nobody knows says so in findings: one answer for all of them. */
+function pointsOf(findings: Finding[]): ShapeAccount[] {
+  const names = findings.filter(({ rule }) => rule === "role-unknown").map(({ feature }) => feature);
+  if (names.length === 0) return [];
+  return [{
+    number: 1, name: names.slice(0, 6).join(", "), folders: [], kind: "point", role: "none",
+    why: "nothing says what these points are", in_doubt: false, features: [],
+  }];
+}
+
+function told(found: Imported): string[] {
+  const doubtful = found.shapes.filter(({ in_doubt }) => in_doubt).length;
+  const zones = found.shapes.filter(({ role }) => role === "no_fly").length;
+  const out = found.shapes.filter(({ role }) => role === "none").length;
+  return [
+    zones > 0 ? `${zones} forbid flying` : "",
+    doubtful > 0 ? `the role of ${doubtful} is in doubt: choose it before planning` : "",
+    out > 0 ? `${out} left out` : "",
+    ...found.left_out.map(({ feature, message }) => `${feature} ${message}`),
+    ...found.notes,
+  ].filter(Boolean);
 }

@@ -123,6 +123,17 @@ export class ScenarioStore {
     return name;
   }
 
+  /** Say what a shape is whose role an import could not know; a new area, start or end replaces the one there was. */
+  settle(name: string, role: Role): void {
+    this.change((draft) => {
+      const feature = draft.features.find((one) => nameOf(one) === name);
+      if (!feature) return;
+      if (SINGLE.has(role)) draft.features = draft.features.filter((other) => other === feature || other.properties.role !== role);
+      const { role_in_doubt: _, ...kept } = feature.properties;
+      feature.properties = { ...kept, role };
+    });
+  }
+
   /** Add features of a file under free names; a new area, start or end takes the place of the one there was. */
   merge(features: ScenarioFeature[]): void {
     this.selection.set(null);

@@ -1,23 +1,13 @@
 /** The form of the selected feature: its name, what its role allows, and its coordinates. */
 import type { Geometry } from "geojson";
 import { button, fill, h } from "../dom";
+import { ROLE_WORDS } from "../role_words";
+import { rolesFor } from "../roles";
 import { nameOf, scenarios } from "../scenario";
-import type { ScenarioFeature } from "../types";
+import type { Role, ScenarioFeature } from "../types";
 import { findingWords } from "../notices";
 import { judgement } from "../validation";
 import { areaField, choiceField, numberField, textField, tickField, type Field } from "./fields";
-
-export const ROLE_WORDS: Record<string, string> = {
-  roi: "Region of interest",
-  threat: "Threat",
-  no_fly: "No-fly zone",
-  obstacle: "Obstacle",
-  area: "Operating area",
-  start: "Start",
-  end: "End",
-  base: "Base",
-  importance: "Importance",
-};
 
 /** Corners as lines of "longitude, latitude"; only for a point, a line, or a polygon of one ring. */
 function coordinateText(geometry: Geometry): string | null {
@@ -58,7 +48,7 @@ function headings(text: string): number[] {
 /** What decides which fields there are; the form is built anew when it changes. */
 export function formKey(feature: ScenarioFeature | undefined): string {
   if (!feature) return "";
-  return [nameOf(feature), feature.properties.role, feature.geometry.type, String(feature.properties["model"])].join("|");
+  return [nameOf(feature), feature.properties.role, feature.geometry.type, String(feature.properties["model"]), String(feature.properties["role_in_doubt"])].join("|");
 }
 
 function roleFields(name: string, role: string, geometryType: string, model: unknown): Field[] {
@@ -119,6 +109,20 @@ function roleFields(name: string, role: string, geometryType: string, model: unk
   }
 }
 
+/** The question of an import that is still open: what the shape is. */
+function doubt(feature: ScenarioFeature): HTMLElement | null {
+  const why = feature.properties["role_in_doubt"];
+  if (why === undefined) return null;
+  const name = nameOf(feature);
+  const select = h("select", { id: "f-role" }, ...rolesFor(feature.geometry.type).map((role) => h("option", { value: role }, ROLE_WORDS[role])));
+  return h(
+    "div",
+    { class: "doubt" },
+    h("label", { for: "f-role" }, `What is it? ${String(why)}`),
+    h("div", { class: "row" }, select, button("It is", () => scenarios.settle(name, select.value as Role), { id: "f-settle" })),
+  );
+}
+
 /** Build the form for a feature. */
 export function featureForm(feature: ScenarioFeature, zoom: () => void): Field {
   const name = nameOf(feature);
@@ -151,6 +155,7 @@ export function featureForm(feature: ScenarioFeature, zoom: () => void): Field {
     "fieldset",
     { class: "card selected" },
     h("legend", {}, `${ROLE_WORDS[role] ?? role} ${name}`),
+    doubt(feature),
     h("div", { class: "grid" }, ...fields.map((field) => field.element)),
     said,
     byCoordinates ? null : h("p", { class: "quiet" }, "This shape has holes or several parts: its outline can be changed only in the file."),

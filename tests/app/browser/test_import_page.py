@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import json
 from pathlib import Path
 
 import pytest
@@ -76,3 +77,52 @@ def test_a_bad_file_is_refused_in_words(page: Page) -> None:
     drop(page, "bad.kml", b"<!DOCTYPE kml [<!ENTITY a 'b'>]><kml/>")
     expect(page.locator("#notices")).to_contain_text("document type or entities")
     assert ask(page, "scenario()") == before
+
+
+def test_roles_in_doubt_are_asked_for(page: Page) -> None:
+    """A shape whose role nobody knows is asked for; decided later it refuses the scenario until it is settled."""
+    open_scenario(page)
+    away = [(lon + 0.01, lat) for lon, lat in RING]
+    far = [(lon + 0.02, lat) for lon, lat in RING]
+    data = kml(
+        placemark("A", polygon(RING), role="cloud"),
+        placemark("Geofence", polygon(away)),
+        placemark("NFZ", polygon(far)),
+    )
+    drop(page, "zones.kml", data)
+    page.get_by_label("A (polygon)").select_option("no_fly")
+    expect(page.get_by_text("What the other shapes became")).to_be_visible()
+    page.locator("#import-go").click()
+    await_hook(page, "scenario().features.some(f => f.id === 'Geofence')")
+    settled, doubtful = feature(page, "A"), feature(page, "Geofence")
+    assert settled is not None
+    assert settled["properties"] == {"role": "no_fly", "name": "A"}
+    assert doubtful is not None
+    assert doubtful["properties"]["role"] == "no_fly"
+    expect(page.locator("#findings")).to_have_attribute("data-state", "refused")
+    expect(page.locator("#findings")).to_contain_text("in doubt")
+    page.locator(".chips button", has_text="Geofence").click()
+    page.locator("#f-role").select_option("no_fly")
+    page.locator("#f-settle").click()
+    expect(page.locator("#findings")).to_have_attribute("data-state", "sound")
+    after = feature(page, "Geofence")
+    assert after is not None
+    assert after["properties"] == {"role": "no_fly", "name": "Geofence"}
+
+
+def test_geojson_without_roles_is_imported(page: Page) -> None:
+    """A file of shapes that are no scenario's joins the scenario; points are what the operator says."""
+    open_scenario(page)
+    before = len(ask(page, "scenario()")["features"])
+    point = {
+        "type": "Feature",
+        "properties": {"name": "P"},
+        "geometry": {"type": "Point", "coordinates": RING[0]},
+    }
+    drop(page, "points.geojson", json.dumps({"type": "FeatureCollection", "features": [point]}).encode())
+    page.get_by_label("P (point)").select_option("roi")
+    page.locator("#import-go").click()
+    await_hook(page, f"scenario().features.length === {before + 1}")
+    added = feature(page, "P")
+    assert added is not None
+    assert added["properties"]["role"] == "roi"

@@ -303,7 +303,9 @@ def test_shapes_and_folders_have_roles_chosen() -> None:
     )
     found = became(data, roles=read_choices(["ZONES=no_fly", "b=area", "#3=none"]))
     assert [account.role for account in found.shapes] == ["no_fly", "area", "none"]
-    for text in ("e=roi", "#4=roi", "a=cloud", "a", "=roi"):
+    several = became(data, roles=read_choices(["#1-2=area", "#3,2=none"]))
+    assert [account.role for account in several.shapes] == ["area", "none", "none"]
+    for text in ("e=roi", "#4=roi", "#0=roi", "#1-4=roi", "a=cloud", "a", "=roi"):
         with pytest.raises(RegionFileError) as caught:
             became(data, roles=read_choices([text]))
         assert caught.value.findings[0].rule == "bad-option"
