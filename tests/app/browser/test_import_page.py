@@ -80,7 +80,7 @@ def test_a_bad_file_is_refused_in_words(page: Page) -> None:
 
 
 def test_roles_in_doubt_are_asked_for(page: Page) -> None:
-    """A shape whose role nobody knows is asked for; decided later it refuses the scenario until it is settled."""
+    """A role that nobody knows is asked for; decided later it refuses the scenario until then."""
     open_scenario(page)
     away = [(lon + 0.01, lat) for lon, lat in RING]
     far = [(lon + 0.02, lat) for lon, lat in RING]
