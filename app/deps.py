@@ -9,6 +9,7 @@ from fastapi import Depends, Request
 from app.services.desk import Desk
 from app.services.flights.service import FlightService
 from app.services.house import House, Whereabouts
+from app.services.plans.filing import Filing
 from app.services.plans.planning import PlanningService
 from app.services.scenarios.kept import ScenarioService
 from app.services.store.audit import AuditStore
@@ -26,6 +27,10 @@ async def _settings(request: Request) -> Settings:
 
 async def _planning(house: Annotated[House, Depends(_house)]) -> PlanningService:
     return house.planning
+
+
+async def _filing(house: Annotated[House, Depends(_house)]) -> Filing:
+    return house.filing
 
 
 async def _scenarios(house: Annotated[House, Depends(_house)]) -> ScenarioService:
@@ -56,6 +61,7 @@ HouseDep = Annotated[House, Depends(_house)]
 SettingsDep = Annotated[Settings, Depends(_settings)]
 DeskDep = Annotated[Desk, Depends(_desk)]
 PlanningDep = Annotated[PlanningService, Depends(_planning)]
+FilingDep = Annotated[Filing, Depends(_filing)]
 ScenariosDep = Annotated[ScenarioService, Depends(_scenarios)]
 WhereaboutsDep = Annotated[Whereabouts, Depends(_whereabouts)]
 AuditDep = Annotated[AuditStore, Depends(_audit)]

@@ -87,3 +87,12 @@ DRAFT_BODY: dict[str, Any] = {
     "required": True,
     "content": {"application/json": _DRAFT, "application/geo+json": _DRAFT},
 }
+
+#: Mission files, as other programs write them.
+MISSION_BODY: dict[str, Any] = {
+    "required": True,
+    "content": {
+        media_type: {"schema": {"type": "string", "description": "A .plan, .mission or .waypoints file."}}
+        for media_type in ("application/octet-stream", "text/plain", "application/json")
+    },
+}

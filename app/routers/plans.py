@@ -4,16 +4,17 @@ from __future__ import annotations
 
 from collections.abc import AsyncGenerator
 from contextlib import aclosing
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Header, Query, Request, Response
 from sse_starlette import EventSourceResponse, ServerSentEvent
 
-from app.deps import PlanningDep, ScenariosDep, SettingsDep
+from app.deps import FilingDep, PlanningDep, ScenariosDep, SettingsDep
 from app.problems import responses
-from app.routers.bodies import SCENARIO_BODY
+from app.routers.bodies import MISSION_BODY, SCENARIO_BODY
 from app.routers.streams import event_stream
 from app.schemas.plans import PlanList, PlanOut, PlanStateName
+from app.services.plans.mission_scene import FileChoice
 
 router = APIRouter(prefix="/api/v1/plans", tags=["plans"])
 
@@ -67,6 +68,60 @@ async def post_plan(
     record = await planning.submit(await request.body(), idempotency_key, scenario_id)
     if wait > 0 and not record.ended:
         record = await planning.wait(record.id, min(wait, settings.max_wait_s))
+    response.headers["Location"] = f"/api/v1/plans/{record.id}"
+    return PlanOut.of(record)
+
+
+@router.post(
+    "/import",
+    status_code=201,
+    summary="Take in a mission file",
+    responses=responses(404, 422),
+    openapi_extra={"requestBody": MISSION_BODY},
+)
+async def import_mission(
+    request: Request,
+    response: Response,
+    filing: FilingDep,
+    name: Annotated[str, Query(max_length=200, description="What the plan is called.")] = "mission",
+    autopilot: Annotated[
+        Literal["ardupilot", "px4"] | None,
+        Query(description="Whose mission it is, where the file does not say."),
+    ] = None,
+    vehicle_type: Annotated[
+        Literal["fixed_wing", "multirotor", "vtol"] | None,
+        Query(alias="type", description="Of the vehicle, where the file does not say."),
+    ] = None,
+    scenario_id: Annotated[
+        str | None,
+        Query(
+            max_length=36,
+            description="The kept scenario by whose zones, area, ground and aircraft it is judged; none: by "
+            "its own fence alone.",
+        ),
+    ] = None,
+    vehicle: Annotated[
+        str | None,
+        Query(max_length=200, description="The scenario's vehicle that flies it; the first alike."),
+    ] = None,
+    terrain: Annotated[
+        str | None,
+        Query(max_length=36, description="Id of an uploaded raster to judge it over, without a scenario."),
+    ] = None,
+    airspeed_m_s: Annotated[float | None, Query(gt=0, le=400, description="[what the file says]")] = None,
+    min_turn_radius_m: Annotated[
+        float | None, Query(gt=0, le=1e5, description="[by its speed and its autopilot's default bank]")
+    ] = None,
+) -> PlanOut:
+    """A `.plan`, `.mission` or `.waypoints` as a plan that is done: listed, shown, exported, uploaded so.
+
+    Its own items go to vehicles. `violations` are what the line they are flown on breaks: the file's own
+    fence, the scenario's zones and area, the ground, turns too tight for wings. `warnings` tell what was
+    mended and assumed. The features of `plan.geojson` with role `fence` and `rally` are the file's fence and
+    rally points.
+    """
+    choice = FileChoice(name, autopilot, vehicle_type, vehicle, airspeed_m_s, min_turn_radius_m, terrain)
+    record = await filing.take(await request.body(), choice, scenario_id)
     response.headers["Location"] = f"/api/v1/plans/{record.id}"
     return PlanOut.of(record)
 

@@ -15,6 +15,7 @@ from app.services.flights.service import FlightService
 from app.services.limits import Limits
 from app.services.links.keeper import Keeper
 from app.services.plans import work
+from app.services.plans.filing import Filing
 from app.services.plans.planning import BoundTask, PlanningService, Task
 from app.services.plans.pool import Pool, WorkerPool
 from app.services.scenarios.kept import ScenarioService
@@ -73,8 +74,10 @@ class House:
         folder = terrain_folder(limits.database)
         self.terrain = TerrainService(TerrainStore(self.database), folder, self.desk)
         self.scenarios = ScenarioService(ScenarioStore(self.database), self.desk)
+        plans = PlanStore(self.database)
+        self.filing = Filing(plans, self.scenarios, self.desk, folder)
         self.planning = PlanningService(
-            PlanStore(self.database),
+            plans,
             self.pool,
             self.desk,
             workers=limits.workers,

@@ -9,7 +9,6 @@ from typing import Literal
 
 from app.services.documents import read_object
 from app.services.errors import NotFoundError, RefusedError
-from app.services.plans.filed_mission import filed_mission
 from mavlink.dialects import VehicleType
 from mavlink.dialects.mission import Mission
 from mavlink.encoding.encode import EncodeError, EncodeOptions, encode
@@ -90,6 +89,8 @@ def mission_of(text: str, choice: MissionChoice) -> Mission:
     NotFoundError, RefusedError
         As :func:`encode_plan`.
     """
+    from app.services.plans.filed_mission import filed_mission
+
     mission = filed_mission(read_object(text), choice.autopilot, choice.vehicle_type)
     if mission is None:
         return encode_plan(plan_of(text), choice)

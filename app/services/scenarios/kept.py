@@ -32,6 +32,10 @@ class ScenarioService:
         record, text = await self._store.read(scenario_id)
         return record, json.loads(text)
 
+    async def text(self, scenario_id: str) -> str:
+        """The text of one; raises NotFoundError."""
+        return (await self._store.read(scenario_id))[1]
+
     async def newest(self, limit: int, offset: int) -> tuple[KeptScenario, ...]:
         """Without their texts, the one changed last first."""
         return await self._store.newest(limit, offset)

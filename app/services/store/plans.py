@@ -104,6 +104,41 @@ class PlanStore:
         except IntegrityError as error:
             raise ConflictError(f"the idempotency key {key} is in use") from error
 
+    async def add_done(
+        self,
+        name: str,
+        scenario: str,
+        plan: str,
+        body_sha256: str,
+        warnings: Sequence[dict[str, Any]],
+        scenario_id: str | None,
+        scenario_hash: str,
+        summary: dict[str, Any],
+    ) -> PlanRecord:
+        """A plan that was made elsewhere, and is done."""
+        moment = now()
+        row = PlanRow(
+            id=str(uuid.uuid4()),
+            name=name,
+            state="done",
+            stage="done",
+            progress=1.0,
+            created_at=moment,
+            started_at=moment,
+            ended_at=moment,
+            body_sha256=body_sha256,
+            warnings=list(warnings),
+            scenario_id=scenario_id,
+            scenario_hash=scenario_hash,
+            summary=summary,
+        )
+        async with self._database.writing() as session:
+            session.add(row)
+            await session.flush()
+            session.add(PlanDocumentRow(plan_id=row.id, scenario=scenario, plan=plan))
+            found = (await session.execute(_records().where(PlanRow.id == row.id))).one()
+            return _record(*found)
+
     async def by_key(self, key: str) -> tuple[PlanRecord, str] | None:
         """The plan an idempotency key stands for, and the digest of its scenario."""
         async with self._database.reading() as session:

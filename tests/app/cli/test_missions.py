@@ -125,7 +125,7 @@ def test_demo_says_why_it_flies_no_vtol(swathplan: Command, scenario_file: Path)
 
 
 def test_a_mission_file_is_judged_and_uploaded_as_it_is(swathplan: Command, tmp_path: Path) -> None:
-    """The items of a .waypoints go up, are read back and compared; out of its fence only with a reason."""
+    """The items of a .waypoints go up, are read back and compared; out of its own fence they do not."""
     place = "\t{}\t0\t3\t{}\t{}\t0\t0\t0\t{}\t{}\t{}\t1"
     route = ["0\t1\t0\t16\t0\t0\t0\t0\t47.1\t8.2\t450\t1"]
     route += [place.format(0, 16, 0, 47.105, 8.2, 60)[1:], place.format(0, 16, 0, 47.105, 8.21, 60)[1:]]
