@@ -15,7 +15,18 @@ from starlette.types import Scope
 from app import problems
 from app.assembly import assemble, limits_of
 from app.map_files import MapFiles
-from app.routers import artefacts, audit, flights, health, interface, plans, scenarios, terrain, vehicles
+from app.routers import (
+    artefacts,
+    audit,
+    flights,
+    health,
+    interface,
+    plans,
+    scenarios,
+    sorties,
+    terrain,
+    vehicles,
+)
 from app.services.house import House
 from app.services.limits import Limits
 from app.settings import Settings
@@ -62,7 +73,7 @@ def create_app(settings: Settings | None = None, build_house: Callable[[Limits],
         finally:
             await house.close()
 
-    modules = (plans, artefacts, scenarios, terrain, vehicles, flights, audit, health, interface)
+    modules = (plans, artefacts, scenarios, terrain, vehicles, flights, sorties, audit, health, interface)
     app = assemble(
         settings,
         lifespan,

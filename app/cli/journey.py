@@ -91,7 +91,7 @@ async def _fly(
     told: _Teller,
 ) -> bool:
     """Upload, fly and judge; whether everything was as it should be."""
-    from app.services.flights.service import seen_by
+    from app.services.flights.seen import seen_by
     from app.services.plans.missions import MissionChoice, encode_plan
     from app.services.vehicles.connection import connected
     from app.services.vehicles.uploads import judge_upload, new_report, send_parts

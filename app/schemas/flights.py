@@ -23,6 +23,16 @@ class SensorActionOut(BaseModel):
     lat_deg: float | None
 
 
+class EnergyOut(BaseModel):
+    """What a flight drew from its batteries."""
+
+    used_wh: float
+    source: Literal["counted", "charge", "integrated"] = Field(
+        description="The battery's own count of energy; of charge, times its voltage; current times voltage."
+    )
+    complete: bool = Field(description="False where readings were missing meanwhile.")
+
+
 class FlightOut(BaseModel):
     """One flight."""
 
@@ -38,6 +48,8 @@ class FlightOut(BaseModel):
     payload: str | None = Field(description="How the sensor was switched; null for the default.")
     photos: int = Field(description="Reported by cameras.")
     actions: list[SensorActionOut] = Field(description="What the service did by itself meanwhile.")
+    energy: EnergyOut | None = Field(description="By its batteries' telemetry; null where none tells.")
+    logs: list[str] = Field(description="Onboard logs that filled gaps of the track.")
     links: dict[str, str]
 
     @classmethod

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from typing import Any, Literal
 
+from mavlink.state.energy import EnergySource
 from mavlink.station.forward.address import ForwardAddress
 
 PlanState = Literal["queued", "running", "done", "failed", "cancelled"]
@@ -19,7 +20,10 @@ FlightState = Literal["flying", "ended", "interrupted"]
 
 @dataclass(frozen=True, slots=True)
 class TrackSample:
-    """One recorded place of a flight; ``time_s`` is the vehicle's time since boot."""
+    """One recorded place of a flight; ``time_s`` is the vehicle's time since boot.
+
+    ``from_log``: the vehicle's own log told of it afterwards, where the link had not.
+    """
 
     time_s: float
     lon_deg: float
@@ -31,6 +35,8 @@ class TrackSample:
     ground_speed_m_s: float | None
     mission_seq: int | None
     sensor_on: bool
+    pitch_deg: float | None = None
+    from_log: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,6 +133,15 @@ class TerrainRecord:
 
 
 @dataclass(frozen=True, slots=True)
+class FlownEnergy:
+    """What a flight drew, as its batteries told; see ``mavlink.state.energy``."""
+
+    used_wh: float
+    source: EnergySource
+    complete: bool
+
+
+@dataclass(frozen=True, slots=True)
 class FlightRecord:
     """One flight, from the first movement of an armed vehicle to its landing or disarming.
 
@@ -142,6 +157,10 @@ class FlightRecord:
         Reported by cameras.
     actions
         What the service did by itself meanwhile.
+    energy
+        What its batteries told.
+    logs
+        Onboard logs that filled gaps of its track, by name.
     """
 
     id: str
@@ -156,6 +175,8 @@ class FlightRecord:
     payload: str | None = None
     photos: int = 0
     actions: tuple[SensorAction, ...] = ()
+    energy: FlownEnergy | None = None
+    logs: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

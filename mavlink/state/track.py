@@ -12,6 +12,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final, Literal
 
+from mavlink.state.energy import Energy, EnergyMeter
 from mavlink.state.outputs import CameraOutput, RelayOutput, SensorOutput, ServoOutput
 from mavlink.state.telemetry import VehicleState, finite, is_sensor_switch
 from mavlink.wire.messages import Message
@@ -22,6 +23,8 @@ _REBOOT_S: Final = 5.0
 _MOST_POINTS: Final = 200_000
 # SERVO_OUTPUT_RAW counts microseconds in 32 bits: it begins anew every 71.6 minutes.
 _WRAP_S: Final = 2**32 / 1e6
+# An attitude is that of a place when it is no older: it comes several times a second.
+_ATTITUDE_S: Final = 2.0
 # A camera's clock that says less or more than this beside the vehicle's is another clock.
 _SAME_CLOCK_S: Final = 5.0
 
@@ -94,6 +97,7 @@ class Track:
 
     points: tuple[TrackPoint, ...] = ()
     events: tuple[SensorEvent, ...] = ()
+    energy: Energy | None = None
 
 
 class TrackRecorder:
@@ -123,10 +127,14 @@ class TrackRecorder:
         self._keep_every = 1
         self._skipped = 0
         self._images: set[tuple[int, int, int, int]] = set()
+        self._meter = EnergyMeter()
+        #: The place last told when the last attitude came.
+        self._attitude_s: float | None = None
+        self._attitude_heard = False
 
     def track(self) -> Track:
         """What was recorded so far."""
-        return Track(tuple(self._points), tuple(self._events))
+        return Track(tuple(self._points), tuple(self._events), self._meter.energy)
 
     @property
     def recorded(self) -> tuple[float, float] | None:
@@ -140,6 +148,7 @@ class TrackRecorder:
         self._points.clear()
         self._events.clear()
         self._images.clear()
+        self._meter.forget()
         self._sensor_on = self._output_on = None
         self._began_s = self._went_on_s = None
         self._keep_every, self._skipped = 1, 0
@@ -165,6 +174,10 @@ class TrackRecorder:
                 self._unix_minus_boot_s = message.integer("time_unix_usec") / 1e6 - _boot_s(message)
         elif message.name in ("SERVO_OUTPUT_RAW", "CAMERA_CAPTURE_STATUS"):
             self._switched(message, state)
+        elif message.name == "ATTITUDE":
+            self._attitude_heard, self._attitude_s = True, state.time_s
+        else:
+            self._meter.take(message, state.time_s)
 
     def _switched(self, message: Message, state: VehicleState) -> None:
         """The output that switches the sensor, where this message tells of it."""
@@ -192,6 +205,9 @@ class TrackRecorder:
         if self._skipped < self._keep_every:
             return
         self._skipped = 0
+        if self._attitude_heard and self._attitude_s is None:
+            self._attitude_s = time_s
+        level = self._attitude_s is not None and abs(time_s - self._attitude_s) <= _ATTITUDE_S
         self._points.append(
             TrackPoint(
                 time_s,
@@ -201,8 +217,8 @@ class TrackRecorder:
                 amsl_m,
                 state.heading_deg,
                 state.course_deg,
-                state.roll_deg,
-                state.pitch_deg,
+                state.roll_deg if level else None,
+                state.pitch_deg if level else None,
                 state.ground_speed_m_s,
                 self._output_on if state.sensor_on is None else state.sensor_on,
                 state.mission_current,

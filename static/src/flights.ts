@@ -36,6 +36,11 @@ export async function showFlight(flight: Flight): Promise<void> {
 
 export const flightUrl = (id: string, file: string): string => apiUrl(`/flights/${encodeURIComponent(id)}/${file}`);
 
+/** What all flights of the same plan saw together stands in for what this one saw. */
+export async function showSortie(now: Flown): Promise<void> {
+  flown.set({ ...now, seen: await get<SeenCollection>(`/plans/${encodeURIComponent(now.seen.plan)}/coverage`) });
+}
+
 /** Have the service plan what a flight did not see. */
 export function refly(id: string): Promise<PlanRecord> {
   return post<PlanRecord>(`/flights/${encodeURIComponent(id)}/refly`, null);

@@ -34,6 +34,8 @@ export const GROUPS: Group[] = [
   { id: "track", label: "Flown track", swatch: "line", colour: "track", layers: ["track-off"] },
   { id: "trackOn", label: "Flown, sensor on", swatch: "thick", colour: "trackOn", layers: ["track-on"] },
   { id: "seen", label: "Ground really seen", swatch: "area", colour: "seen", layers: ["seen-fill", "seen-line"] },
+  { id: "unknown", label: "Not recorded: seen or not", swatch: "dashed", colour: "area", layers: ["unknown-fill", "unknown-line"] },
+  { id: "not_counted", label: "Sensor on, not counted", swatch: "dashed", colour: "uncovered", layers: ["not_counted-line"] },
 ];
 
 const kindIs = (kind: string): FilterSpecification => ["all", ["==", ["get", "kind"], kind], ["!", ["get", "label"]]] as unknown as FilterSpecification;
@@ -61,6 +63,7 @@ function layers(c: Palette): LayerSpecification[] {
     ...shape("area", "scenario", kindIs("area"), c.area, 0, 1.5, [4, 3]),
     ...shape("importance", "scenario", kindIs("importance"), c.importance, 0.12, 1, [1, 2]),
     ...shape("seen", "seen", roleIs("seen"), c.seen, 0.22, 1.2),
+    ...shape("unknown", "seen", roleIs("unknown"), c.area, 0.3, 1.2, [2, 2]),
     ...shape("footprint", "plan", roleIs("footprint"), c.footprint, 0.16, 0.8),
     ...shape("roi", "scenario", kindIs("roi"), c.roi, 0.2, 2),
     ...shape("missile", "scenario", kindIs("missile"), c.missile, 0.16, 1.6),
@@ -125,6 +128,7 @@ function layers(c: Palette): LayerSpecification[] {
       layout: { "line-join": "round", "line-cap": "round" },
       paint: { "line-color": c.trackOn, "line-width": 5 },
     },
+    ...shape("not_counted", "seen", roleIs("not_counted"), c.uncovered, 0, 4, [1, 1]),
     {
       id: "collect-label", type: "symbol", source: "plan", filter: roleIs("collect"),
       layout: { "symbol-placement": "line-center", "text-field": ["get", "label"], "text-font": FONT, "text-size": 14, "text-rotation-alignment": "viewport", "text-offset": [0, -1] },

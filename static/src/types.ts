@@ -256,9 +256,15 @@ export interface Flight {
 }
 
 export interface SeenCollection extends FeatureCollection<Geometry, Record<string, unknown>> {
-  flight: string;
+  /** Null where several flights are judged together. */
+  flight: string | null;
+  flights: string[];
   plan: string;
   coverage: Record<string, number>;
+  unknown_coverage: Record<string, number>;
+  gaps: { flight: string; start_at: string; end_at: string | null; duration_s: number | null }[];
+  not_counted: { length_m: number; reason: string; why: string }[];
+  energy: { flight: string; planned_wh: number | null; drawn_wh: number | null; complete: boolean | null }[];
   planned_coverage: Record<string, number>;
   seen_fraction: number;
   regions: { roi: string; seen: boolean }[];

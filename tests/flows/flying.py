@@ -16,7 +16,7 @@ from typing import Any
 
 from shapely.geometry import LineString, Polygon
 
-from app.services.flights.service import seen_by
+from app.services.flights.seen import seen_by
 from app.services.records import TrackSample
 from app.services.vehicles.recorder import Thinner
 from mavlink.dialects.compare import differences

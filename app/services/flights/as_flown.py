@@ -17,10 +17,12 @@ from shapely.geometry.base import BaseGeometry
 from app.services.flights.photos import MISSING_PART, Spacing, place_of
 from app.services.records import FlightEvent, TrackSample
 from planner.as_flown.coverage import GRID_M, FlownCoverage
+from planner.as_flown.track import gaps_in
+from planner.as_flown.unknown import UnknownPart
 from planner.plan import Collect, Plan
 from planner.scenario import Scenario
 
-TriggerState = Literal["ok", "missed", "late", "early", "interrupted"]
+TriggerState = Literal["ok", "missed", "late", "early", "interrupted", "unknown"]
 
 #: On and off may come this far from the collect's ends: telemetry tells of them several times a second.
 TRIGGER_M = 25.0
@@ -52,6 +54,8 @@ class Trigger:
     photos_expected
         By the spacing ordered; None when the sensor is no camera. Then ``photo_gaps``, metres along the
         collect from and to, tell where they are missing, and ``state`` follows them.
+    unknown_m
+        Of the collect, not recorded; ``state`` is ``unknown`` where nothing else is known to be wrong.
     """
 
     seq: int
@@ -64,6 +68,7 @@ class Trigger:
     photos_taken: int = 0
     photos_expected: int | None = None
     photo_gaps: tuple[tuple[float, float], ...] = ()
+    unknown_m: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,45 +79,108 @@ class Gap:
     area: Polygon
 
 
-def triggers(
-    scenario: Scenario,
-    plan: Plan,
-    vehicle: str | None,
-    samples: tuple[TrackSample, ...],
-    photos: Sequence[FlightEvent] = (),
-    spacing: Spacing | None = None,
-) -> tuple[Trigger, ...]:
-    """How the sensor was switched, collect by collect of one vehicle (all when None).
+@dataclass(frozen=True, slots=True)
+class Recorded:
+    """What was recorded of one flight.
 
     Parameters
     ----------
+    vehicle
+        Its name in the plan; None for any.
     photos
         With a place, as ``photos.photos_of`` gives them.
     spacing
         How far apart they were ordered; None when the sensor is no camera.
     """
-    places = _local(scenario, [(s.lon_deg, s.lat_deg) for s in samples])
-    switched = np.array([sample.sensor_on for sample in samples], dtype=bool)
-    track = np.stack([places[:-1], places[1:]], axis=1)
-    on = track[switched[:-1] & switched[1:]]
-    taken = _local(scenario, [place for photo in photos if (place := place_of(photo)) is not None])
-    # The piece of track each photo was taken on; clocks of cameras may be a piece early or late.
-    piece = np.searchsorted([s.time_s for s in samples], [photo.time_s for photo in photos]) - 1
-    wanted = [collect for collect in plan.collects if vehicle is None or collect.vehicle == vehicle]
+
+    vehicle: str | None
+    samples: tuple[TrackSample, ...]
+    photos: Sequence[FlightEvent] = ()
+    spacing: Spacing | None = None
+
+
+def triggers(
+    scenario: Scenario, plan: Plan, flights: Sequence[Recorded], unknown: Sequence[UnknownPart] = ()
+) -> tuple[Trigger, ...]:
+    """How the sensor was switched, collect by collect of the vehicles that flew, by all flights together.
+
+    Parameters
+    ----------
+    unknown
+        Parts of collects that may have been flown while nothing was recorded.
+    """
+    tracks = [_Track.of(scenario, flight) for flight in flights]
+    names = {flight.vehicle for flight in flights}
+    known = names & {vehicle.name for vehicle in plan.vehicles} if None not in names else set()
+    wanted = [collect for collect in plan.collects if not known or collect.vehicle in known]
     made = []
     for collect in wanted:
         line = _Line.of(scenario, collect)
-        trigger = _trigger(line, collect, on)
-        beside = line.beside(track)
-        then = np.zeros(len(photos), dtype=bool)
-        for shift in (-1, 0, 1) if len(beside) else ():
-            then |= beside[np.clip(piece + shift, 0, len(beside) - 1)]
-        along_m = line.along_m(taken[then])
-        if spacing is not None:
-            speed_m_s = _speed_m_s(collect, [samples[k] for k in np.flatnonzero(beside)])
-            trigger = _by_photos(trigger, along_m, spacing.at(speed_m_s))
+        mine = [t for t in tracks if t.flight.vehicle in (None, collect.vehicle) or not known]
+        on = np.concatenate([np.zeros((0, 2, 2)), *(track.on for track in mine)])
+        parts = [p for p in unknown if (p.vehicle, p.seq) == (collect.vehicle, collect.seq)]
+        trigger = _told(line, collect, on, parts)
+        taken = [track.photos_along(line) for track in mine]
+        along_m = np.sort(np.concatenate([np.zeros(0), *taken]))
+        spaced = [track for track in mine if track.flight.spacing is not None]
+        if spaced and not parts:
+            spacing = spaced[0].flight.spacing
+            assert spacing is not None
+            beside = [sample for track in spaced for sample in track.beside(line)]
+            trigger = _by_photos(trigger, along_m, spacing.at(_speed_m_s(collect, beside)))
         made.append(replace(trigger, photos_taken=len(along_m)))
     return tuple(made)
+
+
+@dataclass(frozen=True, slots=True)
+class _Track:
+    """A flight's pieces of track in the local frame, shape (N, 2, 2); those across gaps are left out."""
+
+    flight: Recorded
+    pieces: NDArray[np.float64]
+    rows: NDArray[np.int64]
+    on: NDArray[np.float64]
+    photos: NDArray[np.float64]
+    photo_rows: NDArray[np.int64]
+
+    @classmethod
+    def of(cls, scenario: Scenario, flight: Recorded) -> _Track:
+        samples = flight.samples
+        places = _local(scenario, [(s.lon_deg, s.lat_deg) for s in samples])
+        switched = np.array([sample.sensor_on for sample in samples], dtype=bool)
+        times_s = np.array([sample.time_s for sample in samples])
+        speed_m_s = max(a.airspeed_m_s for a in scenario.aircraft) + scenario.wind.speed_m_s
+        rows = np.flatnonzero(~gaps_in(times_s, places, speed_m_s)) if len(samples) else np.zeros(0, int)
+        pieces = np.stack([places[rows], places[rows + 1]], axis=1) if len(rows) else np.zeros((0, 2, 2))
+        taken = _local(scenario, [at for photo in flight.photos if (at := place_of(photo)) is not None])
+        # The piece of track each photo was taken on; clocks of cameras may be a piece early or late.
+        piece = np.searchsorted(times_s[rows], [photo.time_s for photo in flight.photos]) - 1
+        on = pieces[switched[rows] & switched[rows + 1]] if len(rows) else pieces
+        return cls(flight, pieces, rows, on, taken, piece)
+
+    def photos_along(self, line: _Line) -> NDArray[np.float64]:
+        """How far along a line the photos taken in it are."""
+        beside = line.beside(self.pieces)
+        then = np.zeros(len(self.photos), dtype=bool)
+        for shift in (-1, 0, 1) if len(beside) else ():
+            then |= beside[np.clip(self.photo_rows + shift, 0, len(beside) - 1)]
+        return line.along_m(self.photos[then])
+
+    def beside(self, line: _Line) -> list[TrackSample]:
+        """The places flown along a line."""
+        return [self.flight.samples[k] for k in self.rows[line.beside(self.pieces)].tolist()]
+
+
+def _told(line: _Line, collect: Collect, on: NDArray[np.float64], parts: Sequence[UnknownPart]) -> Trigger:
+    """The trigger of what is recorded; ``unknown`` where only what is not may be wrong with it."""
+    known = _trigger(line, collect, on)
+    unknown_m = sum(part.end_m - part.start_m for part in parts)
+    if known.state == "ok" or not parts:
+        return replace(known, unknown_m=unknown_m)
+    dark = [[line.first + at_m * line.ahead for at_m in (part.start_m, part.end_m)] for part in parts]
+    favourable = _trigger(line, collect, np.concatenate([on, np.array(dark)]))
+    state = "unknown" if favourable.state == "ok" else favourable.state
+    return replace(known, state=state, unknown_m=unknown_m)
 
 
 def _speed_m_s(collect: Collect, beside: Sequence[TrackSample]) -> float:
@@ -214,6 +282,8 @@ def regions_json(scenario: Scenario, plan: Plan, result: FlownCoverage) -> list[
             "fraction": result.fraction[region.name],
             "planned_fraction": plan.metrics.coverage.get(region.name),
             "unseen_m2": float(result.unseen[region.name].area),
+            "unknown_fraction": result.unknown_fraction.get(region.name, 0.0),
+            "unknown_m2": float(result.unknown[region.name].area) if region.name in result.unknown else 0.0,
             "min_resolution_m": region.min_resolution_m,
         }
         for region in scenario.regions

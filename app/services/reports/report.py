@@ -65,7 +65,13 @@ def write_report(record: PlanRecord, plan_text: str, scenario_text: str) -> str:
 
 
 #: Roles of a flight's features, and those of a plan that are drawn as they shall be.
-_DRAWN_AS = {"track": "path", "sensor_on": "collect", "seen": "footprint"}
+_DRAWN_AS = {
+    "track": "path",
+    "sensor_on": "collect",
+    "seen": "footprint",
+    "unknown": "unknown",
+    "not_counted": "not_counted",
+}
 
 
 def write_flight_report(
@@ -74,7 +80,7 @@ def write_flight_report(
     """The report of a flight as one HTML page without scripts or outside parts."""
     features = [
         feature | {"properties": {"role": _DRAWN_AS[feature["properties"]["role"]]}}
-        for feature in (*coverage["features"], *track["features"])
+        for feature in (*track["features"], *coverage["features"])
         if feature["properties"]["role"] in _DRAWN_AS
         and feature["geometry"]["type"] in ("Polygon", "MultiPolygon", "LineString")
     ]
@@ -88,5 +94,8 @@ def write_flight_report(
         triggers=[trigger | {"line": lines.get(trigger["seq"])} for trigger in coverage["triggers"]],
         photos=any(t["photos_taken"] or t["photos_expected"] for t in coverage["triggers"]),
         missed=[trigger for trigger in coverage["triggers"] if trigger["state"] != "ok"],
+        gaps=coverage["gaps"],
+        not_counted=coverage["not_counted"],
+        energy=coverage["energy"][0] if coverage["energy"] else None,
         unseen=[region for region in coverage["regions"] if not region["seen"]],
     )

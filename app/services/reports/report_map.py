@@ -47,7 +47,10 @@ def draw_map(scenario: dict[str, Any], plan: dict[str, Any]) -> Picture | None:
         return [(float(e - west), float(north - n)) for e, n in frame.to_local([at[:2] for at in drawn])]
 
     shapes = [shape for feature in features for shape in _shapes(feature, put)]
-    order = ("area", "footprint", "roi", "threat", "no_fly", "obstacle", "path", "collect", "start", "end")
+    order = (
+        "area", "footprint", "unknown", "roi", "threat", "no_fly", "obstacle", "path", "not_counted",
+        "collect", "start", "end",
+    )  # fmt: skip
     shapes = [shape for shape in shapes if shape.kind in order]
     shapes.sort(key=lambda shape: order.index(shape.kind))
     margin = 2 * unit

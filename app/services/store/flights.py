@@ -11,7 +11,14 @@ from typing import Any, cast
 from sqlalchemy import ColumnElement, Select, func, insert, select, update
 
 from app.services.errors import NotFoundError
-from app.services.records import FlightEvent, FlightRecord, FlightState, SensorAction, TrackSample
+from app.services.records import (
+    FlightEvent,
+    FlightRecord,
+    FlightState,
+    FlownEnergy,
+    SensorAction,
+    TrackSample,
+)
 from app.services.store.database import Database
 from app.services.store.plans import now
 from app.services.store.tables import FlightEventRow, FlightRow, TrackPointRow
@@ -45,7 +52,29 @@ def _record(row: FlightRow, points: int, photos: int) -> FlightRecord:
         actions=tuple(
             SensorAction(**(kept | {"at": datetime.fromisoformat(kept["at"])})) for kept in row.actions or ()
         ),
+        energy=None if row.energy is None else FlownEnergy(**row.energy),
+        logs=tuple(row.logs or ()),
     )
+
+
+def _merged(rows: Sequence[TrackSample]) -> tuple[TrackSample, ...]:
+    """Places of onboard logs among those heard, by time; the time goes back where the clock began anew."""
+    heard = [row for row in rows if not row.from_log]
+    logged = sorted((row for row in rows if row.from_log), key=lambda row: row.time_s)
+    if not logged:
+        return tuple(rows)
+    boots: list[list[TrackSample]] = [[]]
+    for row in heard:
+        if boots[-1] and row.time_s < boots[-1][-1].time_s:
+            boots.append([])
+        boots[-1].append(row)
+
+    def away_s(boot: Sequence[TrackSample], time_s: float) -> float:
+        return max(boot[0].time_s - time_s, time_s - boot[-1].time_s, 0.0) if boot else 0.0
+
+    for row in logged:
+        min(boots, key=lambda boot: away_s(boot, row.time_s)).append(row)
+    return tuple(row for boot in boots for row in sorted(boot, key=lambda row: row.time_s))
 
 
 def _rows(flight_id: str, values: Sequence[TrackSample] | Sequence[FlightEvent]) -> list[dict[str, Any]]:
@@ -110,6 +139,7 @@ class FlightStore:
         samples: Sequence[TrackSample] = (),
         events: Sequence[FlightEvent] = (),
         ended_at: datetime | None = None,
+        energy: FlownEnergy | None = None,
     ) -> None:
         """Close a flight, with the last of its track and its events, now or when it was flown."""
         async with self._database.writing() as session:
@@ -117,11 +147,35 @@ class FlightStore:
                 await session.execute(insert(TrackPointRow), _rows(flight_id, samples))
             if events:
                 await session.execute(insert(FlightEventRow), _rows(flight_id, events))
+            values: dict[str, Any] = {"state": state, "ended_at": ended_at or now()}
+            if energy is not None:
+                values["energy"] = asdict(energy)
             await session.execute(
                 update(FlightRow)
                 .where(FlightRow.id == flight_id, FlightRow.state == "flying")
-                .values(state=state, ended_at=ended_at or now())
+                .values(**values)
             )
+
+    async def draw(self, flight_id: str, energy: FlownEnergy) -> None:
+        """What a flight drew from its batteries so far."""
+        async with self._database.writing() as session:
+            await session.execute(
+                update(FlightRow).where(FlightRow.id == flight_id).values(energy=asdict(energy))
+            )
+
+    async def fill(
+        self, flight_id: str, name: str, samples: Sequence[TrackSample], events: Sequence[FlightEvent]
+    ) -> None:
+        """Places and events of an onboard log, in the gaps of a flight's track."""
+        async with self._database.writing() as session:
+            row = await session.scalar(select(FlightRow).where(FlightRow.id == flight_id))
+            if row is None:
+                raise NotFoundError("flight", flight_id)
+            if samples:
+                await session.execute(insert(TrackPointRow), _rows(flight_id, samples))
+            if events:
+                await session.execute(insert(FlightEventRow), _rows(flight_id, events))
+            row.logs = [*(row.logs or ()), name]
 
     async def recover(self) -> None:
         """After a restart: flights nobody watched to their end are interrupted."""
@@ -140,6 +194,12 @@ class FlightStore:
         async with self._database.reading() as session:
             return tuple(_record(*found) for found in await session.execute(query))
 
+    async def of_plan(self, plan_id: str) -> tuple[FlightRecord, ...]:
+        """All flights of a plan, as they were begun."""
+        query = _records().where(FlightRow.plan_id == plan_id).order_by(FlightRow.number)
+        async with self._database.reading() as session:
+            return tuple(_record(*found) for found in await session.execute(query))
+
     async def get(self, flight_id: str) -> FlightRecord:
         """One flight; raises NotFoundError."""
         async with self._database.reading() as session:
@@ -155,20 +215,24 @@ class FlightStore:
         )
         async with self._database.reading() as session:
             rows = await session.scalars(query)
-            return tuple(
-                TrackSample(
-                    time_s=row.time_s,
-                    lon_deg=row.lon_deg,
-                    lat_deg=row.lat_deg,
-                    altitude_amsl_m=row.altitude_amsl_m,
-                    altitude_home_m=row.altitude_home_m,
-                    heading_deg=row.heading_deg,
-                    roll_deg=row.roll_deg,
-                    ground_speed_m_s=row.ground_speed_m_s,
-                    mission_seq=row.mission_seq,
-                    sensor_on=row.sensor_on,
-                )
-                for row in rows
+            return _merged(
+                [
+                    TrackSample(
+                        time_s=row.time_s,
+                        lon_deg=row.lon_deg,
+                        lat_deg=row.lat_deg,
+                        altitude_amsl_m=row.altitude_amsl_m,
+                        altitude_home_m=row.altitude_home_m,
+                        heading_deg=row.heading_deg,
+                        roll_deg=row.roll_deg,
+                        ground_speed_m_s=row.ground_speed_m_s,
+                        mission_seq=row.mission_seq,
+                        sensor_on=row.sensor_on,
+                        pitch_deg=row.pitch_deg,
+                        from_log=bool(row.from_log),
+                    )
+                    for row in rows
+                ]
             )
 
     async def events(self, flight_id: str) -> tuple[FlightEvent, ...]:

@@ -150,6 +150,8 @@ class FlightRow(Base):
     started_at: Mapped[datetime] = mapped_column(UtcTime)
     ended_at: Mapped[datetime | None] = mapped_column(UtcTime)
     actions: Mapped[list[dict[str, Any]] | None] = mapped_column(JSON)
+    energy: Mapped[dict[str, Any] | None] = mapped_column(JSON)
+    logs: Mapped[list[str] | None] = mapped_column(JSON)
 
 
 class TrackPointRow(Base):
@@ -170,6 +172,8 @@ class TrackPointRow(Base):
     ground_speed_m_s: Mapped[float | None] = mapped_column(Float)
     mission_seq: Mapped[int | None] = mapped_column(Integer)
     sensor_on: Mapped[bool] = mapped_column(Boolean)
+    pitch_deg: Mapped[float | None] = mapped_column(Float)
+    from_log: Mapped[bool | None] = mapped_column(Boolean)
 
 
 class FlightEventRow(Base):

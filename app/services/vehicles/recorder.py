@@ -11,7 +11,7 @@ from typing import Literal
 import structlog
 
 from app.services.errors import StorageError
-from app.services.records import FlightEvent, FlightState, SensorAction, TrackSample
+from app.services.records import FlightEvent, FlightState, FlownEnergy, SensorAction, TrackSample
 from app.services.store.flights import FlightStore
 from mavlink.state.outputs import SensorOutput
 from mavlink.state.telemetry import VehicleState
@@ -65,6 +65,7 @@ class _Ending:
     samples: tuple[TrackSample, ...]
     events: tuple[FlightEvent, ...]
     ended_at: datetime | None
+    energy: FlownEnergy | None
 
 
 class FlightRecorder:
@@ -90,6 +91,7 @@ class FlightRecorder:
         self._endings: list[_Ending] = []
         self._failing = False
         self._landed_looks = 0
+        self._energy: FlownEnergy | None = None
         self._thinner = Thinner(interval_s)
         self.flight_id: str | None = None
         self._latest_id: str | None = None
@@ -183,16 +185,22 @@ class FlightRecorder:
         self._latest_id = self.flight_id
         self._thinner = Thinner(self._interval_s)
         self._landed_looks = self._events_saved = 0
+        self._energy = None
         log.info("flight begun", vehicle=self._vehicle_name, flight_id=self.flight_id)
 
     async def _save(self) -> None:
         if self._recorder is None or self.flight_id is None:
             return
-        events = self._gather(self._recorder.track())
+        track = self._recorder.track()
+        events = self._gather(track)
         await self._store.add(self.flight_id, self._unsaved)
         self._unsaved = []
         await self._store.add_events(self.flight_id, events)
         self._events_saved += len(events)
+        energy = _energy(track)
+        if energy is not None and energy != self._energy:
+            await self._store.draw(self.flight_id, energy)
+            self._energy = energy
 
     def _gather(self, track: Track) -> list[FlightEvent]:
         """Events that are not saved yet; places join those that are not."""
@@ -213,10 +221,13 @@ class FlightRecorder:
         if self.flight_id is None:
             self._stop_listening()
             return
-        events = [] if self._recorder is None else self._gather(self._recorder.track())
+        track = Track() if self._recorder is None else self._recorder.track()
+        events = self._gather(track)
         ended_at = _moment(self._recorder, 1)
         self._stop_listening()
-        self._endings.append(_Ending(self.flight_id, state, tuple(self._unsaved), tuple(events), ended_at))
+        self._endings.append(
+            _Ending(self.flight_id, state, tuple(self._unsaved), tuple(events), ended_at, _energy(track))
+        )
         self._unsaved, self.flight_id = [], None
         with contextlib.suppress(StorageError):
             await self._close()
@@ -226,7 +237,7 @@ class FlightRecorder:
         while self._endings:
             ending = self._endings[0]
             await self._store.end(
-                ending.flight_id, ending.state, ending.samples, ending.events, ending.ended_at
+                ending.flight_id, ending.state, ending.samples, ending.events, ending.ended_at, ending.energy
             )
             self._endings.pop(0)
             log.info(
@@ -238,6 +249,12 @@ def _moment(recorder: TrackRecorder | None, which: Literal[0, 1]) -> datetime | 
     """When a recording's track begins or ends, by its own clock; None of what is flown now."""
     recorded = None if recorder is None else recorder.recorded
     return None if recorded is None else datetime.fromtimestamp(recorded[which], UTC)
+
+
+def _energy(track: Track) -> FlownEnergy | None:
+    """What a flight drew so far, as flights keep it."""
+    told = track.energy
+    return None if told is None else FlownEnergy(told.used_wh, told.source, told.complete)
 
 
 def flight_event(event: SensorEvent) -> FlightEvent:
@@ -305,4 +322,5 @@ def _sample(point: TrackPoint, switches: list[tuple[float, bool]]) -> TrackSampl
         ground_speed_m_s=point.ground_speed_m_s,
         mission_seq=point.mission_current,
         sensor_on=sensor_on,
+        pitch_deg=point.pitch_deg,
     )

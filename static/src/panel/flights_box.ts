@@ -1,14 +1,30 @@
 /** Flights: which there were, and the ground really seen by one of them. */
 import { ask } from "../dialog";
 import { button, fill, h, section } from "../dom";
-import { flights, flightUrl, flown, refly, refreshFlights, showFlight, type Flown } from "../flights";
+import { flights, flightUrl, flown, refly, refreshFlights, showFlight, showSortie, type Flown } from "../flights";
 import { wouldBeLost } from "../leaving";
 import { attempt } from "../notices";
 import { open, openPlan } from "../plans";
 import { moreOf } from "./more";
+import type { SeenCollection } from "../types";
 import { number, percent, percentDown } from "../units";
 
-function flownTable({ flight, seen }: Flown, planned: () => void): HTMLElement {
+/** Silences of the record, what counts for nothing, and what the batteries gave, in a line each. */
+function doubts(seen: SeenCollection): (HTMLElement | null)[] {
+  const silences = seen.gaps.map((gap) => `${new Date(gap.start_at).toLocaleTimeString()}${gap.duration_s === null ? ", until nobody knows when" : ` for ${number(gap.duration_s, 0, "s")}`}`);
+  const whys = [...new Set(seen.not_counted.map((one) => one.why))];
+  const length_m = seen.not_counted.reduce((sum, one) => sum + one.length_m, 0);
+  const drawn = seen.energy.flatMap((one) => (one.drawn_wh === null ? [] : [one.drawn_wh]));
+  const planned = seen.energy[0]?.planned_wh ?? null;
+  return [
+    silences.length > 0 ? h("p", { class: "warning", id: "gaps" }, `Not recorded: ${silences.slice(0, 5).join("; ")}${silences.length > 5 ? ` and ${silences.length - 5} more` : ""}. What was seen then is unknown; an onboard log may tell.`) : null,
+    whys.length > 0 ? h("p", { class: "warning", id: "not-counted" }, `Sensor on, not counted, over ${number(length_m, 0, "m")}: ${whys.join("; ")}.`) : null,
+    drawn.length > 0 ? h("p", { class: "quiet", id: "energy" }, `Drawn from the battery: ${number(drawn.reduce((a, b) => a + b, 0), 1, "Wh")}${planned === null ? "" : `, planned ${number(planned, 1, "Wh")}`}`) : null,
+  ];
+}
+
+function flownTable(now: Flown, planned: () => void): HTMLElement {
+  const { flight, seen } = now;
   const short = new Set(seen.regions.filter((region) => !region.seen).map(({ roi }) => roi));
   const least = percent(seen.seen_fraction, 1);
   const again = async (): Promise<void> => {
@@ -24,21 +40,23 @@ function flownTable({ flight, seen }: Flown, planned: () => void): HTMLElement {
   return h(
     "div",
     { class: "card", id: "flown" },
-    h("p", {}, `Ground really seen by ${flight.vehicle_name}`),
+    h("p", {}, seen.flight === null ? `Ground really seen by ${seen.flights.length} flights of one plan` : `Ground really seen by ${flight.vehicle_name}`),
     flight.plan_id !== open.value?.record.id ? h("p", { class: "warning" }, "It flew another plan than the one on the map: its regions are those of that plan's scenario.") : null,
     h("p", { class: short.size > 0 ? "error" : "good" }, short.size > 0 ? `Less than ${least} seen of ${[...short].join(", ")}.` : `At least ${least} of every region was seen.`),
     h(
       "table",
       {},
-      h("thead", {}, h("tr", {}, h("th", {}, "Region"), h("td", {}, "seen"), h("td", {}, "planned"))),
+      h("thead", {}, h("tr", {}, h("th", {}, "Region"), h("td", {}, "seen"), h("td", {}, "unknown"), h("td", {}, "planned"))),
       h(
         "tbody",
         {},
         ...Object.entries(seen.coverage).map(([roi, fraction]) =>
-          h("tr", { class: short.has(roi) ? "short" : "" }, h("th", { scope: "row" }, roi), h("td", {}, percentDown(fraction)), h("td", {}, percentDown(seen.planned_coverage[roi]))),
+          h("tr", { class: short.has(roi) ? "short" : "" }, h("th", { scope: "row" }, roi), h("td", {}, percentDown(fraction)), h("td", {}, percent(seen.unknown_coverage[roi] ?? 0, 1)), h("td", {}, percentDown(seen.planned_coverage[roi]))),
         ),
       ),
     ),
+    ...doubts(seen),
+    seen.flight === null ? null : button("All flights of this plan", () => void attempt("What all flights saw cannot be shown", () => showSortie(now)), { id: "sortie", class: "link" }),
     h(
       "div",
       { class: "row files" },

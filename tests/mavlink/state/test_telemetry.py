@@ -207,6 +207,16 @@ def at(milliseconds: int) -> Message:
     return received("GLOBAL_POSITION_INT", time_boot_ms=milliseconds, lat=milliseconds, relative_alt=50_000)
 
 
+def test_an_attitude_that_came_long_before_is_none_of_a_place() -> None:
+    """Places go on to come without attitudes: after two seconds the roll is not known any longer."""
+    places = [
+        received("GLOBAL_POSITION_INT", time_boot_ms=round(1000 * s), lat=1, lon=1)
+        for s in (1, 2, 2.9, 3.5, 9)
+    ]
+    points = record(places[0], received("ATTITUDE", roll=0.1), *places[1:]).track().points
+    assert [point.roll_deg is not None for point in points] == [False, True, True, False, False]
+
+
 def test_points_carry_place_time_and_attitude() -> None:
     """A point is a position with the last attitude and switch before it."""
     recorder = record(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import AsyncIterator, Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -95,9 +96,7 @@ def test_on_is_from_photo_to_photo_until_one_is_missing(
 
 def test_without_photos_nothing_was_seen() -> None:
     """A shutter that was ordered is no photo; photos without a place are none either."""
-    ordered = [
-        TrackSample(*[getattr(sample(t), n) for n in TrackSample.__slots__[:-1]], True) for t in (1.0, 2.0)
-    ]
+    ordered = [replace(sample(t), sensor_on=True) for t in (1.0, 2.0)]
     placeless = photos_of([FlightEvent(1.0, "photo", "camera", 1), FlightEvent(1.0, "on", "camera")])
     assert placeless == ()
     made = switched_by_photos(ordered, placeless, Spacing(distance_m=SPACING_M))

@@ -1,0 +1,56 @@
+"""What the flights of a plan saw together: a flight that was split is one sortie."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Query, Response
+
+from app.deps import FlightsDep, PlanningDep, SettingsDep
+from app.problems import responses
+from app.schemas.plans import PlanOut
+from app.services.documents import write_json
+
+router = APIRouter(prefix="/api/v1/plans/{plan_id}", tags=["flights"])
+
+GEOJSON = "application/geo+json"
+GEOJSON_ANSWER: dict[int | str, dict[str, Any]] = {
+    200: {"content": {GEOJSON: {"schema": {"type": "object"}}}}
+}
+
+
+@router.get(
+    "/coverage",
+    summary="The ground that all flights of a plan saw",
+    response_class=Response,
+    responses=responses(404, 409) | GEOJSON_ANSWER,
+)
+async def coverage(plan_id: str, flights: FlightsDep) -> Response:
+    """As `coverage.geojson` of a flight, of all flights of the plan together.
+
+    A flight that a restart of the service, a change of battery or an upload split is one sortie. What lay
+    between two of its parts is `unknown`, neither seen nor missed, until an onboard log tells.
+    """
+    return Response(write_json(await flights.plan_coverage(plan_id)), media_type=GEOJSON)
+
+
+@router.post(
+    "/refly", status_code=202, summary="Plan what no flight saw", responses=responses(404, 409, 422, 429)
+)
+async def refly(
+    plan_id: str,
+    flights: FlightsDep,
+    planning: PlanningDep,
+    settings: SettingsDep,
+    response: Response,
+    wait: Annotated[float, Query(ge=0, description="Seconds to hold the answer for the plan's end.")] = 0.0,
+) -> PlanOut:
+    """Plan what none of the plan's flights is known to have seen, from the start.
+
+    Ground of which nobody knows is planned, too: send the onboard logs first. 409 when nothing is left.
+    """
+    record = await planning.submit(await flights.plan_refly(plan_id))
+    if wait > 0 and not record.ended:
+        record = await planning.wait(record.id, min(wait, settings.max_wait_s))
+    response.headers["Location"] = f"/api/v1/plans/{record.id}"
+    return PlanOut.of(record)
