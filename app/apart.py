@@ -22,7 +22,9 @@ _OF_THE_SERVICE = {
 def settings_text(settings: Settings) -> str:
     """Settings for another process, wherever that one works."""
     log_dir = None if settings.log_dir is None else settings.log_dir.resolve()
+    keys = None if settings.signing_keys is None else settings.signing_keys.resolve()
     places = {
+        "signing_keys": keys,
         "database": settings.database.resolve(),
         "log_dir": log_dir,
         "replay_folders": tuple(folder.resolve() for folder in settings.replay_folders),

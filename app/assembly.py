@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterable
 from contextlib import AbstractAsyncContextManager
 from typing import Any
@@ -10,6 +11,7 @@ from fastapi import APIRouter, FastAPI
 
 from app import middleware, problems
 from app.services.limits import Limits
+from app.services.vehicles.keys import KeyRing
 from app.services.vehicles.recordings import Recordings
 from app.settings import Settings
 from mavlink.links.recording import TlogLimits
@@ -28,7 +30,13 @@ def limits_of(settings: Settings) -> Limits:
         request_time_limit_s=settings.request_time_limit_s,
         request_memory_bytes=settings.request_memory_bytes,
         recordings=_recordings_of(settings),
+        keys=keys_of(settings),
     )
+
+
+def keys_of(settings: Settings) -> KeyRing:
+    """Where the vehicles' keys are found."""
+    return KeyRing(settings.signing_keys, settings.database.parent / "signing", os.environ)
 
 
 def _recordings_of(settings: Settings) -> Recordings | None:

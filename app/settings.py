@@ -27,13 +27,16 @@ _ORIGIN = re.compile(r"https?://([A-Za-z0-9._-]+|\[[0-9A-Fa-f:]+\])(:[0-9]{1,5})
 PREFIX = "SWATHPLAN_"
 #: Variables of the tests, which are no settings of the service.
 _OF_TESTS = ("SWATHPLAN_TEST_", "SWATHPLAN_ARDU", "SWATHPLAN_PX4", "SWATHPLAN_SCREENSHOT")
+#: Secrets are no settings: those are printed, compared and handed on.
+_OF_KEYS = re.compile(PREFIX + r"SIGNING_KEY(_.+)?")
 
 
 def unknown_variables() -> tuple[str, ...]:
     """Environment variables that look like settings and are none: most often a slip."""
     known = {PREFIX + name.upper() for name in Settings.model_fields}
     given = (name.upper() for name in os.environ if name.upper().startswith(PREFIX))
-    return tuple(sorted(name for name in given if name not in known and not name.startswith(_OF_TESTS)))
+    ours = (name for name in given if name not in known and not _OF_KEYS.fullmatch(name))
+    return tuple(sorted(name for name in ours if not name.startswith(_OF_TESTS)))
 
 
 class Settings(BaseSettings):
@@ -121,6 +124,11 @@ class Settings(BaseSettings):
     )
     track_interval_s: float = Field(
         default=0.2, gt=0, description="Vehicle time between two recorded points of a track."
+    )
+    signing_keys: Path | None = Field(
+        default=None,
+        description="File of the keys that vehicles sign with, lines `name = key`; only its owner may read "
+        "it. Keys may also be given in `SWATHPLAN_SIGNING_KEY_<NAME>`, docs/security.md.",
     )
     record_links: bool = Field(default=True, description="Record every vehicle's link as .tlog files.")
     log_dir: Path | None = Field(

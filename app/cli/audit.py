@@ -16,7 +16,7 @@ def audit(
     ] = "http://127.0.0.1:8000",
     vehicle: Annotated[str | None, typer.Option(help="Of one vehicle: its id, or its name.")] = None,
     kind: Annotated[
-        str | None, typer.Option(help="order, upload, clear, override or acknowledgement.")
+        str | None, typer.Option(help="order, upload, clear, override, acknowledgement or signing.")
     ] = None,
     since: Annotated[str | None, typer.Option(help="At or after, e.g. 2026-05-04T08:00Z.")] = None,
     until: Annotated[str | None, typer.Option(help="Before.")] = None,

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 import typer
 
+from app.cli.keyring import signing_here
 from app.cli.output import CommandError, Exit, Json, Output, emit, emit_bytes, emit_json, read_document, say
 
 if TYPE_CHECKING:
@@ -219,7 +220,7 @@ async def _upload(
     from mavlink.dialects.fit import fitted
 
     plan = plan_of(plan_text)
-    async with connected(url, (plan.home[1], plan.home[0], 0.0), timeout_s) as client:
+    async with connected(url, (plan.home[1], plan.home[0], 0.0), timeout_s, signing_here(url)) as client:
         autopilot = client.state.autopilot
         if autopilot != "generic":
             choice = replace(choice, autopilot=autopilot)
@@ -264,7 +265,7 @@ async def _download(url: str, timeout_s: float) -> Any:
     from mavlink.dialects.mission import Mission
     from mavlink.wire.items import MissionType
 
-    async with connected(url, None, timeout_s) as client:
+    async with connected(url, None, timeout_s, signing_here(url)) as client:
         items = await client.download(MissionType.MISSION)
         fence = await client.download(MissionType.FENCE)
         rally = await client.download(MissionType.RALLY)

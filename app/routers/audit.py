@@ -37,7 +37,7 @@ async def list_entries(
     since: Annotated[Moment | None, Query(description="At or after; UTC without a zone.")] = None,
     until: Annotated[Moment | None, Query(description="Before; UTC without a zone.")] = None,
 ) -> AuditList:
-    """Orders, uploads, clearings, overrides and acknowledgements of other aircraft, newest first.
+    """Orders, uploads, clearings, overrides, acknowledgements, changes of signing; newest first.
 
     Each is written before it is sent, and completed with what became of it. What cannot be written is not
     sent, but for `rtl`, `land`, `hold`, `pause`, `disarm` and `sensor_off`: these go out, and are written

@@ -23,11 +23,13 @@ from app.schemas.vehicles import (
     IdentityIn,
     LogList,
     LogOut,
+    SigningIn,
     VehicleIn,
     VehicleList,
     VehicleOut,
 )
 from app.services.plans.missions import MissionChoice
+from app.services.vehicles import signing
 from app.services.vehicles.flight_orders import Wish
 from app.services.vehicles.orders import give_order
 from app.vehicle_deps import ChecksDep, FleetDep, PermitsDep, TransfersDep
@@ -245,6 +247,19 @@ async def acknowledge_address(
     """
     vehicle = fleet.get(vehicle_id)
     await transfers.acknowledge_address(vehicle, body.address)
+    return VehicleOut.of(vehicle)
+
+
+@router.post("/{vehicle_id}/signing", summary="Change signing", responses=responses(404, 409, 422))
+async def change_signing(vehicle_id: str, body: SigningIn, fleet: FleetDep) -> VehicleOut:
+    """Sign with the vehicle's key, hand it over, or have the vehicle sign no more; only when it is disarmed.
+
+    The key stands in `SWATHPLAN_SIGNING_KEYS` or the environment and is in no request, answer, recording or
+    log. It goes to the vehicle unsigned the first time: over a link that nobody else hears, best by USB. 409
+    when the vehicle does not show within some seconds that it has taken it; then all is as before.
+    """
+    vehicle = fleet.get(vehicle_id)
+    await signing.change(vehicle, body.action)
     return VehicleOut.of(vehicle)
 
 

@@ -171,13 +171,18 @@ class VehicleOut(BaseModel):
         "is not talked to until it is acknowledged, or let go and connected as another vehicle."
     )
     address: str | None = Field(
-        description="Where it is heard from, on a port where anybody may speak: it alone is believed there."
+        description="Where it is heard from, on a port where anybody may speak; it alone is believed."
     )
     strangers: list[str] = Field(
         description="Other addresses heard on that port lately: neither believed nor sent to."
     )
     doubt: DoubtOut | None = Field(
         description="Why orders that make it fly, and uploads, are refused; stops are sent all the same."
+    )
+    signing: str | None = Field(
+        description="verified: its frames are signed with the key given. no_key: they are signed, and no "
+        "key is given. unsigned, wrong_key, replayed: a key is given, and for this its frames do not count. "
+        "null: it does not sign."
     )
     position_age_s: float | None = Field(
         description="How old the position in `state` is, seconds; null: it never told one.", examples=[0.2]
@@ -212,6 +217,7 @@ class VehicleOut(BaseModel):
             other_system=vehicle.state.other_system,
             address=state.address,
             strangers=list(state.strangers),
+            signing=state.signing,
             doubt=None if state.doubt is None else DoubtOut(**asdict(state.doubt)),
             position_age_s=vehicle.age_s(state.position_heard_s),
             sensor=SensorOut(
@@ -270,6 +276,15 @@ class IdentityIn(Strict):
     """The aircraft that is the vehicle from now on."""
 
     system_id: int = Field(ge=1, le=255, description="As other_system says.")
+
+
+class SigningIn(Strict):
+    """What is to become of signing. The key itself is read from the service's file or environment."""
+
+    action: Literal["use", "set_up", "remove"] = Field(
+        description="use: sign and verify with the key given, which the vehicle has already. set_up: hand it "
+        "to the vehicle first. remove: have the vehicle sign no more."
+    )
 
 
 class AddressIn(Strict):

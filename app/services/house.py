@@ -99,6 +99,7 @@ class House:
                 limits.recordings,
                 times,
                 GroundService(folder, self.desk).heights,
+                limits.keys,
             )
             if keeper is None
             else None

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
+from app.services.vehicles.keys import KeyRing
 from app.services.vehicles.recordings import Recordings
 
 
@@ -22,3 +23,4 @@ class Limits:
     request_time_limit_s: float = 30.0
     request_memory_bytes: int = 2_000_000_000
     recordings: Recordings | None = None
+    keys: KeyRing | None = None

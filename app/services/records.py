@@ -13,7 +13,7 @@ from mavlink.station.forward.address import ForwardAddress
 PlanState = Literal["queued", "running", "done", "failed", "cancelled"]
 ENDED: frozenset[PlanState] = frozenset({"done", "failed", "cancelled"})
 
-AuditKind = Literal["order", "upload", "clear", "override", "acknowledgement"]
+AuditKind = Literal["order", "upload", "clear", "override", "acknowledgement", "signing"]
 
 FlightState = Literal["flying", "ended", "interrupted"]
 

@@ -10,10 +10,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import Final
 
 from mavlink.state.modes import GROUND_STATION_TYPE, NO_AUTOPILOT
 from mavlink.state.telemetry import VehicleState
 from mavlink.wire.messages import Message
+
+#: Of a link on which nobody speaks who could be the vehicle.
+SILENT: Final = "no vehicle is connected"
 
 
 class Identity:
@@ -59,7 +63,7 @@ class Identity:
     def absence(self, state: VehicleState) -> str:
         """Why a vehicle that is not connected cannot be talked to."""
         if state.other_system is None:
-            return "no vehicle is connected"
+            return SILENT
         return (
             f"system {state.other_system} answers where system {self._expected(state)} did: another aircraft,"
             " to be acknowledged first"

@@ -41,6 +41,10 @@ class SigningSetup(ABC):
     def _target(self) -> tuple[int, int]:
         """System and component to talk to. Raises NotConnectedError while there is none."""
 
+    def use_key(self, signing: Signing) -> None:
+        """Sign and verify from now on with a key that the vehicle has already."""
+        self._driver.sign(signing)
+
     async def set_up_signing(self, signing: Signing) -> None:
         """Hand the vehicle a key, and let nothing count from now on that is not signed with it.
 

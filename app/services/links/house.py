@@ -40,6 +40,7 @@ class LinksHouse:
             limits.recordings,
             DEFAULT_TIMES,
             GroundService(terrain_folder(limits.database), self._desk).heights,
+            limits.keys,
         )
         self.fleet = self.station.fleet
         self.needed_s = time.monotonic()

@@ -21,6 +21,8 @@ from mavlink.links.link import FORMS, open_link
 from mavlink.links.replay import parse_replay
 from mavlink.station.client import VehicleClient
 from mavlink.station.forward.hub import Forwards
+from mavlink.station.identity import SILENT
+from mavlink.wire.signing import Signing
 from planner.errors import Finding
 
 #: Latitude, longitude in degrees, metres above sea level.
@@ -102,6 +104,7 @@ async def connect(
     forwards: Forwards | None = None,
     vehicle_system: int = 0,
     times: LinkTimes = DEFAULT_TIMES,
+    signing: Signing | None = None,
 ) -> Connection:
     """Open the link, start the simulator where one is asked for, wait for a heartbeat.
 
@@ -119,6 +122,8 @@ async def connect(
         The system id to talk to; 0 takes the first autopilot heard.
     times
         How patient its client is.
+    signing
+        Signs and verifies; None: nothing is signed.
 
     Raises
     ------
@@ -143,6 +148,7 @@ async def connect(
         vehicle_system=vehicle_system,
         settings=times.transfers,
         lost_after_s=times.lost_after_s,
+        signing=signing,
     )
     try:
         simulator = None
@@ -198,11 +204,15 @@ async def _to_the_end(closing: Coroutine[Any, Any, None]) -> None:
 
 
 @asynccontextmanager
-async def connected(url: str, home: Home | None, timeout_s: float) -> AsyncIterator[VehicleClient]:
+async def connected(
+    url: str, home: Home | None, timeout_s: float, signing: Signing | None = None
+) -> AsyncIterator[VehicleClient]:
     """A client of a vehicle that has been heard; raises LinkError when it stays silent."""
-    connection = await connect(url, home, timeout_s)
+    connection = await connect(url, home, timeout_s, signing=signing)
     try:
         if not connection.client.state.connected:
+            if connection.client.absence != SILENT:
+                raise LinkError(connection.client.absence)
             raise LinkError(f"no autopilot was heard on {url} within {timeout_s:g} s{hints.silent(url)}")
         yield connection.client
     finally:

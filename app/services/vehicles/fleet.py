@@ -22,6 +22,7 @@ from app.services.vehicles.audit import Audit
 from app.services.vehicles.brief import first_vehicle, start_of
 from app.services.vehicles.connection import CONNECT_S, Home, is_replay, replayed_plan, simulated_of
 from app.services.vehicles.forwarding import read_forwards, refuse_loops
+from app.services.vehicles.keys import KeyRing
 from app.services.vehicles.recorder import HeldPlan
 from app.services.vehicles.recordings import RecordingFile, Recordings
 from app.services.vehicles.times import DEFAULT_TIMES, LinkTimes
@@ -56,7 +57,9 @@ class Fleet:
         recordings: Recordings | None = None,
         times: LinkTimes = DEFAULT_TIMES,
         heights: Heights | None = None,
+        keys: KeyRing | None = None,
     ) -> None:
+        self._keys = keys
         self._heights = heights
         self._plans = plans
         self._transfers = transfers
@@ -307,6 +310,7 @@ class Fleet:
             self._recordings,
             self._times,
             self._heights,
+            self._keys,
         )
 
     def _publish(self, vehicle: Vehicle) -> None:

@@ -52,7 +52,7 @@ def state_json(state: VehicleState) -> dict[str, Any]:
     """A vehicle's state; null where it has not said."""
     body = asdict(state)
     # Told beside the state, or in a clock that is nobody else's.
-    for name in ("heard_s", "position_heard_s", "sensor_since_s", "address", "strangers", "doubt"):
+    for name in ("heard_s", "position_heard_s", "sensor_since_s", "address", "strangers", "doubt", "signing"):
         del body[name]
     body["texts"] = [{"severity": text.severity, "text": text.text} for text in state.texts]
     return {name: _number(value) if isinstance(value, float) else value for name, value in body.items()}

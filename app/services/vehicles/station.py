@@ -11,6 +11,7 @@ from app.services.store.vehicles import VehicleStore
 from app.services.vehicles.audit import Audit
 from app.services.vehicles.checks import Checks
 from app.services.vehicles.fleet import Fleet
+from app.services.vehicles.keys import KeyRing
 from app.services.vehicles.recordings import Recordings
 from app.services.vehicles.times import LinkTimes
 from app.services.vehicles.transfers import Transfers
@@ -30,6 +31,8 @@ class Station:
         Where their links are recorded; None for nowhere.
     heights
         Where the ground's heights come from, for vehicles that ask.
+    keys
+        Where the vehicles' signing keys are found; None: none is signed with.
     """
 
     def __init__(
@@ -40,6 +43,7 @@ class Station:
         recordings: Recordings | None,
         times: LinkTimes,
         heights: Heights | None = None,
+        keys: KeyRing | None = None,
     ) -> None:
         kept = VehicleStore(database)
         audit = Audit(AuditStore(database))
@@ -55,4 +59,5 @@ class Station:
             recordings,
             times,
             heights,
+            keys,
         )

@@ -18,6 +18,8 @@ from app.services.vehicles.aboard import Aboard
 from app.services.vehicles.audit import Audit
 from app.services.vehicles.connection import Connection, Home, connect, is_replay, simulated_of
 from app.services.vehicles.forwarding import changes_mission, tell_forwards, tell_order
+from app.services.vehicles.heard import Heard
+from app.services.vehicles.keys import KeyRing
 from app.services.vehicles.memory import Memory
 from app.services.vehicles.order_book import OrderBook
 from app.services.vehicles.recorder import FlightRecorder, HeldPlan
@@ -32,7 +34,6 @@ from mavlink import errors as mavlink_errors
 from mavlink.encoding.options import DEFAULT_PAYLOAD
 from mavlink.encoding.payload import CameraPayload, parse_payload
 from mavlink.state.passes import passes_of
-from mavlink.state.telemetry import VehicleState
 from mavlink.station.client import VehicleClient
 from mavlink.station.forward.address import ForwardAddress
 from mavlink.station.forward.hub import Forwards
@@ -47,7 +48,7 @@ log = structlog.get_logger(__name__)
 RESOLVE_TRIES = 3
 
 
-class Vehicle:
+class Vehicle(Heard):
     """A vehicle the service knows, connected or not.
 
     Parameters
@@ -64,6 +65,8 @@ class Vehicle:
         Where the link is recorded; None not to. A recording is not recorded again.
     heights
         Where the ground's heights come from, if it asks; None for nowhere.
+    keys
+        Where the key it signs with is found; None: nothing is signed.
     """
 
     def __init__(
@@ -77,7 +80,9 @@ class Vehicle:
         recordings: Recordings | None = None,
         times: LinkTimes = DEFAULT_TIMES,
         heights: Heights | None = None,
+        keys: KeyRing | None = None,
     ) -> None:
+        self.keys = keys
         self.id = record.id
         self.name = record.name
         self.url = url = record.url
@@ -115,32 +120,9 @@ class Vehicle:
         self._tasks: list[asyncio.Task[None]] = []
 
     @property
-    def state(self) -> VehicleState:
-        """All that is known of it now."""
-        return VehicleState() if self._connection is None else self._connection.client.state
-
-    @property
-    def client(self) -> VehicleClient:
-        """The link's client; raises LinkError while there is none."""
-        if self._connection is None:
-            raise LinkError(f"{self.name} has no link")
-        return self._connection.client
-
-    @property
     def _is_itself(self) -> bool:
         """Whether it is an aircraft of its own: simulated ones and recordings are whatever answers."""
         return self.simulated is None and not self.replay
-
-    def age_s(self, moment_s: float | None) -> float | None:
-        """How long ago a moment in the link's clock was; None for none."""
-        if moment_s is None or self._connection is None:
-            return None
-        return max(0.0, self._connection.client.now_s - moment_s)
-
-    @property
-    def link_quality(self) -> float | None:
-        """The share of its frames that arrive; None where too little was heard to tell."""
-        return None if self._connection is None else self._connection.client.link_quality
 
     @property
     def pending(self) -> bool:
@@ -208,8 +190,9 @@ class Vehicle:
         self.tell()
 
     async def _connect(self, home: Home | None, timeout_s: float) -> Connection:
+        signing = self.keys.signing_of(self.name, self.id) if self.keys and self._is_itself else None
         connection = await connect(
-            self.url, home, timeout_s, self.tape.write, self.forwards, self.system_id, self._times
+            self.url, home, timeout_s, self.tape.write, self.forwards, self.system_id, self._times, signing
         )
         if self._is_itself:
             self.system_id = connection.client.state.system_id or self.system_id
