@@ -5,6 +5,7 @@ Plain ASGI, since a streaming answer must pass through untouched.
 
 from __future__ import annotations
 
+import asyncio
 import re
 import time
 import uuid
@@ -19,6 +20,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from app.hosts import is_loopback
 from app.problems import MEDIA_TYPE, problem_body
 from app.services.metrics import REQUEST_SECONDS, REQUESTS
+from app.services.presence import LEFT
 
 log = structlog.get_logger("app.access")
 
@@ -33,6 +35,8 @@ SAFE_HEADERS: Final = {
     "cross-origin-opener-policy": "same-origin",
     "cross-origin-resource-policy": "same-origin",
 }
+#: A body where none is read is not kept.
+_HELD_MESSAGES: Final = 4
 #: Any other word may be sent as a method; figures are not kept for each.
 _METHODS: Final = frozenset({"GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS"})
 #: A body over the cap is read to its end, and dropped, up to this many times the cap: a client that is
@@ -82,6 +86,12 @@ class RequestLog:
 
         try:
             await self._app(scope, receive, send_with_id)
+        except asyncio.CancelledError:
+            # The server gives up what is not answered when it ends; left to it, that is a bare 500.
+            if status:
+                raise
+            detail = "the service ends; nobody can tell whether this was carried out"
+            await _answer(scope, send_with_id, 503, "ending", "The service ends", detail, [])
         except Exception as error:
             log.error("request failed", path=scope["path"], exc_info=error)
             if status:
@@ -175,7 +185,7 @@ class BodyCap:
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Serve one request."""
         if scope["type"] != "http" or scope["method"] in ("GET", "HEAD", "OPTIONS"):
-            await self._app(scope, receive, send)
+            await _answered(self._app, scope, receive, send)
             return
         max_bytes = self._larger.get(scope["path"], self._max_bytes)
         chunks: list[bytes] = []
@@ -205,4 +215,39 @@ class BodyCap:
                 return {"type": "http.request", "body": whole, "more_body": False}
             return await receive()
 
-        await self._app(scope, replay, send)
+        await _answered(self._app, scope, replay, send)
+
+
+async def _answered(app: ASGIApp, scope: Scope, receive: Receive, send: Send) -> None:
+    """Have a request answered; that its client goes meanwhile is noted, for what is computed to end."""
+    if scope["type"] != "http":
+        await app(scope, receive, send)
+        return
+    messages: asyncio.Queue[Message] = asyncio.Queue()
+    left = asyncio.Event()
+
+    async def watch() -> None:
+        while not left.is_set():
+            message = await receive()
+            if message["type"] == "http.disconnect":
+                left.set()
+            elif messages.qsize() < _HELD_MESSAGES:
+                messages.put_nowait(message)
+
+    async def told() -> Message:
+        hearing, leaving = asyncio.create_task(messages.get()), asyncio.create_task(left.wait())
+        try:
+            await asyncio.wait((hearing, leaving), return_when=asyncio.FIRST_COMPLETED)
+            return hearing.result() if hearing.done() else {"type": "http.disconnect"}
+        finally:
+            hearing.cancel()
+            leaving.cancel()
+
+    token = LEFT.set(left)
+    watching = asyncio.create_task(watch())
+    try:
+        await app(scope, told, send)
+    finally:
+        LEFT.reset(token)
+        watching.cancel()
+        await asyncio.gather(watching, return_exceptions=True)

@@ -31,6 +31,7 @@ TABLE: tuple[tuple[type[errors.ServiceError], int, str, str], ...] = (
     (errors.RefusedError, 422, "refused", "The input is refused"),
     (errors.OverloadedError, 429, "overloaded", "No room for more work now"),
     (errors.StorageError, 503, "storage", "Nothing can be kept now"),
+    (errors.ClientGoneError, 499, "client-gone", "Nobody waits for the answer"),
     # no 502: a 5xx means that the service is broken, and it is not; 504 is the vehicle's silence alone
     (errors.LinkError, 409, "vehicle-unreachable", "The vehicle cannot be reached"),
     (errors.CommandRefusedError, 409, "command-refused", "The command is refused"),

@@ -9,7 +9,9 @@ import signal
 import socket
 import sys
 
-from app.door.door import Door
+from app.door.crowd import most_connections
+from app.door.door import MOST_CONNECTIONS, Door
+from app.door.quiet import Quiet
 
 
 async def _serve(listener: socket.socket, web: str, links: str) -> None:
@@ -20,7 +22,11 @@ async def _serve(listener: socket.socket, web: str, links: str) -> None:
     loop.add_signal_handler(signal.SIGINT, lambda: None)
     reader = asyncio.StreamReader()
     await loop.connect_read_pipe(lambda: asyncio.StreamReaderProtocol(reader), sys.stdin)
-    server = await asyncio.start_server(Door(web, links).serve, sock=listener, backlog=1024)
+    soft, _ = resource.getrlimit(resource.RLIMIT_NOFILE)
+    most = most_connections(MOST_CONNECTIONS, soft)
+    loop.set_exception_handler(Quiet())
+    door = Door(web, links, most=most)
+    server = await asyncio.start_server(door.serve, sock=listener, backlog=min(most, 1024))
     sys.stdout.write("open\n")
     sys.stdout.flush()
     hearing = asyncio.create_task(reader.read())

@@ -9,6 +9,7 @@ import logging
 from dataclasses import dataclass
 from typing import Final
 
+from app.door.crowd import Crowd
 from app.door.heads import END, MOST_BYTES, AnswerHead, BadHeadError, RequestHead, read_answer, read_request
 from app.door.lanes import CrowdedError, Lanes, lane_of
 
@@ -18,13 +19,21 @@ log = logging.getLogger(__name__)
 HURRIED_CONNECTIONS: Final = 200
 MOST_CONNECTIONS: Final = 600
 _CHUNK_BYTES: Final = 1 << 16
+#: A body up to this size is taken in whole before its request gets its turn: half of one holds up nobody.
+_EARLY_BYTES: Final = 1 << 16
+_LAST_CHUNK: Final = b"0\r\n\r\n"
 
 
 @dataclass(frozen=True, slots=True)
 class Patience:
     """How long a client may take for its next request, a head, a part of a body, of an answer.
 
-    ``hurried_s`` stands for the first two where there are many clients.
+    Parameters
+    ----------
+    hurried_s
+        Stands for the first two where there are many clients.
+    body_bytes_s
+        A body may take ``body_s`` and, beyond that, as long as it does at this speed.
     """
 
     idle_s: float = 60.0
@@ -32,6 +41,7 @@ class Patience:
     hurried_s: float = 3.0
     body_s: float = 30.0
     answer_s: float = 60.0
+    body_bytes_s: float = 10_000.0
 
 
 class _Incoming:
@@ -60,6 +70,13 @@ class _Incoming:
         head, self.held = self.held[: end.start()], self.held[end.end() :]
         return head
 
+    async def hold(self, size: int) -> bool:
+        """Take in so much; False when the end comes before."""
+        while len(self.held) < size:
+            if not await self.more():
+                return False
+        return True
+
     async def part(self, most: int) -> bytes:
         """Some bytes of a body; none at the end."""
         if not self.held and not await self.more():
@@ -75,46 +92,57 @@ class Door:
     ----------
     web, links
         Paths of the sockets of the two processes.
+    most
+        So many connections are open at once.
     """
 
-    def __init__(self, web: str, links: str, patience: Patience = Patience()) -> None:
+    def __init__(
+        self, web: str, links: str, patience: Patience = Patience(), most: int = MOST_CONNECTIONS
+    ) -> None:
         self._web = web
         self._links = links
         self._patience = patience
         self._lanes = Lanes()
-        self._open = 0
+        self.crowd = Crowd(most)
 
     async def serve(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         """Serve one client's connection to its end."""
-        self._open += 1
         try:
-            client = _Incoming(reader)
-            if self._open <= MOST_CONNECTIONS:
-                while await self._exchange(client, writer):
+            with self.crowd.connected() as room:
+                client = _Incoming(reader)
+                if not room:
+                    detail = "too many connections are open; try again later"
+                    await _refuse(writer, b"/", 503, "overloaded", "No room for more work now", detail)
+                while room and await self._exchange(client, writer):
                     pass
         except (OSError, TimeoutError):
             pass  # the client is gone, or too slow to be waited for
         finally:
-            self._open -= 1
             writer.close()
 
     async def _exchange(self, client: _Incoming, writer: asyncio.StreamWriter) -> bool:
         """One request and its answer; whether the connection goes on."""
-        hurried = self._open > HURRIED_CONNECTIONS
-        async with asyncio.timeout(self._patience.hurried_s if hurried else self._patience.idle_s):
-            if not client.held and not await client.more():
-                return False
+        hurried_s = self._patience.hurried_s if self.crowd.open > HURRIED_CONNECTIONS else None
+        with self.crowd.waiting():
+            async with asyncio.timeout(hurried_s or self._patience.idle_s):
+                if not client.held and not await client.more():
+                    return False
         try:
-            async with asyncio.timeout(self._patience.hurried_s if hurried else self._patience.head_s):
-                head = await client.head()
-            if head is None:
-                return False
-            request = read_request(head)
+            with self.crowd.waiting():
+                async with asyncio.timeout(hurried_s or self._patience.head_s):
+                    head = await client.head()
+                if head is None:
+                    return False
+                request = read_request(head)
+                if request.length is not None and request.length <= _EARLY_BYTES and not request.expects:
+                    async with asyncio.timeout(self._patience.body_s):
+                        if not await client.hold(request.length):
+                            return False
         except BadHeadError as error:
             await _refuse(writer, b"/", 400, "bad-request", "Bad Request", str(error))
             return False
         except TimeoutError:
-            await _refuse(writer, b"/", 408, "request-timeout", "Request Timeout", "the headers did not come")
+            await _refuse(writer, b"/", 408, "request-timeout", "Request Timeout", "the request did not come")
             return False
         lane = lane_of(request)
         try:
@@ -155,11 +183,15 @@ class Door:
     ) -> None:
         """Pass the body on, then wait until the client goes away."""
         client.left = request.length
-        while client.left is None or client.left > 0:
-            async with asyncio.timeout(self._patience.body_s):
+        moment_s = asyncio.get_running_loop().time
+        slowest_s, tail = moment_s() + self._patience.body_s, b""
+        while (client.left is None and tail != _LAST_CHUNK) or (client.left is not None and client.left > 0):
+            async with asyncio.timeout(min(self._patience.body_s, slowest_s - moment_s())):
                 part = await client.part(_CHUNK_BYTES if client.left is None else client.left)
             if not part:
                 return
+            slowest_s += len(part) / self._patience.body_bytes_s
+            tail = (tail + part)[-len(_LAST_CHUNK) :]
             client.left = None if client.left is None else client.left - len(part)
             with contextlib.suppress(ConnectionError):
                 # Who has answered already reads no more; the answer is on its way.
@@ -205,7 +237,7 @@ class Door:
                 await writer.drain()
         async with asyncio.timeout(self._patience.answer_s):
             await writer.drain()
-        return tail == b"0\r\n\r\n" if answer.chunked else answer.length in (None, size)
+        return tail == _LAST_CHUNK if answer.chunked else answer.length in (None, size)
 
 
 def _absence(links: bool) -> str:

@@ -36,6 +36,8 @@ class RequestHead:
         Bytes of the body; None where it comes in chunks.
     keeps
         Whether the client goes on with the same connection.
+    expects
+        Whether the client waits for a word before it sends the body (RFC 9110, 10.1.1).
     """
 
     method: bytes
@@ -45,6 +47,7 @@ class RequestHead:
     fields: Fields
     length: int | None
     keeps: bool
+    expects: bool
 
     def passed_on(self) -> bytes:
         """The same for a connection that takes this one request."""
@@ -98,6 +101,7 @@ def read_request(head: bytes) -> RequestHead:
         _of_the_message(fields),
         None if chunked else length or 0,
         minor == b"1" and b"close" not in asked and not chunked,
+        bool(_values(fields, b"expect")),
     )
 
 

@@ -49,6 +49,8 @@ READS: Final = LaneKind("reads", True, 2, True)
 STREAMS: Final = LaneKind("streams", True, 64, False)
 #: Connections, uploads and the like wait for a vehicle most of the time.
 CHANGES: Final = LaneKind("changes", True, 16, True)
+#: Events of plans are listened to as long as the plan is made, or longer.
+EVENTS: Final = LaneKind("events", False, 150, False)
 OTHERS: Final = LaneKind("others", False, 400, False)
 
 
@@ -56,7 +58,7 @@ def lane_of(request: RequestHead) -> LaneKind:
     """The kind of a request."""
     path = request.path
     if path != _VEHICLES and not path.startswith(_VEHICLES + b"/"):
-        return OTHERS
+        return EVENTS if path.endswith(b"/events") else OTHERS
     if request.method == b"POST" and path.endswith(b"/commands"):
         return ORDERS
     if request.method in (b"GET", b"HEAD"):
@@ -72,7 +74,7 @@ class Lanes:
 
     def __init__(self) -> None:
         self._lanes = {
-            lane: asyncio.Semaphore(lane.most) for lane in (ORDERS, READS, STREAMS, CHANGES, OTHERS)
+            lane: asyncio.Semaphore(lane.most) for lane in (ORDERS, READS, STREAMS, CHANGES, EVENTS, OTHERS)
         }
 
     @asynccontextmanager

@@ -6,12 +6,13 @@ The service's own process holds the links to the vehicles; nothing a request sen
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable
+from collections.abc import Callable, Coroutine
 from dataclasses import dataclass
 from typing import Any, NoReturn, TypeVar
 
-from app.services.errors import OverloadedError, RefusedError, ServiceError
+from app.services.errors import ClientGoneError, OverloadedError, RefusedError, ServiceError
 from app.services.plans.pool import Pool, WorkerDiedError
+from app.services.presence import LEFT
 from planner.errors import Finding
 
 Made = TypeVar("Made")
@@ -79,6 +80,8 @@ class Desk:
             Rules ``time-limit`` and ``memory-limit``: it takes more than a request may; ``worker-died``.
         OverloadedError
             Too many wait before it.
+        ClientGoneError
+            Whoever asked has gone; the process is killed.
         """
         if urgent:
             return await self._done(feature, function, arguments)
@@ -87,7 +90,7 @@ class Desk:
         self._waiting += 1
         try:
             async with asyncio.timeout(self._time_limit_s):
-                await self._turns.acquire()
+                await _while_wanted(self._turns.acquire())
         except TimeoutError:
             raise OverloadedError("other requests take too long; try again later", RETRY_AFTER_S) from None
         finally:
@@ -99,7 +102,8 @@ class Desk:
 
     async def _done(self, feature: str, function: Callable[..., Made], arguments: tuple[Any, ...]) -> Made:
         try:
-            outcome = await self.pool.run(_carried_out, (function, arguments), self._time_limit_s)
+            working = self.pool.run(_carried_out, (function, arguments), self._time_limit_s)
+            outcome = await _while_wanted(working)
         except TimeoutError:
             _refuse(feature, "time-limit", f"it takes longer than {self._time_limit_s:g} s to work on")
         except WorkerDiedError as error:
@@ -114,6 +118,23 @@ class Desk:
             raise outcome.refusal
         made: Made = outcome.value
         return made
+
+
+async def _while_wanted(working: Coroutine[Any, Any, Made]) -> Made:
+    """What a coroutine gives; it is cancelled, and ClientGoneError raised, when the client leaves."""
+    left = LEFT.get()
+    if left is None:
+        return await working
+    work, leaving = asyncio.create_task(working), asyncio.create_task(left.wait())
+    try:
+        await asyncio.wait((work, leaving), return_when=asyncio.FIRST_COMPLETED)
+        if work.done():
+            return work.result()
+        raise ClientGoneError("nobody waits for the answer any more")
+    finally:
+        for task in (work, leaving):
+            task.cancel()
+        await asyncio.gather(work, leaving, return_exceptions=True)
 
 
 def _refuse(feature: str, rule: str, message: str) -> NoReturn:

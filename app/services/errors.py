@@ -11,6 +11,7 @@
     ├── UnsafeError            the plan breaks a hard constraint, or the autopilot cannot hold it
     ├── OverloadedError        no room for more work now
     ├── StorageError           the database cannot be written or read
+    ├── ClientGoneError        nobody waits for the answer any more
     ├── LinkError              the vehicle cannot be reached
     └── CommandError           a flight command that was not carried out as far as anybody can tell
         ├── CommandRefusedError    the vehicle said no, or it was not sent for a reason
@@ -85,6 +86,10 @@ class OverloadedError(ServiceError):
 
 class StorageError(ServiceError):
     """The database, or the disk below it, cannot be written or read: nothing of the request was kept."""
+
+
+class ClientGoneError(ServiceError):
+    """Nobody waits for the answer any more: what was computed for it has been ended."""
 
 
 class LinkError(ServiceError):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import errno
 import tempfile
 from collections.abc import AsyncIterator, Iterator
 from contextlib import asynccontextmanager
@@ -15,8 +16,10 @@ import uvicorn
 from fastapi import FastAPI, Request
 from fastapi.responses import PlainTextResponse, Response, StreamingResponse
 
+from app.door.crowd import most_connections
 from app.door.door import Door, Patience
 from app.door.lanes import CHANGES, OTHERS, READS
+from app.door.quiet import Quiet
 from app.serving import private_socket
 
 USUAL = Patience()
@@ -242,3 +245,99 @@ async def test_slow_and_wrong_clients_are_not_waited_for(
             async with asyncio.timeout(10):
                 assert (await reader.read()).startswith(answered)
         writer.close()
+
+
+async def test_idle_connections_make_room(folder: Path) -> None:
+    """However many connections are left idle or half said, who asks something is answered at once."""
+    async with standing(application("web"), folder / "web"):
+        door = Door(str(folder / "web"), str(folder / "links"), most=8)
+        server = await asyncio.start_server(door.serve, "127.0.0.1", 0)
+        port = server.sockets[0].getsockname()[1]
+        left: list[asyncio.StreamWriter] = []
+        head = b"POST /api/v1/vehicles/1/commands HTTP/1.1\r\nHost: localhost\r\nContent-Length: 9\r\n\r\n"
+        for said in (b"", b"GET / HTT", head + b"half") * 10:
+            _, writer = await asyncio.open_connection("127.0.0.1", port)
+            writer.write(said)
+            await writer.drain()
+            left.append(writer)
+        async with httpx.AsyncClient(base_url=f"http://127.0.0.1:{port}", timeout=20) as client:
+            for _ in range(3):
+                assert (await client.post("/", content=b"ab")).text == "web POST / 2 195"
+        assert door.crowd.open <= 8
+        for writer in left:
+            writer.close()
+        server.close()
+        async with asyncio.timeout(10):
+            while door.crowd.open:
+                await asyncio.sleep(0.01)
+
+
+async def test_a_body_that_drips_ends(folder: Path) -> None:
+    """Sent without a pause but for ever, a large body is not waited for longer than its speed allows."""
+    patience = Patience(body_s=0.5, body_bytes_s=1000.0)
+    async with (
+        standing(application("web"), folder / "web"),
+        opened(folder / "web", folder / "links", patience) as port,
+    ):
+        reader, writer = await asyncio.open_connection("127.0.0.1", port)
+        writer.write(b"POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 100000\r\n\r\n")
+        ended = asyncio.create_task(reader.read())
+        async with asyncio.timeout(20):
+            while not ended.done():
+                with contextlib.suppress(ConnectionError):
+                    writer.write(b"x")
+                    await writer.drain()
+                await asyncio.sleep(0.05)
+        with contextlib.suppress(ConnectionResetError):
+            assert ended.result() == b""
+        writer.close()
+
+
+async def test_a_body_in_chunks_may_have_a_slow_answer(folder: Path) -> None:
+    """Once its last chunk has come the client is waited for no more."""
+    patience = Patience(body_s=0.2)
+
+    async def slow(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        await reader.readuntil(b"0\r\n\r\n")
+        await asyncio.sleep(0.5)
+        writer.write(b"HTTP/1.1 200 OK\r\nContent-Length: 2\r\n\r\nok")
+        with contextlib.suppress(ConnectionError):
+            writer.close()
+            await writer.wait_closed()
+        gone.set()
+
+    gone = asyncio.Event()
+    server = await asyncio.start_unix_server(slow, folder / "web")
+
+    async def chunks() -> AsyncIterator[bytes]:
+        yield b"a"
+        yield b"b"
+
+    door = Door(str(folder / "web"), str(folder / "links"), patience)
+    before = await asyncio.start_server(door.serve, "127.0.0.1", 0)
+    port = before.sockets[0].getsockname()[1]
+    async with httpx.AsyncClient(base_url=f"http://127.0.0.1:{port}") as client:
+        assert (await client.post("/", content=chunks())).text == "ok"
+        await gone.wait()
+    async with asyncio.timeout(10):
+        while door.crowd.open:
+            await asyncio.sleep(0.01)
+    before.close()
+    server.close()
+
+
+@pytest.mark.parametrize(("descriptors", "most"), [(1024, 480), (256, 96), (65_536, 600), (20, 8)])
+def test_no_more_connections_than_there_are_descriptors_for(descriptors: int, most: int) -> None:
+    """Each takes two, and some are for other things."""
+    assert most_connections(600, descriptors) == most
+
+
+def test_missing_descriptors_are_told_once(caplog: pytest.LogCaptureFixture) -> None:
+    """However often accepting fails; other exceptions go where they went."""
+    quiet, loop = Quiet(), asyncio.new_event_loop()
+    for _ in range(100):
+        quiet(loop, {"message": "accept", "exception": OSError(errno.EMFILE, "Too many open files")})
+    assert len(caplog.records) == 1
+    quiet(loop, {"message": "another matter", "exception": ValueError("x")})
+    assert len(caplog.records) == 2
+    loop.close()

@@ -10,9 +10,10 @@ from functools import partial
 import pytest
 
 from app.services.desk import WAITING_EACH, Desk
-from app.services.errors import NotFoundError, OverloadedError, RefusedError
+from app.services.errors import ClientGoneError, NotFoundError, OverloadedError, RefusedError
 from app.services.plans import work
 from app.services.plans.pool import WorkerPool
+from app.services.presence import LEFT
 from tests.app import fakes
 
 MEMORY_BYTES = 300_000_000
@@ -94,3 +95,23 @@ async def test_a_worker_that_dies_is_not_taken_for_a_large_file(desk: Desk) -> N
         await desk.run("file", fakes.dying)
     assert [finding.rule for finding in refused.value.findings] == ["worker-died"]
     assert await desk.run("figure", math.sqrt, 4.0) == 2.0
+
+
+async def test_a_client_that_leaves_ends_its_work() -> None:
+    """The process is killed at once, a wait for a turn ends, and who stays behind gets the turn."""
+    pool = WorkerPool(1, fakes.no_warm_up)
+    desk = Desk(pool, workers=1, time_limit_s=60.0)
+    left = asyncio.Event()
+    token = LEFT.set(left)
+    endless = asyncio.create_task(desk.run("scenario", fakes.endless))
+    waiting = asyncio.create_task(desk.run("scenario", fakes.endless))
+    LEFT.reset(token)
+    behind = asyncio.create_task(desk.run("figure", math.sqrt, 4.0))
+    await asyncio.sleep(0)
+    left.set()
+    for task in (endless, waiting):
+        with pytest.raises(ClientGoneError):
+            await task
+    async with asyncio.timeout(30):
+        assert await behind == 2.0
+    await pool.stop()
