@@ -9,6 +9,7 @@ from app.imports import esri, kml
 from app.imports.archive import unpack
 from app.imports.encodings import guessed
 from app.imports.errors import RegionFileError, file_error
+from app.imports.notes import Notes
 from app.imports.shapes import Shape
 from planner.errors import Finding
 
@@ -25,7 +26,7 @@ ReadOne = Callable[[bytes, str], list[Shape]]
 
 
 def read_bundle(
-    data: bytes, crs: str | None, notes: list[str], read_one: ReadOne, form: str | None = None
+    data: bytes, crs: str | None, notes: Notes, read_one: ReadOne, form: str | None = None
 ) -> tuple[str, list[Shape]]:
     """The shapes of every region file in an archive, and what kind of archive it is.
 

@@ -13,6 +13,7 @@ import shapefile
 from app.imports.crs import ToWgs84, crs_of_prj, to_wgs84, written_crs
 from app.imports.encodings import codec_of, codec_of_driver, guessed, reads
 from app.imports.errors import file_error
+from app.imports.notes import Notes
 from app.imports.rings import grouped
 from app.imports.shapes import MAX_SHAPES, Shape, moved
 
@@ -26,7 +27,7 @@ _NAMES = ("name", "label", "title", "id")
 
 
 def read_shapefile(
-    data: bytes, companions: Mapping[str, bytes], crs: str | None, notes: list[str], layer: str = ""
+    data: bytes, companions: Mapping[str, bytes], crs: str | None, notes: Notes, layer: str = ""
 ) -> list[Shape]:
     """The shapes of one shapefile.
 
@@ -67,7 +68,8 @@ def read_shapefile(
     shapes: list[Shape] = []
     for index, one in enumerate(drawn):
         row = {key: str(value).strip() for key, value in records[index].items()} if records else {}
-        shapes += _shapes(one, row, PurePosixPath(layer).parts, move, notes)
+        with notes.one_shape(""):
+            shapes += _shapes(one, row, PurePosixPath(layer).parts, move, notes)
     return shapes
 
 
@@ -102,7 +104,7 @@ def _crs(companions: Mapping[str, bytes], crs: str | None, layer: str) -> Any:
     return crs_of_prj(companions[".prj"].decode("utf-8", "replace").strip("\ufeff\x00 \r\n\t"))
 
 
-def _encoding(companions: Mapping[str, bytes], notes: list[str], layer: str) -> str:
+def _encoding(companions: Mapping[str, bytes], notes: Notes, layer: str) -> str:
     """The code page of the table: of .cpg, else as the table says, else as its text looks."""
     table = companions.get(".dbf", b"")
     named = codec_of(companions.get(".cpg", b"").decode("utf-8", "ignore"))
@@ -124,7 +126,7 @@ def _text_of(table: bytes) -> bytes:
 
 
 def _shapes(
-    drawn: Any, row: dict[str, str], folders: tuple[str, ...], move: ToWgs84, notes: list[str]
+    drawn: Any, row: dict[str, str], folders: tuple[str, ...], move: ToWgs84, notes: Notes
 ) -> list[Shape]:
     kind = drawn.shapeType
     lower = {key.lower(): value for key, value in row.items()}

@@ -7,6 +7,7 @@ from typing import Any
 
 from app.imports.crs import ToWgs84, crs_of_prj, mover, written_crs
 from app.imports.errors import file_error
+from app.imports.notes import Notes
 from app.imports.plain import places_of, texts_of
 from app.imports.rings import grouped
 from app.imports.shapes import Shape, labelled, moved
@@ -34,7 +35,7 @@ def _is_geometry(value: Any) -> bool:
     return isinstance(value, dict) and any(kind in value for kind in kinds)
 
 
-def shapes_of(document: Mapping[str, Any], crs: str | None, notes: list[str]) -> list[Shape]:
+def shapes_of(document: Mapping[str, Any], crs: str | None, notes: Notes) -> list[Shape]:
     """The shapes of a parsed document."""
     shapes: list[Shape] = []
     for folders, feature_set in _sets(document):
@@ -74,7 +75,7 @@ def _of_feature(
     display: str,
     move: ToWgs84 | None,
     crs: str | None,
-    notes: list[str],
+    notes: Notes,
 ) -> list[Shape]:
     attributes = feature.get("attributes")
     texts = texts_of(attributes) if isinstance(attributes, dict) else {}
@@ -87,7 +88,9 @@ def _of_feature(
     if not isinstance(geometry, dict):
         raise file_error("esri-json", f"{name or 'a feature'} has no geometry", "export it again")
     move = _mover(geometry, crs, notes) or move
-    drawn = [Shape(s.kind, s.parts, name, folders, texts) for s in _drawn(geometry, name)]
+    drawn: list[Shape] = []
+    with notes.one_shape(name):
+        drawn = [Shape(s.kind, s.parts, name, folders, texts) for s in _drawn(geometry, name)]
     return labelled([moved(shape, move) for shape in drawn])
 
 
@@ -119,7 +122,7 @@ def _list(value: Any, name: str) -> list[Any]:
     return value
 
 
-def _mover(holder: Mapping[str, Any], crs: str | None, notes: list[str]) -> ToWgs84 | None:
+def _mover(holder: Mapping[str, Any], crs: str | None, notes: Notes) -> ToWgs84 | None:
     if crs is not None:
         return mover(written_crs(crs), notes)
     reference = holder.get("spatialReference")

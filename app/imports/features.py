@@ -14,7 +14,7 @@ from app.imports.shapes import MAX_POSITIONS, MAX_SHAPES, Shape
 from app.imports.values import add_values
 from planner.errors import Finding
 
-_LIMIT_FINDINGS = 20
+MAX_FINDINGS = 20
 #: Characters of a folder's text in the account of a shape; all of it counts.
 _MOST_SHOWN = 200
 
@@ -124,10 +124,10 @@ def _refuse(made: Made) -> None:
         )
         for account in made.accounts
     ]
-    more = len(findings) - _LIMIT_FINDINGS
+    more = len(findings) - MAX_FINDINGS
     detail = f"{findings[0].feature}: {findings[0].message}"
     if more > 0:
-        findings = findings[:_LIMIT_FINDINGS]
+        findings = findings[:MAX_FINDINGS]
         detail += f" (and {more} findings more than listed)"
     raise RegionFileError(detail, tuple(findings))
 

@@ -9,6 +9,7 @@ from xml.etree.ElementTree import Element
 from app.imports.crs import ToWgs84, mover, written_crs
 from app.imports.errors import file_error
 from app.imports.gml_geometry import GEOMETRIES, Positions, shapes_in
+from app.imports.notes import Notes
 from app.imports.shapes import Shape, labelled, moved
 from app.imports.xml import child_text, children, local_name, parse
 
@@ -30,7 +31,7 @@ def is_gml(root: Element) -> bool:
     return any("opengis.net/gml" in element.tag for element in root.iter() if isinstance(element.tag, str))
 
 
-def read_gml(data: bytes, crs: str | None, notes: list[str]) -> list[Shape]:
+def read_gml(data: bytes, crs: str | None, notes: Notes) -> list[Shape]:
     """The shapes of a GML document.
 
     Raises
@@ -71,7 +72,7 @@ def _given(element: Element, above: _Given) -> _Given:
 
 
 def _of_feature(
-    feature: Element, folders: tuple[str, ...], given: _Given, crs: str | None, notes: list[str]
+    feature: Element, folders: tuple[str, ...], given: _Given, crs: str | None, notes: Notes
 ) -> list[Shape]:
     texts = dict(_texts(feature))
     name = next((texts[key] for key in _NAMES if texts.get(key)), "")
@@ -80,6 +81,7 @@ def _of_feature(
             (value for key, value in feature.attrib.items() if key.rpartition("}")[2] in ("id", "fid")), ""
         )
     found: list[Shape] = []
+    faults = len(notes.faults)
     for geometry, about in _geometries(feature, given):
         system = crs or about.system
         if system is None:
@@ -90,10 +92,10 @@ def _of_feature(
             )
         move, north_first = _mover(system, crs, notes)
         positions = Positions(about.dimension or 2, north_first, name)
-        for shape in shapes_in(geometry, positions):
-            drawn = Shape(shape.kind, shape.parts, name, folders, texts)
-            found.append(moved(drawn, move))
-    if not found:
+        with notes.one_shape(name):
+            for shape in shapes_in(geometry, positions):
+                found.append(moved(Shape(shape.kind, shape.parts, name, folders, texts), move))
+    if not found and len(notes.faults) == faults:
         notes.append(f"{name or local_name(feature)} has no geometry and is left out")
     return labelled(found)
 
@@ -107,7 +109,7 @@ def _geometries(element: Element, given: _Given) -> Iterator[tuple[Element, _Giv
             yield from _geometries(child, about)
 
 
-def _mover(system: str, crs: str | None, notes: list[str]) -> tuple[ToWgs84 | None, bool]:
+def _mover(system: str, crs: str | None, notes: Notes) -> tuple[ToWgs84 | None, bool]:
     """What brings places to WGS 84, and whether the file writes north before east.
 
     URNs and addresses of OGC mean the order of the authority; short codes, as GDAL reads them, east first.

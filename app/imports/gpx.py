@@ -8,6 +8,7 @@ from xml.etree.ElementTree import Element
 from shapely.geometry import LineString
 
 from app.imports.errors import file_error
+from app.imports.notes import Notes
 from app.imports.shapes import LonLat, Shape, line_of
 from app.imports.xml import child_text, children, local_name, parse
 
@@ -15,7 +16,7 @@ from app.imports.xml import child_text, children, local_name, parse
 _DETAIL_DEG = 1e-5
 
 
-def read_gpx(data: bytes, notes: list[str]) -> list[Shape]:
+def read_gpx(data: bytes, notes: Notes) -> list[Shape]:
     """The shapes of a GPX document; heights and times are left out.
 
     Raises
@@ -33,14 +34,16 @@ def read_gpx(data: bytes, notes: list[str]) -> list[Shape]:
     )
     shapes: list[Shape] = []
     for track in children(root, "trk"):
-        segments = [_points(segment, "trkpt") for segment in children(track, "trkseg")]
-        shapes += [_shape(_plain(segment), track, above) for segment in segments if segment]
+        with notes.one_shape(child_text(track, "name")):
+            segments = [_points(segment, "trkpt") for segment in children(track, "trkseg")]
+            shapes += [_shape(_plain(segment), track, above) for segment in segments if segment]
     for route in children(root, "rte"):
-        points = _points(route, "rtept")
-        if points:
-            shapes.append(_shape(_plain(points), route, above))
+        with notes.one_shape(child_text(route, "name")):
+            points = _points(route, "rtept")
+            shapes += [_shape(_plain(points), route, above)] if points else []
     for waypoint in children(root, "wpt"):
-        shapes.append(_shape((_place(waypoint),), waypoint, above))
+        with notes.one_shape(child_text(waypoint, "name")):
+            shapes.append(_shape((_place(waypoint),), waypoint, above))
     return shapes
 
 

@@ -7,14 +7,16 @@ from typing import Any
 from app.imports import esri_json, plain
 from app.imports.errors import file_error
 from app.imports.missions import shapes_of_mission
+from app.imports.notes import Notes
 from app.imports.shapes import MAX_SHAPES, Shape
+from app.imports.zones import is_zones, shapes_of_zones
 from app.services.documents import read_json
 from app.services.errors import RefusedError
 
 _SEPARATOR = b"\x1e"
 
 
-def read_json_file(data: bytes, crs: str | None, notes: list[str]) -> tuple[str, list[Shape]]:
+def read_json_file(data: bytes, crs: str | None, notes: Notes) -> tuple[str, list[Shape]]:
     """The format, and the shapes."""
     text = data.lstrip(b"\xef\xbb\xbf \t\r\n")
     try:
@@ -33,6 +35,8 @@ def read_json_file(data: bytes, crs: str | None, notes: list[str]) -> tuple[str,
         raise file_error("geojson", "the document is no JSON object", "send a FeatureCollection")
     if document.get("fileType") in ("Plan", "GeoFence", "RallyPoints"):
         return "mission", shapes_of_mission(data, notes)
+    if is_zones(document):
+        return "geojson", shapes_of_zones(document, notes)
     if esri_json.is_esri(document):
         return "esrijson", esri_json.shapes_of(document, crs, notes)
     return "geojson", plain.shapes_of(document, crs, notes)
@@ -44,7 +48,7 @@ def _has_lines(text: bytes) -> bool:
     return first.rstrip().endswith(b"}") and rest.strip() != b""
 
 
-def _lines(text: bytes, crs: str | None, notes: list[str]) -> list[Shape]:
+def _lines(text: bytes, crs: str | None, notes: Notes) -> list[Shape]:
     """Newline-delimited GeoJSON, and GeoJSON text sequences (RFC 8142)."""
     shapes: list[Shape] = []
     pieces = text.split(_SEPARATOR) if text.startswith(_SEPARATOR) else text.splitlines()

@@ -10,6 +10,7 @@ from xml.etree.ElementTree import Element
 
 from app.imports.archive import unpack
 from app.imports.errors import file_error
+from app.imports.notes import Notes
 from app.imports.placemark import shapes_of
 from app.imports.shapes import LonLat, Shape, line_of
 from app.imports.xml import child_text, children, local_name, parse
@@ -45,7 +46,7 @@ def _flat(parts: tuple[str, ...]) -> str:
     return "/".join(kept).casefold()
 
 
-def read_kml(data: bytes, notes: list[str]) -> list[Shape]:
+def read_kml(data: bytes, notes: Notes) -> list[Shape]:
     """The shapes of a KML document; heights are left out.
 
     Raises
@@ -56,7 +57,7 @@ def read_kml(data: bytes, notes: list[str]) -> list[Shape]:
     return _read(data, (), _Archive(), notes)
 
 
-def read_kmz(data: bytes, notes: list[str]) -> list[Shape]:
+def read_kmz(data: bytes, notes: Notes) -> list[Shape]:
     """The shapes of every KML document in an archive."""
     documents = {
         name: content
@@ -68,7 +69,7 @@ def read_kmz(data: bytes, notes: list[str]) -> list[Shape]:
     return read_documents(documents, notes)
 
 
-def read_documents(documents: Mapping[str, bytes], notes: list[str]) -> list[Shape]:
+def read_documents(documents: Mapping[str, bytes], notes: Notes) -> list[Shape]:
     """The shapes of documents that lie together.
 
     ``doc.kml`` first, or else the first; a document that another links to stands where the link does; those
@@ -91,7 +92,7 @@ def read_documents(documents: Mapping[str, bytes], notes: list[str]) -> list[Sha
     return shapes
 
 
-def _read(data: bytes, folders: tuple[str, ...], archive: _Archive, notes: list[str]) -> list[Shape]:
+def _read(data: bytes, folders: tuple[str, ...], archive: _Archive, notes: Notes) -> list[Shape]:
     root = parse(data, notes)
     if local_name(root) not in ("kml", "Document", "Folder", "Placemark"):
         raise file_error("not-kml", f"the file is a <{local_name(root)[:40]}>, not KML", "send KML")
@@ -104,11 +105,14 @@ def _read(data: bytes, folders: tuple[str, ...], archive: _Archive, notes: list[
         elif local_name(element) in _IMAGES:
             notes.append(f"{child_text(element, 'name') or 'an overlay'} is an image and is left out")
         else:
-            found = shapes_of(element, inside, own.get(local_name(element), {}), notes)
+            found: list[Shape] = []
+            faults = len(notes.faults)
+            with notes.one_shape(child_text(element, "name")):
+                found = shapes_of(element, inside, own.get(local_name(element), {}), notes)
             is_waypoint = next(children(element, "index"), None) is not None
             if is_waypoint and len(found) == 1 and found[0].kind == "point":
                 ways.setdefault(inside, []).append(found.pop().parts[0][0][0])
-            elif not found:
+            elif not found and len(notes.faults) == faults:
                 notes.append(
                     f"{child_text(element, 'name') or 'a placemark'} has no geometry and is left out"
                 )
@@ -145,7 +149,7 @@ def _walk(
             yield from _walk(list(element), (*folders, *(text for text in said if text)), own)
 
 
-def _followed(link: Element, folders: tuple[str, ...], archive: _Archive, notes: list[str]) -> list[Shape]:
+def _followed(link: Element, folders: tuple[str, ...], archive: _Archive, notes: Notes) -> list[Shape]:
     name = child_text(link, "name")
     inside = (*folders, name) if name else folders
     address = next(

@@ -7,6 +7,7 @@ from collections.abc import Collection, Iterator
 from xml.etree.ElementTree import Element
 
 from app.imports.errors import file_error
+from app.imports.notes import Notes
 from app.imports.rings import grouped
 from app.imports.shapes import LonLat, Rings, Shape, labelled, line_of
 from app.imports.xml import child_text, children, local_name
@@ -17,7 +18,7 @@ _COMMA = re.compile(r"\s*,\s*")
 
 
 def shapes_of(
-    placemark: Element, folders: tuple[str, ...], fields: Collection[str], notes: list[str]
+    placemark: Element, folders: tuple[str, ...], fields: Collection[str], notes: Notes
 ) -> list[Shape]:
     """The shapes of a placemark.
 

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Mapping
 from typing import Any
 
 from app.imports.crs import ToWgs84, mover, written_crs
 from app.imports.errors import file_error
+from app.imports.notes import Notes
 from app.imports.rings import grouped
 from app.imports.shapes import LonLat, Rings, Shape, labelled, moved
 
@@ -17,7 +19,7 @@ _MAX_DEPTH = 10
 _MAX_NESTED = 20_000
 
 
-def shapes_of(document: Mapping[str, Any], crs: str | None, notes: list[str]) -> list[Shape]:
+def shapes_of(document: Mapping[str, Any], crs: str | None, notes: Notes) -> list[Shape]:
     """The shapes of a parsed GeoJSON document."""
     folders: tuple[str, ...] = ()
     if document.get("type") == "FeatureCollection":
@@ -43,12 +45,12 @@ def _of_feature(
     folders: tuple[str, ...],
     move: ToWgs84 | None,
     crs: str | None,
-    notes: list[str],
+    notes: Notes,
 ) -> list[Shape]:
     holder = feature.get("properties")
     texts = texts_of(holder) if isinstance(holder, dict) else {}
     geometry = feature.get("geometry") if feature.get("type") == "Feature" else feature
-    name = next((texts[key] for key in _NAMES if texts.get(key)), "")
+    name = name_of(texts)
     if not name and isinstance(feature.get("id"), (str, int)):
         name = str(feature["id"])
     if geometry is None:
@@ -56,8 +58,23 @@ def _of_feature(
         return []
     if geometry is not feature and isinstance(geometry, dict):
         move = _mover(geometry, crs, notes) or move
-    found = [Shape(s.kind, s.parts, name, folders, texts) for s in drawn(geometry, name)]
+    extent = geometry.get("extent") if isinstance(geometry, dict) else None
+    if isinstance(extent, dict) and "radius" in extent:
+        # a circle of EUROCAE ED-318
+        texts = {**texts, "radius_m": json.dumps(extent["radius"])}
+    found: list[Shape] = []
+    with notes.one_shape(name):
+        found = [Shape(s.kind, s.parts, name, folders, texts) for s in drawn(geometry, name)]
     return labelled([moved(shape, move) for shape in found])
+
+
+def name_of(texts: Mapping[str, str]) -> str:
+    """The name; of one in several languages the first."""
+    name = next((texts[key] for key in _NAMES if texts.get(key)), "")
+    if name.startswith("["):
+        found = re.search(r'"text": "((?:[^"\\\\]|\\\\.)*)"', name)
+        name = found[1] if found else name
+    return name
 
 
 def texts_of(properties: Mapping[str, Any]) -> dict[str, str]:
@@ -71,7 +88,7 @@ def texts_of(properties: Mapping[str, Any]) -> dict[str, str]:
     return texts
 
 
-def _mover(holder: Mapping[str, Any], crs: str | None, notes: list[str]) -> ToWgs84 | None:
+def _mover(holder: Mapping[str, Any], crs: str | None, notes: Notes) -> ToWgs84 | None:
     """What brings the places to WGS 84, by the member ``crs`` of GeoJSON before RFC 7946."""
     if crs is not None:
         return mover(written_crs(crs), notes)

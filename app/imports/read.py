@@ -11,11 +11,12 @@ from app.imports import esri, gml, gpx, kml
 from app.imports.archive import is_zip
 from app.imports.bundle import read_bundle
 from app.imports.encodings import guessed
-from app.imports.errors import file_error
-from app.imports.features import Account, features
+from app.imports.errors import RegionFileError, file_error
+from app.imports.features import MAX_FINDINGS, Account, features
 from app.imports.gml import is_gml
 from app.imports.jsons import read_json_file
 from app.imports.missions import shapes_of_mission
+from app.imports.notes import Notes
 from app.imports.options import ImportOptions, check_options
 from app.imports.shapes import Shape
 from app.imports.tables import is_table, read_table
@@ -82,17 +83,19 @@ def import_regions(
     """
     options = options or ImportOptions()
     check_options(options)
-    notes: list[str] = []
+    notes = Notes()
     found, shapes = _read(data, form, options.crs, companions or {}, notes)
+    if notes.faults and not shapes:
+        raise RegionFileError(notes.faults[0].message, tuple(notes.faults[:MAX_FINDINGS]))
     made = features(shapes, options, notes)
     collection = {"type": "FeatureCollection", "features": made.features}
     return Imported(
-        collection, found, tuple(made.accounts), tuple(made.findings), tuple(dict.fromkeys(notes))
+        collection, found, tuple(made.accounts), (*notes.faults, *made.findings), tuple(dict.fromkeys(notes))
     )
 
 
 def _read(
-    data: bytes, form: str | None, crs: str | None, companions: Mapping[str, bytes], notes: list[str]
+    data: bytes, form: str | None, crs: str | None, companions: Mapping[str, bytes], notes: Notes
 ) -> tuple[str, list[Shape]]:
     found = form or _format(data)
     if found in ("zip", "kmz", "shapefile"):
@@ -101,7 +104,7 @@ def _read(
     return _shapes(found, data, crs, companions, notes)
 
 
-def _member(data: bytes, name: str, crs: str | None, notes: list[str]) -> list[Shape]:
+def _member(data: bytes, name: str, crs: str | None, notes: Notes) -> list[Shape]:
     """One file of an archive, its path its folders."""
     found = _format(data)
     if found == "zip":
@@ -127,7 +130,7 @@ def _format(data: bytes) -> str:
         if local_name(root) == "gpx":
             return "gpx"
         return "gml" if local_name(root) != "kml" and is_gml(root) else "kml"
-    text = _text(data, [])
+    text = _text(data, Notes())
     if text.lstrip("\ufeff \r\n").startswith("QGC WPL") or is_point_list(text):
         return "mission"
     if is_wkt(text):
@@ -148,7 +151,7 @@ def _start(data: bytes) -> str:
     return text.lstrip(" \t\r\n\ufeff")[:1]
 
 
-def _text(data: bytes, notes: list[str]) -> str:
+def _text(data: bytes, notes: Notes) -> str:
     if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
         return data.decode("utf-16", "replace")
     if b"\x00" in data:
@@ -162,7 +165,7 @@ def _text(data: bytes, notes: list[str]) -> str:
 
 
 def _shapes(
-    form: str, data: bytes, crs: str | None, companions: Mapping[str, bytes], notes: list[str]
+    form: str, data: bytes, crs: str | None, companions: Mapping[str, bytes], notes: Notes
 ) -> tuple[str, list[Shape]]:
     """The format that it is in the end, and the shapes."""
     match form:

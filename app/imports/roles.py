@@ -39,6 +39,12 @@ _OURS = frozenset(
 )  # fmt: skip
 
 
+#: What says so, the word, and whether it says little else.
+_Forbidden = tuple[str, str, bool]
+#: Characters of a text that is no name or value any more.
+_PROSE = 80
+
+
 @dataclass(frozen=True, slots=True)
 class Verdict:
     """A shape's role.
@@ -98,14 +104,15 @@ def _told(shape: Shape, options: ImportOptions) -> Verdict | None:
     """What the file says, by its words."""
     texts = list(_texts(shape, options))
     own = shape.properties.get("role", "").strip()
-    forbidden = next(((where, word) for where, text in texts if (word := forbids(text))), None)
-    forbidden = forbidden or _forbidden_by_value(shape)
+    forbidden = _forbidden(texts, shape)
     if own:
-        return _by_own_role(own, shape, forbidden)
+        return _by_own_role(own, shape, forbidden if forbidden is not None and forbidden[2] else None)
     said = _said(texts, shape)
     if forbidden is not None:
-        where, word = forbidden
+        where, word, plainly = forbidden
         why = f"{where} says {word!r}"
+        if not plainly:
+            return _by_prose(shape, said, why)
         if said is None or said.role in KEEP_AWAY:
             # over an obstacle and through a threat one may fly
             return Verdict("no_fly", why)
@@ -114,18 +121,26 @@ def _told(shape: Shape, options: ImportOptions) -> Verdict | None:
         return Verdict("no_fly", f"{why}, but {said.why}", "contradiction")
     if said is not None:
         return said
-    if shape.kind == "point":
+    if shape.kind == "point" and "radius_m" not in shape.properties:
         return None
     for where, text in texts:
-        if word := keeps_inside(text):
-            return Verdict("area", f"{where} says {word!r}")
+        if inside := keeps_inside(text):
+            doubt: Literal["", "open"] = "open" if shape.kind == "point" else ""
+            return Verdict("no_fly" if doubt else "area", f"{where} says {inside!r}", doubt)
     for where, text in texts:
-        if word := says_either(text):
-            return Verdict("no_fly", f"{where} says {word!r}, which can mean either side", "open")
+        if either := says_either(text):
+            return Verdict("no_fly", f"{where} says {either!r}, which can mean either side", "open")
     return None
 
 
-def _by_own_role(own: str, shape: Shape, forbidden: tuple[str, str] | None) -> Verdict:
+def _by_prose(shape: Shape, said: Verdict | None, why: str) -> Verdict | None:
+    """Where a longer text speaks of a restriction, it may be another place's: to be asked for."""
+    if said is not None and (said.role in KEEP_AWAY or shape.kind == "point"):
+        return said
+    return None if shape.kind == "point" else Verdict("no_fly", f"{why}, in a longer text", "open")
+
+
+def _by_own_role(own: str, shape: Shape, forbidden: _Forbidden | None) -> Verdict:
     why = f"its role is {own[:40]!r}"
     role = own.lower() if own.lower() in ROLES else role_of(own)
     if role is None and forbids(own):
@@ -136,8 +151,7 @@ def _by_own_role(own: str, shape: Shape, forbidden: tuple[str, str] | None) -> V
         return Verdict("no_fly", f"{why}, which is none of ours", "open")
     if forbidden is None or role in KEEP_AWAY or (role in _TERMINALS and shape.kind == "point"):
         return Verdict(role, why)
-    where, word = forbidden
-    return Verdict("no_fly", f"{where} says {word!r}, but {why}", "contradiction")
+    return Verdict("no_fly", f"{forbidden[0]} says {forbidden[1]!r}, but {why}", "contradiction")
 
 
 def _texts(shape: Shape, options: ImportOptions) -> Iterator[tuple[str, str]]:
@@ -152,19 +166,25 @@ def _texts(shape: Shape, options: ImportOptions) -> Iterator[tuple[str, str]]:
     yield "the file's name", options.file_name.rpartition(".")[0] or options.file_name
 
 
-def _forbidden_by_value(shape: Shape) -> tuple[str, str] | None:
+def _forbidden(texts: Sequence[tuple[str, str]], shape: Shape) -> _Forbidden | None:
+    """What forbids flying, what says so plainly first."""
+    found = [(where, word, len(text) <= _PROSE) for where, text in texts if (word := forbids(text))]
+    found += _forbidden_by_value(shape)
+    return next((one for one in found if one[2]), found[0] if found else None)
+
+
+def _forbidden_by_value(shape: Shape) -> Iterator[_Forbidden]:
     for key, value in shape.properties.items():
         if key in _OURS:
             continue
         if is_false(value):
             # inclusion=false forbids, exclusion=false says nothing
             if keeps_inside(key) and plain(value):
-                return f"its {key}", value
+                yield f"its {key[:40]}", value, True
             continue
         word = forbids(value) or (None if says_either(value) else forbids(key))
         if word is not None:
-            return f"its {key[:40]}", word
-    return None
+            yield f"its {key[:40]}", word, len(value) <= _PROSE
 
 
 def _said(texts: Sequence[tuple[str, str]], shape: Shape) -> Verdict | None:

@@ -10,6 +10,7 @@ from collections.abc import Mapping, Sequence
 
 from app.imports.crs import ToWgs84, mover, written_crs
 from app.imports.errors import file_error
+from app.imports.notes import Notes
 from app.imports.shapes import MAX_SHAPES, Shape, moved
 from app.imports.wkt import shapes_of_wkt
 from app.imports.words import plain
@@ -42,7 +43,7 @@ def is_table(text: str) -> bool:
     return _columns(_head(text)[1]) is not None
 
 
-def read_table(text: str, crs: str | None, notes: list[str]) -> list[Shape]:
+def read_table(text: str, crs: str | None, notes: Notes) -> list[Shape]:
     """The shapes of the rows; every further column is a value of the shape.
 
     Raises
@@ -66,7 +67,8 @@ def read_table(text: str, crs: str | None, notes: list[str]) -> list[Shape]:
         next(reader)
         for row in reader:
             if any(cell.strip() for cell in row):
-                shapes += _of_row(row, keys, columns, reader.line_num, (move, crs), notes)
+                with notes.one_shape(f"line {reader.line_num}"):
+                    shapes += _of_row(row, keys, columns, reader.line_num, (move, crs), notes)
             if len(shapes) > MAX_SHAPES:
                 raise file_error("too-many-shapes", f"more than {MAX_SHAPES} shapes", "send fewer")
     except csv.Error as error:
@@ -101,7 +103,7 @@ def _of_row(
     columns: tuple[int, ...],
     line: int,
     system: tuple[ToWgs84 | None, str | None],
-    notes: list[str],
+    notes: Notes,
 ) -> list[Shape]:
     values = {
         key: cell.strip() for i, (key, cell) in enumerate(zip(keys, row, strict=False)) if i not in columns

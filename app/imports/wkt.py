@@ -12,6 +12,7 @@ from shapely.errors import ShapelyError
 
 from app.imports.crs import mover, written_crs
 from app.imports.errors import file_error
+from app.imports.notes import Notes
 from app.imports.plain import drawn
 from app.imports.shapes import Shape, labelled, moved
 
@@ -25,7 +26,7 @@ def is_wkt(text: str) -> bool:
     return _BEGINNING.match(text[:200]) is not None
 
 
-def read_wkt(text: str, crs: str | None, notes: list[str]) -> list[Shape]:
+def read_wkt(text: str, crs: str | None, notes: Notes) -> list[Shape]:
     """The shapes of all geometries of a text.
 
     Raises
@@ -39,7 +40,7 @@ def read_wkt(text: str, crs: str | None, notes: list[str]) -> list[Shape]:
     return shapes
 
 
-def shapes_of_wkt(text: str, name: str, crs: str | None, notes: list[str]) -> list[Shape]:
+def shapes_of_wkt(text: str, name: str, crs: str | None, notes: Notes) -> list[Shape]:
     """The shapes of one geometry."""
     head = _BEGINNING.match(text)
     if head is None:

@@ -22,7 +22,8 @@ _FORBID = (
     r"|off limits?|out of bounds|keep ?out|stay ?out|stay clear|keep clear|stand ?off|avoid\w*|exclu\w*"
     r"|danger\w*|hazard\w*|warning (?:area|zone)\w*|alert area\w*|firing (?:area|range|zone)\w*|live fire"
     r"|military (?:area|zone|airspace)\w*|controlled (?:airspace|zone|area)\w*|control (?:zone|area)\w*"
-    r"|denied|closed airspace|not allowed|not permitted|unsafe",
+    r"|req authori[sz]ation|authori[sz]ation required|permission required|denied"
+    r"|closed airspace|not allowed|not permitted|unsafe",
     # abbreviations of air traffic
     r"nfz\w*|ctr|mctr|ctz|atz|frz|tfrs?|koz|adiz|nofly\w*|ed r|ed p|ed d",
     # German
@@ -71,7 +72,7 @@ _INSIDE = re.compile(
 _EITHER = re.compile(
     r"\b(?:geo ?fenc\w*|fenc(?:e|es|ing)|d ?fence|geo ?zones?|geographical zones?|airspaces?"
     r"|luftraum\w*|clotur\w*"
-    r"|cerca virtual|geocerca\w*|geovall\w*)\b|围栏|圍欄|空域|ジオフェンス|空域|공역"
+    r"|conditional|u ?space|cerca virtual|geocerca\w*|geovall\w*)\b|围栏|圍欄|空域|ジオフェンス|空域|공역"
 )
 _THREATENS = re.compile(r"\b(?:threats?|missiles?|radars?|sams?|manpads?|aaa)\b")
 

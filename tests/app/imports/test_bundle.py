@@ -93,7 +93,7 @@ def test_paths_of_any_code_page_say_what_they_say() -> None:
 
 def test_a_bad_file_of_an_archive_is_named() -> None:
     """What is wrong says in which file."""
-    data = packed({"a.geojson": GEOJSON, "b.gpx": b"<gpx><wpt/></gpx>"})
+    data = packed({"a.geojson": GEOJSON, "b.gpx": b"<gpx><wpt></gpx>"})
     with pytest.raises(RegionFileError) as caught:
         import_regions(data)
     assert caught.value.findings[0].feature == "b.gpx"

@@ -26,7 +26,10 @@ def test_tracks_and_routes_are_corridors() -> None:
 
 
 def test_a_point_without_a_place_is_named() -> None:
-    """A missing attribute is a fault of the file."""
+    """A missing attribute is a fault of its track, and of the file where that is all there is."""
+    data = GPX.replace(b'lat="47.31" lon="8.50"', b'lon="8.50"')
+    found = import_regions(data, ImportOptions(width_m=10.0))
+    assert [(fault.feature, fault.rule) for fault in found.left_out] == [("river", "gpx-point")]
     with pytest.raises(RegionFileError, match="lat None") as caught:
-        import_regions(GPX.replace(b'lat="47.31" lon="8.50"', b'lon="8.50"'))
+        import_regions(b'<gpx><wpt lon="8"><name>x</name></wpt></gpx>')
     assert caught.value.findings[0].rule == "gpx-point"

@@ -233,6 +233,68 @@ def test_one_bad_shape_refuses_no_other() -> None:
     assert [zone["geometry"]["type"] for zone in zones] == ["Polygon"] * 3
 
 
+def test_one_shape_that_cannot_be_read_refuses_no_other() -> None:
+    """It is found by its name, in every format; where it is the only one the file is refused."""
+    good, bad = (
+        placemark("good", polygon(RING)),
+        placemark("bad", "<Point><coordinates>x</coordinates></Point>"),
+    )
+    ring = {"type": "Feature", "properties": {"name": "good"}, "geometry": SQUARE}
+    broken = {
+        "type": "Feature",
+        "properties": {"name": "bad"},
+        "geometry": {"type": "Polygon", "coordinates": [3]},
+    }
+    rings = [{"attributes": {"name": "good"}, "geometry": {"rings": [RING]}}]
+    rings.append({"attributes": {"name": "bad"}, "geometry": {"rings": [[["x", 3]]]}})
+    files = [
+        kml(good, bad),
+        json.dumps({"type": "FeatureCollection", "features": [ring, broken]}).encode(),
+        json.dumps({"features": rings}).encode(),
+    ]
+    for data in files:
+        found = became(data)
+        assert [feature["id"] for feature in found.collection["features"]] == ["good"]
+        assert [finding.feature for finding in found.left_out] == ["bad"]
+    with pytest.raises(RegionFileError):
+        became(kml(bad))
+
+
+PROSE = "This field lies to the north of the village, beside the restricted wood; mind the fence."
+
+
+def test_prose_is_asked_about() -> None:
+    """A longer text that speaks of a restriction may mean another place: the role of the import settles it."""
+    data = geojson("x", SQUARE, {}, {"description": PROSE})
+    account = account_of(data)
+    assert (account.role, account.in_doubt) == ("no_fly", True)
+    assert not account_of(data, role="roi").in_doubt
+    assert account_of(geojson("x", SQUARE, {}, {"description": PROSE, "role": "roi"})).role == "roi"
+    assert account_of(geojson("NFZ", SQUARE, {}, {"description": PROSE}), role="roi").role == "no_fly"
+
+
+ZONE = {"identifier": "A1", "name": "Prison", "restriction": "PROHIBITED", "type": "COMMON"}
+
+
+@pytest.mark.parametrize("restriction", ["PROHIBITED", "REQ_AUTHORISATION", "CONDITIONAL", "NO_RESTRICTION"])
+def test_zones_of_the_states_forbid_or_are_asked_about(restriction: str) -> None:
+    """EUROCAE ED-269 and ED-318: polygons and circles, none of them a region to fly over."""
+    ring = {"horizontalProjection": SQUARE, "uomDimensions": "M"}
+    disc = {"horizontalProjection": {"type": "Circle", "center": [8.55, 47.35], "radius": 900}}
+    zones = {"title": "Zones", "features": [ZONE | {"restriction": restriction, "geometry": [ring, disc]}]}
+    found = became(json.dumps(zones).encode())
+    assert [account.role for account in found.shapes] == ["no_fly", "no_fly"]
+    doubtful = restriction in ("CONDITIONAL", "NO_RESTRICTION")
+    assert [account.in_doubt for account in found.shapes] == [doubtful, doubtful]
+    assert found.collection["features"][1]["properties"]["radius_m"] == 900.0
+    circle = {"type": "Point", "coordinates": [8.5, 47.3], "extent": {"subType": "Circle", "radius": 3500}}
+    name = [{"text": "Castle", "lang": "en-GB"}]
+    newer = geojson("", circle, {}, {"name": name, "type": restriction.replace("IS", "IZ")})
+    (feature,) = became(newer).collection["features"]
+    assert feature["id"] == "Castle"
+    assert (feature["properties"]["role"], feature["properties"]["radius_m"]) == ("no_fly", 3500.0)
+
+
 def test_an_open_no_fly_line_forbids_what_it_may_mean() -> None:
     """It covers the line, what it encloses when closed, and the strip of a width, by shapely."""
     dice = random.Random(5)
