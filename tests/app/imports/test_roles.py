@@ -264,7 +264,7 @@ PROSE = "This field lies to the north of the village, beside the restricted wood
 
 
 def test_prose_is_asked_about() -> None:
-    """A longer text that speaks of a restriction may mean another place: the role of the import settles it."""
+    """A longer text that speaks of a restriction may mean another place: the import settles it."""
     data = geojson("x", SQUARE, {}, {"description": PROSE})
     account = account_of(data)
     assert (account.role, account.in_doubt) == ("no_fly", True)
