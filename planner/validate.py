@@ -8,12 +8,11 @@ from typing import Any
 
 from planner.airspace.terrain import Terrains
 from planner.coverage.registry import family_of
+from planner.coverage.seen import check_visible
 from planner.errors import Finding, InfeasibleError, ScenarioError
 from planner.geojson import read_scenario
 from planner.scenario import Scenario
-from planner.sensors.base import Sensor
 from planner.tasks.setting import Setting, seeing
-from planner.wishes import Region
 
 #: From so many passes on planning takes tens of seconds, then minutes.
 MANY_PASSES = 120
@@ -64,22 +63,23 @@ def unseeable(scenario: Scenario) -> tuple[Finding, ...]:
     wide = scenario.method.coverage == "auto" and scenario.method.routing in ("auto", "joint")
     required = {region.name for region in scenario.regions if region.required}
     settle_m = scenario.aircraft[0].in_wind(scenario.wind.speed_m_s).settle_m
-    # What takes passes without number is not looked at pass by pass.
-    endless = {finding.feature for finding in laborious(scenario) if finding.severity == "error"}
+    # What takes passes without number is not looked at pass by pass, nor held against an area or zones.
+    of_labour = laborious(scenario)
+    endless = {finding.feature for finding in of_labour if finding.severity == "error"}
+    level, suite, airspace = scenario.level, scenario.suite, scenario.airspace
     for region in scenario.regions:
         if region.name in endless:
             continue
         try:
-            sensor, height_m = _over(scenario, region)
+            sensor, height_m = suite.over(region.sensor, region.area, airspace, level.of(region))
             family_of(sensor).check_seen(region, sensor, height_m, scenario.area, settle_m, wide=wide)
         except InfeasibleError as error:
             found.append(_finding(error, region.name in required))
-    # Passes without number are not held against an area or zones.
-    said = (*found, *laborious(scenario))
+    said = (*found, *of_labour)
     if wide and not any(finding.severity == "error" for finding in said):
         try:
             asked = seeing(scenario, Setting.of(scenario))
-            asked.visible(asked.surroundings())
+            check_visible(asked, asked.surroundings())
         except InfeasibleError as error:
             found.append(_finding(error, True))
     return tuple(found)
@@ -88,9 +88,10 @@ def unseeable(scenario: Scenario) -> tuple[Finding, ...]:
 def laborious(scenario: Scenario) -> tuple[Finding, ...]:
     """What takes more passes than can be planned, or than are planned soon; most often a slip of height."""
     found, passes, narrowest_m = [], 0, math.inf
+    level, suite, airspace = scenario.level, scenario.suite, scenario.airspace
     for region in scenario.regions:
         try:
-            sensor, height_m = _over(scenario, region)
+            sensor, height_m = suite.over(region.sensor, region.area, airspace, level.of(region))
         except InfeasibleError:
             continue
         fewest, widest_m = family_of(sensor).fewest_passes(region, sensor, height_m)
@@ -103,10 +104,6 @@ def laborious(scenario: Scenario) -> tuple[Finding, ...]:
         said = f"takes at least {passes} passes, the narrowest {narrowest_m:.3g} m wide: planning takes long"
         found.append(Finding("scenario", "many-passes", said, _HIGHER, "warning"))
     return tuple(found)
-
-
-def _over(scenario: Scenario, region: Region) -> tuple[Sensor, float]:
-    return scenario.suite.over(region.sensor, region.area, scenario.airspace, scenario.level.of(region))
 
 
 _HIGHER = "Fly higher (altitude_m), widen the beam, or cut the regions"

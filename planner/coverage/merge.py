@@ -11,6 +11,7 @@ import math
 from collections import defaultdict
 from dataclasses import dataclass, replace
 
+import numpy as np
 import shapely
 from shapely.geometry import LineString, MultiPolygon, Polygon
 from shapely.geometry.base import BaseGeometry
@@ -212,8 +213,11 @@ def close_filter(area: BaseGeometry, radius_m: float) -> BaseGeometry:
         return shapely.union_all([area], grid_size=GRID_M)
     grown = area.buffer(radius_m, quad_segs=_QUADRANT_SEGMENTS)
     pieces: list[BaseGeometry] = []
+    parts = polygons_of(area)
+    tree = shapely.STRtree(parts)
     for island in polygons_of(grown):
-        inside = shapely.intersection(area, island, grid_size=GRID_M)
+        there = shapely.MultiPolygon([parts[k] for k in np.sort(tree.query(island, predicate="intersects"))])
+        inside = shapely.intersection(there, island, grid_size=GRID_M)
         closed = island.buffer(-radius_m, quad_segs=_QUADRANT_SEGMENTS)
         kept = shapely.intersection(closed, inside.convex_hull, grid_size=GRID_M)
         pieces.append(shapely.union_all([kept, inside], grid_size=GRID_M))

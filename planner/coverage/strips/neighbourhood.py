@@ -18,7 +18,7 @@ from planner.coverage.merge import MergedRegion, split_region
 from planner.coverage.strips.classify import STEP_RAD, Spans, angles_around, fits, hull_points, spans_at
 from planner.coverage.strips.headings import grid
 from planner.coverage.strips.segments import Floats, Neighbourhood, too_wide
-from planner.coverage.strips.sweeps import Sweep, flyable_headings
+from planner.coverage.strips.sweeps import Sweep, is_flyable
 from planner.errors import InfeasibleError
 from planner.route import CollectPass
 from planner.sensors.sar import SarSensor
@@ -178,12 +178,11 @@ def _can_be_swept(
     if sensor.mode == "spotlight":
         return False
     whole = (Sweep(part, sensor, height_m, 0, extra) for extra in (0, 1))
-    if any(flyable_headings(sweep, area, settle_m).any() for sweep in whole):
+    if any(is_flyable(sweep, area, settle_m) for sweep in whole):
         return True
     return not decompose.is_plain(part.area) and any(
         all(
-            flyable_headings(Sweep(replace(part, area=piece), sensor, height_m), area, settle_m).any()
-            for piece in pieces
+            is_flyable(Sweep(replace(part, area=piece), sensor, height_m), area, settle_m) for piece in pieces
         )
         for pieces in decompose.cuts(part.area)
     )

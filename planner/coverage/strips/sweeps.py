@@ -279,9 +279,22 @@ def sweep_passes(sweep: Sweep, angle_rad: float, eta: float, order: Ints) -> tup
     return tuple(passes)
 
 
-def flyable_headings(sweep: Sweep, area: shapely.Polygon | None, settle_m: float = 0.0) -> NDArray[np.bool_]:
-    """At which of the sweep's headings every lane, settling run and all, can be inside the area, (M,)."""
-    angles_rad = sweep.angles_rad
+def is_flyable(sweep: Sweep, area: shapely.Polygon | None, settle_m: float = 0.0) -> bool:
+    """Whether at some heading every lane, settling run and all, can be inside the area."""
+    if area is None:
+        return True
+    if sweep.region.approach_rad is None:
+        # Mostly one along or across does, which is found sooner than all headings are.
+        few = grid(sweep.region.area, math.pi / 2.0)
+        if flyable_headings(sweep, area, settle_m, few).any():
+            return True
+    return bool(flyable_headings(sweep, area, settle_m, sweep.angles_rad).any())
+
+
+def flyable_headings(
+    sweep: Sweep, area: shapely.Polygon | None, settle_m: float, angles_rad: Floats
+) -> NDArray[np.bool_]:
+    """At which headings every lane of a sweep, settling run and all, can be inside the area, (M,)."""
     flyable = np.zeros(len(angles_rad), dtype=np.bool_)
     counts = sweep.lanes(angles_rad)
     for count in np.unique(counts):

@@ -36,6 +36,8 @@ NEAR_ANGLES, NEAR_ETAS = 5, 2
 #: Headings tried where a coarse grid leaves no room for turns, and how many options with room are kept.
 FINE_STEP_RAD = math.radians(2.5)
 MOST_ROOMY = 100
+#: Between the headings tried first where only whether there is a way is asked.
+FEW_STEP_RAD = math.radians(15.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -176,6 +178,11 @@ def can_be_flown(
     region: MergedRegion, sensor: SarSensor, height_m: float, around: Surroundings, *, wide: bool = True
 ) -> bool:
     """Whether some pass, or some sweep of the whole region, may be flown."""
+    few = np.linspace(0.0, 1.0, 3)
+    for sides in families(region, sensor, height_m, wide=wide):
+        # Mostly some heading of the grid does, and is found sooner than what the shape singles out.
+        if make_options(sides, headings(region, sides, FEW_STEP_RAD, around, 0), few, around) is not None:
+            return True
     return _some(region, sensor, height_m, around, wide=wide)[1] is not None
 
 

@@ -16,7 +16,7 @@ from shapely.geometry import LineString, Polygon
 from planner.airspace.surroundings import Surroundings
 from planner.coverage.strips import kernels
 from planner.coverage.strips.options import collect_passes, make_options
-from planner.coverage.strips.sweeps import Sweep, flyable_headings, lanes_at, sweeps
+from planner.coverage.strips.sweeps import Sweep, is_flyable, lanes_at, sweeps
 from planner.dubins.words import shortest
 from planner.route import CollectPass, Look, Pose
 from planner.sensors.strip import swaths_m
@@ -105,7 +105,7 @@ def test_the_best_sweep_sees_the_whole_region(
 @given(area=stars(4.0), sides=looks, margin_m=st.floats(0.0, 2500.0))
 @settings(deadline=None, max_examples=30)
 def test_every_lane_stays_inside_the_area(area: Polygon, sides: tuple[Look, ...], margin_m: float) -> None:
-    """With an operating area no option has a lane outside it, and flyable_headings agrees."""
+    """With an operating area no option has a lane outside it, and is_flyable agrees."""
     around = area.buffer(margin_m)
     family = sweeps(as_merged(area), paper_sensor(*sides), HEIGHT_M)
     options = make_options(
@@ -113,7 +113,7 @@ def test_every_lane_stays_inside_the_area(area: Polygon, sides: tuple[Look, ...]
     )
     if options is None:
         return
-    assert flyable_headings(family[0], around).any()
+    assert is_flyable(family[0], around)
     for index in range(0, len(options.inner_m), 7):
         for collect in collect_passes(family, options, index):
             assert around.covers(LineString([collect.start, collect.end]))
