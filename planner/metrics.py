@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from planner.airspace.airspace import Airspace, Level
 from planner.airspace.threats import curve_risk
@@ -17,6 +18,8 @@ from planner.profile.lines import cut
 from planner.route import CollectPass
 from planner.vehicle.limits import Use
 from planner.vehicle.model import FlightModel
+
+Floats = NDArray[np.float64]
 
 #: Distance between dividing points when risk is summed along the line (section 5.2, Li et al. 2018).
 DIVIDING_M = 100.0
@@ -75,8 +78,12 @@ def risks(
     A threat that ends at some height counts where the line is not above it.
     """
     sampled = cut(flight.path, from_m, until_m).sample(SAMPLE_M)
-    points = sampled[:, :2]
     over_home_m = flight.heights.at(from_m + sampled[:, 3]) - (level.altitude_m - level.height_m)
+    return risks_along(sampled[:, :2], over_home_m, threats)
+
+
+def risks_along(points: Floats, over_home_m: Floats, threats: Sequence[Threat]) -> tuple[float, float]:
+    """The same of a densely sampled curve, by its heights over home."""
     missile, radar = curve_risk(points, threats, DIVIDING_M, float(over_home_m.max()))
     for threat in threats:
         if not over_home_m.min() <= threat.height_m < over_home_m.max():

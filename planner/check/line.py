@@ -7,14 +7,20 @@ from collections.abc import Iterable, Iterator, Sequence
 import numpy as np
 
 from planner.check.clearance import clearance_violations, place_violations
+from planner.check.kinematics import limit_violations
 from planner.plan import FlownPath, LonLat, LonLatAlt, Plan, Violation
 from planner.scenario import Scenario
+from planner.vehicle.aircraft import Aircraft
 
 
 def judge_line(
-    scenario: Scenario, plan: Plan, path: FlownPath, lines: Sequence[tuple[LonLatAlt, ...]]
+    scenario: Scenario,
+    aircraft: Aircraft,
+    plan: Plan,
+    path: FlownPath,
+    lines: Sequence[tuple[LonLatAlt, ...]],
 ) -> tuple[Violation, ...]:
-    """What of a line is outside the area, in a zone, or too near to the ground.
+    """What of a line is outside the area, in a zone, too near to the ground, or beyond its aircraft's limits.
 
     Parameters
     ----------
@@ -37,7 +43,7 @@ def judge_line(
             key = (violation.constraint, violation.feature)
             if key not in found or violation.amount > found[key].amount:
                 found[key] = violation
-    return tuple(found.values())
+    return (*found.values(), *limit_violations(aircraft, path, path.length_m, path.duration_s))
 
 
 def _along(path: FlownPath, line: tuple[LonLatAlt, ...]) -> FlownPath:

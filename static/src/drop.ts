@@ -1,6 +1,7 @@
-/** Take a file from a drop on the page or from the file dialog: a scenario, or regions of another program. */
+/** Take a file from a drop on the page or from the file dialog: a scenario, or regions or a mission of another program. */
 import { byId } from "./dom";
 import { mayLeave } from "./leaving";
+import { isMissionFile, openMission } from "./mission_file";
 import { news, report } from "./notices";
 import { importRegions, isRegionFile } from "./regions";
 import { ROLE_WORDS } from "./role_words";
@@ -9,9 +10,14 @@ import { parseScenario, scenarios } from "./scenario";
 const GEOMETRY = /^(Feature|(Multi)?(Point|LineString|Polygon)|GeometryCollection)$/;
 const LIMIT_BYTES = 20_000_000;
 
-/** Open a scenario in place of the one shown, or add another program's regions to it. */
-export async function openFile(file: File): Promise<boolean> {
-  return isRegionFile(file) || (await isDrawnElsewhere(file)) ? importRegions(file) : openScenario(file);
+/** What a file that was opened has brought; null where it was not. */
+export type Opened = "scenario" | "plan" | null;
+
+/** Open a scenario in place of the one shown, add another program's regions to it, or show its mission. */
+export async function openFile(file: File): Promise<Opened> {
+  if (await isMissionFile(file)) return (await openMission(file)) ? "plan" : null;
+  const drawn = isRegionFile(file) || (await isDrawnElsewhere(file));
+  return (await (drawn ? importRegions(file) : openScenario(file))) ? "scenario" : null;
 }
 
 /** Whether it is GeoJSON, or Esri JSON, whose shapes have no roles of a scenario: they are regions to be read. */
@@ -45,7 +51,7 @@ async function openScenario(file: File): Promise<boolean> {
 }
 
 /** Let the whole page take a dropped file; `then` runs after one was opened. */
-export function acceptDrops(then: () => void): void {
+export function acceptDrops(then: (opened: "scenario" | "plan") => void): void {
   const curtain = byId("drop");
   let depth = 0;
   const carriesFile = (event: DragEvent): boolean => event.dataTransfer?.types.includes("Files") ?? false;
@@ -64,6 +70,6 @@ export function acceptDrops(then: () => void): void {
     depth = 0;
     curtain.hidden = true;
     const file = event.dataTransfer?.files[0];
-    if (file) void openFile(file).then((opened) => opened && then());
+    if (file) void openFile(file).then((opened) => opened && then(opened));
   });
 }

@@ -31,6 +31,8 @@ export const GROUPS: Group[] = [
   { id: "held", label: "Mission read from the vehicle", swatch: "dashed", colour: "held", layers: ["held-line"] },
   { id: "collect", label: "Collect (sensor on)", swatch: "thick", colour: "collect", layers: ["collect-line", "collect-label"] },
   { id: "waypoints", label: "Mission items: number, height", swatch: "dot", colour: "path", layers: ["waypoint", "waypoint-label"] },
+  { id: "fence", label: "Fence of a mission file", swatch: "dashed", colour: "noFly", layers: ["fence_out-fill", "fence_out-line", "fence_in-line"] },
+  { id: "rally", label: "Rally point", swatch: "dot", colour: "terminal", layers: ["rally"] },
   { id: "track", label: "Flown track", swatch: "line", colour: "track", layers: ["track-off"] },
   { id: "trackOn", label: "Flown, sensor on", swatch: "thick", colour: "trackOn", layers: ["track-on"] },
   { id: "seen", label: "Ground really seen", swatch: "area", colour: "seen", layers: ["seen-fill", "seen-line"] },
@@ -40,6 +42,8 @@ export const GROUPS: Group[] = [
 
 const kindIs = (kind: string): FilterSpecification => ["all", ["==", ["get", "kind"], kind], ["!", ["get", "label"]]] as unknown as FilterSpecification;
 const roleIs = (role: string): FilterSpecification => ["==", ["get", "role"], role];
+
+const fenceIs = (kind: string): FilterSpecification => ["all", ["==", ["get", "role"], "fence"], ["==", ["get", "kind"], kind]];
 
 function shape(id: string, source: string, filter: FilterSpecification, colour: string, opacity: number, width: number, dash?: number[]): LayerSpecification[] {
   const line: LayerSpecification = {
@@ -70,6 +74,8 @@ function layers(c: Palette): LayerSpecification[] {
     ...shape("radar", "scenario", kindIs("radar"), c.radar, 0.12, 1.6, [3, 2]),
     ...shape("no_fly", "scenario", kindIs("no_fly"), c.noFly, 0.22, 2.2),
     ...shape("obstacle", "scenario", kindIs("obstacle"), c.obstacle, 0.35, 1.4),
+    ...shape("fence_out", "plan", fenceIs("exclusion"), c.noFly, 0.12, 2, [2, 1.5]),
+    ...shape("fence_in", "plan", fenceIs("inclusion"), c.area, 0, 2, [2, 1.5]),
     ...shape("uncovered", "plan", roleIs("uncovered"), c.uncovered, 0.55, 1.5),
     {
       id: "compared-line", type: "line", source: "compared",
@@ -108,6 +114,10 @@ function layers(c: Palette): LayerSpecification[] {
         "circle-color": ["case", ["get", "current"], c.trackOn, c.halo],
         "circle-stroke-color": c.path, "circle-stroke-width": 1.2,
       },
+    },
+    {
+      id: "rally", type: "circle", source: "plan", filter: roleIs("rally"),
+      paint: { "circle-radius": 6, "circle-color": c.halo, "circle-stroke-color": c.terminal, "circle-stroke-width": 3 },
     },
     {
       id: "terminal", type: "circle", source: "scenario", filter: kindIs("terminal"),

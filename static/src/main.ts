@@ -60,8 +60,8 @@ async function start(): Promise<void> {
   panel.shown.watch((id) => drawing.locked.set(id !== "scenario"));
   judgement.watch(({ state, findings }) => panel.mark("scenario", state === "refused" ? `${findings.filter(({ severity }) => severity !== "warning").length} refused` : ""));
   freshness.watch(({ state }) => panel.mark("plan", state === "stale" ? "out of date" : ""));
-  acceptDrops(() => {
-    panel.show("scenario");
+  acceptDrops((opened) => {
+    panel.show(opened);
     view.zoomToAll();
   });
   draw(map);

@@ -2,12 +2,13 @@ import type { Feature } from "geojson";
 import { ApiError, apiUrl, connection, follow, get, list, post, remove } from "./api";
 import { canonical } from "./canonical";
 import { encoding, queryOf } from "./encoding";
+import { circleRing } from "./geo";
 import { adoptIfSame, keeping, keepNow } from "./keeping";
 import { itemsOf, type MissionItem } from "./mission";
 import { attempt, news, report } from "./notices";
 import { scenarios } from "./scenario";
 import { Signal } from "./signal";
-import type { PlanCollection, PlanRecord, PlanState, Problem, Scenario } from "./types";
+import type { PlanCollection, PlanRecord, PlanState, Position, Problem, Scenario } from "./types";
 
 export interface OpenPlan {
   record: PlanRecord;
@@ -220,6 +221,10 @@ export function planFeatures(plan: PlanCollection): Feature[] {
   collects.forEach((collect, index) => numbers.set(collect, index + 1));
   return plan.features.map((feature) => {
     const place = numbers.get(feature);
+    const { role, radius_m } = feature.properties ?? {};
+    if (role === "fence" && feature.geometry.type === "Point" && typeof radius_m === "number") {
+      return { ...feature, geometry: { type: "Polygon", coordinates: [circleRing(feature.geometry.coordinates as Position, radius_m)] } };
+    }
     return place === undefined ? feature : { ...feature, properties: { ...feature.properties, label: String(place) } };
   });
 }

@@ -85,6 +85,7 @@ export interface PlanRecord {
   progress?: number;
   metrics?: Metrics | null;
   error?: Problem | string | null;
+  warnings?: Finding[];
   created_at?: string;
   started_at?: string | null;
   /** The kept scenario it was made of, and whether that one is another by now; null: not known. */

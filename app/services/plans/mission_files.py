@@ -13,6 +13,8 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
+import numpy as np
+
 from app.services.documents import read_object, write_json
 from app.services.errors import RefusedError
 from app.services.plans.filed_mission import MEMBER, read_as
@@ -27,8 +29,10 @@ from mavlink.wire.items import MissionItem
 from planner.check import judge_line, tight_turns
 from planner.errors import Finding
 from planner.geojson import scenario_hash, write_plan
+from planner.metrics import SAMPLE_M, Floats, risks_along
 from planner.plan import FlownPath, LonLat, Metrics, Plan, PlanVehicle, Violation
 from planner.scenario import Scenario
+from planner.vehicle.aircraft import Aircraft
 from planner.version import __version__
 
 
@@ -159,7 +163,7 @@ def _plan(
         footprints=(),
         uncovered=(),
         fence=scene.fence,
-        metrics=_metrics(flown, long_m, duration_s),
+        metrics=_metrics(scenario, aircraft, flown, path),
         violations=(),
         methods={},
         scenario_hash=scenario_hash(document),
@@ -170,22 +174,33 @@ def _plan(
     return replace(plan, violations=tuple(_violations(scenario, plan, path, flown, scene)))
 
 
-def _metrics(flown: Trace, long_m: float, duration_s: float) -> Metrics:
-    """Nothing is collected by a line that nobody planned to see anything."""
+def _metrics(scenario: Scenario, aircraft: Aircraft, flown: Trace, path: FlownPath) -> Metrics:
+    """Of the whole line; nothing is collected by one that nobody planned to see anything."""
+    missile, radar = risks_along(*_sampled(scenario, flown), scenario.threats)
+    power_w = aircraft.cruise_power_w
     return Metrics(
-        length_m=long_m,
+        length_m=path.length_m,
         collection_length_m=0.0,
         duty_cycle=0.0,
         path_length_ratio=None,
-        risk_missile=0.0,
-        risk_radar=0.0,
+        risk_missile=missile,
+        risk_radar=radar,
         turns=len(flown.turns),
-        duration_s=duration_s,
-        energy_wh=None,
+        duration_s=path.duration_s,
+        energy_wh=None if power_w is None else power_w * path.duration_s / 3600.0,
         coverage={},
-        flight_length_m=long_m,
-        flight_duration_s=duration_s,
+        flight_length_m=path.length_m,
+        flight_duration_s=path.duration_s,
     )
+
+
+def _sampled(scenario: Scenario, flown: Trace) -> tuple[Floats, Floats]:
+    """Places along the line, close together, and their heights over home."""
+    line_m = scenario.frame.to_local([place[:2] for place in flown.line])
+    reached_m = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(line_m, axis=0).T))])
+    at_m = np.linspace(0.0, reached_m[-1], max(2, math.ceil(reached_m[-1] / SAMPLE_M)))
+    places = np.stack([np.interp(at_m, reached_m, line_m[:, k]) for k in (0, 1)], axis=1)
+    return places, np.interp(at_m, reached_m, [place[2] for place in flown.line])
 
 
 def _violations(
@@ -194,7 +209,7 @@ def _violations(
     aircraft = scene.aircraft.in_wind(scenario.wind.speed_m_s)
     turns = ((turn.radius_m, turn.place, turn.seq) for turn in flown.turns)
     yield from tight_turns(path.vehicle, aircraft.ground_turn_radius_m * (1.0 - 1e-3), turns)
-    yield from judge_line(scenario, plan, path, (flown.line, flown.corners))
+    yield from judge_line(scenario, aircraft, plan, path, (flown.line, flown.corners))
     if flown.unknown_heights:
         numbers = ", ".join(str(seq) for seq in flown.unknown_heights[:8])
         message = (

@@ -4,6 +4,7 @@ import { download } from "../download";
 import { openFile } from "../drop";
 import { mayLeave } from "../leaving";
 import { attempt } from "../notices";
+import { MISSION_FILES } from "../mission_file";
 import { REGION_FILES } from "../regions";
 import { emptyScenario, nameOf, scenarios } from "../scenario";
 import type { Finding } from "../types";
@@ -39,7 +40,7 @@ const KEPT_WORDS: Record<KeepState, string> = {
 };
 
 function files(view: View): HTMLElement {
-  const input = h("input", { type: "file", id: "file", accept: `.geojson,.json,application/geo+json,application/json,${REGION_FILES}`, class: "sr-only", tabindex: "-1", "aria-label": "File to open" });
+  const input = h("input", { type: "file", id: "file", accept: `.geojson,.json,application/geo+json,application/json,${REGION_FILES},${MISSION_FILES},.txt`, class: "sr-only", tabindex: "-1", "aria-label": "File to open" });
   input.addEventListener("change", () => {
     const file = input.files?.[0];
     input.value = "";
@@ -53,7 +54,7 @@ function files(view: View): HTMLElement {
   return h(
     "div",
     { class: "row" },
-    button("Open file …", () => input.click(), { title: "A scenario as GeoJSON, or regions as KML, KMZ, GPX or zipped shapefile to add; files can also be dropped on the page" }),
+    button("Open file …", () => input.click(), { title: "A scenario as GeoJSON, or regions as KML, KMZ, GPX or zipped shapefile to add, or a mission (.plan, .waypoints) to show; files can also be dropped on the page" }),
     input,
     button("Download", save),
     button("New", () => void start()),

@@ -176,6 +176,25 @@ def test_the_ground_is_kept_clear_of() -> None:
         filed(file(*ROUTE), choice)
 
 
+def test_the_scenarios_limits_and_threats_count() -> None:
+    """A flight longer than its vehicle's range is told; a threat on the way is a risk and told softly."""
+    document = json.loads(scenario())
+    document["vehicles"][0]["max_range_m"] = 1000
+    threat = {
+        "type": "Feature",
+        "id": "sam",
+        "geometry": {"type": "Point", "coordinates": [LON + 4.0 * EAST, LAT + 5.0 * NORTH]},
+        "properties": {"role": "threat", "model": "missile", "radius_m": 150},
+    }
+    document["features"].append(threat)
+    plan = filed(file(*ROUTE), COPTER, json.dumps(document))
+    found = broken(plan)
+    assert found["range"]["amount"] == pytest.approx(304.0, rel=0.02)
+    assert (found["soft-threat"]["hard"], found["soft-threat"]["feature"]) == (False, "sam")
+    assert plan.summary["metrics"]["risk_missile"] > 0.5
+    assert filed(file(*ROUTE), COPTER).summary["metrics"]["risk_missile"] == 0.0
+
+
 def test_what_goes_up_are_the_files_own_items() -> None:
     """Nothing is encoded anew: items and fence are those of the file, for whichever autopilot is there."""
     content = (FAULTS / "landing-speed.plan").read_bytes()
