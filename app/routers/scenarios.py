@@ -73,12 +73,20 @@ async def list_kept(
     )
 
 
-@router.get("/{scenario_id}", summary="Read a kept scenario", responses=responses(404))
-async def get_kept(scenario_id: str, scenarios: ScenariosDep, response: Response) -> ScenarioTextOut:
+@router.get(
+    "/{scenario_id}",
+    summary="Read a kept scenario",
+    response_class=Response,
+    responses=responses(404) | {200: {"model": ScenarioTextOut}},
+)
+async def get_kept(scenario_id: str, scenarios: ScenariosDep) -> Response:
     """The scenario and its revision, which is also the `ETag`."""
-    record, document = await scenarios.read(scenario_id)
-    response.headers["ETag"] = f'"{record.revision}"'
-    return ScenarioTextOut.whole(record, document)
+    record, text = await scenarios.read(scenario_id)
+    return Response(
+        ScenarioTextOut.written(record, text),
+        media_type="application/json",
+        headers={"ETag": f'"{record.revision}"'},
+    )
 
 
 @router.put(

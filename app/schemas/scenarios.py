@@ -38,10 +38,11 @@ class ScenarioTextOut(ScenarioOut):
 
     scenario: dict[str, Any] = Field(description="As it was last saved; it may be unfinished.")
 
-    @classmethod
-    def whole(cls, record: KeptScenario, scenario: dict[str, Any]) -> Self:
-        """The answer for a record and its text."""
-        return cls(**ScenarioOut.of(record).model_dump(), scenario=scenario)
+    @staticmethod
+    def written(record: KeptScenario, text: str) -> str:
+        """The answer for a record and its text, as JSON: the text may be large, and is JSON already."""
+        head = ScenarioOut.of(record).model_dump_json()
+        return f'{head[:-1]},"scenario":{text}}}'
 
 
 class ScenarioList(BaseModel):

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import json
-from typing import Any
-
 from app.services.desk import Desk
 from app.services.records import KeptScenario
 from app.services.scenarios.received import received
@@ -27,10 +24,9 @@ class ScenarioService:
         """One without its text; raises NotFoundError."""
         return (await self._store.read(scenario_id))[0]
 
-    async def read(self, scenario_id: str) -> tuple[KeptScenario, dict[str, Any]]:
-        """One and its text; raises NotFoundError."""
-        record, text = await self._store.read(scenario_id)
-        return record, json.loads(text)
+    async def read(self, scenario_id: str) -> tuple[KeptScenario, str]:
+        """One and its text, as JSON; raises NotFoundError."""
+        return await self._store.read(scenario_id)
 
     async def text(self, scenario_id: str) -> str:
         """The text of one; raises NotFoundError."""
