@@ -7,12 +7,15 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+import shapely
 from shapely.geometry import LineString, MultiPolygon, Point, Polygon
 
 from planner.airspace.values import NoFlyZone, Obstacle, Threat
 from planner.frames import LocalFrame
 from planner.geojson import geometry as shapes
 from planner.geojson.fields import Fields, Findings, is_finite
+from planner.geojson.forbidding import forbidding_areas
+from planner.geojson.outlines import EXACT_M, MANY, few_cornered
 from planner.route import Terminal
 from planner.wishes import Region
 
@@ -111,6 +114,8 @@ def read_region(raw: RawFeature, frame: LocalFrame, findings: Findings) -> Regio
     elif kind in ("LineString", "MultiLineString"):
         width_m = fields.number("width_m", above=0.0)
         axis = shapes.line(raw.name, raw.geometry, frame, findings)
+        if axis is not None and shapely.get_num_coordinates(axis) > MANY:
+            axis = LineString(axis.simplify(EXACT_M[0] / 2.0).coords)
         if axis is not None and width_m is not None:
             area = axis.buffer(width_m / 2.0, cap_style="flat")
     else:
@@ -120,6 +125,7 @@ def read_region(raw: RawFeature, frame: LocalFrame, findings: Findings) -> Regio
             # Drawn round the disc: one in it would leave slivers of the target unseen.
             outer_m = max(radius_m, POINT_TARGET_RADIUS_M) / math.cos(math.pi / (4.0 * DISC_QUADRANT))
             area = Point(place).buffer(outer_m, quad_segs=DISC_QUADRANT)
+    area = few_cornered(raw.name, area, findings)
     revisits = int(fields.integer("revisits", 1, minimum=1))
     if revisits > MOST_REVISITS:
         fields.wrong("revisits", f"is {revisits}", f"Give {MOST_REVISITS} at most.", rule="out-of-range")
@@ -176,45 +182,47 @@ def read_threat(raw: RawFeature, frame: LocalFrame, findings: Findings) -> Threa
     return Threat(raw.name, kind, centre, radius_m, intensity_m, height_m, hard)
 
 
-def read_no_fly(raw: RawFeature, frame: LocalFrame, findings: Findings) -> NoFlyZone | None:
-    """Role ``no_fly``."""
+def read_no_fly(raw: RawFeature, frame: LocalFrame, findings: Findings) -> tuple[NoFlyZone, ...]:
+    """Role ``no_fly``: a zone for each of its parts."""
     fields = raw.fields
     floor_m = fields.number("floor_m", -math.inf)
     ceiling_m = fields.number("ceiling_m", math.inf)
-    zone: NoFlyZone | None = None
+    zones: tuple[NoFlyZone, ...] = ()
     if raw.geometry["type"] == "Point":
         radius_m = fields.number("radius_m", above=0.0)
         centre = shapes.point(raw.name, raw.geometry, frame, findings)
         if centre is not None and radius_m is not None:
-            zone = NoFlyZone(raw.name, None, centre, radius_m, floor_m or 0.0, ceiling_m or 0.0)
+            zones = (NoFlyZone(raw.name, None, centre, radius_m, floor_m or 0.0, ceiling_m or 0.0),)
     else:
-        area = shapes.polygon(raw.name, raw.geometry, frame, findings)
-        if area is not None:
-            zone = NoFlyZone(raw.name, area, None, None, floor_m or 0.0, ceiling_m or 0.0)
+        areas = forbidding_areas(raw.name, raw.geometry, frame, findings)
+        zones = tuple(
+            NoFlyZone(raw.name, area, None, None, floor_m or 0.0, ceiling_m or 0.0) for area in areas
+        )
     fields.refuse_unknown()
     if floor_m is None or ceiling_m is None:
-        return None
+        return ()
     if floor_m >= ceiling_m:
         fields.wrong("floor_m", "is not below ceiling_m", "Swap them or leave one out.", rule="band-empty")
-    return zone
+    return zones
 
 
-def read_obstacle(raw: RawFeature, frame: LocalFrame, findings: Findings) -> Obstacle | None:
-    """Role ``obstacle``."""
+def read_obstacle(raw: RawFeature, frame: LocalFrame, findings: Findings) -> tuple[Obstacle, ...]:
+    """Role ``obstacle``: one for each of its parts."""
     height_m = raw.fields.number("height_m", above=0.0)
     base_m = raw.fields.number("base_m", 0.0)
-    area = shapes.polygon(raw.name, raw.geometry, frame, findings)
+    areas = forbidding_areas(raw.name, raw.geometry, frame, findings)
     raw.fields.refuse_unknown()
-    if height_m is None or base_m is None or area is None:
-        return None
-    return Obstacle(raw.name, area, height_m, base_m)
+    if height_m is None or base_m is None:
+        return ()
+    return tuple(Obstacle(raw.name, area, height_m, base_m) for area in areas)
 
 
 def read_area(raw: RawFeature, frame: LocalFrame, findings: Findings) -> Polygon | None:
     """Role ``area``."""
-    area = shapes.polygon(raw.name, raw.geometry, frame, findings)
+    drawn = shapes.polygon(raw.name, raw.geometry, frame, findings)
+    area = few_cornered(raw.name, drawn, findings, inward=True)
     raw.fields.refuse_unknown()
-    return area
+    return area if isinstance(area, Polygon) else None
 
 
 def read_terminal(raw: RawFeature, frame: LocalFrame, findings: Findings) -> Terminal | None:

@@ -45,6 +45,10 @@ class Findings:
         """Add a warning."""
         self._found.append(Finding(feature, rule, message, fix, "warning"))
 
+    def take(self, more: Findings) -> None:
+        """Add all that was found elsewhere."""
+        self._found.extend(more.all())
+
     def all(self) -> tuple[Finding, ...]:
         """Everything found, in order."""
         return tuple(self._found)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from itertools import combinations
 from typing import Any, TypeGuard, TypeVar
 
 import numpy as np
@@ -163,7 +162,10 @@ def area(
     whole = MultiPolygon([piece for part in parts for piece in multi(part)])
     if whole.is_valid and not polar:
         return _to_local(_Sheet(whole), frame)
-    overlap = sum(one.intersection(other).area for one, other in combinations(parts, 2))
+    one, other = shapely.STRtree(parts).query(parts, predicate="intersects")
+    pairs = one < other
+    each = np.array(parts, dtype=object)
+    overlap = float(shapely.area(shapely.intersection(each[one[pairs]], each[other[pairs]])).sum())
     if overlap > OVERLAP * whole.area:
         findings.error(
             owner, "polygons-overlap", "has overlapping polygons", "Unite them, or make them regions apart."
@@ -226,7 +228,7 @@ def _round(ring: list[LonLat], frame: LocalFrame) -> NDArray[np.float64]:
     if goes_round(ring):
         ring = [place for place in ring if abs(place[1]) < 90.0]
         ring = [*ring, ring[0]] if ring[0] != ring[-1] and not goes_round(ring) else ring
-    local_m = shapely.get_coordinates(_fine(LineString(ring), frame))
+    local_m = shapely.get_coordinates(fine(LineString(ring), frame))
     steps_m = np.hypot(*np.diff(local_m, axis=0).T)
     kept = local_m[np.concatenate([[True], steps_m > POLAR_GRID_M])]
     return np.concatenate([kept[:-1], kept[:1]]) if np.hypot(*(kept[-1] - kept[0])) < POLAR_GRID_M else kept
@@ -243,13 +245,13 @@ def _reason(shape: Polygon, frame: LocalFrame | None) -> str:
 
 
 def _to_local(sheet: _Sheet, frame: LocalFrame) -> Polygon | MultiPolygon:
-    return sheet.shape if sheet.polar else _fine(sheet.shape, frame)
+    return sheet.shape if sheet.polar else fine(sheet.shape, frame)
 
 
 Shape = TypeVar("Shape", Polygon, MultiPolygon, Polygon | MultiPolygon, LineString)
 
 
-def _fine(shape: Shape, frame: LocalFrame) -> Shape:
+def fine(shape: Shape, frame: LocalFrame) -> Shape:
     """A shape on a sheet of degrees in the local frame, its edges straight in degrees."""
     least_deg = min(abs(shape.bounds[1]), abs(shape.bounds[3]))
     piece_deg = EDGE_PIECE_DEG
@@ -284,7 +286,7 @@ def line(owner: str, geometry: Mapping[str, Any], frame: LocalFrame, findings: F
     if len(set(sound)) < 2:
         findings.error(owner, "line-too-short", "has no length", "Give two different positions.")
         return None
-    return _fine(LineString(continued(sound, frame.lon_deg)), frame)
+    return fine(LineString(continued(sound, frame.lon_deg)), frame)
 
 
 def _is_line(value: Any) -> TypeGuard[list[Any]]:
