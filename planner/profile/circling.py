@@ -50,4 +50,4 @@ def circle_down(origin: Anchor, centre: tuple[float, float], bottom_m: float, te
     path = best[1]
     along_m = path.length_m - turns * round_m
     knots = ((0.0, terms.top_m), (along_m, terms.top_m), (path.length_m, terms.top_m - drop_m))
-    return Rise(path, Heights(tidy(knots)), 0.0, path.length_m)
+    return Rise(path, Heights(tidy(knots)), 0.0, path.length_m, path.length_m)

@@ -11,11 +11,13 @@ import numpy as np
 from planner.airspace.terrain import Ground
 from planner.airspace.zones import KeepOut
 from planner.dubins.path import Path, join
+from planner.dubins.run_kernels import NO_DISCS, run_costs
 from planner.plan import Finish
 from planner.profile.circling import circle_down
 from planner.profile.foot import HEADINGS, Foot
 from planner.profile.heights import Heights, level
-from planner.profile.rise import Connect, Rise, Terms, fall, rise
+from planner.profile.lines import stored_radius_m
+from planner.profile.rise import Connect, Rise, Terms, fall, rise, turned
 from planner.progress import Stop, never
 from planner.route import Anchor, Terminal
 from planner.vehicle import manners
@@ -26,8 +28,6 @@ from planner.vehicle.model import FlightModel
 LEVEL_OFF_S = 5.0
 #: Winds slower than this do not choose the direction of a take-off or a landing.
 MINDED_WIND_M_S = 2.0
-#: Missions keep circles up to this radius in whole metres, wider ones in steps of ten.
-WHOLE_METRES_UP_TO_M, WIDE_STEP_M = 255.0, 10.0
 #: Circles are so much wider than the tightest turn.
 EASY_TURN = 1.05
 
@@ -67,7 +67,7 @@ def up(start: Terminal, ground_m: float, goal: Anchor, model: FlightModel, aroun
     InfeasibleError
         Where no line leads there.
     """
-    foot = foot_up(start, ground_m, around.top_m, model)
+    foot = _likely(foot_up(start, ground_m, around.top_m, model), goal, model)
     return rise(foot, goal, terms_of(around, climb_slope_rad(model), model))
 
 
@@ -75,9 +75,23 @@ def with_run(ends: tuple[Terminal, Terminal], top_m: float, model: FlightModel) 
     """Both ends, the start with the run that a flight to a height over it begins with."""
     start, end = ends
     foot = foot_up(start, 0.0, top_m, model)
+    return replace(start, run_m=foot.run_m, runs_rad=_runs_rad(foot)), end
+
+
+def _runs_rad(foot: Foot) -> tuple[float, ...]:
+    """Directions of a foot's run, ascending."""
     ways = [angle for natural in (0.0, math.pi / HEADINGS) for angle in foot.headings(natural)]
-    runs_rad = tuple(dict.fromkeys(angle for angle in ways if angle is not None))
-    return replace(start, run_m=foot.run_m, runs_rad=runs_rad), end
+    return tuple(sorted({math.remainder(angle, math.tau) for angle in ways if angle is not None}))
+
+
+def _likely(foot: Foot, goal: Anchor, model: FlightModel) -> Foot:
+    """A foot that knows the direction behind which the line to a goal is shortest without zones."""
+    if foot.run_m <= 0.0 or goal.angle_rad is None:
+        return foot
+    pose = np.array([[goal.east_m, goal.north_m, goal.angle_rad]])
+    runs_rad = np.array(_runs_rad(foot))
+    _, best_rad = run_costs(*foot.position, foot.run_m, runs_rad, pose, model.turn_radius_m, NO_DISCS)
+    return replace(foot, likely_rad=float(best_rad[0]))
 
 
 def foot_up(start: Terminal, ground_m: float, top_m: float, model: FlightModel) -> Foot:
@@ -128,7 +142,7 @@ def down(
         over = Anchor(*leg.end.position, leg.end.angle_rad)
         circled = circle_down(over, centre, bottom_m if finish == "return" else around.top_m, terms)
         heights = level(leg.length_m, around.top_m).then(circled.heights)
-        return Rise(join(leg, circled.path), heights, 0.0, circled.turns_m)
+        return Rise(join(leg, circled.path), heights, 0.0, circled.turns_m, circled.inserted_m)
     place, ground_m = (home, grounds_m[0]) if finish == "return" else (end.position, grounds_m[1])
     height_m = around.top_m - ground_m
     lift_m = run_m = rise_m = 0.0
@@ -144,7 +158,7 @@ def down(
         run_m = rise_m / math.tan(min(math.radians(manners.APPROACH_SLOPE_DEG), slope_rad))
     angle_rad = end.angle_rad if finish == "land" else None
     foot = Foot(place, angle_rad, ground_m, lift_m, run_m, rise_m, _into_rad(model))
-    return fall(foot, origin, terms)
+    return fall(_likely(foot, turned(origin), model), origin, terms)
 
 
 def climb_slope_rad(model: FlightModel) -> float:
@@ -164,10 +178,7 @@ def _slope_rad(model: FlightModel, rate_m_s: float) -> float:
 
 def circle_radius_m(model: FlightModel) -> float:
     """Radius of climbing and descending turns: somewhat above the tightest turn, as missions can say it."""
-    radius_m = EASY_TURN * model.turn_radius_m
-    if radius_m <= WHOLE_METRES_UP_TO_M:
-        return float(math.ceil(radius_m))
-    return float(math.ceil(radius_m / WIDE_STEP_M) * WIDE_STEP_M)
+    return stored_radius_m(EASY_TURN * model.turn_radius_m)
 
 
 def _into_rad(model: FlightModel) -> float | None:

@@ -31,6 +31,8 @@ class Foot:
         Flown straight ahead then, and how much of the height is won meanwhile.
     into_rad
         Direction the wind comes from, where a take-off or landing with the wind behind is to be avoided.
+    likely_rad
+        Direction of the run behind which the line would be shortest if there were no zones.
     """
 
     position: Point
@@ -40,6 +42,7 @@ class Foot:
     run_m: float = 0.0
     run_rise_m: float = 0.0
     into_rad: float | None = None
+    likely_rad: float | None = None
 
     @property
     def altitude_m(self) -> float:
@@ -58,10 +61,12 @@ class Foot:
             return [None]
         every = [natural_rad + k * math.tau / HEADINGS for k in range(HEADINGS)]
         into_rad = self.into_rad
-        if into_rad is not None:
-            every.append(into_rad)
-            every = [h for h in every if math.cos(h - into_rad) >= -1e-9]
-        return list(every)
+        every += [angle for angle in (into_rad, self.likely_rad) if angle is not None]
+        return [h for h in every if self.allows(h)]
+
+    def allows(self, angle_rad: float) -> bool:
+        """Whether a direction does not have the wind from behind, where that is to be avoided."""
+        return self.into_rad is None or math.cos(angle_rad - self.into_rad) >= -1e-9
 
     def run_end(self, angle_rad: float | None) -> Anchor:
         """Where the run ends, and the direction there."""

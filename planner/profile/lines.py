@@ -7,6 +7,16 @@ from dataclasses import replace
 
 from planner.dubins.path import Path, Segment, SegmentKind, join
 
+#: Missions keep circles up to this radius in whole metres, wider ones in steps of ten.
+WHOLE_METRES_UP_TO_M, WIDE_STEP_M = 255.0, 10.0
+
+
+def stored_radius_m(radius_m: float) -> float:
+    """The radius of a circle as missions can say it, no tighter."""
+    if radius_m <= WHOLE_METRES_UP_TO_M:
+        return float(math.ceil(radius_m))
+    return float(math.ceil(radius_m / WIDE_STEP_M) * WIDE_STEP_M)
+
 
 def cut(path: Path, from_m: float, until_m: float) -> Path:
     """The part of a line between two distances along it; None of it gives a straight of no length."""

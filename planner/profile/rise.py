@@ -10,15 +10,15 @@ whole turns are flown first, on a circle that touches the leg where one is clear
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from planner.airspace.zones import KeepOut
 from planner.dubins.path import Path, Segment, SegmentKind, join
 from planner.errors import InfeasibleError
-from planner.profile.foot import Foot
+from planner.profile.foot import HEADINGS, Foot
 from planner.profile.heights import Heights, tidy
-from planner.profile.lines import circle, cut, straights, with_circle
+from planner.profile.lines import circle, cut, stored_radius_m, straights, with_circle
 from planner.progress import Stop, never, raise_if
 from planner.route import Anchor, Pose
 
@@ -29,6 +29,10 @@ SIDES: tuple[SegmentKind, SegmentKind] = ("left", "right")
 BESIDE_RADII, BESIDE_WAYS, ENTRIES = (3.0, 5.0, 8.0, 13.0, 21.0), 12, 8
 #: Circles beside the leg to which lines are sought.
 MOST_BESIDE = 6
+#: About the best direction of a run others are tried, in steps that begin with the grid's and are halved.
+PARTS, ROUNDS = (-2.0 / 3.0, -1.0 / 3.0, 1.0 / 3.0, 2.0 / 3.0), 7
+#: Runs this far apart, so many, are tried where there is no room to climb behind the best one.
+APART_RAD, MOST_RUNS = math.tau / HEADINGS / 2.0, 12
 #: A turn more is not flown for the sake of less height than this.
 NO_TURN_M = 0.5
 
@@ -84,21 +88,21 @@ class Rise:
         Where the run ends.
     turns_m
         Where the climbing turns end; the run's end without any.
+    inserted_m
+        By how much the line is longer than it would be without climbing turns.
     """
 
     path: Path
     heights: Heights
     run_m: float
     turns_m: float
-
-    @property
-    def inserted_m(self) -> float:
-        """Length of what is flown between run and turns' end."""
-        return self.turns_m - self.run_m
+    inserted_m: float
 
 
 #: Number of hard and of other conflicts, and cost: less is better.
 _Rank = tuple[int, int, float]
+#: A rank, and the leg behind a run.
+_Run = tuple[_Rank, Path]
 
 
 def rise(foot: Foot, goal: Anchor, terms: Terms) -> Rise:
@@ -109,28 +113,17 @@ def rise(foot: Foot, goal: Anchor, terms: Terms) -> Rise:
     InfeasibleError
         Where no line leads from any run to the goal.
     """
-    best: tuple[_Rank, Path, float] | None = None
-    failed: InfeasibleError | None = None
-    for angle_rad in foot.headings(_natural_rad(foot, goal, terms)):
-        raise_if(terms.stop)
-        begin = foot.run_end(angle_rad)
-        try:
-            leg = terms.connect(begin, goal)
-        except InfeasibleError as error:
-            failed = error
-            continue
-        run = _run(foot, leg.start)
-        hard, soft = conflicts(run, terms.zones)
-        if foot.run_m > 0.0:
-            low_m = foot.ground_m + foot.lift_m
-            hard += terms.too_low(run, Heights(((0.0, low_m), (foot.run_m, foot.altitude_m))))
-        rank = (hard, soft, terms.cost_m(run) + terms.cost_m(leg))
-        if best is None or rank < best[0]:
-            best = (rank, leg, leg.start.angle_rad)
-    if best is None:
+    headings = foot.headings(_natural_rad(foot, goal, terms))
+    runs, failed = _runs(foot, goal, terms, headings)
+    width_rad = math.tau / HEADINGS
+    for _ in range(ROUNDS if runs and len(headings) > 1 else 0):
+        best_rad = min(runs, key=lambda run: run[0])[1].start.angle_rad
+        near = [best_rad + part * width_rad for part in PARTS]
+        runs += _runs(foot, goal, terms, [angle for angle in near if foot.allows(angle)])[0]
+        width_rad /= 2.0
+    if not runs:
         raise failed or InfeasibleError("take-off", "start", "no way leads from it", "Move the start.")
-    _, leg, _ = best
-    climbed, heights, turns_m = climbed_leg(foot.altitude_m, leg, terms)
+    leg, (climbed, heights, turns_m) = _climbed(foot, sorted(runs, key=lambda run: run[0]), terms)
     run = _run(foot, climbed.start)
     knots = [(0.0, foot.ground_m)]
     if foot.lift_m > 0.0:
@@ -140,7 +133,57 @@ def rise(foot: Foot, goal: Anchor, terms: Terms) -> Rise:
     whole = Heights(tuple(knots)) if len(knots) > 1 else None
     heights = heights if whole is None else whole.then(heights)
     path = join(run, climbed) if foot.run_m > 0.0 else climbed
-    return Rise(path, heights, foot.run_m, foot.run_m + turns_m)
+    return Rise(path, heights, foot.run_m, foot.run_m + turns_m, climbed.length_m - leg.length_m)
+
+
+def _runs(
+    foot: Foot, goal: Anchor, terms: Terms, headings: Sequence[float | None]
+) -> tuple[list[_Run], InfeasibleError | None]:
+    """Legs behind runs in some directions, ranked; and why one was refused."""
+    found: list[_Run] = []
+    failed: InfeasibleError | None = None
+    for angle_rad in headings:
+        raise_if(terms.stop)
+        try:
+            leg = terms.connect(foot.run_end(angle_rad), goal)
+        except InfeasibleError as error:
+            failed = error
+            continue
+        run = _run(foot, leg.start)
+        hard, soft = conflicts(run, terms.zones)
+        if foot.run_m > 0.0:
+            low_m = foot.ground_m + foot.lift_m
+            hard += terms.too_low(run, Heights(((0.0, low_m), (foot.run_m, foot.altitude_m))))
+        found.append(((hard, soft, terms.cost_m(run) + terms.cost_m(leg)), leg))
+    return found, failed
+
+
+def _climbed(foot: Foot, runs: list[_Run], terms: Terms) -> tuple[Path, tuple[Path, Heights, float]]:
+    """The first leg, of ranked ones, that has room to climb on; the first of all where none has."""
+    best: tuple[tuple[int, int], Path, tuple[Path, Heights, float]] | None = None
+    failed: InfeasibleError | None = None
+    tried: list[float] = []
+    for (hard, soft, _), leg in runs:
+        angle_rad = leg.start.angle_rad
+        if any(abs(math.remainder(angle_rad - other, math.tau)) < APART_RAD for other in tried):
+            continue
+        tried.append(angle_rad)
+        try:
+            climbed = climbed_leg(foot.altitude_m, leg, terms)
+        except InfeasibleError as error:
+            failed = failed or error
+            continue
+        path, heights, _ = climbed
+        level_m = next(at_m for at_m, up_m in heights.knots if up_m >= heights.knots[-1][1])
+        entered = conflicts(cut(path, 0.0, level_m), terms.zones)
+        rank = (hard + entered[0] + terms.too_low(path, heights), soft + entered[1])
+        if best is None or rank < best[0]:
+            best = (rank, leg, climbed)
+        if rank == (0, 0) or len(tried) >= MOST_RUNS:
+            break
+    if best is None:
+        raise failed or InfeasibleError("climb", "start", "no way leads up", "Move the start.")
+    return best[1:]
 
 
 def fall(foot: Foot, origin: Anchor, terms: Terms) -> Rise:
@@ -154,7 +197,7 @@ def fall(foot: Foot, origin: Anchor, terms: Terms) -> Rise:
     # With the wind ahead at the landing it is behind on the line flown backwards.
     into = None if foot.into_rad is None else foot.into_rad + math.pi
     up = rise(replace(foot, angle_rad=back, into_rad=into), turned(origin), backwards)
-    return Rise(up.path.reverse(), up.heights.reverse(), up.run_m, up.turns_m)
+    return Rise(up.path.reverse(), up.heights.reverse(), up.run_m, up.turns_m, up.inserted_m)
 
 
 def turned(anchor: Anchor) -> Anchor:
@@ -220,9 +263,12 @@ _Choice = tuple[_Rank, Path, Heights, float]
 
 
 def _turning(low_m: float, leg: Path, terms: Terms) -> _Choice | None:
-    """Climbing turns on a circle that touches the leg; the best there is, clear or not."""
+    """Climbing turns on a circle that touches the leg; the best there is, clear or not.
+
+    What is flown before the leg is straight: there, at once, is the first place.
+    """
     best: _Choice | None = None
-    for at_m in straights(leg, 2.0 * terms.radius_m):
+    for at_m in dict.fromkeys([0.0, *straights(leg, 2.0 * terms.radius_m)]):
         raise_if(terms.stop)
         for choice in _turns_at(low_m, leg, at_m, terms):
             if best is None or choice[0] < best[0]:
@@ -237,18 +283,18 @@ def _turns_at(low_m: float, leg: Path, at_m: float, terms: Terms) -> Iterator[_C
     """Turns at one place: as many as the leg behind needs, or all of the height there."""
     slope = math.tan(terms.slope_rad)
     in_m = min(terms.top_m, low_m + at_m * slope)
-    round_m = math.tau * terms.radius_m
     ahead_m = max(leg.length_m - at_m - terms.level_off_m, 0.0)
-    counts = {
-        max(1, math.ceil((out_m - in_m - NO_TURN_M) / (round_m * slope)))
+    ways = dict.fromkeys(
+        way
         for out_m in (max(in_m, terms.top_m - ahead_m * slope), terms.top_m)
-    }
-    for count in sorted(counts):
-        out_m = min(terms.top_m, in_m + count * round_m * slope)
+        for way in _circles((out_m - in_m - NO_TURN_M) / slope, terms.radius_m)
+    )
+    for count, radius_m in ways:
+        out_m = min(terms.top_m, in_m + count * math.tau * radius_m * slope)
         rest_m = min(terms.run_for_m(terms.top_m - out_m), leg.length_m - at_m)
         for side in SIDES:
-            turns = circle(leg, at_m, side, terms.radius_m, count)
-            flown = (cut(leg, 0.0, at_m), circle(leg, at_m, side, terms.radius_m, 1))
+            turns = circle(leg, at_m, side, radius_m, count)
+            flown = (cut(leg, 0.0, at_m), circle(leg, at_m, side, radius_m, 1))
             hard, soft = (
                 sum(many)
                 for many in zip(
@@ -266,6 +312,15 @@ def _turns_at(low_m: float, leg: Path, at_m: float, terms: Terms) -> Iterator[_C
             line, heights = with_circle(leg, at_m, turns), Heights(tidy(knots))
             hard += terms.too_low(line, heights)
             yield (hard, soft, turns.length_m), line, heights, at_m + turns.length_m
+
+
+def _circles(length_m: float, radius_m: float) -> Iterator[tuple[int, float]]:
+    """How many whole turns, and of which radius, are at least so long: as tight as may be, or one fewer."""
+    round_m = math.tau * radius_m
+    yield max(1, math.ceil(length_m / round_m)), radius_m
+    fewer = math.floor(length_m / round_m)
+    if fewer >= 1:
+        yield fewer, stored_radius_m(length_m / (math.tau * fewer))
 
 
 def _beside(low_m: float, leg: Path, terms: Terms) -> _Choice | None:

@@ -14,6 +14,7 @@ from planner.airspace.prices import risk_m, soft_prices, way_weight
 from planner.airspace.zones import TRANSIT_MARGIN_M, keep_out
 from planner.dubins.kernels import dubins_lengths
 from planner.dubins.path import MIN_TURN_RAD, Path
+from planner.dubins.run_kernels import NO_DISCS, run_costs
 from planner.errors import InfeasibleError
 from planner.progress import Stop
 from planner.route import Anchor, CollectPass, Terminal
@@ -72,8 +73,11 @@ class Legs:
         start, model = self._from, self._model
         if start.run_m <= 0.0 or goal.angle_rad is None:
             return self.cost_m(anchor(start), goal)
-        begins = np.array([start.after_run(angle_rad) for angle_rad in start.runs_rad])
-        goals = np.broadcast_to(np.array([goal.east_m, goal.north_m, goal.angle_rad]), begins.shape)
+        pose = np.array([[goal.east_m, goal.north_m, goal.angle_rad]])
+        runs_rad = np.array(start.runs_rad)
+        _, best_rad = run_costs(*start.position, start.run_m, runs_rad, pose, model.turn_radius_m, NO_DISCS)
+        begins = np.array([start.after_run(angle_rad) for angle_rad in (*best_rad, *start.runs_rad)])
+        goals = np.broadcast_to(pose, begins.shape)
         fastest = model.airspeed_m_s / (model.airspeed_m_s + model.wind.speed_m_s)
         least_m = fastest * dubins_lengths(begins, np.ascontiguousarray(goals), model.turn_radius_m)
         run_m = start.run_m * np.asarray(model.air_factor(begins[:, 2]), dtype=np.float64)

@@ -303,7 +303,7 @@ def _settled(rising: Rise, collect: CollectPass | None, top_m: float) -> Rise:
     path = _straight_on(rising.path, collect)
     gap_m = path.length_m - rising.path.length_m
     heights = rising.heights.then(level_heights(gap_m, top_m)) if gap_m > 0.0 else rising.heights
-    return Rise(path, heights, rising.run_m, rising.turns_m)
+    return replace(rising, path=path, heights=heights)
 
 
 def _straight_on(path: Path, collect: CollectPass | None) -> Path:

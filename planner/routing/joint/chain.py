@@ -19,6 +19,7 @@ from planner.airspace.surroundings import Surroundings
 from planner.coverage.lines import NO_ROOM_M
 from planner.coverage.ways import Options, Target
 from planner.dubins.estimate_kernels import point_costs, transit_costs
+from planner.dubins.run_kernels import run_costs
 from planner.progress import Stop, raise_if
 from planner.route import CollectPass, Terminal
 from planner.routing.large.kernels import discs_between
@@ -114,8 +115,8 @@ def layers_of(
 def from_start(start: Terminal, around: Surroundings, entries: Floats, discs: Floats) -> Floats:
     """Estimated costs from the start to poses, (N,)."""
     if start.run_m > 0.0:
-        begins = np.array([start.after_run(angle_rad) for angle_rad in start.runs_rad])
-        costs = start.run_m + transit_costs(begins, entries, around.radius_m, discs).min(axis=0)
+        runs_rad = np.array(start.runs_rad)
+        costs, _ = run_costs(*start.position, start.run_m, runs_rad, entries, around.radius_m, discs)
     else:
         costs = _terminal_costs(start, entries, around, discs)
     return _in_wind(costs, np.array(start.position), entries, around)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -13,6 +14,7 @@ from shapely.geometry import LineString, Point
 
 from planner.airspace.zones import Disc, KeepOut
 from planner.dubins.path import Path
+from planner.dubins.run_kernels import NO_DISCS, run_costs
 from planner.profile.circling import circle_down
 from planner.profile.foot import Foot
 from planner.profile.rise import Rise, Terms, fall, rise
@@ -39,6 +41,15 @@ def terms(top_m: float, zones: KeepOut = OPEN) -> Terms:
 
 def wing(angle_rad: float | None = None, into_rad: float | None = None) -> Foot:
     return Foot((0.0, 0.0), angle_rad, 0.0, 0.0, 50.0 / math.tan(SLOPE_RAD), 50.0, into_rad)
+
+
+def foot_for(goal: Anchor) -> Foot:
+    """A wing's foot that knows which run leads to a goal best."""
+    pose = np.array([[goal.east_m, goal.north_m, goal.angle_rad]])
+    runs_rad = np.sort([math.remainder(k * math.tau / 48.0, math.tau) for k in range(48)])
+    foot = wing()
+    _, best_rad = run_costs(*foot.position, foot.run_m, runs_rad, pose, RADIUS_M, NO_DISCS)
+    return replace(foot, likely_rad=float(best_rad[0]))
 
 
 def sampled(found: Rise) -> tuple[np.ndarray, np.ndarray]:
@@ -121,15 +132,32 @@ def test_a_long_first_leg_climbs_without_turns() -> None:
     assert found.path.length_m == pytest.approx(8_000.0)
 
 
-def test_a_short_first_leg_climbs_in_no_more_turns_than_it_needs() -> None:
-    """One turn fewer would be too steep."""
-    found = rise(wing(), Anchor(1_500.0, 0.0, 0.0), terms(500.0))
+@settings(max_examples=20)
+@given(st.floats(150.0, 1_500.0), st.floats(-math.pi, math.pi), st.floats(-math.pi, math.pi))
+def test_a_short_first_leg_climbs_no_further_than_it_needs(away_m: float, way: float, angle: float) -> None:
+    """Whole turns are as wide as makes them just long enough, and come at once behind the run."""
+    there = Anchor(away_m * math.cos(way), away_m * math.sin(way), angle)
+    found = rise(wing(), there, terms(500.0))
+    climb_m = 500.0 / math.tan(SLOPE_RAD) + 100.0
     round_m = math.tau * CIRCLE_M
-    arcs = [segment for segment in found.path.segments if segment.kind != "straight"]
-    turns = sum(segment.length_m for segment in arcs if segment.length_m >= round_m - 1e-6)
-    assert turns == pytest.approx(round(turns / round_m) * round_m)
-    room_m = found.path.length_m - round_m - 100.0
-    assert room_m * math.tan(SLOPE_RAD) < 500.0 + 1.0
+    plain_m = found.path.length_m - found.inserted_m
+    if climb_m - plain_m >= round_m:
+        turns = round(found.inserted_m / round_m)
+        assert found.path.length_m <= climb_m + math.tau * (turns + 1)
+    assert found.turns_m - found.run_m == pytest.approx(found.inserted_m)
+    assert found.run_m == pytest.approx(50.0 / math.tan(SLOPE_RAD))
+
+
+@settings(max_examples=10)
+@given(st.floats(30.0, 1_500.0), st.floats(-math.pi, math.pi), st.floats(-math.pi, math.pi))
+def test_no_direction_of_the_run_is_better(away_m: float, way: float, angle: float) -> None:
+    """Of directions every two degrees none leads to a shorter line."""
+    there = Anchor(away_m * math.cos(way), away_m * math.sin(way), angle)
+    here = foot_for(there)
+    found = rise(here, there, terms(60.0))
+    ways = np.radians(np.arange(0.0, 360.0, 2.0))
+    lines_m = [connect(here.run_end(float(each)), there, OPEN, RADIUS_M).length_m for each in ways]
+    assert found.path.length_m - found.inserted_m <= here.run_m + min(lines_m) + 1.0
 
 
 @given(st.floats(120.0, 900.0), st.floats(-math.pi, math.pi))
