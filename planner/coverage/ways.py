@@ -8,6 +8,7 @@ sensor. The choice among options knows neither sensors nor what an option is mad
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
 from typing import Any, Protocol, Self
 
 import numpy as np
@@ -50,6 +51,14 @@ class Options(Protocol):
         """Some of them."""
 
 
+@dataclass(frozen=True, slots=True)
+class Between:
+    """What one stop of a tour lies between: costs to first poses, and from last ones, (K, 3) to (K,)."""
+
+    before_m: Callable[[Floats], Floats]
+    behind_m: Callable[[Floats], Floats]
+
+
 class Target(Protocol):
     """One stop of a tour, with the ways to see it. Options are those it gave itself."""
 
@@ -69,8 +78,13 @@ class Target(Protocol):
             Where no option keeps the hard constraints.
         """
 
-    def near(self, picked: Any, step_rad: float, step_eta: float) -> Options:
-        """Options round one, a single row, at steps of heading and offset; that one where there are none."""
+    def near(
+        self, picked: Any, step_rad: float, step_eta: float, between: Between | None = None
+    ) -> Options:
+        """Options round one, a single row, at steps of heading and offset; that one where there are none.
+
+        Those that are best for what they lie ``between``, where that is given.
+        """
 
     def passes(self, options: Any, index: int) -> tuple[CollectPass, ...]:
         """The passes of one option."""

@@ -10,12 +10,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import groupby, pairwise
 
 import numpy as np
 
 from planner.airspace.values import STILL_AIR, Wind
-from planner.dubins.path import Path
+from planner.dubins.path import Path, Segment
 from planner.profile.flight import Stretch
 from planner.profile.jerks import HALVINGS, change_m, change_s, chords_of
 from planner.vehicle.aircraft import Aircraft
@@ -26,6 +27,9 @@ from planner.vehicle.wind import duration_s, held_speed_m_s
 #: Places of an arc at which the wind is asked for.
 _ALONG_ARC = (np.arange(16) + 0.5) / 16.0
 
+#: Arcs are timed in pieces that turn by no more.
+PIECE_RAD = math.radians(45.0)
+
 
 def wing_times(
     stretches: Sequence[Stretch], aircraft: Aircraft, manners: Manners, wind: Wind, datum_amsl_m: float
@@ -33,19 +37,31 @@ def wing_times(
     """Seconds of each stretch flown on wings; hover stretches at the hover's rates."""
     on_the_spot_s = _spots_s(stretches, manners)
     return [
-        spot_s
-        if s.segment is None
-        else duration_s(Path((s.segment,)), _over_ground_m_s(s, aircraft.airspeed_m_s, datum_amsl_m), wind)
+        spot_s if s.segment is None else _held_s(s, s.segment, aircraft.airspeed_m_s, datum_amsl_m, wind)
         for s, spot_s in zip(stretches, on_the_spot_s, strict=True)
     ]
 
 
-def _over_ground_m_s(stretch: Stretch, airspeed_m_s: float, datum_amsl_m: float) -> float:
-    """Horizontal part of the true airspeed on a stretch, its slowness averaged over the heights (Simpson)."""
-    low_m, high_m = datum_amsl_m + stretch.start_altitude_m, datum_amsl_m + stretch.end_altitude_m
-    ends = 1.0 / true_over_equivalent(low_m) + 1.0 / true_over_equivalent(high_m)
-    slowness = (ends + 4.0 / true_over_equivalent(0.5 * (low_m + high_m))) / 6.0
-    return airspeed_m_s / slowness * stretch.ground_m / stretch.length_m
+def _held_s(
+    stretch: Stretch, segment: Segment, airspeed_m_s: float, datum_amsl_m: float, wind: Wind
+) -> float:
+    """Seconds of a stretch at one equivalent airspeed: of its pieces, averaged over their heights (Simpson).
+
+    In a turn wind and air change together: thin where the wind is behind, it is not thin where it is ahead.
+    """
+    over_ground = stretch.ground_m / stretch.length_m
+    pieces = max(1, math.ceil(abs(segment.turn_rad) / PIECE_RAD)) if wind.speed_m_s > 0.0 else 1
+    edges_m = datum_amsl_m + np.linspace(stretch.start_altitude_m, stretch.end_altitude_m, 2 * pieces + 1)
+    speeds_m_s = [airspeed_m_s * true_over_equivalent(float(at_m)) * over_ground for at_m in edges_m]
+    part_m = segment.length_m / pieces
+    total_s = 0.0
+    for k in range(pieces):
+        piece = Path((replace(segment, start=segment.at(k * part_m), length_m=part_m),))
+        one_s, middle_s, other_s = (
+            duration_s(piece, speed, wind) for speed in speeds_m_s[2 * k : 2 * k + 3]
+        )
+        total_s += (one_s + 4.0 * middle_s + other_s) / 6.0
+    return total_s
 
 
 def _spots_s(stretches: Sequence[Stretch], manners: Manners) -> list[float]:

@@ -127,7 +127,7 @@ def turns_between(
 
 
 @njit(cache=True)
-def best_order(turns: Floats, own_m: Floats, first: Flags, last: Flags) -> tuple[float, Ints]:
+def best_order(turns: Floats, own_m: Floats, before_m: Floats, behind_m: Floats) -> tuple[float, Ints]:
     """The cheapest way to fly every lane once, in one of its states each; exact.
 
     Dynamic programming over subsets of lanes and the state flown last (Held and Karp 1962, clustered).
@@ -136,13 +136,13 @@ def best_order(turns: Floats, own_m: Floats, first: Flags, last: Flags) -> tuple
     ----------
     turns, own_m
         Between all lanes, and of each state: see ``turns_between``.
-    first, last
-        Which states may come first and last, shape (S,).
+    before_m, behind_m
+        What coming to a state first and going on from it last costs, inf where it may not be; shape (S,).
 
     Returns
     -------
     tuple
-        The cost, inf where there is no way, and the states in order, shape (N,).
+        The cost of all, inf where there is no way, and the states in order, shape (N,).
     """
     count, width, states = turns.shape
     reach = width // 2
@@ -151,9 +151,7 @@ def best_order(turns: Floats, own_m: Floats, first: Flags, last: Flags) -> tuple
         for j in range(count):
             if abs(j // states - i // states) <= reach:
                 costs_m[i, j] = turns[i, j // states - i // states + reach, j % states] + own_m[j]
-    begin_m = np.where(first, own_m, np.inf)
-    end_m = np.where(last, 0.0, np.inf)
-    costs, tours = best_orders(begin_m, costs_m, end_m, np.arange(0, count + 1, states))
+    costs, tours = best_orders(before_m + own_m, costs_m, behind_m, np.arange(0, count + 1, states))
     found = int(np.argmin(costs))
     return costs[found], tours[found]
 
@@ -182,7 +180,9 @@ def racetrack(lanes: int, stride: int) -> Ints:
 
 
 @njit(cache=True)
-def best_states(turns: Floats, own_m: Floats, first: Flags, last: Flags, order: Ints) -> tuple[float, Ints]:
+def best_states(
+    turns: Floats, own_m: Floats, before_m: Floats, behind_m: Floats, order: Ints
+) -> tuple[float, Ints]:
     """The cheapest states for a given order of lanes: a shortest path through layers. Arrays as above."""
     lanes = len(order)
     states = turns.shape[2]
@@ -190,8 +190,7 @@ def best_states(turns: Floats, own_m: Floats, first: Flags, last: Flags, order: 
     best = np.full((lanes, states), np.inf)
     came_from = np.full((lanes, states), -1, dtype=np.int64)
     for b in range(states):
-        if first[order[0] * states + b]:
-            best[0, b] = own_m[order[0] * states + b]
+        best[0, b] = before_m[order[0] * states + b] + own_m[order[0] * states + b]
     for k in range(1, lanes):
         step = order[k] - order[k - 1] + reach
         for a in range(states):
@@ -205,8 +204,9 @@ def best_states(turns: Floats, own_m: Floats, first: Flags, last: Flags, order: 
                     came_from[k, b] = a
     total, state = np.inf, -1
     for b in range(states):
-        if last[order[-1] * states + b] and best[lanes - 1, b] < total:
-            total, state = best[lanes - 1, b], b
+        cost = best[lanes - 1, b] + behind_m[order[-1] * states + b]
+        if cost < total:
+            total, state = cost, b
     chosen = np.full(lanes, -1, dtype=np.int64)
     for k in range(lanes - 1, -1, -1):
         if state < 0:
@@ -217,7 +217,7 @@ def best_states(turns: Floats, own_m: Floats, first: Flags, last: Flags, order: 
 
 
 @njit(cache=True)
-def pattern_order(turns: Floats, own_m: Floats, first: Flags, last: Flags) -> tuple[float, Ints]:
+def pattern_order(turns: Floats, own_m: Floats, before_m: Floats, behind_m: Floats) -> tuple[float, Ints]:
     """The cheapest of boustrophedon and racetracks of every stride the turns reach, from either end.
 
     Arrays as for ``best_order``.
@@ -234,9 +234,9 @@ def pattern_order(turns: Floats, own_m: Floats, first: Flags, last: Flags) -> tu
                 order = lanes - 1 - order
             if way >= 2:
                 order = order[::-1].copy()
-            if not first[order[0] * states : (order[0] + 1) * states].any():
+            if not np.isfinite(before_m[order[0] * states : (order[0] + 1) * states]).any():
                 continue
-            cost, found = best_states(turns, own_m, first, last, order)
+            cost, found = best_states(turns, own_m, before_m, behind_m, order)
             if cost < total:
                 total = cost
                 chosen = found
@@ -249,6 +249,8 @@ def lane_orders(
     exits: Floats,
     own_m: Floats,
     cramped_m: Floats,
+    before_m: Floats,
+    behind_m: Floats,
     onward: Flags,
     strides: int,
     radius_m: float,
@@ -260,6 +262,8 @@ def lane_orders(
     ----------
     entries, exits, own_m, cramped_m
         Shapes (P, N, B, 3), (P, N, B, 3), (P, N, B) and (P, N, B, 2): problem, lane, state.
+    before_m, behind_m
+        What coming to a state first and going on from it last costs, shape (P, N, B).
     onward
         Which states fly in the problem's own direction, shape (B,); the first lane is one of these.
     strides
@@ -268,7 +272,7 @@ def lane_orders(
     Returns
     -------
     tuple
-        Costs (P, 4), inf where there is none, and states in order (P, 4, N). Variant 2·b + e begins in the
+        Costs of all (P, 4), inf where there is none, and states in order (P, 4, N). Variant 2·b + e begins in the
         left (b = 0) or right half of the lanes, and ends onward (e = 0) or flying back.
     """
     problems, lanes, states = own_m.shape
@@ -283,13 +287,15 @@ def lane_orders(
         cramped = cramped_m[p].copy().reshape(count, 2)
         turns = turns_between(entry, leave, own, cramped, states, reach, radius_m, discs)
         for variant in range(4):
-            first = np.zeros(count, dtype=np.bool_)
-            last = np.zeros(count, dtype=np.bool_)
+            first = np.full(count, np.inf)
+            last = np.full(count, np.inf)
             for lane in range(lanes):
                 for b in range(states):
                     in_half = (2 * lane >= lanes) == (variant >= 2)
-                    first[lane * states + b] = in_half and onward[b]
-                    last[lane * states + b] = onward[b] == (variant % 2 == 0)
+                    if in_half and onward[b]:
+                        first[lane * states + b] = before_m[p, lane, b]
+                    if onward[b] == (variant % 2 == 0):
+                        last[lane * states + b] = behind_m[p, lane, b]
             if lanes <= EXACT_UP_TO:
                 cost, order = best_order(turns, own, first, last)
             else:

@@ -18,6 +18,7 @@ from planner.coverage.strips.classify import Spans, fits, hull_points, spans_at
 from planner.coverage.strips.neighbourhood import complementary
 from planner.coverage.strips.segments import Neighbourhood
 from planner.coverage.strips.sweeps import VARIANTS, Judge, Side, Sweep, Swept, best_sweeps, sweep_passes
+from planner.coverage.ways import Between
 from planner.dubins.kernels import dubins_lengths
 from planner.route import CollectPass, Look
 from planner.sensors.strip import swaths_m
@@ -64,9 +65,19 @@ class Options:
 
 
 def make_options(
-    sides: Sequence[Side], angles_rad: Floats, etas: Floats, around: Surroundings
+    sides: Sequence[Side],
+    angles_rad: Floats,
+    etas: Floats,
+    around: Surroundings,
+    between: Between | None = None,
 ) -> Options | None:
-    """Options at the given angles and offsets that keep the hard constraints; None where there are none."""
+    """Options at the given angles and offsets that keep the hard constraints; None where there are none.
+
+    Parameters
+    ----------
+    between
+        What the orders of lanes are chosen for; for themselves where that is not known.
+    """
     found = []
     angles_rad, etas = of_visit(sides[0].region, angles_rad, etas)
     if len(angles_rad) == 0 or len(etas) == 0:
@@ -76,7 +87,7 @@ def make_options(
             part = _of_side(index, side, angles_rad, etas, around)
             if part is not None:
                 found.append(part)
-    found += _of_sweeps(sides, angles_rad, etas, around)
+    found += _of_sweeps(sides, angles_rad, etas, around, between)
     if not found:
         return None
     width = max(part.lanes.shape[1] for part in found)
@@ -164,7 +175,11 @@ def _finish(
 
 
 def _of_sweeps(
-    sides: Sequence[Side], angles_rad: Floats, etas: Floats, around: Surroundings
+    sides: Sequence[Side],
+    angles_rad: Floats,
+    etas: Floats,
+    around: Surroundings,
+    between: Between | None,
 ) -> list[Options]:
     """Options of all sweeps among the sides; those that differ in their variant alone are solved together."""
     families: dict[int, list[tuple[int, Sweep]]] = {}
@@ -174,7 +189,9 @@ def _of_sweeps(
     found = []
     for family in families.values():
         judge = _lane_judge(family[0][1], around)
-        best = best_sweeps(family[0][1], angles_rad, etas, judge, around.radius_m, around.discs)
+        best = best_sweeps(
+            family[0][1], angles_rad, etas, judge, around.radius_m, around.discs, between
+        )
         number = np.full(VARIANTS, -1, dtype=np.int64)
         for index, side in family:
             number[side.variant] = index

@@ -27,6 +27,7 @@ from planner.coverage.strips import kernels
 from planner.coverage.strips.classify import ROUNDING_M, hull_points, spans_at
 from planner.coverage.strips.headings import MOST_LANES_FACTOR, grid, telling
 from planner.coverage.strips.segments import Neighbourhood, collect_along
+from planner.coverage.ways import Between
 from planner.route import CollectPass, Look
 from planner.sensors.sar import SarSensor
 from planner.sensors.strip import strip_on, swaths_m
@@ -214,12 +215,18 @@ def lanes_at(sweep: Sweep, angles_rad: Floats, etas: Floats, count: int) -> Lane
 
 
 def best_sweeps(
-    sweep: Sweep, angles_rad: Floats, etas: Floats, judge: Judge, radius_m: float, discs: Floats
+    sweep: Sweep,
+    angles_rad: Floats,
+    etas: Floats,
+    judge: Judge,
+    radius_m: float,
+    discs: Floats,
+    between: Between | None = None,
 ) -> Swept:
     """The best order of lanes at each heading, for each variant; the best η only.
 
     The variant of ``sweep`` itself does not matter. Near the fewest lanes only: a heading that takes many
-    more is left out.
+    more is left out. The best is that with what lies before and behind it, where that is known.
     """
     counts = sweep.lanes(angles_rad)
     found: list[Swept] = []
@@ -232,9 +239,9 @@ def best_sweeps(
     for count in kept:
         rows = np.flatnonzero(holds & (counts == count))
         lanes, orders, costs, poses = _solve(
-            sweep, angles_rad[rows], etas, int(count), judge, radius_m, discs
+            sweep, angles_rad[rows], etas, int(count), judge, radius_m, discs, between
         )
-        entries, exits, cramped_m = poses
+        entries, exits, cramped_m, before_m, behind_m = poses
         best_eta = np.argmin(costs, axis=1)
         cheapest_m = np.take_along_axis(costs, best_eta[:, None, :], axis=1)[:, 0]
         m, variant = np.nonzero(np.isfinite(cheapest_m))
@@ -250,7 +257,7 @@ def best_sweeps(
                 k,
                 entries[m, k, *begin],
                 exits[m, k, *end],
-                cheapest_m[m, variant],
+                cheapest_m[m, variant] - before_m[m, k, *begin] - behind_m[m, k, *end],
                 room_m,
                 padded,
             )
@@ -319,24 +326,36 @@ def _solve(
     judge: Judge,
     radius_m: float,
     discs: Floats,
-) -> tuple[Lanes, Ints, Floats, tuple[Floats, Floats, Floats]]:
+    between: Between | None,
+) -> tuple[Lanes, Ints, Floats, tuple[Floats, Floats, Floats, Floats, Floats]]:
     lanes = lanes_at(sweep, angles_rad, etas, count)
     shape = lanes.lines.shape[:4]
     headings_rad = np.broadcast_to(lanes.headings_rad[:, None, None, :], shape).ravel()
     cost_m, entries, exits, cramped_m = judge(lanes.lines.reshape(-1, 2, 2), headings_rad, lanes.looks)
     cost_m = np.where(_allowed(sweep, headings_rad), cost_m, np.inf)
+    before_m, behind_m = np.zeros((2, len(cost_m)))
+    if between is not None:
+        before_m, behind_m = between.before_m(entries), between.behind_m(exits)
     problems = (shape[0] * shape[1], *shape[2:])
     costs, orders = kernels.lane_orders(
         entries.reshape(*problems, 3),
         exits.reshape(*problems, 3),
         cost_m.reshape(problems),
         cramped_m.reshape(*problems, 2),
+        before_m.reshape(problems),
+        behind_m.reshape(problems),
         lanes.onward,
         _strides(sweep, radius_m),
         radius_m,
         discs,
     )
-    poses = (entries.reshape(*shape, 3), exits.reshape(*shape, 3), cramped_m.reshape(*shape, 2))
+    poses = (
+        entries.reshape(*shape, 3),
+        exits.reshape(*shape, 3),
+        cramped_m.reshape(*shape, 2),
+        before_m.reshape(shape),
+        behind_m.reshape(shape),
+    )
     return lanes, orders.reshape(*shape[:2], VARIANTS, count), costs.reshape(*shape[:2], VARIANTS), poses
 
 

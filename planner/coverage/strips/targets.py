@@ -18,6 +18,7 @@ from planner.coverage.strips.headings import grid
 from planner.coverage.strips.options import Options, collect_passes, hidden_m, make_options
 from planner.coverage.strips.segments import Neighbourhood
 from planner.coverage.strips.sweeps import MOST_TELLING, Side, Sweep, telling_headings
+from planner.coverage.ways import Between
 from planner.errors import InfeasibleError
 from planner.progress import Stop, never
 from planner.route import CollectPass
@@ -88,8 +89,13 @@ class StripTarget:
         kept = kept[:: math.ceil(len(kept) / MOST_ROOMY)]
         return finer.rows(kept)
 
-    def near(self, picked: Options, step_rad: float, step_eta: float) -> Options:
-        """Options of the same side round a single one; that one where there are none."""
+    def near(
+        self, picked: Options, step_rad: float, step_eta: float, between: Between | None = None
+    ) -> Options:
+        """Options round a single one; that one where there are none.
+
+        They are of its side; of any sweep with as many lanes where what they lie between is known.
+        """
         angles_rad = picked.angles_rad[0] + step_rad * np.arange(
             -NEAR_ANGLES, NEAR_ANGLES + 1, dtype=np.float64
         )
@@ -97,10 +103,14 @@ class StripTarget:
             angles_rad = np.asarray(self.region.approach_rad, dtype=np.float64)
         etas = _near([float(picked.eta_first[0]), float(picked.eta_second[0])], step_eta)
         side = int(picked.side[0])
-        options = make_options((self.sides[side],), angles_rad, etas, self.around)
-        if options is None:
-            return picked
-        return replace(options, side=np.full(len(options.side), side, dtype=np.int64))
+        alike = np.array([side], dtype=np.int64)
+        chosen = self.sides[side]
+        if between is not None and isinstance(chosen, Sweep):
+            alike = np.flatnonzero(
+                [isinstance(each, Sweep) and each.extra == chosen.extra for each in self.sides]
+            )
+        options = make_options([self.sides[k] for k in alike], angles_rad, etas, self.around, between)
+        return picked if options is None else replace(options, side=alike[options.side])
 
     def passes(self, options: Options, index: int) -> tuple[CollectPass, ...]:
         """The passes of one option."""

@@ -104,12 +104,17 @@ def layers_of(
     """Estimated costs along a chain of regions."""
     between = []
     for here, there in itertools.pairwise(options):
-        minded = discs_between(here.exits, there.entries, discs, 0.0)
-        costs = transit_costs(here.exits, there.entries, around.radius_m, minded)
-        costs = _in_wind(costs, here.exits[:, None], there.entries[None], around)
+        costs = estimates(here.exits, there.entries, around, discs)
         between.append(costs + there.inner_m[None, :])
     first = from_start(ends[0], around, options[0].entries, discs) + options[0].inner_m
     return Layers(tuple(options), first, tuple(between), to_end(ends[1], around, options[-1].exits, discs))
+
+
+def estimates(exits: Floats, entries: Floats, around: Surroundings, discs: Floats) -> Floats:
+    """Estimated costs from poses to others, (N, M)."""
+    minded = discs_between(exits, entries, discs, 0.0)
+    costs = transit_costs(exits, entries, around.radius_m, minded)
+    return _in_wind(costs, exits[:, None], entries[None], around)
 
 
 def from_start(start: Terminal, around: Surroundings, entries: Floats, discs: Floats) -> Floats:

@@ -57,6 +57,8 @@ SHARED_ROUNDS = 4
 #: Tours with their legs flown in earnest, those of them to which true costs are fed back, and how often.
 TRUE_TOURS = 8
 TRUE_SOLVES = 12
+#: Tours whose passes are put in the order that is best for the tour.
+FITTED_TOURS = 4
 #: Tours refined to costs this close are one.
 SAME_M = 1e-3
 #: A tour that costs this much more than was thought is chosen anew.
@@ -172,7 +174,9 @@ def _route(seen: Visible, search: Search) -> tuple[float, tuple[CollectPass, ...
             break
         search.progress("routing", 0.4 + 0.3 * index / len(candidates))
         refined.append(tours.refined(choice))
-    cost_m, passes = _truest(tours, refined, search)
+    likely = _apart(sorted(refined, key=lambda choice: choice.cost_m))
+    fitted = [tours.fitted(choice) for choice in likely[:FITTED_TOURS] if not search.enough()]
+    cost_m, passes = _truest(tours, refined + fitted, search)
     cost_m, passes = split_passes(cost_m, passes, search.legs, search.stop, search.enough)
     more = search.complete(passes, search.legs)
     return (cost_m, passes) if more is passes else (search.legs.tour_m(more), more)

@@ -10,15 +10,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planner.airspace.surroundings import Surroundings
-from planner.coverage.ways import Options, Target
+from planner.coverage.ways import Between, Options, Target
 from planner.route import CollectPass, Terminal
-from planner.routing.joint.chain import Layers, layers_of
+from planner.routing.joint.chain import Layers, estimates, from_start, layers_of, to_end
 
 Floats = NDArray[np.float64]
 
 #: The first refinement's steps of heading and offset; each halves them.
 FIRST_STEP_RAD, FIRST_STEP_ETA = math.radians(5.0), 0.25
 REFINEMENTS = 5
+#: The same where passes are put in the order that is best for the tour.
+FITTED_STEP_RAD, FITTED_STEP_ETA, FITTINGS = math.radians(1.0), 0.1, 4
 #: Tours refined besides the cheapest, so many over the number of places but at least so many: they cost no
 #: more than this part more than it, and their headings at one place lie so far apart; less in tours of few
 #: places, where most is lanes and a degree may change their number.
@@ -69,6 +71,35 @@ class Tours:
             step_rad, step_eta = step_rad / 2.0, step_eta / 2.0
         return choice
 
+    def fitted(self, choice: Choice) -> Choice:
+        """The same order, the passes of each target in the order that is best between what it lies between."""
+        step_rad, step_eta = FITTED_STEP_RAD, FITTED_STEP_ETA
+        for _ in range(FITTINGS):
+            between = [self._between(choice, place) for place in range(len(choice.order))]
+            layers = self.layers(choice, step_rad, step_eta, between)
+            cost_m, picked = layers.best()
+            if cost_m < choice.cost_m:
+                choice = Choice.of(choice.order, layers.options, picked, cost_m)
+            step_rad, step_eta = step_rad / 2.0, step_eta / 2.0
+        return choice
+
+    def _between(self, choice: Choice, place: int) -> Between:
+        """What one place of a tour lies between: both ends, or the options chosen next to it."""
+        (start, end), around = self.ends, self.around
+        before, behind = choice.picked[:place][-1:], choice.picked[place + 1 :][:1]
+
+        def before_m(entries: Floats) -> Floats:
+            if not before:
+                return from_start(start, around, entries, around.discs)
+            return estimates(before[0].exits, entries, around, around.discs)[0]
+
+        def behind_m(exits: Floats) -> Floats:
+            if not behind:
+                return to_end(end, around, exits, around.discs)
+            return estimates(exits, behind[0].entries, around, around.discs)[:, 0]
+
+        return Between(before_m, behind_m)
+
     def alternatives(self, choice: Choice, coarse: Sequence[Options]) -> list[Choice]:
         """Tours in the same order with another option at one place, the cheapest of headings apart."""
         layers = layers_of(self.ends, self.around, [coarse[c] for c in choice.order], self.around.discs)
@@ -95,11 +126,18 @@ class Tours:
         """The targets in a tour's order."""
         return [self.targets[index] for index in choice.order]
 
-    def layers(self, choice: Choice, step_rad: float, step_eta: float) -> Layers:
+    def layers(
+        self,
+        choice: Choice,
+        step_rad: float,
+        step_eta: float,
+        between: Sequence[Between | None] | None = None,
+    ) -> Layers:
         """Options round the chosen ones, place by place."""
+        between = between or [None] * len(choice.order)
         finer = [
-            target.near(picked, step_rad, step_eta)
-            for target, picked in zip(self.visited(choice), choice.picked, strict=True)
+            target.near(picked, step_rad, step_eta, lies)
+            for target, picked, lies in zip(self.visited(choice), choice.picked, between, strict=True)
         ]
         return layers_of(self.ends, self.around, finer, self.around.discs)
 

@@ -15,6 +15,7 @@ from planner.airspace.surroundings import Surroundings
 from planner.coverage.lines import Floats, judge_lines, poses_of
 from planner.coverage.merge import MergedRegion
 from planner.coverage.sharing import Apart
+from planner.coverage.ways import Between
 from planner.errors import InfeasibleError
 from planner.route import CollectPass, Look
 from planner.sensors.base import Properties, SeenGround
@@ -114,7 +115,9 @@ class Target:
             raise InfeasibleError("area", self.region.label, "no pass may be flown", "enlarge the area")
         return found
 
-    def near(self, picked: Options, step_rad: float, step_eta: float) -> Options:
+    def near(
+        self, picked: Options, step_rad: float, step_eta: float, between: Between | None = None
+    ) -> Options:
         angles_rad = picked.entries[0, 2] + step_rad * np.arange(-3.0, 4.0)
         return self.options(angles_rad, np.array([0.5])) or picked
 

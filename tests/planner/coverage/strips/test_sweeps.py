@@ -131,8 +131,7 @@ def test_best_order_is_the_best_of_every_order(seed: int, lanes: int, states: in
     entries = np.column_stack([rng.uniform(0, 2000, (count, 2)), rng.uniform(-3, 3, count)])
     exits = np.column_stack([rng.uniform(0, 2000, (count, 2)), rng.uniform(-3, 3, count)])
     own = np.where(rng.random(count) < 0.1, np.inf, rng.uniform(100, 900, count))
-    free = np.ones(count, dtype=np.bool_)
-    none = np.zeros((count, 2))
+    free, none = np.zeros(count), np.zeros((count, 2))
     turn = np.array(
         [[shortest(Pose(*exits[i]), Pose(*entries[j]), radius_m).length_m for j in range(count)]
          for i in range(count)]
@@ -177,7 +176,7 @@ def test_racetracks_beat_boustrophedon_where_the_turn_is_wide() -> None:
     entries = np.hstack([lines[:, :, 0].reshape(-1, 2), headings])
     exits = np.hstack([lines[:, :, 1].reshape(-1, 2), headings])
     own = np.hypot(*(exits - entries)[:, :2].T)
-    free, none = np.ones(len(own), dtype=np.bool_), np.zeros((len(own), 2))
+    free, none = np.zeros(len(own)), np.zeros((len(own), 2))
     turns = kernels.turns_between(entries, exits, own, none, states, 5, radius_m, NO_DISCS)
     common = (turns, own, free, free)
     neighbours, _ = kernels.best_states(*common, np.arange(6, dtype=np.int64))
@@ -197,7 +196,7 @@ def test_the_turn_decides_between_boustrophedon_and_racetrack(radius_m: float, o
         np.array([[x, 100.0 * lane, heading] for lane in range(lanes) for x, heading in where])
         for where in ends
     )
-    own, free, none = np.full(12, 2000.0), np.ones(12, dtype=np.bool_), np.zeros((12, 2))
+    own, free, none = np.full(12, 2000.0), np.zeros(12), np.zeros((12, 2))
     turns = kernels.turns_between(entries, exits, own, none, 2, lanes - 1, radius_m, NO_DISCS)
     common = (turns, own, free, free)
     cost, order = kernels.best_order(*common)
