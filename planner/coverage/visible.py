@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
+from types import MappingProxyType
 
 from shapely.geometry import Polygon
 
@@ -14,13 +15,17 @@ from planner.coverage.merge import MergedRegion, merge_regions
 from planner.coverage.registry import FAMILIES, family_of
 from planner.coverage.relaxation import explained
 from planner.coverage.sharing import Apart, ByFamily
-from planner.coverage.ways import Sharing, Target
+from planner.coverage.ways import Division, Sharing, Target
 from planner.errors import Finding, InfeasibleError
 from planner.progress import Stop, never
 from planner.sensors.base import Sensor
 from planner.sensors.suite import Suite
 from planner.vehicle.model import FlightModel
 from planner.wishes import Objective, Region
+
+#: How merged regions, by their numbers, are to be divided.
+Divisions = Mapping[int, Division]
+NO_DIVISIONS: Divisions = MappingProxyType({})
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,15 +51,17 @@ class Seeing:
         """Area, zones and prices at the level, with the margin transits keep."""
         return surroundings(self.airspace, self.level, self.model, self.objective)
 
-    def visible(self, around: Surroundings, whole: Collection[int] = (), enough: Stop = never) -> Visible:
+    def visible(
+        self, around: Surroundings, divisions: Divisions = NO_DIVISIONS, enough: Stop = never
+    ) -> Visible:
         """Targets that see the regions.
 
         Regions that are not required and not to be seen are named and left out.
 
         Parameters
         ----------
-        whole
-            Merged regions not to divide.
+        divisions
+            Of merged regions that are to be divided in a certain way.
         enough
             Ends the search for shorter divisions.
 
@@ -65,6 +72,7 @@ class Seeing:
         """
         targets: list[Target] = []
         divided: list[int] = []
+        bent: list[int] = []
         dropped: list[Finding] = []
         by_name = {region.name: region for region in self.regions}
         for index, region in enumerate(merge_regions(self.regions, default_sensor=self.suite.first)):
@@ -81,7 +89,7 @@ class Seeing:
                     height_m,
                     self.at(level, around),
                     wide=self.wide,
-                    whole=index in whole,
+                    division=divisions.get(index, "auto"),
                     enough=enough,
                 )
             except InfeasibleError as refused:
@@ -102,7 +110,9 @@ class Seeing:
             targets.extend(found)
             if len(found) > region.revisits:
                 divided.append(index)
-        return Visible(tuple(targets), tuple(divided), tuple(dropped))
+            if region.axis is not None and len(region.axis.coords) > 2:
+                bent.append(index)
+        return Visible(tuple(targets), tuple(divided), tuple(bent), tuple(dropped))
 
     def sharing(self, targets: Sequence[Target], around: Surroundings) -> Sharing:
         """Which targets may be seen in one pass; the paper's coverage joins none but by its filter."""
@@ -148,10 +158,13 @@ class Visible:
         Each region, part of one or visit to one.
     divided
         Which of the merged regions are divided.
+    bent
+        Which of them are corridors with bends.
     dropped
         Those that cannot be seen and need not be.
     """
 
     targets: tuple[Target, ...]
     divided: tuple[int, ...]
+    bent: tuple[int, ...]
     dropped: tuple[Finding, ...]

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol, Self
+from typing import Any, Literal, Protocol, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +26,9 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 
+#: How a region is divided: as costs least by an estimate; not, unless it cannot be seen otherwise; or, where
+#: it is a corridor with bends, at each of them.
+Division = Literal["auto", "whole", "legs"]
 #: Items seen together, by their numbers.
 Group = frozenset[int]
 #: The sensor of a name over an area, and the flight height over its ground.
@@ -78,9 +81,7 @@ class Target(Protocol):
             Where no option keeps the hard constraints.
         """
 
-    def near(
-        self, picked: Any, step_rad: float, step_eta: float, between: Between | None = None
-    ) -> Options:
+    def near(self, picked: Any, step_rad: float, step_eta: float, between: Between | None = None) -> Options:
         """Options round one, a single row, at steps of heading and offset; that one where there are none.
 
         Those that are best for what they lie ``between``, where that is given.
@@ -149,7 +150,7 @@ class Family(Protocol):
         around: Surroundings,
         *,
         wide: bool,
-        whole: bool,
+        division: Division,
         enough: Stop,
     ) -> Sequence[Target]:
         """The stops that see a region: several where it is divided or to be visited again.
@@ -158,8 +159,8 @@ class Family(Protocol):
         ----------
         wide
             Whether any number of passes, and divisions, are allowed; without, the paper's ways.
-        whole
-            Not to divide it, unless it cannot be seen otherwise.
+        division
+            How it is divided.
         enough
             Ends the search for a shorter division.
 

@@ -57,9 +57,7 @@ def _held_s(
     total_s = 0.0
     for k in range(pieces):
         piece = Path((replace(segment, start=segment.at(k * part_m), length_m=part_m),))
-        one_s, middle_s, other_s = (
-            duration_s(piece, speed, wind) for speed in speeds_m_s[2 * k : 2 * k + 3]
-        )
+        one_s, middle_s, other_s = (duration_s(piece, speed, wind) for speed in speeds_m_s[2 * k : 2 * k + 3])
         total_s += (one_s + 4.0 * middle_s + other_s) / 6.0
     return total_s
 

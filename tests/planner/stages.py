@@ -81,7 +81,7 @@ def joint_route(
     ends, legs = ends_of(scenario), legs_of(scenario, stop)
     search = Search(ends, around, legs, scenario.seed, complete, progress, stop, enough)
     share = partial(asked.sharing, around=around)
-    return of_targets(search, asked.visible(around), lambda whole: asked.visible(around, whole), share)
+    return of_targets(search, asked.visible(around), lambda ways: asked.visible(around, ways), share)
 
 
 def see_hidden(

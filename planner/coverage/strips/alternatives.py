@@ -29,6 +29,8 @@ LEAST_SAVING = 0.01
 MOST_PARTS = 6
 #: Corridors with more legs than this are flown leg by leg without trying to join them.
 MOST_LEGS_TO_JOIN = 12
+#: Corridors with more legs than this are not tried leg by leg beside their straight pieces.
+MOST_LEGS = 24
 #: Of the circle's share that each visit has to itself, this part is used: headings of two visits differ.
 SHARE_USED = 0.8
 
@@ -116,6 +118,15 @@ def parts_of(
         cost_m = min(costs)
         best = trials[costs.index(cost_m)]
     return best
+
+
+def legs_of(region: MergedRegion) -> tuple[MergedRegion, ...] | None:
+    """The region with its corridors cut at each bend; None where there is no bend, or too many of them."""
+    found: list[MergedRegion] = []
+    for each in region.split() if len(region.originals) > 1 else (region,):
+        legs = None if each.axis is None else decompose.legs(each.originals[0], each.axis)
+        found += [each] if legs is None else [each.piece(leg) for leg in legs]
+    return tuple(found) if 1 < len(found) <= MOST_LEGS else None
 
 
 def visits(region: MergedRegion) -> tuple[MergedRegion, ...]:

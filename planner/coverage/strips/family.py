@@ -16,7 +16,7 @@ from planner.coverage.strips.classify import angles_around, hull_points, spans_a
 from planner.coverage.strips.neighbourhood import can_be_seen, check_sensor
 from planner.coverage.strips.sharing import StripSharing
 from planner.coverage.strips.targets import StripTarget, can_be_flown, targets
-from planner.coverage.ways import Over
+from planner.coverage.ways import Division, Over
 from planner.progress import Stop
 from planner.sensors.sar import SarSensor
 from planner.sensors.strip import swaths_m
@@ -59,11 +59,11 @@ class Strips:
         around: Surroundings,
         *,
         wide: bool,
-        whole: bool,
+        division: Division,
         enough: Stop,
     ) -> tuple[StripTarget, ...]:
         """The stops that see a region."""
-        return targets(region, sensor, height_m, around, wide=wide, whole=whole, enough=enough)
+        return targets(region, sensor, height_m, around, wide=wide, division=division, enough=enough)
 
     def can_be_flown(
         self, region: MergedRegion, sensor: SarSensor, height_m: float, around: Surroundings, *, wide: bool

@@ -272,8 +272,8 @@ def lane_orders(
     Returns
     -------
     tuple
-        Costs of all (P, 4), inf where there is none, and states in order (P, 4, N). Variant 2·b + e begins in the
-        left (b = 0) or right half of the lanes, and ends onward (e = 0) or flying back.
+        Costs of all (P, 4), inf where there is none, and states in order (P, 4, N). Variant 2·b + e begins
+        in the left (b = 0) or right half of the lanes, and ends onward (e = 0) or flying back.
     """
     problems, lanes, states = own_m.shape
     costs = np.full((problems, 4), np.inf)

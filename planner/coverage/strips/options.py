@@ -189,9 +189,7 @@ def _of_sweeps(
     found = []
     for family in families.values():
         judge = _lane_judge(family[0][1], around)
-        best = best_sweeps(
-            family[0][1], angles_rad, etas, judge, around.radius_m, around.discs, between
-        )
+        best = best_sweeps(family[0][1], angles_rad, etas, judge, around.radius_m, around.discs, between)
         number = np.full(VARIANTS, -1, dtype=np.int64)
         for index, side in family:
             number[side.variant] = index

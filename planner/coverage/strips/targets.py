@@ -13,12 +13,12 @@ from planner.airspace.surroundings import Surroundings
 from planner.coverage.estimate import Ends, least_tour_m
 from planner.coverage.lines import roomy
 from planner.coverage.merge import MergedRegion
-from planner.coverage.strips.alternatives import families, parts_of, visits
+from planner.coverage.strips.alternatives import families, legs_of, parts_of, visits
 from planner.coverage.strips.headings import grid
 from planner.coverage.strips.options import Options, collect_passes, hidden_m, make_options
 from planner.coverage.strips.segments import Neighbourhood
 from planner.coverage.strips.sweeps import MOST_TELLING, Side, Sweep, telling_headings
-from planner.coverage.ways import Between
+from planner.coverage.ways import Between, Division
 from planner.errors import InfeasibleError
 from planner.progress import Stop, never
 from planner.route import CollectPass
@@ -133,7 +133,7 @@ def targets(
     around: Surroundings,
     *,
     wide: bool = True,
-    whole: bool = False,
+    division: Division = "auto",
     enough: Stop = never,
 ) -> tuple[StripTarget, ...]:
     """The stops that see one region; several where it is divided or to be visited again.
@@ -142,8 +142,8 @@ def targets(
     ----------
     wide
         Whether more than two swaths, divisions and sweeps are allowed; without, the paper's neighbourhoods.
-    whole
-        Not to divide it, unless it cannot be seen otherwise.
+    division
+        How to divide it.
     enough
         Ends the search for a shorter division.
 
@@ -168,9 +168,11 @@ def targets(
     undivided = options_of(region)
     parts: tuple[MergedRegion, ...] = (region,)
     if wide and (
-        undivided is None or (not whole and (bool((_passes(undivided) > 1).all()) or region.axis is not None))
+        undivided is None
+        or (division != "whole" and (bool((_passes(undivided) > 1).all()) or region.axis is not None))
     ):
-        parts = parts_of(region, estimate, sensor, height_m, around, enough)
+        legs = legs_of(region) if division == "legs" else None
+        parts = legs or parts_of(region, estimate, sensor, height_m, around, enough)
     found = []
     for part in parts:
         for visit in visits(part):

@@ -12,15 +12,15 @@ the tour takes one of each at the least whole length, exactly over the order for
 4. Passes of one region are parted where others fit between (``split``), and passes added for ground that
    stays unseen (``complete``).
 5. A coarse grid of many families may hide the better order, and regions are divided by an estimate that knows
-   nothing of the tour: tours with pairs of passes alone instead of sweeps, and with a divided region whole,
-   are found as well and kept where they cost less.
+   nothing of the tour: tours with pairs of passes alone instead of sweeps, with a divided region whole, and
+   with a corridor leg by leg are found as well and kept where they cost less.
 6. Regions that one pass sees share it where that is shorter (``shared``).
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -29,7 +29,7 @@ from numpy.typing import NDArray
 
 from planner.airspace.surroundings import Surroundings
 from planner.coverage.visible import Visible
-from planner.coverage.ways import Options, Sharing, Target
+from planner.coverage.ways import Division, Options, Sharing, Target
 from planner.dubins.estimate_kernels import transit_costs
 from planner.errors import InfeasibleError
 from planner.orders_kernels import best_orders
@@ -50,15 +50,18 @@ COARSE_ETAS = np.array([0.0, 0.5, 1.0])
 EXACT_ORDER_UP_TO = 9
 LARGE_STEP_RAD = math.radians(15.0)
 LARGE_ETAS = np.array([0.0, 1.0])
-#: Divided regions, from the first, for which the tour with the region whole is found too.
+#: Regions, from the first, for which the tour with the region whole, or leg by leg, is found too.
 MOST_WHOLE = 3
 #: Times that passes are shared: at first by as few passes as can be, then in the tour found last.
 SHARED_ROUNDS = 4
 #: Tours with their legs flown in earnest, those of them to which true costs are fed back, and how often.
 TRUE_TOURS = 8
 TRUE_SOLVES = 12
-#: Tours whose passes are put in the order that is best for the tour.
-FITTED_TOURS = 4
+#: Tours whose passes are put in the order that is best for the tour, so many; of those with a heading so far
+#: from the others'.
+FITTED_TOURS, UNLIKE_RAD = 5, math.radians(2.0)
+#: Tours made of what the others have chosen of each target, and fitted again.
+CROSSED_TOURS = 2
 #: Tours refined to costs this close are one.
 SAME_M = 1e-3
 #: A tour that costs this much more than was thought is chosen anew.
@@ -67,8 +70,8 @@ FALSE_M = 5.0
 TRUE_STEPS = ((math.radians(5.0), 0.125), (math.radians(1.25), 0.03))
 
 
-#: The targets with divided regions whole, some merged regions (by index) not divided.
-Whole = Callable[[Collection[int]], Visible]
+#: The targets with some merged regions, by their numbers, divided in certain ways.
+Divided = Callable[[Mapping[int, Division]], Visible]
 #: Which of some targets may be seen in one pass.
 Share = Callable[[Sequence[Target]], Sharing]
 #: A tour's passes with others besides, for ground it leaves unseen; the same where nothing is to be added.
@@ -108,7 +111,7 @@ class Search:
     enough: Stop = never
 
 
-def joint_route(search: Search, seen: Visible, whole: Whole, share: Share) -> JointRoute:
+def joint_route(search: Search, seen: Visible, divided: Divided, share: Share) -> JointRoute:
     """Choose the passes of all targets and their order together.
 
     Raises
@@ -127,16 +130,18 @@ def joint_route(search: Search, seen: Visible, whole: Whole, share: Share) -> Jo
     if any(one is not other for one, other in zip(plain, seen.targets, strict=True)) and not search.enough():
         fewer = _route(replace(seen, targets=plain), again)
         cost_m, passes = min((cost_m, passes), fewer, key=lambda found: found[0])
-    kept: frozenset[int] = frozenset()
-    for index in seen.divided[:MOST_WHOLE]:
+    kept: dict[int, Division] = {}
+    others: list[tuple[int, Division]] = [(index, "whole") for index in seen.divided[:MOST_WHOLE]]
+    others += [(index, "legs") for index in seen.bent[:MOST_WHOLE]]
+    for index, division in others:
         if search.enough():
             break
-        trial = whole(kept | {index})
-        if index in trial.divided:
+        trial = divided(kept | {index: division})
+        if (division == "whole" and index in trial.divided) or _alike(trial, seen):
             continue
         trial_m, trial_passes = _route(trial, again)
         if trial_m < cost_m - 1e-6:
-            cost_m, passes, seen, kept = trial_m, trial_passes, trial, kept | {index}
+            cost_m, passes, seen, kept = trial_m, trial_passes, trial, kept | {index: division}
     sharing = None
     for number in range(SHARED_ROUNDS):
         if search.enough():
@@ -153,6 +158,11 @@ def joint_route(search: Search, seen: Visible, whole: Whole, share: Share) -> Jo
         if number:
             break
     return JointRoute(Route(passes), cost_m, seen)
+
+
+def _alike(one: Visible, other: Visible) -> bool:
+    """Whether both have the same targets."""
+    return [target.region.area for target in one.targets] == [target.region.area for target in other.targets]
 
 
 def _route(seen: Visible, search: Search) -> tuple[float, tuple[CollectPass, ...]]:
@@ -174,8 +184,11 @@ def _route(seen: Visible, search: Search) -> tuple[float, tuple[CollectPass, ...
             break
         search.progress("routing", 0.4 + 0.3 * index / len(candidates))
         refined.append(tours.refined(choice))
-    likely = _apart(sorted(refined, key=lambda choice: choice.cost_m))
+    likely = _unlike(sorted(refined, key=lambda choice: choice.cost_m))
     fitted = [tours.fitted(choice) for choice in likely[:FITTED_TOURS] if not search.enough()]
+    if len(seen.targets) > 1:
+        crossed = sorted(tours.crossed(refined + fitted), key=lambda choice: choice.cost_m)
+        fitted += [tours.fitted(choice) for choice in crossed[:CROSSED_TOURS] if not search.enough()]
     cost_m, passes = _truest(tours, refined + fitted, search)
     cost_m, passes = split_passes(cost_m, passes, search.legs, search.stop, search.enough)
     more = search.complete(passes, search.legs)
@@ -220,6 +233,15 @@ def _apart(choices: list[Choice]) -> list[Choice]:
     return [
         choice for choice, last_m in zip(choices, before, strict=False) if choice.cost_m > last_m + SAME_M
     ]
+
+
+def _unlike(choices: list[Choice]) -> list[Choice]:
+    """Of choices by cost, those left out that have about the headings of a cheaper one in the same order."""
+    kept: list[Choice] = []
+    for choice in choices:
+        if all(other.order != choice.order or other.turned_rad(choice) > UNLIKE_RAD for other in kept):
+            kept.append(choice)
+    return kept
 
 
 def _besides(targets: Sequence[Target], place: int, passes: Sequence[CollectPass]) -> float:

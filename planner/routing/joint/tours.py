@@ -51,6 +51,28 @@ class Choice:
         rows = (o.rows(np.array([index])) for o, index in zip(options, picked, strict=True))
         return cls(tuple(order), tuple(rows), cost_m)
 
+    def turned_rad(self, other: Choice) -> float:
+        """By how much another tour's headings differ at most, place by place."""
+        pairs = zip(self.picked, other.picked, strict=True)
+        return max(abs(math.remainder(a.entries[0, 2] - b.entries[0, 2], math.tau)) for a, b in pairs)
+
+
+@dataclass(frozen=True, slots=True)
+class _Pool:
+    """Options of one target that several tours have chosen."""
+
+    entries: Floats
+    exits: Floats
+    inner_m: Floats
+
+    @classmethod
+    def of(cls, picked: Sequence[Options]) -> _Pool:
+        columns = ([getattr(row, name) for row in picked] for name in ("entries", "exits", "inner_m"))
+        return cls(*(np.concatenate(column) for column in columns))
+
+    def rows(self, kept: NDArray[np.int64]) -> _Pool:
+        return _Pool(self.entries[kept], self.exits[kept], self.inner_m[kept])
+
 
 @dataclass(frozen=True, slots=True)
 class Tours:
@@ -72,7 +94,7 @@ class Tours:
         return choice
 
     def fitted(self, choice: Choice) -> Choice:
-        """The same order, the passes of each target in the order that is best between what it lies between."""
+        """The same order, the passes of each target in the order that is best for what it lies between."""
         step_rad, step_eta = FITTED_STEP_RAD, FITTED_STEP_ETA
         for _ in range(FITTINGS):
             between = [self._between(choice, place) for place in range(len(choice.order))]
@@ -83,6 +105,21 @@ class Tours:
             step_rad, step_eta = step_rad / 2.0, step_eta / 2.0
         return choice
 
+    def crossed(self, choices: Sequence[Choice]) -> list[Choice]:
+        """Tours of what some tours have chosen of each target, the best in each of their orders."""
+        chosen = {
+            target: [choice.picked[choice.order.index(target)] for choice in choices]
+            for target in choices[0].order
+        }
+        pools = {target: _Pool.of(picked) for target, picked in chosen.items()}
+        found = []
+        for order in dict.fromkeys(choice.order for choice in choices):
+            layers = layers_of(self.ends, self.around, [pools[c] for c in order], self.around.discs)
+            cost_m, best = layers.best()
+            rows = tuple(chosen[c][index] for c, index in zip(order, best, strict=True))
+            found.append(Choice(order, rows, cost_m))
+        return found
+
     def _between(self, choice: Choice, place: int) -> Between:
         """What one place of a tour lies between: both ends, or the options chosen next to it."""
         (start, end), around = self.ends, self.around
@@ -91,12 +128,14 @@ class Tours:
         def before_m(entries: Floats) -> Floats:
             if not before:
                 return from_start(start, around, entries, around.discs)
-            return estimates(before[0].exits, entries, around, around.discs)[0]
+            costs_m: Floats = estimates(before[0].exits, entries, around, around.discs)[0]
+            return costs_m
 
         def behind_m(exits: Floats) -> Floats:
             if not behind:
                 return to_end(end, around, exits, around.discs)
-            return estimates(exits, behind[0].entries, around, around.discs)[:, 0]
+            costs_m: Floats = estimates(exits, behind[0].entries, around, around.discs)[:, 0]
+            return costs_m
 
         return Between(before_m, behind_m)
 

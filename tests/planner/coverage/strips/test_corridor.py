@@ -119,7 +119,7 @@ def test_a_corridor_takes_no_more_passes_than_its_legs(kind: str, seed: int) -> 
     legs = decompose.legs(area, line)
     if legs is None:
         return
-    alone = [targets(region.piece(leg), SENSOR, HEIGHT_M, around, whole=True) for leg in legs]
+    alone = [targets(region.piece(leg), SENSOR, HEIGHT_M, around, division="whole") for leg in legs]
     by_leg = [stop for each in alone for stop in each]
     assert len(found) <= len(by_leg)
     assert _way_m(found) <= 1.01 * _way_m(by_leg)

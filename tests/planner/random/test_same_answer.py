@@ -1,0 +1,61 @@
+"""One question has one answer however it is put: some draws in each run.
+
+``SWATHPLAN_RANDOM`` set to ``all`` tries twenty.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tests.planner.moved import put_at
+from tests.planner.random.test_plain_rules import CHOSEN, SAME, Places, asked, length_m, polygon
+
+
+def turned(place: tuple[float, float], angle_deg: float) -> tuple[float, float]:
+    cos, sin = math.cos(math.radians(angle_deg)), math.sin(math.radians(angle_deg))
+    return (cos * place[0] - sin * place[1], sin * place[0] + cos * place[1])
+
+
+def beside(number: int) -> list[Places]:
+    """Two polygons side by side."""
+    return [polygon(number), [(e + 1800.0, n + 300.0) for e, n in polygon(number + 1)]]
+
+
+def ways(number: int) -> dict[str, tuple[dict[str, Any], float]]:
+    """One question put otherwise, and by how much its lengths are scaled."""
+    regions, put = beside(number), put_at((8.55, 47.4))
+    rng = np.random.default_rng(number)
+
+    def noisy(place: tuple[float, float]) -> tuple[float, float]:
+        # 1e-9° are a tenth of a millimetre.
+        return (place[0] + rng.uniform(-1e-4, 1e-4), place[1] + rng.uniform(-1e-4, 1e-4))
+
+    def scaled(factor: float) -> dict[str, Any]:
+        return asked([[(factor * e, factor * n) for e, n in ring] for ring in regions], put, factor)
+
+    return {
+        **{
+            f"turned by {angle_deg}": (asked(regions, lambda e, n, a=angle_deg: put(*turned((e, n), a))), 1.0)
+            for angle_deg in (23.0, 131.0)
+        },
+        "mirrored": (asked(regions, lambda e, n: put(-e, n)), 1.0),
+        "moved": (asked(regions, put_at((20.0, -12.0))), 1.0),
+        "scaled": (scaled(2.0), 2.0),
+        "in another order": (asked(regions[::-1], put), 1.0),
+        "begun at another corner": (asked([ring[1:] + ring[:1] for ring in regions], put), 1.0),
+        "noisy": (asked([[noisy(place) for place in ring] for ring in regions], put), 1.0),
+    }
+
+
+@pytest.mark.parametrize("number", range(20) if CHOSEN == "all" else [2])
+def test_one_question_has_one_answer(number: int) -> None:
+    """Turned, mirrored, moved, scaled, in another order or with noise the plan is as long."""
+    known_m = length_m(asked(beside(number), put_at((8.55, 47.4))))
+    off = {
+        name: length_m(document) / factor / known_m - 1.0 for name, (document, factor) in ways(number).items()
+    }
+    assert {name: part for name, part in off.items() if abs(part) > SAME} == {}
