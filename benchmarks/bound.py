@@ -23,7 +23,6 @@ from planner.errors import PlannerError
 from planner.frames import LocalFrame
 from planner.geojson import read_scenario
 from planner.pipeline import make_plan, with_bound
-from planner.plan import Plan
 from planner.warm import warm_up
 
 KINDS = ("points", "corridors", "fields", "wide", "clusters", "bent", "mixed")
@@ -141,14 +140,14 @@ def _row(kind: str, seed: int, compared: bool) -> dict[str, Any]:
     planned_s = time.perf_counter() - began_s
     bounded = with_bound(scenario, plan, clock=time.perf_counter).metrics
     shared = with_bound(scenario, plan, clock=time.perf_counter, share=True).metrics
-    lengths = {"auto": _route_m(plan)}
+    lengths = {"auto": plan.metrics.length_m}
     for name, other in others(document) if compared else ():
         try:
             found = make_plan(read_scenario(other))
         except PlannerError:
             continue
         if not found.hard_violations and min(found.metrics.coverage.values()) > 0.99999:
-            lengths[name] = _route_m(found)
+            lengths[name] = found.metrics.length_m
     least = min(lengths, key=lambda name: lengths[name])
     assert bounded.lower_bound_m is not None
     return {
@@ -169,12 +168,6 @@ def _row(kind: str, seed: int, compared: bool) -> dict[str, Any]:
         "planned_s": planned_s,
         "bound_s": bounded.planning_time_s["bound"],
     }
-
-
-def _route_m(plan: Plan) -> float:
-    """What the bound bounds: the line over the ground, without turns flown for height."""
-    assert plan.metrics.route_length_m is not None
-    return plan.metrics.route_length_m
 
 
 def _regions(rng: np.random.Generator, kind: str, swath_m: float, side_m: float) -> Iterator[Feature]:

@@ -148,13 +148,15 @@ def with_bound(
     allowance = Allowance(lines_for_bound(scenario, plan) if share else math.inf, enough)
     with watch.stage("bound"):
         proved_m = task_of(scenario.task).bound_m(scenario, plan, stop, allowance)
+    # What of the route is no mission, the runs of take-off and landing, is as long in every plan.
+    runs_m = max(route_m - plan.metrics.length_m, 0.0)
+    lower_bound_m = max(proved_m - runs_m, 0.0)
     return replace(
         plan,
         metrics=replace(
             plan.metrics,
-            # Said no longer than the mission phase, which of a short route may be a smaller part.
-            lower_bound_m=min(proved_m, plan.metrics.length_m),
-            gap=1.0 - proved_m / route_m,
+            lower_bound_m=lower_bound_m,
+            gap=1.0 - lower_bound_m / plan.metrics.length_m,
             planning_time_s=plan.metrics.planning_time_s | watch.seconds,
         ),
     )

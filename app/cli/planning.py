@@ -168,7 +168,7 @@ def tell_plan(document: dict[str, Any]) -> None:
     )
     if metrics.get("gap") is not None:
         say(
-            f"no plan is shorter than {metrics['lower_bound_m'] / 1000:.2f} km from start to end: "
+            f"no plan is shorter than {metrics['lower_bound_m'] / 1000:.2f} km: "
             f"this one is at most {metrics['gap']:.1%} from the best"
         )
     violations = document["violations"]

@@ -41,8 +41,9 @@ from planner.vehicle.model import FlightModel
 EXACT_UP_TO = 13
 #: Strips of one region asked for at most: fewer where the order can then be searched exactly.
 MOST_STRIPS = 8
-#: Gaps worth proving, the last first only where that takes little.
-GAPS = (0.049, 0.02)
+#: Gaps of a route worth proving, the last first only where that takes little; its mission phase, which is
+#: shorter, then mostly has 5 % at most.
+GAPS = (0.047, 0.02)
 #: Lines between cells to evaluate: exactly over the order up to so many passes; over trees, for each pass.
 EFFORT_EXACT, EFFORT_TREES = {9: 2_500_000, EXACT_UP_TO: 8_000_000}, 120_000
 #: Of regions of more strips than this the whole stays say more, as a rule: of their passes no more effort.
