@@ -219,8 +219,8 @@ class Metrics:
     ``length_m`` and ``duration_s`` are those of the mission phase, from where take-off and climbing turns end
     to where descending turns or the landing begin; ``flight_length_m``, ``flight_duration_s`` and
     ``energy_wh`` of all phases. ``route_length_m`` is the line over the ground from start to end, without
-    turns flown for height; ``lower_bound_m`` what no mission phase over these regions is shorter than, threats
-    left out, and ``gap`` by what part of its length this one is longer; None where there is no bound.
+    turns flown for height; ``lower_bound_m`` what no mission phase over these regions is shorter than,
+    threats left out, and ``gap`` by what part of its length this one is longer; None without a bound.
     """
 
     length_m: float

@@ -77,7 +77,7 @@ def test_what_is_too_far_is_left_out_and_said(reason: str, routing: str) -> None
         "flight-time": whole.paths[0].duration_s - 600.0,
         "energy": (whole.paths[0].energy_wh or 0.0) - 30.0,
     }
-    assert said.margin == pytest.approx(with_it[reason], rel=1e-6)
+    assert said.margin == pytest.approx(with_it[reason], rel=1e-6, abs=2e-3)
     assert any("FAR" in warning for warning in found.warnings)
 
 
