@@ -11,11 +11,13 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import groupby, pairwise
 
 from planner.airspace.values import STILL_AIR, Wind
 from planner.profile.flight import Stretch
 from planner.profile.jerks import HALVINGS, change_m, change_s, chords_of
+from planner.profile.times import spots_s
 from planner.vehicle.manners import Manners
 from planner.vehicle.wind import held_speed_m_s
 
@@ -76,7 +78,7 @@ def smoothed_times(
     stretches: Sequence[Stretch], airspeed_m_s: float, manners: Manners, wind: Wind = STILL_AIR
 ) -> list[float]:
     """Seconds of each stretch: at rest before and behind every climb and descent on the spot."""
-    found = _spots_s(stretches, manners)
+    found = spots_s(stretches, partial(_shares_s, manners=manners))
     numbered = enumerate(stretches)
     for on_the_spot, run in groupby(numbered, key=lambda pair: pair[1].segment is None):
         if not on_the_spot:
@@ -175,25 +177,18 @@ def _leg_s(
     return turning_s + speeding_s + cruising_s + braking.time_s(high, end_m_s), min(left_m_s, high)
 
 
-def _spots_s(stretches: Sequence[Stretch], manners: Manners) -> list[float]:
-    """Seconds of each climb on the spot, 0 for others; those that follow each other are one."""
-    found: list[float] = []
-    for on_the_spot, run in groupby(stretches, key=lambda s: s.segment is None):
-        together = list(run)
-        foot_m, top_m = together[0].start_altitude_m, together[-1].end_altitude_m
-        for s in together:
-            if not on_the_spot:
-                found.append(0.0)
-            elif {"take_off", "landing"}.isdisjoint({together[0].phase, together[-1].phase}):
-                share = s.length_m / abs(top_m - foot_m)
-                found.append(share * change_of_height_s(top_m - foot_m, manners))
-            elif top_m > foot_m:
-                heights_m = (s.start_altitude_m - foot_m, s.end_altitude_m - foot_m)
-                begun_s, ended_s = (climb_s(height_m, top_m - foot_m, manners) for height_m in heights_m)
-                found.append(ended_s - begun_s)
-            else:
-                found.append(descent_s(foot_m - top_m, manners) * s.length_m / (foot_m - top_m))
-    return found
+def _shares_s(together: Sequence[Stretch], manners: Manners) -> list[float]:
+    """Seconds of climbs on the spot that follow each other."""
+    foot_m, top_m = together[0].start_altitude_m, together[-1].end_altitude_m
+    if {"take_off", "landing"}.isdisjoint({together[0].phase, together[-1].phase}):
+        total_s = change_of_height_s(top_m - foot_m, manners)
+    elif top_m < foot_m:
+        total_s = descent_s(foot_m - top_m, manners)
+    else:
+        ends_m = [foot_m, *(s.end_altitude_m for s in together)]
+        until_s = [climb_s(end_m - foot_m, top_m - foot_m, manners) for end_m in ends_m]
+        return [ended_s - begun_s for begun_s, ended_s in pairwise(until_s)]
+    return [total_s * s.length_m / abs(top_m - foot_m) for s in together]
 
 
 def change_of_height_s(rise_m: float, manners: Manners) -> float:

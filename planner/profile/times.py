@@ -9,8 +9,9 @@ before arcs to what it flies their chords with; under PX4 see ``planner.profile.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 from itertools import groupby, pairwise
 
 import numpy as np
@@ -35,7 +36,7 @@ def wing_times(
     stretches: Sequence[Stretch], aircraft: Aircraft, manners: Manners, wind: Wind, datum_amsl_m: float
 ) -> list[float]:
     """Seconds of each stretch flown on wings; hover stretches at the hover's rates."""
-    on_the_spot_s = _spots_s(stretches, manners)
+    on_the_spot_s = spots_s(stretches, partial(_shares_s, manners=manners))
     return [
         spot_s if s.segment is None else _held_s(s, s.segment, aircraft.airspeed_m_s, datum_amsl_m, wind)
         for s, spot_s in zip(stretches, on_the_spot_s, strict=True)
@@ -62,16 +63,21 @@ def _held_s(
     return total_s
 
 
-def _spots_s(stretches: Sequence[Stretch], manners: Manners) -> list[float]:
+def spots_s(
+    stretches: Sequence[Stretch], shares_s: Callable[[Sequence[Stretch]], list[float]]
+) -> list[float]:
     """Seconds of each climb on the spot, 0 for others; those that follow each other are one, and share it."""
     found: list[float] = []
     for on_the_spot, run in groupby(stretches, key=lambda s: s.segment is None):
         together = list(run)
-        rise_m = together[-1].end_altitude_m - together[0].start_altitude_m
-        lands = together[-1].phase == "landing"
-        total_s = spot_s(rise_m, manners, lands=lands) if on_the_spot else 0.0
-        found += [total_s * s.length_m / abs(rise_m) if on_the_spot else 0.0 for s in together]
+        found += shares_s(together) if on_the_spot else [0.0] * len(together)
     return found
+
+
+def _shares_s(together: Sequence[Stretch], manners: Manners) -> list[float]:
+    rise_m = together[-1].end_altitude_m - together[0].start_altitude_m
+    total_s = spot_s(rise_m, manners, lands=together[-1].phase == "landing")
+    return [total_s * s.length_m / abs(rise_m) for s in together]
 
 
 def spot_s(rise_m: float, manners: Manners, *, lands: bool = True) -> float:
@@ -100,9 +106,10 @@ def rotor_times(
         joints[k + 1] = min(joints[k + 1], _reached_m_s(joints[k], s.ground_m, manners))
     for k in range(len(stretches) - 1, -1, -1):
         joints[k] = min(joints[k], _reached_m_s(joints[k + 1], stretches[k].ground_m, manners))
+    on_the_spot_s = spots_s(stretches, partial(_shares_s, manners=manners))
     return [
         spot_s if s.segment is None else _between_s(s.length_m, joints[k], joints[k + 1], limits[k], manners)
-        for k, (s, spot_s) in enumerate(zip(stretches, _spots_s(stretches, manners), strict=True))
+        for k, (s, spot_s) in enumerate(zip(stretches, on_the_spot_s, strict=True))
     ]
 
 
