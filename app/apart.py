@@ -15,7 +15,7 @@ from app.version import VERSION
 #: Settings that only the service itself takes notice of: another value needs no other process.
 _OF_THE_SERVICE = {
     "host", "port", "workers", "plan_time_limit_s", "max_queued_plans", "plan_memory_bytes",
-    "request_workers", "max_wait_s", "max_terrain_bytes", "static_dir",
+    "request_workers", "max_wait_s", "max_terrain_bytes", "max_log_bytes", "static_dir",
 }  # fmt: skip
 
 

@@ -63,7 +63,10 @@ def assemble(
     app.add_middleware(
         middleware.BodyCap,
         max_bytes=settings.max_body_bytes,
-        larger={"/api/v1/terrain": settings.max_terrain_bytes},
+        larger={
+            "/api/v1/terrain": settings.max_terrain_bytes,
+            "/api/v1/flights/*/log": settings.max_log_bytes,
+        },
     )
     app.add_middleware(
         middleware.Guard, allowed_hosts=settings.allowed_hosts, allowed_origins=settings.allowed_origins

@@ -10,6 +10,7 @@ import re
 import time
 import uuid
 from collections.abc import Mapping, Sequence
+from fnmatch import fnmatchcase
 from typing import Final
 from urllib.parse import SplitResult, urlsplit
 
@@ -175,7 +176,10 @@ def _place(parts: SplitResult | None) -> tuple[str | None, int | None] | None:
 
 
 class BodyCap:
-    """Reads each body up to a cap before the application sees it; more is a 422."""
+    """Reads each body up to a cap before the application sees it; more is a 422.
+
+    ``larger``: caps of their own of some paths, with ``*`` for a part of one.
+    """
 
     def __init__(self, app: ASGIApp, max_bytes: int, larger: Mapping[str, int] | None = None) -> None:
         self._app = app
@@ -187,7 +191,9 @@ class BodyCap:
         if scope["type"] != "http" or scope["method"] in ("GET", "HEAD", "OPTIONS"):
             await _answered(self._app, scope, receive, send)
             return
-        max_bytes = self._larger.get(scope["path"], self._max_bytes)
+        path = scope["path"]
+        larger = [most for pattern, most in self._larger.items() if fnmatchcase(path, pattern)]
+        max_bytes = max(larger, default=self._max_bytes)
         chunks: list[bytes] = []
         size = 0
         more = True

@@ -116,6 +116,7 @@ class Settings(BaseSettings):
     )
     max_body_bytes: int = Field(default=5_000_000, ge=1024, description="Largest request body.")
     max_terrain_bytes: int = Field(default=100_000_000, ge=1024, description="Largest elevation file.")
+    max_log_bytes: int = Field(default=200_000_000, ge=1024, description="Largest onboard log of a flight.")
     static_dir: Path | None = Field(
         default=None, description="Folder of the built web map; found by itself when unset."
     )

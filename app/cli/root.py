@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from app.cli import audit, bench, exchange, journey, links, missions, planning, sensors, serve, signing
+from app.cli import audit, bench, exchange, journey, links, logs, missions, planning, sensors, serve, signing
 from app.cli.output import CommandError, Exit, fail
 
 cli = typer.Typer(
@@ -39,7 +39,7 @@ def _root(
     pass
 
 
-for module in (serve, links, planning, missions, exchange, journey, sensors, audit, signing, bench):
+for module in (serve, links, planning, missions, exchange, journey, sensors, audit, logs, signing, bench):
     module.register(cli)
 
 

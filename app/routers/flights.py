@@ -4,19 +4,24 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Query, Response
+from fastapi import APIRouter, Query, Request, Response
 from fastapi.responses import HTMLResponse
 
 from app.deps import FlightsDep, PlanningDep, SettingsDep, WhereaboutsDep
 from app.problems import responses
 from app.routers.streams import page_answer
-from app.schemas.flights import FlightList, FlightOut
+from app.schemas.flights import FilledOut, FlightList, FlightOut
 from app.schemas.plans import PlanOut
 from app.services.documents import write_json
 
 router = APIRouter(prefix="/api/v1/flights", tags=["flights"])
 
 GEOJSON = "application/geo+json"
+LOG_BODY: dict[str, Any] = {
+    "required": True,
+    "description": "The file itself, e.g. `curl --data-binary @00000042.BIN`.",
+    "content": {"application/octet-stream": {"schema": {"type": "string", "format": "binary"}}},
+}
 GEOJSON_ANSWER: dict[int | str, dict[str, Any]] = {
     200: {"content": {GEOJSON: {"schema": {"type": "object"}}}}
 }
@@ -82,6 +87,26 @@ async def coverage(flight_id: str, flights: FlightsDep) -> Response:
 async def report(flight_id: str, flights: FlightsDep) -> HTMLResponse:
     """What was flown and seen: regions, missed triggers, cross-track errors, one page without scripts."""
     return page_answer(await flights.report(flight_id))
+
+
+@router.post(
+    "/{flight_id}/log",
+    summary="Fill gaps from a log",
+    responses=responses(404, 409, 422, 429),
+    openapi_extra={"requestBody": LOG_BODY},
+)
+async def post_log(
+    flight_id: str,
+    request: Request,
+    flights: FlightsDep,
+    name: Annotated[str, Query(max_length=200, description="What to call it.")] = "log",
+) -> FilledOut:
+    """A log that the vehicle kept of this flight (`.bin`, `.ulg`), or another recording of it (`.tlog`).
+
+    Matched by time and place; it fills what was not recorded (`gaps` of the coverage), and what it does not
+    tell stays unknown. Sent again, it fills nothing more.
+    """
+    return FilledOut(**await flights.fill(flight_id, name, await request.body()))
 
 
 @router.post(

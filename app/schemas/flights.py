@@ -63,6 +63,29 @@ class FlightOut(BaseModel):
         return cls(**asdict(record), links=links)
 
 
+class SpanOut(BaseModel):
+    """A gap by the record's clock; no end where the record has none."""
+
+    start_s: float
+    end_s: float | None
+
+
+class LeftOut(SpanOut):
+    """A gap that stays."""
+
+    why: str
+
+
+class FilledOut(BaseModel):
+    """What a log gave to a flight's record."""
+
+    clock_s: float = Field(description="What the log's clock is behind the record's.")
+    points: int
+    photos: int
+    filled: list[SpanOut]
+    left: list[LeftOut]
+
+
 class FlightList(BaseModel):
     """Flights, newest first."""
 

@@ -128,11 +128,16 @@ class _Judge:
             a.airspeed_m_s for a in self._asked.aircraft if vehicle is None or a.name == vehicle
         )
 
+    def _levelled(self, vehicle: str | None) -> bool:
+        """Whether it leans into its way, and its antenna does not."""
+        flown = [a for a in self._asked.aircraft if vehicle is None or a.name == vehicle]
+        return all(aircraft.type == "multirotor" for aircraft in flown)
+
     def take(self, number: int, record: Record) -> None:
         """One flight."""
         names = {a.name for a in self._asked.aircraft}
         vehicle = record.vehicle if record.vehicle in names else None
-        line = Line.of(record, self._asked.frame, self._speed_m_s(vehicle))
+        line = Line.of(record, self._asked.frame, self._speed_m_s(vehicle), self._levelled(vehicle))
         gaps = gaps_of(record.samples, line) + (() if record.gap_after is None else (record.gap_after,))
         self._gaps.append(gaps)
         self._lines.setdefault(vehicle, []).append((line, gaps))

@@ -17,6 +17,10 @@ from planner.sensors.sar import SarSensor
 #: passes of the autopilots stay within 3° (docs/coverage.md, margins).
 MAX_BANK_RAD = math.radians(10.0)
 MAX_PITCH_RAD = math.radians(10.0)
+#: Antennas are mounted for the attitude that the aircraft cruises with: pitch counts from its median while
+#: the sensor was on, as far as that is within this of level. What hovers leans into its way, at 20 m/s by
+#: 20°, so that its antenna hangs in a mount that keeps it level along the way.
+MAX_TRIM_RAD = math.radians(5.0)
 #: From the straight line over an aperture: UAVSAR flies its passes within a tube of 5 m radius (S. N. Madsen
 #: et al., "UAV-based L-band SAR with precision flight path control", Proc. SPIE 5661, 2004).
 MAX_OFF_LINE_M = 5.0

@@ -9,6 +9,7 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
+from planner.as_flown.limits import MAX_TRIM_RAD
 from planner.frames import LocalFrame
 
 Floats = NDArray[np.float64]
@@ -80,7 +81,10 @@ class Record:
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """A record in a local frame, one row a sample; rows of one ``piece`` follow each other without a gap."""
+    """A record in a local frame, one row a sample; rows of one ``piece`` follow each other without a gap.
+
+    ``pitch_rad`` counts from the attitude that the aircraft cruises with.
+    """
 
     time_s: Floats
     places: Floats
@@ -92,9 +96,12 @@ class Line:
     piece: NDArray[np.int64]
 
     @classmethod
-    def of(cls, record: Record, frame: LocalFrame, speed_m_s: float) -> Self:
-        """The line of a record flown at a speed over the ground at most."""
+    def of(cls, record: Record, frame: LocalFrame, speed_m_s: float, levelled: bool = False) -> Self:
+        """The line of a record flown at a speed over the ground at most; ``levelled``: without pitch."""
         samples = record.samples
+        pitch_rad = np.radians([0.0 if s.pitch_deg is None else s.pitch_deg for s in samples])
+        on = np.array([s.sensor_on for s in samples], dtype=bool)
+        trim_rad = float(np.median(pitch_rad[on])) if on.any() else 0.0
         places = frame.to_local(np.array([(s.lon_deg, s.lat_deg) for s in samples]).reshape(-1, 2))
         time_s = np.array([s.time_s for s in samples])
         broken = gaps_in(time_s, places, speed_m_s)
@@ -103,9 +110,9 @@ class Line:
             places,
             np.array([s.height_m for s in samples]),
             np.radians([s.roll_deg for s in samples]),
-            np.radians([0.0 if s.pitch_deg is None else s.pitch_deg for s in samples]),
+            0.0 * pitch_rad if levelled else pitch_rad - min(max(trim_rad, -MAX_TRIM_RAD), MAX_TRIM_RAD),
             np.radians([np.nan if s.heading_deg is None else s.heading_deg for s in samples]),
-            np.array([s.sensor_on for s in samples], dtype=bool),
+            on,
             np.concatenate([[0], np.cumsum(broken)]) if len(samples) else np.zeros(0, dtype=np.int64),
         )
 

@@ -111,6 +111,8 @@ def _gap_after(flight: Flown, later: Flown | None) -> Gap | None:
     if flight.record.state != "interrupted" or not flight.samples:
         return None
     last = flight.samples[-1]
+    if last.from_log:
+        return None  # the log goes on to its own end, where the vehicle was disarmed
     here = (last.lon_deg, last.lat_deg)
     if later is None:
         return Gap(last.time_s, None, None, (here, None))

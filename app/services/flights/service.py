@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import asyncio
+import tempfile
 from collections.abc import Sequence
 from typing import Any
 
 from app.services.desk import Desk
 from app.services.errors import ConflictError, NotFoundError
+from app.services.flights.filling import filling
 from app.services.flights.gpx import write_gpx
 from app.services.flights.photos import photos_of, spacing_of, switched_by_photos
 from app.services.flights.seen import Flown, Sortie, coverage_of, refly_of, report_of
@@ -89,6 +92,32 @@ class FlightService:
     async def plan_refly(self, plan_id: str) -> dict[str, Any]:
         """The scenario of what no flight of a plan saw; raises as ``plan_coverage`` and ``refly``."""
         return await self._desk.run("flight", refly_of, await self._sortie(plan_id), None, None)
+
+    async def fill(self, flight_id: str, name: str, data: bytes) -> dict[str, Any]:
+        """Fill gaps of a flight's record from a log; sent again, there is nothing left to fill.
+
+        Raises
+        ------
+        ConflictError
+            The flight is under way, or nothing of it was recorded.
+        RefusedError
+            The log cannot be read, or is not of this flight.
+        """
+        record = await self._store.get(flight_id)
+        samples = await self._store.track(flight_id)
+        if record.state == "flying" or not samples:
+            raise ConflictError("logs fill the records of flights that are over, where there is a record")
+        behind_s = record.started_at.timestamp() - samples[0].time_s
+        open_end = record.state == "interrupted" and not samples[-1].from_log
+        with tempfile.NamedTemporaryFile(prefix="swathplan-log-") as file:
+            await asyncio.to_thread(file.write, data)
+            await asyncio.to_thread(file.flush)
+            found = await self._desk.run(
+                "log", filling, file.name, record.payload, samples, behind_s, open_end
+            )
+        if found.samples or found.events:
+            await self._store.fill(flight_id, name, found.samples, found.events)
+        return found.json()
 
     async def _planned(self, flight_id: str) -> FlightRecord:
         record = await self._store.get(flight_id)
