@@ -179,6 +179,8 @@ def _config(app: FastAPI, settings: Settings) -> uvicorn.Config:
         access_log=False,
         server_header=False,
         timeout_graceful_shutdown=GRACE_S,
+        # More than the door lets through: a head that is too long is refused there, in words.
+        h11_max_incomplete_event_size=1 << 18,
     )
 
 

@@ -23,6 +23,7 @@ class Benchmark(StrEnum):
     KERNELS = "kernels"
     START = "start"
     ISOLATION = "isolation"
+    READS = "reads"
 
 
 def _options(pairs: list[str]) -> dict[str, Any]:

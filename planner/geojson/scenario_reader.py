@@ -18,6 +18,7 @@ from planner.geojson.fields import Fields, Findings
 from planner.geojson.home import home_amsl_m, kept_clear
 from planner.geojson.relief import set_on_terrain
 from planner.geojson.rules import check_together
+from planner.geojson.size import check_size
 from planner.geojson.slots import check_slots
 from planner.route import Terminal
 from planner.scenario import Scenario
@@ -80,6 +81,8 @@ def _read(document: Any, findings: Findings, terrains: Terrains | None) -> Scena
     raw_features = document.get("features")
     if not isinstance(raw_features, list):
         findings.error("scenario", "no-features", "has no list of features", "Add features.")
+        return None
+    if not check_size(raw_features, findings):
         return None
     _check_crs(document.get("crs"), findings)
     check_bbox(document.get("bbox"), raw_features, findings)

@@ -9,6 +9,7 @@ import os
 from collections.abc import Iterator
 from pathlib import Path
 
+import httpx
 import pytest
 import schemathesis
 from hypothesis import HealthCheck, Phase, given
@@ -16,7 +17,7 @@ from hypothesis import settings as hypothesis_settings
 from schemathesis import GenerationMode
 from schemathesis.config import SchemathesisConfig
 
-from tests.app.test_process import Service, service
+from tests.app.test_apart import serving
 
 ALL = os.environ.get("SWATHPLAN_RANDOM") == "all"
 #: Of each call, right and wrong ones; and the fewest in all.
@@ -35,25 +36,27 @@ PATIENCE_S = 20.0
 
 
 @pytest.fixture(scope="module")
-def running(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
-    """A service in a process of its own."""
-    with service(tmp_path_factory.mktemp("fuzz") / "plans.db") as started:
-        yield started
+def running(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, int]]:
+    """Address and process id of a service as it is run: links and door in processes of their own."""
+    with serving(tmp_path_factory.mktemp("fuzz") / "plans.db") as (address, process):
+        yield address, process.pid
 
 
-def memory_bytes(running: Service) -> int:
-    """What the service's own process takes."""
-    pages = int(Path(f"/proc/{running.process.pid}/statm").read_text().split()[1])
+def memory_bytes(pid: int) -> int:
+    """What a process takes."""
+    pages = int(Path(f"/proc/{pid}/statm").read_text().split()[1])
     return pages * os.sysconf("SC_PAGE_SIZE")
 
 
 @pytest.mark.filterwarnings("ignore::DeprecationWarning")
-def test_generated_requests_get_documented_answers(running: Service) -> None:
+def test_generated_requests_get_documented_answers(running: tuple[str, int]) -> None:
     """None makes the service fail, take in what is wrong, or answer otherwise than it says."""
-    url = f"{running.client.base_url}/openapi.json"
-    schema = schemathesis.openapi.from_url(url, config=SchemathesisConfig.from_dict(CONFIG))
+    address, pid = running
+    schema = schemathesis.openapi.from_url(
+        f"{address}/openapi.json", config=SchemathesisConfig.from_dict(CONFIG)
+    )
     tried = 0
-    before_bytes = memory_bytes(running) if Path("/proc/self/statm").exists() else 0
+    before_bytes = memory_bytes(pid) if Path("/proc/self/statm").exists() else 0
     for result in schema.get_all_operations():
         operation = result.ok()
         if (operation.method.upper(), operation.path) in LEFT_OUT:
@@ -80,6 +83,6 @@ def test_generated_requests_get_documented_answers(running: Service) -> None:
 
             call()
     assert tried > FEWEST
-    assert running.client.get("/health/ready").status_code == 200
+    assert httpx.get(f"{address}/health/ready", timeout=PATIENCE_S).status_code == 200
     if before_bytes:
-        assert memory_bytes(running) < before_bytes + 150_000_000
+        assert memory_bytes(pid) < before_bytes + 150_000_000
