@@ -26,6 +26,8 @@ from planner.wishes import Method, Objective, Region
 class Scenario:
     """A whole request, validated; see ``planner.geojson.read_scenario``.
 
+    ``looked_at`` is where zones were looked for, where some farther off were left out.
+
     Where there is terrain the flight is level and ``altitude_reference`` is ``amsl``; see
     ``planner.geojson.relief``.
     """
@@ -55,6 +57,7 @@ class Scenario:
     warnings: tuple[Finding, ...] = ()
     terrain: Ground | None = None
     over_ground_m: float = 0.0
+    looked_at: Polygon | None = None
 
     @property
     def airspace(self) -> Airspace:

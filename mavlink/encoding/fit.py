@@ -18,7 +18,25 @@ from shapely.geometry.base import BaseGeometry
 from mavlink.dialects.stores import FenceStore
 
 #: Corners are thinned by these, the least that is enough: no thinned edge is farther from the drawn one.
-THINNED_M = (0.5, 1.0, 2.0, 3.0, 5.0, 7.0, 10.0, 15.0, 20.0, 25.0, 30.0, 40.0, 50.0, 70.0, 100.0)
+THINNED_M = (
+    0.5,
+    1.0,
+    2.0,
+    3.0,
+    5.0,
+    7.0,
+    10.0,
+    15.0,
+    20.0,
+    25.0,
+    30.0,
+    40.0,
+    50.0,
+    70.0,
+    100.0,
+    150.0,
+    200.0,
+)
 #: Kept between a thinned edge and the flight, where the drawn one is no nearer.
 ROOM_M = 15.0
 #: Zones farther from the whole flight than this may be left out of a fence that is still too large.

@@ -39,6 +39,16 @@ def place_violations(
                 "m",
                 middle(scenario, outside),
             )
+    if scenario.looked_at is not None and not scenario.looked_at.covers(line):
+        beyond = line.difference(scenario.looked_at)
+        yield Violation(
+            "zones-unknown",
+            path.vehicle,
+            f"{beyond.length:.1f} m are flown where zones were left out as too far off",
+            float(beyond.length),
+            "m",
+            middle(scenario, beyond),
+        )
     home_amsl_m = scenario.level.amsl_m - scenario.level.height_m
     for banded in banded_shapes(scenario.airspace, home_amsl_m):
         shape = banded.shape

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -61,14 +61,18 @@ def middle_of(places: Sequence[LonLat]) -> LonLat:
     return _Box.of("", places).middle
 
 
-def frame_of(raw_features: list[Any], findings: Findings) -> LocalFrame | None:
-    """A frame in the middle of everything.
+def frame_of(
+    raw_features: list[Any], findings: Findings, left_out: Collection[int] = ()
+) -> LocalFrame | None:
+    """A frame in the middle of everything that is not left out.
 
     None after a finding where there are no positions; what is too far off is found, and a frame given for
     the checks that follow.
     """
     by_feature = [
-        (name_of(index, feature), list(_places(feature))) for index, feature in enumerate(raw_features)
+        (name_of(index, feature), list(_places(feature)))
+        for index, feature in enumerate(raw_features)
+        if index not in left_out
     ]
     boxes = [_Box.of(name, places) for name, places in by_feature if places]
     if not boxes:

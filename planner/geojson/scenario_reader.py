@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -14,6 +14,7 @@ from planner.airspace.terrain import Terrains, find_terrain
 from planner.errors import ScenarioError
 from planner.geojson import equipment, features
 from planner.geojson.extent import check_bbox, frame_of, within
+from planner.geojson.far import near_features
 from planner.geojson.fields import Fields, Findings
 from planner.geojson.home import home_amsl_m, kept_clear
 from planner.geojson.relief import set_on_terrain
@@ -86,8 +87,10 @@ def _read(document: Any, findings: Findings, terrains: Terrains | None) -> Scena
         return None
     _check_crs(document.get("crs"), findings)
     check_bbox(document.get("bbox"), raw_features, findings)
-    frame = frame_of(raw_features, findings)
-    raws = _raw_features(raw_features, findings)
+    counted = near_features(raw_features, findings)
+    raw_features = counted.features
+    frame = frame_of(raw_features, findings, counted.left_out)
+    raws = _raw_features(raw_features, findings, counted.left_out)
     if frame is None:
         return None
     # What is too far off is found already, and has no place in the frame.
@@ -185,6 +188,7 @@ def _read(document: Any, findings: Findings, terrains: Terrains | None) -> Scena
         seed=seed,
         time_budget_s=budget_s,
         scenario_hash=scenario_hash(document),
+        looked_at=counted.looked_at(frame),
         home_amsl_m=None if terrain is not None else home_amsl_m(raws, start.name),
     )
     if terrain is not None:
@@ -216,7 +220,9 @@ def _check_crs(crs: Any, findings: Findings) -> None:
         )
 
 
-def _raw_features(raw_features: list[Any], findings: Findings) -> list[features.RawFeature]:
+def _raw_features(
+    raw_features: list[Any], findings: Findings, left_out: Collection[int]
+) -> list[features.RawFeature]:
     raws = []
     seen: set[str] = set()
     for index, feature in enumerate(raw_features):
@@ -229,6 +235,8 @@ def _raw_features(raw_features: list[Any], findings: Findings) -> list[features.
         if name in seen:
             findings.error(name, "duplicate-id", "names two features", "Give each feature its own id.")
         seen.add(name)
+        if index in left_out:
+            continue
         raw = features.read_role(name, feature, findings)
         if raw is not None:
             raws.append(raw)

@@ -171,12 +171,12 @@ BAD: dict[str, tuple[dict[str, Any], str, str]] = {
     "unknown method": (small(method={"routing": "magic"}), "method", "unknown-value"),
     "search": (small(task="search"), "scenario", "not-supported"),
     "far apart": (
-        small(feature("X", "threat", "Point", [60, 50], model="missile", radius_m=10)),
+        small(feature("X", "roi", "Point", [60, 50])),
         "X",
         "extent-too-large",
     ),
     "wide by itself": (
-        small(feature("X", "no_fly", "Polygon", [[[0, 0], [5, 0], [0, 5], [0, 0]]])),
+        small(feature("X", "roi", "Polygon", [[[0, 0], [5, 0], [0, 5], [0, 0]]])),
         "X",
         "extent-too-large",
     ),

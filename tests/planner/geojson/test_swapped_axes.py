@@ -29,7 +29,7 @@ def at(lon: float, lat: float, *more: dict[str, Any]) -> dict[str, Any]:
 def test_swapped_axes_are_blamed_on_the_feature_that_has_them() -> None:
     """Under 90 degrees too: the feature whose place is beside the rest once its axes are exchanged."""
     wrong = feature("X", "roi", "Polygon", square(47.31, 8.52, 0.003))
-    far = feature("Y", "threat", "Point", [60.0, 50.0], model="missile", radius_m=10)
+    far = feature("Y", "roi", "Point", [60.0, 50.0])
     found = [f for f in findings(at(8.5, 47.3, wrong, far)) if f.severity == "error"]
     assert [(f.feature, f.rule) for f in found] == [("X", "axes-swapped"), ("Y", "extent-too-large")]
     assert "looks like latitude, longitude order" in found[0].fix
@@ -37,6 +37,15 @@ def test_swapped_axes_are_blamed_on_the_feature_that_has_them() -> None:
     two = at(8.5, 47.3)
     two["features"] = [two["features"][3], feature("B", "roi", "Point", [47.3, 8.5])]
     assert "extent-too-large" in refused(two)["scenario"]
+
+
+def test_a_zone_with_swapped_axes_is_not_taken_for_one_far_off() -> None:
+    """A far zone is left out; one that lies beside the rest with its axes exchanged refuses the scenario."""
+    away = feature("away", "no_fly", "Polygon", square(12.0, 50.0, 0.003))
+    wrong = feature("X", "no_fly", "Polygon", square(47.31, 8.52, 0.003))
+    assert not [f for f in findings(at(8.5, 47.3, away)) if f.severity == "error"]
+    found = [f for f in findings(at(8.5, 47.3, away, wrong)) if f.severity == "error"]
+    assert [(f.feature, f.rule) for f in found] == [("X", "axes-swapped")]
 
 
 def test_a_ring_of_swapped_axes_is_one_finding() -> None:
