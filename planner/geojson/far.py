@@ -144,7 +144,7 @@ def _places(feature: Any) -> Iterator[tuple[float, float]]:
 def _radius_m(feature: Mapping[str, Any]) -> float:
     properties = feature.get("properties")
     radius_m = properties.get("radius_m") if isinstance(properties, Mapping) else None
-    return float(radius_m) if is_finite(radius_m) and radius_m > 0.0 else 0.0
+    return max(float(radius_m), 0.0) if isinstance(radius_m, int | float) and is_finite(radius_m) else 0.0
 
 
 def _shifted(found: Box, near: Box) -> Box:
