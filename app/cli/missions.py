@@ -15,7 +15,7 @@ from app.cli.output import CommandError, Exit, Json, Output, emit, emit_bytes, e
 
 if TYPE_CHECKING:
     from app.services.plans.missions import MissionChoice
-    from mavlink.dialects import VehicleType
+    from mavlink.dialects import Autopilot, VehicleType
 
 PlanFile = Annotated[str, typer.Argument(help="Plan GeoJSON; - is standard input.", metavar="PLAN")]
 VehicleName = Annotated[str | None, typer.Option(help="Vehicle of the plan; its first when left out.")]
@@ -247,7 +247,7 @@ def download(
     With --json the items of all three are written as JSON instead.
     """
     from app.services.vehicles.items import item_json
-    from mavlink.formats import qgc_plan, waypoints
+    from mavlink.formats import losses, qgc_plan, waypoints
 
     mission = run_async(_download(url, timeout_s))
     if as_json:
@@ -257,12 +257,14 @@ def download(
         emit(qgc_plan.write_plan(mission), output)
     else:
         emit(waypoints.write_waypoints(mission), output)
+    for note in (*mission.notes, *(() if as_json else losses(mission, form.value))):
+        say(f"note: {note}")
     say(f"{len(mission.mission)} mission, {len(mission.fence)} fence and {len(mission.rally)} rally items")
 
 
 async def _download(url: str, timeout_s: float) -> Any:
     from app.services.vehicles.connection import connected
-    from mavlink.dialects.mission import Mission
+    from mavlink.dialects.mission import Mission, declared_by
     from mavlink.wire.items import MissionType
 
     async with connected(url, None, timeout_s, signing_here(url)) as client:
@@ -271,15 +273,21 @@ async def _download(url: str, timeout_s: float) -> Any:
         rally = await client.download(MissionType.RALLY)
         state = client.state
     home = (state.home_lon_deg or 0.0, state.home_lat_deg or 0.0)
+    autopilot: Autopilot = "px4" if state.autopilot == "px4" else "ardupilot"
+    unsaid = "the vehicle has not said where its home is: 0, 0 is written"
+    notes = [] if state.home_lat_deg is not None else [unsaid]
     return Mission(
         mission=items,
         fence=fence,
         rally=rally,
-        autopilot="px4" if state.autopilot == "px4" else "ardupilot",
+        autopilot=autopilot,
         vehicle="",
         vehicle_type="fixed_wing" if state.type == "other" else state.type,
         home=home,
+        notes=tuple(notes),
         home_altitude_m=state.home_altitude_amsl_m or 0.0,
+        # The vehicle says its type and no speeds: none are written.
+        declared=declared_by(autopilot, None if state.type == "other" else state.type),
     )
 
 

@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
+from mavlink.dialects import Autopilot
 from mavlink.dialects.base import GLOBAL_FRAMES
 from mavlink.dialects.mission import Mission
 from mavlink.wire.geometry import LocalMap, Xy
@@ -183,6 +184,13 @@ def steers(item: MissionItem) -> bool:
     if item.command == Command.NAV_RETURN_TO_LAUNCH:
         return True
     return item.command < _LAST_NAV and item.command not in _POINTING and item.frame in GLOBAL_FRAMES
+
+
+def holds_place(item: MissionItem, autopilot: Autopilot) -> bool:
+    """Whether the autopilot takes an item's two columns for a place, whatever frame the file gives it."""
+    if item.command == Command.DO_LAND_START:
+        return autopilot == "ardupilot"
+    return item.command < _LAST_NAV and item.command not in (Command.NAV_RETURN_TO_LAUNCH, Command.NAV_DELAY)
 
 
 def _visits(items: tuple[MissionItem, ...]) -> Iterator[MissionItem]:

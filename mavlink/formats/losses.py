@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Literal
 
-from mavlink.dialects.base import PARAMETERS
+from mavlink.dialects.base import PARAMETERS, fence_shapes, is_polygon
 from mavlink.dialects.mission import Mission
 from mavlink.formats.columns import is_reframed, lost_digits
 from mavlink.formats.notes import Notes
@@ -79,6 +79,11 @@ def _in_plan(mission: Mission, notes: Notes) -> None:
             notes.add(
                 f"frame {item.frame} of a fence has no place in a .plan: 0 is meant", "fence item", item.seq
             )
+    for command, shape in fence_shapes(mission.fence):
+        told = shape[0].param1
+        if is_polygon(command) and (len(shape) < 3 or len(shape) != told):
+            words = f"the polygon says {told:g} corners and has {len(shape)}: it is written with those it has"
+            notes.add(words, "fence item", shape[0].seq)
     for item in mission.rally:
         if any(_parameters(item)):
             notes.add("the parameters of a rally point have no place in a .plan", "rally item", item.seq)

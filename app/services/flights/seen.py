@@ -29,6 +29,7 @@ from app.services.flights.phases import flown_phases
 from app.services.flights.photos import spacing_of
 from app.services.flights.refly import refly_scenario
 from app.services.flights.track_json import feature, line_of, track_geojson
+from app.services.plans.filed_mission import MEMBER
 from app.services.plans.missions import plan_of
 from app.services.records import FlightEvent, FlightRecord, TrackSample
 from app.services.reports.report import write_flight_report
@@ -141,8 +142,7 @@ def coverage_of(sortie: Sortie) -> dict[str, Any]:
     ``gaps`` of the record, each with its time; ``not_counted`` with what was flown with the sensor on for
     nothing, and why; ``energy`` planned and drawn; ``flights``.
     """
-    scenario = read_scenario(read_object(sortie.scenario_text), sortie.terrain)
-    plan = plan_of(sortie.plan_text)
+    scenario, plan = _asked(sortie, read_object(sortie.scenario_text)), plan_of(sortie.plan_text)
     result = judged(sortie, scenario, plan)
     recorded = [
         Recorded(f.record.plan_vehicle, f.samples, f.photos, spacing_of(f.record.payload))
@@ -187,6 +187,13 @@ def coverage_of(sortie: Sortie) -> dict[str, Any]:
         "energy": [_energy(flight, plan) for flight in sortie.flights],
         "features": features,
     }
+
+
+def _asked(sortie: Sortie, document: dict[str, Any]) -> Scenario:
+    """What was to be seen; raises ConflictError for a mission file, which was planned to see nothing."""
+    if MEMBER in read_object(sortie.plan_text):
+        raise ConflictError("the flight followed a mission file, which has no passes: nothing was to be seen")
+    return read_scenario(document, sortie.terrain)
 
 
 def _gaps(sortie: Sortie, result: FlownCoverage) -> list[dict[str, Any]]:
@@ -245,7 +252,7 @@ def refly_of(
 ) -> dict[str, Any]:
     """The scenario of what none of the flights is known to have seen."""
     document = read_object(sortie.scenario_text)
-    scenario = read_scenario(document, sortie.terrain)
+    scenario = _asked(sortie, document)
     missing = gaps(scenario, judged(sortie, scenario, plan_of(sortie.plan_text)))
     if not missing:
         raise ConflictError(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -147,4 +148,20 @@ def mission_findings(mission: Mission, kinds: Sequence[MissionType]) -> tuple[Fi
         )
         for kind in kinds
         for found in mission.dialect.check(mission.items_of(kind))
-    )
+    ) + (_places_lost(mission) if MissionType.MISSION in kinds else ())
+
+
+def _places_lost(mission: Mission) -> tuple[Finding, ...]:
+    """Items of a mission file that say a place where their frame has none for it."""
+    from mavlink.encoding.trace import holds_place
+    from mavlink.formats.columns import lost_digits
+
+    found = []
+    for item in mission.mission:
+        lost = lost_digits(item)
+        if lost is not None:
+            fatal = holds_place(item, mission.autopilot) and not any(map(math.isnan, item.written or ()))
+            severity: Literal["error", "warning"] = "error" if fatal else "warning"
+            fix = "write it in a global frame (3: over home), or leave the place out"
+            found.append(Finding(f"mission item {item.seq}", "place-lost", lost, fix, severity))
+    return tuple(found)

@@ -9,13 +9,14 @@ import json
 import socket
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
+from pathlib import Path
 
 import pytest
 
 from mavlink.dialects import Autopilot
 from mavlink.dialects.mission import Mission
 from mavlink.encoding.encode import EncodeOptions, encode
-from mavlink.formats import read_plan, write_plan, write_waypoints
+from mavlink.formats import read_mission, read_plan, write_plan, write_waypoints
 from mavlink.wire.items import MissionItem
 from tests.mavlink.formats.test_qgc_complex import CORRIDOR, SURVEY, TRANSECTS, plan_of, simple
 from tests.mavlink.plans import make_plan
@@ -26,6 +27,8 @@ from mavsdk.asyncio.plugins.mission_raw import MissionRawAsync
 from mavsdk.component_type import ComponentType
 
 pytestmark = pytest.mark.mavsdk
+
+FAULTS = Path(__file__).parents[2] / "faults"
 
 
 @asynccontextmanager
@@ -73,6 +76,18 @@ async def test_mavsdk_reads_our_files_item_by_item() -> None:
             file = await mission_raw.import_mission_planner_mission_from_string(write_waypoints(mission))
             ahead = 0 if autopilot == "ardupilot" else 1
             assert values(file.mission_items[ahead:]) == ours(mission.mission)
+
+
+async def test_mavsdk_reads_the_files_of_others_like_us() -> None:
+    """Repeated numbers, null yaws, comments: what MAVSDK takes of a file it takes as we do, item by item."""
+    async with importer() as mission_raw:
+        for name in ("07-same-jump-id-no-jump.plan", "09-null-yaw-ardupilot.plan"):
+            text = (FAULTS / name).read_text()
+            theirs = await mission_raw.import_qgroundcontrol_mission_from_string(text)
+            assert values(theirs.mission_items) == ours(read_mission(text).mission[1:])
+        rows = (FAULTS / "05-comments.waypoints").read_text()
+        theirs = await mission_raw.import_mission_planner_mission_from_string(rows)
+        assert values(theirs.mission_items) == ours(read_mission(rows).mission)
 
 
 async def test_mavsdk_lays_surveys_out_like_us() -> None:

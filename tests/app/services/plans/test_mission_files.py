@@ -11,13 +11,15 @@ import pytest
 
 from app.routers.bodies import EXAMPLE
 from app.services.documents import write_json
-from app.services.errors import RefusedError
+from app.services.errors import ConflictError, RefusedError
+from app.services.flights.seen import Sortie, coverage_of, refly_of
 from app.services.plans.filed_mission import filed_mission
 from app.services.plans.mission_files import FiledPlan, filed
 from app.services.plans.mission_scene import FileChoice
-from app.services.plans.missions import MissionChoice, exported, mission_of
+from app.services.plans.missions import MissionChoice, exported, mission_findings, mission_of
 from app.services.vehicles.brief import brief_of
 from mavlink.formats import read_mission
+from mavlink.wire.items import MissionType
 from planner.airspace.terrain import Terrain
 from planner.geojson import read_plan
 
@@ -228,6 +230,31 @@ def test_files_that_cannot_be_read_are_refused_with_their_place() -> None:
     assert caught.value.findings[0].rule == "mission-format"
     with pytest.raises(RefusedError, match="km from home"):
         filed(file(*rows((0.0, 30000.0))), COPTER)
+
+
+def test_a_place_where_the_frame_has_none_stops_the_upload() -> None:
+    """A take-off in frame 2 would go up at whole degrees and is refused; PX4's DO_LAND_START has none."""
+    place = f"{LAT + 0.001}\t{LON}\t30\t1"
+    content = file(f"1\t0\t2\t22\t0\t0\t0\t0\t{place}", f"2\t0\t2\t189\t0\t0\t0\t0\t{place}", *ROUTE)
+    severities = {}
+    for autopilot in ("ardupilot", "px4"):
+        plan = filed(content, FileChoice("f", autopilot, "fixed_wing"))
+        found = mission_findings(mission_of(plan.plan, MissionChoice()), [MissionType.MISSION])
+        severities[autopilot] = {f.feature: f.severity for f in found if f.rule == "place-lost"}
+    assert severities == {
+        "ardupilot": {"mission item 1": "error", "mission item 2": "error"},
+        "px4": {"mission item 0": "error", "mission item 1": "warning"},
+    }
+
+
+def test_flights_of_a_file_are_judged_for_nothing_seen() -> None:
+    """Nobody planned passes: coverage, report and a plan of the gaps say so instead of failing."""
+    plan = filed(file(*ROUTE), COPTER)
+    sortie = Sortie("plan", plan.plan, plan.scenario, (), None)
+    with pytest.raises(ConflictError, match="followed a mission file"):
+        coverage_of(sortie)
+    with pytest.raises(ConflictError, match="followed a mission file"):
+        refly_of(sortie, None, None)
 
 
 def test_fence_and_rally_points_are_features_of_the_plan() -> None:
