@@ -55,9 +55,11 @@ def arduplane(
     binary: str = "",
     defaults: str = "",
     heading_deg: float = 0.0,
+    serial1: str = "none",
 ) -> Iterator[subprocess.Popen[bytes]]:
     """Run the simulator in a folder of its own, calling a port on loopback.
 
+    Its first port is its USB's, which takes unsigned frames whatever key it has; ``serial1`` is another one.
     It stands at ``home`` (lon, lat) and points to ``heading_deg``, in which direction it takes off.
     """
     own = folder / "own.parm"
@@ -71,7 +73,7 @@ def arduplane(
         *("--home", f"{home[1]:.7f},{home[0]:.7f},{HOME_ALTITUDE_M:g},{heading_deg:g}"),
         *("--defaults", f"{(Path(defaults) if defaults else default_parameters(model)).resolve()},{own}"),
         *("--serial0", f"udpclient:127.0.0.1:{port}"),
-        *("--serial1", "none"),
+        *("--serial1", serial1),
         *("--serial2", "none"),
         # Stick positions come from nowhere: any free port will do.
         *("--rc-in-port", "0"),
