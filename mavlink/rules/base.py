@@ -40,6 +40,17 @@ OTHER_NAMES: Final[dict[str, tuple[str, float]]] = {
     "AIRSPEED_CRUISE": ("TRIM_ARSPD_CM", 100.0),
     "RTL_ALTITUDE": ("ALT_HOLD_RTL", 100.0),
     "MNT1_TYPE": ("MNT_TYPE", 1.0),  # ArduPilot before 4.3
+    # ArduCopter from 4.7 on
+    "ANGLE_MAX": ("ATC_ANGLE_MAX", 0.01),
+    "LAND_SPEED": ("LAND_SPD_MS", 0.01),
+    "RTL_ALT": ("RTL_ALT_M", 0.01),
+    "WPNAV_ACCEL": ("WP_ACC", 0.01),
+    "WPNAV_JERK": ("WP_JERK", 1.0),
+    "WPNAV_RADIUS": ("WP_RADIUS_M", 0.01),
+    "WPNAV_SPEED": ("WP_SPD", 0.01),
+    "WPNAV_SPEED_DN": ("WP_SPD_DN", 0.01),
+    "WPNAV_SPEED_UP": ("WP_SPD_UP", 0.01),
+    "SYSID_THISMAV": ("MAV_SYSID", 1.0),
 }
 
 

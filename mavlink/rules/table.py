@@ -20,7 +20,6 @@ __all__ = [
     "judge_parameters",
     "names_to_read",
     "needs_of",
-    "other_names",
     "unanswered",
 ]
 
@@ -41,13 +40,8 @@ def names_to_read(autopilot: Autopilot, vehicle_type: VehicleType, needs: Needs)
     return tuple(dict.fromkeys(names))
 
 
-def other_names(names: Collection[str], values: Collection[str]) -> tuple[str, ...]:
-    """What to ask for besides: older firmware's names of the parameters that were not answered."""
-    return tuple(other for name, (other, _) in OTHER_NAMES.items() if name in names and name not in values)
-
-
 def unanswered(names: Collection[str], values: Collection[str]) -> tuple[str, ...]:
-    """The names that were answered neither as they are nor as older firmware has them."""
+    """The names that were answered neither as they are nor as other versions have them."""
     missing = (name for name in names if name not in values)
     return tuple(name for name in missing if OTHER_NAMES.get(name, (name,))[0] not in values)
 

@@ -108,7 +108,7 @@ class Parameters:
 def _ardupilot(settings: SimSettings) -> dict[str, float]:
     return (
         {
-            "SYSID_THISMAV": float(settings.system_id),
+            ("MAV_SYSID" if settings.version >= (4, 7) else "SYSID_THISMAV"): float(settings.system_id),
             "FENCE_ENABLE": 1.0,
             # The fences uploaded alone are in force, as ArduPlane has it at first.
             "FENCE_TYPE": 4.0,
@@ -144,6 +144,18 @@ def _plane(settings: SimSettings) -> dict[str, float]:
 
 
 def _copter(settings: SimSettings) -> dict[str, float]:
+    if settings.version >= (4, 7):
+        return {
+            "ATC_ANGLE_MAX": math.degrees(settings.bank_limit_rad),
+            "LAND_SPD_MS": 0.5,
+            "RTL_ALT_M": settings.rtl_altitude_m,
+            "WP_ACC": 2.5,
+            "WP_JERK": 1.0,
+            "WP_RADIUS_M": settings.waypoint_radius_m,
+            "WP_SPD": settings.airspeed_m_s,
+            "WP_SPD_DN": settings.sink_m_s,
+            "WP_SPD_UP": settings.climb_m_s,
+        }
     # Centimetres and centidegrees.
     return {
         "ANGLE_MAX": 100.0 * math.degrees(settings.bank_limit_rad),

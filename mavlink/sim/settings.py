@@ -82,6 +82,8 @@ class SimSettings:
         Whether it carries a camera and a gimbal that are MAVLink components of their own.
     started_unix_s
         The time of day at its start, in seconds since 1970; 0: it does not know.
+    firmware
+        Major and minor number of the firmware's version; None: 4.6 for ArduPilot, 1.16 for PX4.
     signing_key
         32 bytes: it signs with this key, and hears nothing else, until another one is handed to it; empty: it
         signs once it is handed one.
@@ -126,6 +128,7 @@ class SimSettings:
     boot_s: float = 0.0
     sensor_reports: bool = True
     max_items: int | None = None
+    firmware: tuple[int, int] | None = None
     signing_key: bytes = field(default=b"", repr=False)
     faults: tuple[str, ...] = ()
     vanish_after_items: int = 3
@@ -176,6 +179,11 @@ class SimSettings:
                 f"{needed_deg:.0f} degrees of bank; the limit is {_GREATEST_BANK_DEG - _BANK_MARGIN_DEG:.0f}"
             )
         parse_faults(self.faults)
+
+    @property
+    def version(self) -> tuple[int, int]:
+        """Of the firmware."""
+        return self.firmware or ((4, 6) if self.autopilot is Flavour.ARDUPILOT else (1, 16))
 
     @property
     def hovers(self) -> bool:

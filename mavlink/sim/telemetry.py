@@ -309,13 +309,13 @@ def _system_time(snapshot: Snapshot, settings: SimSettings) -> Message:
 
 
 def _autopilot_version(snapshot: Snapshot, settings: SimSettings) -> Message:
-    major_minor = 0x04_06_00_FF if settings.autopilot is Flavour.ARDUPILOT else 0x01_10_00_FF
+    major, minor = settings.version
     name = tuple(b"swathsim")
     return Message(
         "AUTOPILOT_VERSION",
         {
             "capabilities": _CAPABILITIES,
-            "flight_sw_version": major_minor,
+            "flight_sw_version": major << 24 | minor << 16 | 0xFF,
             "middleware_sw_version": 0,
             "os_sw_version": 0,
             "board_version": 0,

@@ -90,6 +90,8 @@ class VehicleState:
         When it last told where it is, in the same clock.
     time_s
         The vehicle's own time since boot.
+    firmware
+        The version of the autopilot's firmware, e.g. ``4.6.3``.
     mode
         In words, as ``modes.mode_name`` gives it.
     booting
@@ -133,6 +135,7 @@ class VehicleState:
     position_heard_s: float | None = None
     time_s: float | None = None
     autopilot: Autopilot = "generic"
+    firmware: str | None = None
     type: VehicleType = "other"
     armed: bool = False
     mode: str = ""
@@ -300,6 +303,12 @@ def _extended_state(state: VehicleState, message: Message) -> VehicleState:
     return replace(state, landed=None if landed == 0 else landed == 1, type="vtol" if vtol else state.type)
 
 
+def _autopilot_version(state: VehicleState, message: Message) -> VehicleState:
+    version = message.integer("flight_sw_version")
+    major, minor, patch = (version >> shift & 0xFF for shift in (24, 16, 8))
+    return replace(state, firmware=f"{major}.{minor}.{patch}") if major else state
+
+
 def _named_int(state: VehicleState, message: Message) -> VehicleState:
     return replace(state, sensor_on=bool(message.integer("value"))) if is_sensor_switch(message) else state
 
@@ -351,6 +360,7 @@ _UPDATES: Final[dict[str, Callable[[VehicleState, Message], VehicleState]]] = {
     "MISSION_CURRENT": _mission_current,
     "MISSION_ITEM_REACHED": _mission_reached,
     "EXTENDED_SYS_STATE": _extended_state,
+    "AUTOPILOT_VERSION": _autopilot_version,
     "NAMED_VALUE_INT": _named_int,
     "RELAY_STATUS": _relay_status,
     "STATUSTEXT": _status_text,

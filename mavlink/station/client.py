@@ -48,6 +48,7 @@ _INTERVALS_HZ: Final = {
     2: 1.0,  # SYSTEM_TIME: cameras tell their times since 1970
     376: 4.0,  # RELAY_STATUS: in no stream of ArduPilot's, sent only when asked for
 }
+_VERSION: Final = 148.0  # AUTOPILOT_VERSION
 _MICROSECONDS: Final = 1e6
 _PARAMETER_RETRIES: Final = 2
 _PARAMETER_TIMEOUT_S: Final = 0.8
@@ -304,6 +305,10 @@ class VehicleClient(MissionTransfers, FlightCommands, SigningSetup):
     def _ask_for_telemetry(self) -> None:
         """Ask for what the state is made of; a vehicle that knows no intervals just says so."""
         self._ask_for(_INTERVALS_HZ | self._watched_hz)
+        if not self._driver.read_only:
+            # Once is enough: the version comes with the next start.
+            asked = CommandMachine(Command.REQUEST_MESSAGE, (_VERSION,), *self._target(), self._settings)
+            self._driver.post(asked)
 
     def _ask_for(self, rates_hz: Mapping[int, float]) -> None:
         if self._driver.read_only:

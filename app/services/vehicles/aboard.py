@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
@@ -27,6 +28,7 @@ _REPORTS: Final = 2
 #: Another operation is waited for so long.
 _LOOKS: Final = 600
 _LOOK_S: Final = 0.05
+_FRESH_S: Final = 5.0
 
 Compare = Callable[[tuple[MissionItem, ...], tuple[MissionItem, ...]], tuple[Difference, ...]]
 
@@ -55,15 +57,24 @@ class Aboard:
     ----------
     meant
         What was sent and read back last; None where nothing was, or where that is not known.
+    asked_s
+        When it was last asked, and held what was meant, in the link's clock.
     """
 
     def __init__(self) -> None:
         self.meant: Meant | None = None
+        self.asked_s = -math.inf
         self._restarts = 0
         self._strange = 0
 
+    def fresh(self, now_s: float) -> bool:
+        """Whether it was asked so lately that asking again tells nothing: ``start`` follows on ``arm``."""
+        return now_s < self.asked_s + _FRESH_S
+
     def lost(self, state: VehicleState) -> str | None:
         """Why what it holds has to be read anew, told once; None where nothing speaks for it."""
+        if state.restarts != self._restarts or not state.connected:
+            self.asked_s = -math.inf
         if state.restarts != self._restarts:
             again = state.restarts > self._restarts
             self._restarts = state.restarts
@@ -98,6 +109,8 @@ async def require_aboard(vehicle: Vehicle) -> None:
             f"plan {vehicle.sent.plan_id} was sent to the vehicle, and never read back whole as it was meant",
             "upload it again; or clear the mission; or order it with as_held to fly whatever is held",
         )
+    if vehicle.standing()[0] == "held" and vehicle.aboard.fresh(vehicle.client.now_s):
+        return
     # What else is read of it ends by itself; whoever ordered this waits no longer than for an answer.
     for _ in range(_LOOKS):
         if vehicle.turns.operation is None:
@@ -137,4 +150,6 @@ async def _counted(vehicle: Vehicle, meant: Meant) -> bool:
     """Whether the number of items, and the id where there is one, are those of what was read back."""
     count, list_id = await vehicle.client.count_held()
     known = vehicle.sent_id
-    return count == len(meant.items) and (known is None or list_id in (None, known))
+    same = count == len(meant.items) and (known is None or list_id in (None, known))
+    vehicle.aboard.asked_s = vehicle.client.now_s if same else -math.inf
+    return same

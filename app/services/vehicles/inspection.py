@@ -14,12 +14,12 @@ from app.services.vehicles.preflight import Observed, Preflight, preflight
 from app.services.vehicles.uploads import UploadReport, comparing
 from mavlink.dialects.mission import Mission
 from mavlink.errors import TransferFailedError
+from mavlink.rules.firmware import called, still_to_ask
 from mavlink.rules.table import (
     Needs,
     ParameterFinding,
     judge_parameters,
     names_to_read,
-    other_names,
     unanswered,
 )
 from mavlink.station.client import VehicleClient
@@ -72,12 +72,18 @@ async def read_parameters(
 
 
 async def _read(client: VehicleClient, names: Sequence[str]) -> dict[str, Parameter]:
-    """Read parameters; those unanswered by what older firmware calls them, too."""
-    found = await client.read_parameters(names)
-    older = other_names(names, found)
-    if older:
+    """Read parameters as the vehicle's firmware calls them; those unanswered as other versions do, too."""
+    first = called(names, client.state.autopilot, client.state.firmware)
+    try:
+        found = await client.read_parameters(first)
+    except TransferFailedError:
+        if first == tuple(names):
+            raise
+        found = {}
+    others = still_to_ask(names, first, found)
+    if others:
         with contextlib.suppress(TransferFailedError):
-            found |= await client.read_parameters(older)
+            found |= await client.read_parameters(others)
     return found
 
 

@@ -11,6 +11,7 @@ from app.services.plans.missions import PARTS, PartName, mission_findings
 from app.services.vehicles.pointing import pointing_findings
 from mavlink.dialects.mission import Mission
 from mavlink.encoding.arcs import circles_widen_m
+from mavlink.rules.firmware import note_on
 from mavlink.rules.table import Needs, ParameterFinding, judge_parameters
 from mavlink.state.telemetry import VehicleState
 from mavlink.wire.geometry import distance_m
@@ -149,7 +150,12 @@ def _vehicle(mission: Mission, state: VehicleState) -> Check:
     if state.type != mission.vehicle_type:
         message = f"it is a {state.type}, the mission is for a {mission.vehicle_type}"
         return Check("vehicle", "warning" if state.type == "other" else "failed", message)
-    return Check("vehicle", "ok", f"connected: {mission.dialect.name}, mode {state.mode or 'not said'}")
+    known = f" {state.firmware}" if state.firmware else ""
+    detail = f"connected: {mission.dialect.name}{known}, mode {state.mode or 'not said'}"
+    note = note_on(state.autopilot, state.firmware)
+    if note is None:
+        return Check("vehicle", "ok", detail)
+    return Check("vehicle", "warning" if state.firmware else "ok", f"{detail}; {note}")
 
 
 def _dialect(mission: Mission) -> Check:

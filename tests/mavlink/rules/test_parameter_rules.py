@@ -17,13 +17,13 @@ from mavlink.encoding.payload import (
     ServoPayload,
     parse_payload,
 )
+from mavlink.rules.firmware import still_to_ask
 from mavlink.rules.table import (
     RULES,
     Needs,
     judge_parameters,
     names_to_read,
     needs_of,
-    other_names,
     unanswered,
 )
 from mavlink.wire.items import Command
@@ -252,8 +252,8 @@ def test_older_names_are_judged_in_their_own_units(
     """Asked for where the new name is not answered; value and advice are in their hundredths."""
     values = {name: value for name, value in GOOD["ardupilot"].items() if name != modern}
     names = names_to_read("ardupilot", "fixed_wing", PLANE)
-    assert other_names(names, values) == (older,)
-    assert other_names(names, GOOD["ardupilot"]) == ()
+    assert still_to_ask(names, names, values) == (older,)
+    assert still_to_ask(names, names, GOOD["ardupilot"]) == ()
     assert modern in unanswered(names, values)
     assert modern not in unanswered(names, {**values, older: 1.0})
     (finding,) = judge_parameters("ardupilot", "fixed_wing", PLANE, values | {older: wrong * unit})

@@ -12,8 +12,9 @@ from mavlink.dialects import Autopilot, VehicleType
 from mavlink.encoding.encode import encode
 from mavlink.encoding.payload import RelayPayload
 from mavlink.rules.base import Needs, ParameterFinding, needs_of
+from mavlink.rules.firmware import still_to_ask
 from mavlink.rules.heights import HeightNeeds
-from mavlink.rules.table import judge_parameters, names_to_read, other_names
+from mavlink.rules.table import judge_parameters, names_to_read
 from mavlink.sim.autopilot import SimulatedAircraft
 from mavlink.sim.geodesy import Place
 from mavlink.sim.modes import Flavour
@@ -118,7 +119,8 @@ def test_arduplanes_return_height(needs: Needs, height_m: float, severity: str |
             [] if severity is None else [(name, severity)]
         )
         assert all(words in finding.reason for finding in findings.values())
-    assert "ALT_HOLD_RTL" in other_names(names_to_read("ardupilot", "fixed_wing", needs), {})
+    names = names_to_read("ardupilot", "fixed_wing", needs)
+    assert "ALT_HOLD_RTL" in still_to_ask(names, names, ())
 
 
 @pytest.mark.parametrize(
