@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from pathlib import Path
@@ -22,9 +23,11 @@ from tests.app.test_restart import VEHICLES, flying, free_port, until
 async def aircraft(port: int, settings: SimSettings) -> AsyncIterator[None]:
     """A simulated aircraft that has just started, at a port that listens."""
     link = await open_link(f"tcp:127.0.0.1:{port}")
-    async with flying(link, settings):
-        yield
-    await link.close()
+    try:
+        async with flying(link, settings):
+            yield
+    finally:
+        await link.close()
 
 
 @pytest.mark.parametrize("flavour", list(Flavour))
@@ -55,7 +58,11 @@ async def test_a_restart_empties_the_mission_and_nothing_is_started(
             body = await until(client, lambda body: body["sent"]["standing"] == "differs")
             assert body["plan_id"] is None
             assert not body["state"]["armed"]
-            report = await client.post(place + "/mission", json={"plan_id": plan_id})
+            async with asyncio.timeout(20):
+                # It may just be read back once more.
+                while (report := await client.post(place + "/mission", json={"plan_id": plan_id})).is_error:
+                    assert report.json()["type"].endswith(":busy"), report.text
+                    await asyncio.sleep(0.05)
             assert report.json()["verified"], report.text
             started = await client.post(place + "/commands", json={"command": "start", "arm_first": True})
             assert started.json().get("outcome") == "done", started.text

@@ -39,9 +39,11 @@ def keys(tmp_path: Path) -> Path:
 async def aircraft(port: int, key: bytes = b"") -> AsyncIterator[None]:
     """A simulated aircraft with a key, or none yet."""
     link = await open_link(f"tcp:127.0.0.1:{port}")
-    async with flying(link, SimSettings(signing_key=key)):
-        yield
-    await link.close()
+    try:
+        async with flying(link, SimSettings(signing_key=key)):
+            yield
+    finally:
+        await link.close()
 
 
 async def test_a_signing_vehicle_is_flown_and_its_key_is_nowhere(
