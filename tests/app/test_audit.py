@@ -156,9 +156,13 @@ async def test_an_upload_left_by_a_crash_is_resolved(settings: Settings, plan_fi
             found = await entries(client, settled)
             assert {entry["outcome"] for entry in found} == {"unknown"}
             assert "may have been carried out" in found[0]["reason"]
-        with closing(sqlite3.connect(settings.database)) as database:
-            rows = database.execute("SELECT outcome FROM uploads").fetchall()
-        assert rows == [("accepted" if kept else "different",)]
+            with closing(sqlite3.connect(settings.database)) as database:
+                async with asyncio.timeout(20):
+                    while (rows := database.execute("SELECT outcome FROM uploads").fetchall()) == [
+                        ("pending",)
+                    ]:
+                        await asyncio.sleep(0.05)
+            assert rows == [("accepted" if kept else "different",)]
 
 
 async def test_an_upload_left_for_a_vehicle_let_go_is_unknown(settings: Settings) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -11,6 +12,7 @@ import httpx
 from app.services.errors import LinkError
 
 _TIMEOUT_S = 5.0
+_FLIGHT_ID = re.compile(r"[0-9a-f-]{36}")
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +49,9 @@ class LinksClient:
         return True
 
     async def place_in_flight(self, flight_id: str) -> tuple[float, float, float | None] | None:
-        """As ``Fleet.place_in_flight``."""
+        """As ``Fleet.place_in_flight``; what is no id of a flight is nowhere."""
+        if _FLIGHT_ID.fullmatch(flight_id) is None:
+            return None
         place = (await self._ask("GET", f"/links/flights/{flight_id}"))["place"]
         return None if place is None else (place[0], place[1], place[2])
 

@@ -26,7 +26,7 @@ LOCAL: Final = "local"
 SERVICE: Final = "service"
 #: So long the database is waited for: before what makes safe goes out all the same, and before other orders
 #: are refused, seconds.
-SAFE_WAIT_S, WAIT_S = 0.05, 3.0
+SAFE_WAIT_S, WAIT_S = 0.03, 3.0
 #: How often what could not be written is tried again, seconds.
 RETRY_S = 1.0
 
