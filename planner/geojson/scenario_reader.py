@@ -17,6 +17,7 @@ from planner.geojson.extent import check_bbox, frame_of, within
 from planner.geojson.far import near_features
 from planner.geojson.fields import Fields, Findings
 from planner.geojson.home import home_amsl_m, kept_clear
+from planner.geojson.plausible import check_plausible
 from planner.geojson.relief import set_on_terrain
 from planner.geojson.rules import check_together
 from planner.geojson.size import check_size
@@ -197,7 +198,9 @@ def _read(document: Any, findings: Findings, terrains: Terrains | None) -> Scena
         scenario = kept_clear(scenario, findings)
     scenario = replace(scenario, regions=_at_their_altitudes(scenario.regions, scenario.altitude_m))
     check_together(scenario, findings)
-    check_slots(scenario, findings)
+    if not findings.errors:
+        check_slots(scenario, findings)
+        check_plausible(scenario, findings)
     return replace(scenario, warnings=findings.warnings)
 
 

@@ -360,5 +360,5 @@ def test_passes_without_number_are_a_slip_of_height() -> None:
     assert (warned.rule, warned.severity) == ("many-passes", "warning")
     narrow = small(altitude_m=1.0)
     narrow["sensors"][0]["elevation_beamwidth_deg"] = 1.0
-    assert {f.rule for f in findings(narrow)} == {"too-many-passes"}
+    assert {f.rule for f in findings(narrow)} == {"too-many-passes", "flight-long"}
     assert {f.rule for f in findings(small(altitude_m=0.001))} == {"out-of-range"}
