@@ -5,8 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
+import shapely
 from pyproj import Proj
-from shapely import convex_hull, polygonize, remove_repeated_points
+from shapely import STRtree, convex_hull, polygonize, remove_repeated_points
 from shapely.geometry import LineString, Polygon
 from shapely.geometry.polygon import orient
 from shapely.ops import unary_union
@@ -14,6 +16,10 @@ from shapely.ops import unary_union
 from app.imports.roles import KINDS
 from app.imports.shapes import LonLat, Rings, Shape
 from planner.geojson.sheet import MOST_LONGITUDE_DEG, continued, wrapped_deg
+
+#: A ring that crosses itself more often is taken for its convex hull.
+_MOST_CROSSINGS = 100
+_AT_ONCE = 8
 
 
 def closed(shape: Shape, role: str) -> Shape:
@@ -35,6 +41,9 @@ def forbidden_area(shape: Shape, width_m: float | None) -> Shape | None:
     places = continued(list(shape.parts[0][0]), shape.parts[0][0][0][0])
     if len(set(places)) < 2:
         return None
+    if not _crosses_seldom(places):
+        hull = convex_hull(LineString(places))
+        places = [(x, y) for x, y in hull.exterior.coords] if isinstance(hull, Polygon) else places[:1]
     parts = []
     ring = Polygon(places) if len(set(places)) > 2 else None
     if ring is not None:
@@ -64,12 +73,26 @@ def mended(shape: Shape) -> Shape | None:
     outer = Polygon(rings[0])
     if not outer.is_valid:
         ring = LineString([*rings[0], rings[0][0]])
-        faces = unary_union(list(polygonize([unary_union(ring)]).geoms))
+        few = _crosses_seldom(rings[0])
+        faces = unary_union(list(polygonize([unary_union(ring)]).geoms)) if few else None
         whole = faces if isinstance(faces, Polygon) else convex_hull(ring)
         if not isinstance(whole, Polygon):
             return None
         outer = whole
     return replace(shape, parts=((tuple((x, y) for x, y in outer.exterior.coords),),))
+
+
+def _crosses_seldom(ring: list[LonLat]) -> bool:
+    """Whether a ring has few crossings: all of a scribble's grow with the square of its corners."""
+    corners = np.array([*ring, ring[0]])
+    pieces = np.asarray(shapely.linestrings(np.stack([corners[:-1], corners[1:]], axis=1)))
+    tree = STRtree(pieces)
+    found = 0
+    for start in range(0, len(pieces), _AT_ONCE):
+        found += len(tree.query(pieces[start : start + _AT_ONCE], predicate="crosses")[0])
+        if found > 2 * _MOST_CROSSINGS:
+            return False
+    return True
 
 
 def _strip(places: list[LonLat], width_m: float) -> Polygon:

@@ -34,6 +34,9 @@ _WIDER = {
     "ascii": "ascii", "latin1": "iso8859-1", "latin9": "iso8859-15", "10000": "mac_roman",
     "macroman": "mac_roman", "macintosh": "mac_roman", "koi8r": "koi8-r", "koi8u": "koi8-u",
     "johab": "johab", }  # fmt: skip
+#: Words that are no ASCII: of a text that names no code page these are looked at, in pieces.
+_FOREIGN = re.compile(rb"[^\x00-\x20]{0,100}[\x80-\xff][^\x00-\x20]{0,100}")
+_MOST_BYTES, _PIECE_BYTES, _OVERLAP_BYTES = 200_000, 10_000, 200
 #: Tried in turn where nothing names the code page and the text is no UTF-8.
 _CANDIDATES = (
     "gb18030", "cp932", "cp949", "cp950", "cp1251", "cp866", "cp1250", "cp1253", "cp1254", "cp1255",
@@ -90,7 +93,9 @@ def guessed(data: bytes) -> str:
     """
     if reads(data, "utf-8"):
         return "utf-8"
+    foreign = b" ".join(dict.fromkeys(_FOREIGN.findall(data)))[:_MOST_BYTES]
+    pieces = [foreign[at : at + _PIECE_BYTES] for at in range(0, len(foreign), _PIECE_BYTES - _OVERLAP_BYTES)]
     for codec in _CANDIDATES:
-        if forbids(data.decode(codec, "replace")):
+        if any(forbids(piece.decode(codec, "replace")) for piece in pieces):
             return codec
     return "cp1252"

@@ -16,6 +16,7 @@ from app.imports.shapes import LonLat, Shape, line_of
 from app.imports.xml import child_text, children, local_name, parse
 
 _CONTAINERS = ("kml", "Document", "Folder", "NetworkLinkControl", "Update", "Create")
+_MOST_LINKS = 20
 _IMAGES = ("GroundOverlay", "PhotoOverlay", "ScreenOverlay")
 
 
@@ -26,6 +27,7 @@ class _Archive:
     documents: Mapping[str, bytes] = field(default_factory=dict)
     at: str = ""
     read: set[str] = field(default_factory=set)
+    depth: int = 0
 
     def linked(self, address: str) -> str | None:
         """The document that a link of the present one leads to; None for one outside."""
@@ -166,10 +168,16 @@ def _followed(link: Element, folders: tuple[str, ...], archive: _Archive, notes:
         return []
     if target in archive.read:
         return []
+    if archive.depth >= _MOST_LINKS:
+        raise file_error(
+            "kml-links", f"links lead over {_MOST_LINKS} documents down", "save it as one document"
+        )
     archive.read.add(target)
     before, archive.at = archive.at, target
+    archive.depth += 1
     shapes = _read(archive.documents[target], inside, archive, notes)
     archive.at = before
+    archive.depth -= 1
     return shapes
 
 

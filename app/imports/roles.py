@@ -6,7 +6,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from shapely import Point, Polygon, STRtree
+from shapely import Polygon, contains_xy, prepare, union_all
+from shapely.geometry.base import BaseGeometry
 
 from app.imports.options import NONE, ROLES, Choices, ImportOptions, RoleChoice
 from app.imports.rings import encloses
@@ -82,7 +83,7 @@ def verdicts(shapes: Sequence[Shape], options: ImportOptions) -> list[Verdict]:
 
 
 def _verdict(
-    shape: Shape, options: ImportOptions, choice: RoleChoice | None, named: Mapping[str, STRtree]
+    shape: Shape, options: ImportOptions, choice: RoleChoice | None, named: Mapping[str, BaseGeometry]
 ) -> Verdict:
     if choice is not None:
         return Verdict(choice.role, f"chosen for {choice.which!r}")
@@ -210,20 +211,23 @@ def _closable(shape: Shape, role: str) -> bool:
     return shape.kind == "line" and "polygon" in KINDS[role] and len(line) > 3 and line[0] == line[-1]
 
 
-def _labels(shape: Shape, named: Mapping[str, STRtree]) -> bool:
+def _labels(shape: Shape, named: Mapping[str, BaseGeometry]) -> bool:
     """Whether it is a point within a polygon of its name that says nothing of its own."""
     if shape.kind != "point" or not shape.name or {"role", "radius_m"} & shape.properties.keys():
         return False
-    tree = named.get(shape.name.casefold())
-    return tree is not None and len(tree.query(Point(shape.parts[0][0][0]), "within")) > 0
+    area = named.get(shape.name.casefold())
+    return area is not None and bool(contains_xy(area, *shape.parts[0][0][0]))
 
 
-def _named_polygons(shapes: Sequence[Shape]) -> dict[str, STRtree]:
+def _named_polygons(shapes: Sequence[Shape]) -> dict[str, BaseGeometry]:
     """The polygons of every name that a point has as well."""
     points = {shape.name.casefold() for shape in shapes if shape.kind == "point"}
     found: dict[str, list[Polygon]] = {}
     for shape in shapes:
         if shape.kind == "polygon" and shape.name.casefold() in points:
             rings = [Polygon(part[0]) for part in shape.parts if encloses(part[0])]
-            found.setdefault(shape.name.casefold(), []).extend(rings)
-    return {name: STRtree(polygons) for name, polygons in found.items()}
+            found.setdefault(shape.name.casefold(), []).extend(ring for ring in rings if ring.is_valid)
+    areas = {name: union_all(polygons) for name, polygons in found.items()}
+    for area in areas.values():
+        prepare(area)
+    return areas

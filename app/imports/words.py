@@ -106,6 +106,10 @@ _PHRASES = {
     "importance": ("importance",),
 }  # fmt: skip
 ROLE_OF_PHRASE = {phrase: role for role, phrases in _PHRASES.items() for phrase in phrases}
+_CAMEL = re.compile(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
+_NO_WORD = re.compile(r"[\W_]+")
+_DIGITS = re.compile(r"(?<=[^\W\d_])(?=\d)|(?<=\d)(?=[^\W\d_])")
+_SPACED_NFZ = re.compile(r"\bn f z\b")
 _LETTERS = str.maketrans(
     {
         "ı": "i",
@@ -125,47 +129,54 @@ _FALSE = frozenset({"", "0", "0.0", "no", "n", "false", "f", "none", "null", "na
 _LONGEST = 20_000
 
 
-@lru_cache(maxsize=1024)
 def plain(text: str) -> str:
     """``No-Fly_Zone 3`` and ``NoFlyZone3`` as ``no fly zone 3``: single blanks, no accents, no case."""
-    folded = unicodedata.normalize("NFKD", text[:_LONGEST])
-    bare = unicodedata.normalize(
-        "NFC", "".join(c for c in folded if not unicodedata.combining(c) or c > "\u0900")
-    )
-    bare = re.sub(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", " ", bare)
-    for letter, plain_letter in (
-        ("ı", "i"),
-        ("ł", "l"),
-        ("ø", "o"),
-        ("đ", "d"),
-        ("æ", "ae"),
-        ("'", ""),
-        ("’", ""),
-    ):
-        bare = bare.replace(letter, plain_letter).replace(letter.upper(), plain_letter)
-    bare = re.sub(r"[\W_]+", " ", bare.casefold())
-    bare = re.sub(r"(?<=[^\W\d_])(?=\d)|(?<=\d)(?=[^\W\d_])", " ", bare)
-    return re.sub(r"\bn f z\b", "nfz", bare).strip()
+    return _plain(text[:_LONGEST])
 
 
-@lru_cache(maxsize=1024)
+# One text is asked for several kinds of words, and those of folders come again with every shape in them.
+@lru_cache(maxsize=512)
+def _plain(text: str) -> str:
+    bare = text
+    if not text.isascii():
+        folded = unicodedata.normalize("NFKD", text)
+        bare = "".join(c for c in folded if not unicodedata.combining(c) or c > "\u0900")
+        bare = unicodedata.normalize("NFC", bare)
+    bare = _CAMEL.sub(" ", bare.translate(_LETTERS))
+    bare = _NO_WORD.sub(" ", bare.casefold())
+    return _SPACED_NFZ.sub("nfz", _DIGITS.sub(" ", bare)).strip()
+
+
 def forbids(text: str) -> str | None:
     """The word that forbids flying there; None where there is none."""
+    return _forbids(text[:_LONGEST])
+
+
+def keeps_inside(text: str) -> str | None:
+    """The word that means a fence to stay inside of."""
+    return _keeps_inside(text[:_LONGEST])
+
+
+def says_either(text: str) -> str | None:
+    """A word of restriction that leaves open in which sense, or denies it."""
+    return _says_either(text[:_LONGEST])
+
+
+@lru_cache(maxsize=512)
+def _forbids(text: str) -> str | None:
     words = _NEGATED.sub(" ", plain(text))
-    found = _FORBIDDEN.search(words) or _ANYWHERE.search(unicodedata.normalize("NFKC", text[:_LONGEST]))
+    found = _FORBIDDEN.search(words) or _ANYWHERE.search(unicodedata.normalize("NFKC", text))
     return found.group().strip() if found else None
 
 
-@lru_cache(maxsize=1024)
-def keeps_inside(text: str) -> str | None:
-    """The word that means a fence to stay inside of."""
+@lru_cache(maxsize=512)
+def _keeps_inside(text: str) -> str | None:
     found = _INSIDE.search(plain(text))
     return found.group() if found else None
 
 
-@lru_cache(maxsize=1024)
-def says_either(text: str) -> str | None:
-    """A word of restriction that leaves open in which sense, or denies it."""
+@lru_cache(maxsize=512)
+def _says_either(text: str) -> str | None:
     found = _EITHER.search(plain(text)) or _NEGATED.search(plain(text))
     return found.group() if found else None
 

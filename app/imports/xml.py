@@ -16,7 +16,7 @@ from app.imports.errors import file_error
 MAX_DEPTH = 100
 _DECLARATION = re.compile(r"<\?xml\b[^>]{0,200}?\?>")
 _ENCODING = re.compile(rb"<\?xml\b[^>]{0,200}?\bencoding\s*=\s*[\"']([A-Za-z0-9._:/ -]{1,40})[\"']")
-_ROOT = re.compile(r"\s*(?:<\?.*?\?>\s*|<!--.*?-->\s*)*<[A-Za-z_][\w.:-]*", re.DOTALL)
+_NAME = re.compile(r"<[^\s<>/!?]+")
 _PREFIX = re.compile(r"[<\s/]([A-Za-z_][\w.-]*):[A-Za-z_]")
 _BARE_AMPERSAND = re.compile(r"&(?!(?:amp|lt|gt|quot|apos|#\d{1,7}|#x[0-9A-Fa-f]{1,6});)")
 _CONTROL = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ufffe\uffff]")
@@ -118,14 +118,28 @@ def _mended(text: str, lines: int, error: ParseError, notes: list[str]) -> Eleme
 
 def _bound(text: str) -> str:
     """The text with a declaration in its root for every prefix that has none there."""
-    root = _ROOT.match(text)
-    if root is None:
+    end = _end_of_root_name(text)
+    if end is None:
         return text
-    head = text[root.end() : text.find(">", root.end()) + 1]
+    head = text[end : text.find(">", end) + 1]
     used = list(dict.fromkeys(_PREFIX.findall(text)))[:_MAX_PREFIXES]
     missing = [name for name in used if name not in ("xml", "xmlns") and f"xmlns:{name}" not in head]
     declared = "".join(f' xmlns:{name}="urn:unbound:{name}"' for name in missing)
-    return text[: root.end()] + declared + text[root.end() :]
+    return text[:end] + declared + text[end:]
+
+
+def _end_of_root_name(text: str) -> int | None:
+    """Where the name of the first element ends, behind comments and instructions."""
+    at = 0
+    while True:
+        at = text.find("<", at)
+        closing = {"<!": "-->", "<?": "?>"}.get(text[at : at + 2]) if at >= 0 else None
+        if closing is None:
+            found = _NAME.match(text, at) if at >= 0 else None
+            return None if found is None else found.end()
+        at = text.find(closing, at)
+        if at < 0:
+            return None
 
 
 def local_name(element: Element) -> str:

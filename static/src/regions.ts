@@ -40,8 +40,9 @@ export async function importRegions(file: File): Promise<boolean> {
       const shapes = rolesAsked ? [] : (found?.shapes ?? pointsOf(findings));
       if (!shapes.some(isOpen) && Object.keys(missing).length === 0) {
         if (!found) throw new Error(findings.map(({ feature, message }) => `${feature}: ${message}`).join("; "));
+        const before = scenarios.document.value.features.map((feature) => feature.properties.role);
         scenarios.merge(found.features);
-        news([`Added ${found.features.length} features of ${file.name}.`, ...told(found)].join(" · "));
+        news([`Added ${found.features.length} features of ${file.name}.`, ...replaced(before, found), ...told(found)].join(" · "));
         return true;
       }
       const answer = await askImport(file.name, shapes, missing);
@@ -79,6 +80,14 @@ function pointsOf(findings: Finding[]): ShapeAccount[] {
     number: 1, name: names.slice(0, 6).join(", "), folders: [], kind: "point", role: "none",
     why: "nothing says what these points are", in_doubt: false, features: [],
   }];
+}
+
+/** Of these a scenario has one: the file's takes the place of the one there was. */
+function replaced(before: string[], found: Imported): string[] {
+  const roles = new Set(found.features.map((feature) => feature.properties.role as string));
+  return ["area", "start", "end"]
+    .filter((role) => before.includes(role) && roles.has(role))
+    .map((role) => `the ${role} there was is replaced`);
 }
 
 function told(found: Imported): string[] {

@@ -134,13 +134,16 @@ export class ScenarioStore {
     });
   }
 
-  /** Add features of a file under free names; a new area, start or end takes the place of the one there was. */
+  /**
+   * Add features of a file under free names; a new area, start or end takes the place of the one there was. Of
+   * two in the file both stay: the service says that there is one too many, where dropping one would not.
+   */
   merge(features: ScenarioFeature[]): void {
     this.selection.set(null);
     this.change((draft) => {
+      const single = new Set(features.map((feature) => feature.properties.role).filter((role) => SINGLE.has(role)));
+      draft.features = draft.features.filter((other) => !single.has(other.properties.role));
       for (const feature of features) {
-        const role = feature.properties.role;
-        if (SINGLE.has(role)) draft.features = draft.features.filter((other) => other.properties.role !== role);
         const taken = new Set(draft.features.map(nameOf));
         const wanted = nameOf(feature);
         let name = wanted;

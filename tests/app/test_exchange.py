@@ -109,6 +109,31 @@ def test_import_refuses_with_findings(swathplan: Command, tmp_path: Path) -> Non
     assert rules == ["width_m-missing", "width_m-missing"]
 
 
+def test_import_says_what_every_shape_became(swathplan: Command, tmp_path: Path) -> None:
+    """Roles and reasons stand on standard error and in --json; --role-of settles a doubt."""
+    path, out = tmp_path / "a.kml", tmp_path / "out.geojson"
+    path.write_bytes(
+        kml(placemark("NFZ north", polygon(RING)), placemark("odd", polygon(RING), role="cloud"))
+    )
+    ended = swathplan("import", str(path), "-o", str(out), "--json")
+    assert ended.code == 0
+    assert "NFZ north: no_fly (its name says 'nfz')" in ended.err
+    assert "IN DOUBT" in ended.err
+    assert [(one["role"], one["in_doubt"]) for one in json.loads(ended.out)["shapes"]] == [
+        ("no_fly", False),
+        ("no_fly", True),
+    ]
+    scenario = EXAMPLE | {"features": [*EXAMPLE["features"], *json.loads(out.read_text())["features"]]}
+    refused = swathplan("validate", "-", "--json", stdin=json.dumps(scenario))
+    assert refused.code == 2
+    assert "role-in-doubt" in refused.out + refused.err
+    ended = swathplan("import", str(path), "--role-of", "odd=roi", "--role-of", "#1=none")
+    (feature,) = json.loads(ended.out)["features"]
+    assert feature["properties"] == {"role": "roi", "name": "odd"}
+    wrong = swathplan("import", str(path), "--role-of", "od=roi")
+    assert (wrong.code, wrong.out) == (2, "")
+
+
 def test_a_plan_goes_out_as_kmz_and_comes_in_again(
     swathplan: Command, plan_file: Path, tmp_path: Path
 ) -> None:

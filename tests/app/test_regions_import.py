@@ -49,6 +49,22 @@ async def test_options_are_query_parameters(client: httpx.AsyncClient) -> None:
     assert bare.json()["features"][0]["id"] == "roi 1"
 
 
+async def test_every_shape_is_accounted_for(client: httpx.AsyncClient) -> None:
+    """The file's name counts, roles are chosen by name and number; what became of each is said."""
+    data = kml(
+        placemark("a", polygon(RING)), placemark("b", polygon(RING)), placemark("road", line(RING[:2]))
+    )
+    query = {"name": "no-fly.kml", "role_of": ["b=area", "#3=roi"]}
+    document = (await client.post(PATH, content=data, params=query)).json()
+    assert [(one["role"], one["number"]) for one in document["shapes"]] == [
+        ("no_fly", 1),
+        ("area", 2),
+        ("none", 3),
+    ]
+    assert document["shapes"][0]["features"] == ["a"]
+    assert [(one["feature"], one["rule"]) for one in document["left_out"]] == [("road", "width_m-missing")]
+
+
 @pytest.mark.parametrize(
     ("body", "query", "rule"),
     [
@@ -59,6 +75,7 @@ async def test_options_are_query_parameters(client: httpx.AsyncClient) -> None:
         (SHAPES[".shp"], {}, "crs-missing"),
         (KML, {"crs": "EPSG:4326", "role": "end"}, "wrong-geometry"),
         (KML, {"role": "cloud"}, None),
+        (KML, {"role_of": "nothing=roi"}, "bad-option"),
         (KML, {"width_m": "-1"}, None),
         (KML, {"width_m": "inf"}, "bad-option"),
         (KML, {"format": "dxf"}, None),

@@ -3,15 +3,27 @@
 from __future__ import annotations
 
 import json
+import random
 import zipfile
 from io import BytesIO
 
 import pytest
-from shapely.geometry import Polygon, shape
+from shapely.geometry import MultiPoint, Polygon, shape
 
 from app.imports import Imported, ImportOptions, RegionFileError, import_regions
 from app.imports.rings import grouped
-from tests.app.imports.samples import GPX, HOLE, RING, folder, kml, packed, placemark, polygon, shapefiles
+from tests.app.imports.samples import (
+    GPX,
+    HOLE,
+    RING,
+    folder,
+    kml,
+    line,
+    packed,
+    placemark,
+    polygon,
+    shapefiles,
+)
 
 SHAPES = shapefiles([[RING[::-1]]], ["meadow"])
 GEOJSON = json.dumps({"type": "Polygon", "coordinates": [RING]}).encode()
@@ -136,3 +148,17 @@ def test_rings_within_rings_have_an_end() -> None:
     with pytest.raises(RegionFileError) as caught:
         grouped(nested)
     assert caught.value.findings[0].rule == "rings-nested"
+
+
+def test_scribbles_and_deep_links_have_an_end() -> None:
+    """A zone of thousands of crossings is its hull; links that lead on and on are refused by name."""
+    dice = random.Random(7)
+    places = [(8.0 + dice.random(), 47.0 + dice.random()) for _ in range(3000)]
+    for mark in (polygon([*places, places[0]]), line(places)):
+        (feature,) = import_regions(kml(placemark("NFZ", mark))).collection["features"]
+        hull = MultiPoint(places).convex_hull
+        assert shape(feature["geometry"]).symmetric_difference(hull).area < 1e-9
+    chain = {f"{n}.kml": kml(link(f"{n + 1}.kml")) for n in range(60)}
+    with pytest.raises(RegionFileError) as caught:
+        import_regions(packed(chain))
+    assert caught.value.findings[0].rule == "kml-links"
