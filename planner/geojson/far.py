@@ -72,7 +72,7 @@ def near_features(raw_features: list[Any], findings: Findings) -> Near:
         return Near(raw_features)
     features, left_out, cut = list(raw_features), [], []
     for index, (feature, found) in enumerate(zip(raw_features, bounds, strict=True)):
-        if found is None or _role(feature) not in FORBIDDING:
+        if found is None or _role(feature) not in FORBIDDING or _in_doubt(feature):
             continue
         at = _shifted(found, looked_at)
         if _apart(at, looked_at):
@@ -114,6 +114,11 @@ def _role(feature: Any) -> Any:
     properties = feature.get("properties") if isinstance(feature, Mapping) else None
     role = properties.get("role") if isinstance(properties, Mapping) else None
     return role if isinstance(role, str) else None
+
+
+def _in_doubt(feature: Mapping[str, Any]) -> bool:
+    """Whether it may have another role, which has to be known first."""
+    return feature["properties"].get("role_in_doubt") is not None
 
 
 def _bounds(feature: Any) -> Box | None:
