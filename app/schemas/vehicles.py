@@ -176,6 +176,10 @@ class VehicleOut(BaseModel):
     strangers: list[str] = Field(
         description="Other addresses heard on that port lately: neither believed nor sent to."
     )
+    namesakes: list[str] = Field(
+        description="Other vehicles of the same system id, on links of their own: each gets its own orders, "
+        "as long as no radio carries them to both."
+    )
     doubt: DoubtOut | None = Field(
         description="Why orders that make it fly, and uploads, are refused; stops are sent all the same."
     )
@@ -217,6 +221,7 @@ class VehicleOut(BaseModel):
             other_system=vehicle.state.other_system,
             address=state.address,
             strangers=list(state.strangers),
+            namesakes=list(vehicle.namesakes),
             signing=state.signing,
             doubt=None if state.doubt is None else DoubtOut(**asdict(state.doubt)),
             position_age_s=vehicle.age_s(state.position_heard_s),

@@ -92,6 +92,11 @@ export function acknowledge(id: string, systemId: number): Promise<Vehicle> {
   return post<Vehicle>(path(id, "/identity"), { system_id: systemId });
 }
 
+/** Say at which address of its port the vehicle is. */
+export function acknowledgeAddress(id: string, address: string): Promise<Vehicle> {
+  return post<Vehicle>(path(id, "/address"), { address });
+}
+
 export function command(id: string, name: Command, more: { seq?: number; arm_first?: true } = {}): Promise<CommandAnswer> {
   return post<CommandAnswer>(path(id, "/commands"), { command: name, ...more });
 }

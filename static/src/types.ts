@@ -228,6 +228,12 @@ export interface Vehicle {
   /** Its MAVLink system, and another one that answers in its place while it is silent. */
   system_id: number | null;
   other_system: number | null;
+  /** Where it is heard from on a port where anybody may speak, who else speaks there, and what is doubted of it. */
+  address: string | null;
+  strangers: string[];
+  namesakes: string[];
+  doubt: { rule: string; message: string; fix: string } | null;
+  signing: string | null;
   link_failure: string | null;
   simulated: boolean;
   replay: boolean;

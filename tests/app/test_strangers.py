@@ -72,3 +72,25 @@ async def test_of_two_aircraft_with_one_system_id_none_is_armed(settings: Settin
             await client.post(place + "/commands", json={"command": "resume", "wait_s": 0.5})
             assert 176 in [number for number, _ in first.commands]
             assert second.heard == another.heard == []
+
+
+async def test_one_system_id_on_two_links_is_told(settings: Settings) -> None:
+    """Each vehicle names the other, and gets its own orders; let go, the other one's name is forgotten."""
+    ports = [free_port(), free_port()]
+    async with (
+        serving(create_app(settings, impatient_house)) as client,
+        aircraft(ports[0]) as first,
+        aircraft(ports[1]) as second,
+    ):
+        places = []
+        for name, port in zip(("one", "two"), ports, strict=True):
+            answer = await client.post(VEHICLES, json={"name": name, "url": f"udpin:127.0.0.1:{port}"})
+            places.append(answer.headers["location"])
+        for place, other in zip(places, ("two", "one"), strict=True):
+            body = await until(client, place, lambda body, other=other: body["namesakes"] == [other])
+            assert body["doubt"] is None
+        await client.post(places[0] + "/commands", json={"command": "resume", "wait_s": 0.5})
+        assert 176 in [number for number, _ in first.commands]
+        assert 176 not in [number for number, _ in second.commands]
+        await client.delete(places[1])
+        await until(client, places[0], lambda body: body["namesakes"] == [])

@@ -317,7 +317,21 @@ class Fleet:
         connected = sum(other.state.connected for other in self._vehicles.values())
         VEHICLES.labels(state="connected").set(connected)
         VEHICLES.labels(state="silent").set(len(self._vehicles) - connected)
+        self._tell_namesakes(vehicle)
         self._hub.publish(vehicle.id, vehicle)
+
+    def _tell_namesakes(self, vehicle: Vehicle) -> None:
+        """Say which others have its system id, on links of their own: each gets its own orders."""
+        same = [
+            other
+            for other in self._vehicles.values()
+            if other.state.connected and other.system_id == vehicle.system_id != 0
+        ]
+        for one in same if vehicle in same else [vehicle]:
+            names = tuple(other.name for other in same if other is not one) if one in same else ()
+            if names and names != one.namesakes:
+                log.warning("one system id twice", vehicle=one.name, system_id=one.system_id, others=names)
+            one.namesakes = names
 
 
 def _give_up(opening: asyncio.Task[None]) -> None:

@@ -108,6 +108,8 @@ class Vehicle(Heard):
         self.audit = audit
         self.safety = SensorSafety(record.id, record.name, self._recorder, audit, self.tell)
         self.aboard = Aboard()
+        #: Other vehicles with its system id, on links of their own.
+        self.namesakes: tuple[str, ...] = ()
         self.lost_since: datetime | None = None
         self._told_s = -math.inf
         # A simulated aircraft is a new one, and holds nothing.

@@ -1,7 +1,7 @@
 /** The watched vehicle in figures, what stands in its way, and what it says. */
 import { ask } from "../dialog";
 import { button, fill, h } from "../dom";
-import { acknowledge, stream, watched } from "../fleet";
+import { acknowledge, acknowledgeAddress, stream, watched } from "../fleet";
 import { distance_m } from "../geo";
 import { attempt } from "../notices";
 import type { Vehicle } from "../types";
@@ -64,8 +64,34 @@ function absence(vehicle: Vehicle): HTMLElement | null {
     const says = `Another aircraft, system ${other}, answers where ${vehicle.name}, system ${vehicle.system_id ?? "unknown"}, did. It gets no order and no mission until it is acknowledged. `;
     return h("p", { class: "error" }, says, button("Acknowledge …", () => void take(vehicle, other)));
   }
+  const signed = vehicle.signing === null ? undefined : SIGNING[vehicle.signing];
+  if (signed !== undefined) return h("p", { class: "error" }, signed);
   return h("p", { class: "error" }, vehicle.link_failure ? `No link: ${vehicle.link_failure}; trying again …` : `The vehicle is not heard at ${vehicle.url}; it is listened for.`);
 }
+
+/** Addresses offered at a time: more speak only where somebody plays tricks. */
+const ADDRESSES_SHOWN = 4;
+
+async function takeAddress(vehicle: Vehicle, address: string): Promise<void> {
+  const lines = ["Whoever speaks from elsewhere is not heard.", address === vehicle.address ? "It is heard from there already." : "It is another address than before: nothing is known of what the aircraft there holds."];
+  const sure = await ask({ title: `Is ${vehicle.name} at ${address}?`, lines, go: "Acknowledge" });
+  if (sure !== null) await attempt("The address was not acknowledged", () => acknowledgeAddress(vehicle.id, address));
+}
+
+/** Why it is not certain who hears its orders, and what can be done about it. */
+function doubt(vehicle: Vehicle): HTMLElement | null {
+  if (vehicle.doubt === null) return null;
+  const says = `${vehicle.doubt.message}. Only stops are sent: ${vehicle.doubt.fix}. `;
+  const places = vehicle.strangers.length === 0 ? [] : [...(vehicle.address === null ? [] : [vehicle.address]), ...vehicle.strangers].slice(0, ADDRESSES_SHOWN);
+  return h("p", { class: "error" }, says, ...places.map((place) => button(`It is at ${place} …`, () => void takeAddress(vehicle, place))));
+}
+
+/** Why a vehicle that is heard does not count as there. */
+const SIGNING: Record<string, string> = {
+  unsigned: "It is heard, but does not sign, and with its key given nothing unsigned counts.",
+  wrong_key: "It is heard, but signs with another key than the one given.",
+  replayed: "It is heard, and signs with the right key and a time long past.",
+};
 
 /** Warnings and the vehicle's own words; they stand under the controls, so that these never move. */
 export function words(): HTMLElement {
@@ -77,6 +103,7 @@ export function words(): HTMLElement {
     fill(
       box,
       absence(vehicle),
+      doubt(vehicle),
       stream.value === "broken" ? h("p", { class: "error" }, "The telemetry is interrupted; trying again …") : null,
       vehicle.pending ? h("p", { class: "warning" }, "The last upload's outcome is unknown; it is read back when the vehicle is heard.") : null,
       loud.length > 0 ? h("ul", { class: "plain quiet", "aria-label": "What the vehicle says" }, ...loud.map(({ severity, text }) => h("li", { class: severity <= ERROR_SEVERITY ? "error" : "" }, text))) : null,
