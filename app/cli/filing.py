@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from app.cli.output import CommandError, Exit, read_bytes, read_document, say
+from app.cli.output import CommandError, Exit, read_bytes, read_document
 
 if TYPE_CHECKING:
     from app.services.plans.mission_scene import FileChoice
@@ -63,8 +63,6 @@ def given(source: str, choice: FileChoice, scenario: str | None, terrain: str | 
         plan = filed(content, choice, None if asked is None else write_json(asked), terrains)
     except RefusedError as error:
         raise CommandError(f"{source}: {error}", Exit.BAD_INPUT, error.findings) from error
-    for warning in plan.warnings:
-        say(f"note: {warning['message']}")
     return Given(plan.plan, True)
 
 

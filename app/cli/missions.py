@@ -214,10 +214,9 @@ async def _upload(
     timeout_s: float,
     stale: str | None,
 ) -> dict[str, Any]:
-    from app.services.plans.missions import mission_of, plan_of
+    from app.services.plans.missions import mission_of, plan_of, sent
     from app.services.vehicles.connection import connected
     from app.services.vehicles.uploads import judge_upload, new_report, report_json, send_parts
-    from mavlink.dialects.fit import fitted
 
     plan = plan_of(plan_text)
     async with connected(url, (plan.home[1], plan.home[0], 0.0), timeout_s, signing_here(url)) as client:
@@ -226,7 +225,9 @@ async def _upload(
             choice = replace(choice, autopilot=autopilot)
         if client.state.type != "other":
             choice = replace(choice, vehicle_type=client.state.type)
-        mission = fitted(mission_of(plan_text, choice))
+        mission = sent(mission_of(plan_text, choice))
+        for note in mission.notes if mission.declared is not None else ():
+            say(f"note: {note}")
         findings = judge_upload(plan, mission, parts, client.state, override, stale)
         for finding in findings:
             say(f"{'overridden' if finding.severity == 'error' else 'note'}: {finding}")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from mavlink.formats.errors import FormatError
 from mavlink.formats.kml import write_kml
 from mavlink.formats.kmz import write_kmz
-from mavlink.formats.losses import losses
+from mavlink.formats.losses import losses, lost_on_board
 from mavlink.formats.qgc_plan import read_plan, write_plan
 from mavlink.formats.reading import kind_of, read_mission
 from mavlink.formats.waypoints import read_waypoints, write_waypoints
@@ -14,6 +14,7 @@ __all__ = [
     "FormatError",
     "kind_of",
     "losses",
+    "lost_on_board",
     "read_mission",
     "read_plan",
     "read_waypoints",

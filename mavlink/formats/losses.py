@@ -3,9 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import Literal
 
 from mavlink.dialects.base import PARAMETERS, fence_shapes, is_polygon
+from mavlink.dialects.compare import (
+    ALTITUDE_TOLERANCE_M,
+    PARAMETER_RELATIVE_TOLERANCE,
+    PARAMETER_TOLERANCE,
+)
 from mavlink.dialects.mission import Mission
 from mavlink.formats.columns import is_reframed, lost_digits
 from mavlink.formats.notes import Notes
@@ -14,6 +20,8 @@ from mavlink.wire.items import Command, Frame, MissionItem, MissionType
 
 _AMSL = (Frame.GLOBAL, Frame.GLOBAL_INT)
 _RELATIVE = (Frame.GLOBAL_RELATIVE_ALT, Frame.GLOBAL_RELATIVE_ALT_INT)
+_ITEMS = {MissionType.MISSION: "item", MissionType.FENCE: "fence item", MissionType.RALLY: "rally item"}
+_WORDS = {"x": "the latitude's number", "y": "the longitude's number", "z": "altitude"}
 _NAMES = {MissionType.FENCE: "fence", MissionType.RALLY: "rally points", MissionType.MISSION: "mission"}
 
 
@@ -32,6 +40,32 @@ def losses(mission: Mission, form: Literal["plan", "waypoints"]) -> tuple[str, .
     else:
         _in_waypoints(mission, notes)
     return notes.lines()
+
+
+def lost_on_board(mission: Mission) -> tuple[str, ...]:
+    """What the autopilot keeps of the items otherwise than they say, by its tables.
+
+    Open numbers (NaN) ask for nothing, and frames that mean the same are the same.
+    """
+    notes = Notes()
+    dialect = mission.dialect
+    for kind, word in _ITEMS.items():
+        meant = {item.seq: item for item in mission.items_of(kind)}
+        for held in dialect.expected_readback(mission.items_of(kind)):
+            for name, said, kept in _altered(meant[held.seq], held):
+                notes.add(f"{name} is {said:.9g}, {dialect.name} keeps {kept:.9g}", word, held.seq)
+    return notes.lines()
+
+
+def _altered(meant: MissionItem, held: MissionItem) -> Iterator[tuple[str, float, float]]:
+    """Names, what is said and what is kept."""
+    for name in (*PARAMETERS, "x", "y", "z"):
+        said, kept = float(getattr(meant, name)), float(getattr(held, name))
+        tolerance = ALTITUDE_TOLERANCE_M if name == "z" else PARAMETER_TOLERANCE
+        if math.isfinite(said) and not math.isclose(
+            said, kept, rel_tol=PARAMETER_RELATIVE_TOLERANCE, abs_tol=tolerance
+        ):
+            yield _WORDS.get(name, f"{name[:-1]} {name[-1]}"), said, kept
 
 
 def _in_waypoints(mission: Mission, notes: Notes) -> None:

@@ -100,6 +100,17 @@ def mission_of(text: str, choice: MissionChoice) -> Mission:
     return mission
 
 
+def sent(mission: Mission) -> Mission:
+    """A mission as it goes up: that of a file fitted to its vehicle, and told what will be held otherwise."""
+    if mission.declared is None:
+        return mission
+    from mavlink.dialects.fit import fitted
+    from mavlink.formats import lost_on_board
+
+    fit = fitted(mission)
+    return replace(fit, notes=(*fit.notes, *lost_on_board(fit)))
+
+
 @lru_cache(maxsize=8)
 def plan_of(text: str) -> Plan:
     """The plan of a plan document's text."""

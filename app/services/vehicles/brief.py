@@ -7,9 +7,8 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from app.services.documents import read_object
-from app.services.plans.missions import MissionChoice, mission_of, plan_of
+from app.services.plans.missions import MissionChoice, mission_of, plan_of, sent
 from app.services.vehicles.preflight import settle_m
-from mavlink.dialects.fit import fitted
 from mavlink.dialects.mission import Mission
 from mavlink.encoding.options import DEFAULT_PAYLOAD
 from mavlink.encoding.payload import Payload, parse_payload
@@ -39,7 +38,7 @@ class Brief:
 def brief_of(plan_text: str, scenario_text: str, choice: MissionChoice) -> Brief:
     """Read both, encode the mission, or fit that of a file; raises as ``missions.mission_of``."""
     plan, scenario = plan_of(plan_text), read_object(scenario_text)
-    mission = fitted(mission_of(plan_text, choice))
+    mission = sent(mission_of(plan_text, choice))
     needs = mission_needs(plan, scenario, mission, choice)
     paths = tuple(replace(path, line=(), segments=()) for path in plan.paths)
     plan = replace(plan, paths=paths, transits=(), footprints=(), uncovered=())

@@ -11,7 +11,14 @@ import pytest
 from pymavlink import mavwp
 from pymavlink.dialects.v20 import ardupilotmega
 
-from mavlink.formats import FormatError, losses, read_mission, write_plan, write_waypoints
+from mavlink.formats import (
+    FormatError,
+    losses,
+    lost_on_board,
+    read_mission,
+    write_plan,
+    write_waypoints,
+)
 from mavlink.formats.columns import in_file
 from mavlink.wire.items import Command, MissionItem, MissionType
 from tests.mavlink.strategies import same
@@ -314,6 +321,15 @@ def test_numbers_that_are_no_place_are_written_in_a_frame_without_degrees() -> N
         assert write_waypoints(mission).splitlines()[-1].split("\t")[8] == "12"
         assert json.loads(write_plan(mission))["mission"]["items"][2]["params"][4:] == [12, 0, 7.0]
         assert any(note.startswith("item 3: the numbers of command 1000") for note in losses(mission, "plan"))
+
+
+def test_what_the_vehicle_keeps_otherwise_is_told_by_item() -> None:
+    """ArduPlane's waypoints keep no hold time, PX4's no pass-by radius; a centimetre is no loss."""
+    text = STRICT.replace("\t0\t0\t0\t0\t47.102", "\t2.5\t0\t7\t0\t47.102").replace("\t40\t", "\t40.129\t")
+    told = lost_on_board(read_mission(text, "ardupilot"))
+    assert told == ("item 2: param 1 is 2.5, ArduPlane keeps 0",)
+    assert "item 1: param 3 is 7, PX4 fixed wing keeps 0" in lost_on_board(read_mission(text, "px4"))
+    assert lost_on_board(read_mission(STRICT)) == ()
 
 
 def test_open_places_stay_open() -> None:
