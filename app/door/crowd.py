@@ -30,25 +30,15 @@ class Crowd:
         self._most = most
         self.open = 0
         self._waiting: dict[asyncio.Task[None], None] = {}
-        self._sent_away: set[asyncio.Task[None]] = set()
 
     @contextmanager
     def connected(self) -> Iterator[bool]:
-        """Within it a connection is open; whether there is room for it.
-
-        One that gives way to another ends here, in silence.
-        """
-        task = asyncio.current_task()
-        assert task is not None
+        """Within it a connection is open; whether there is room for it. Its task is cancelled to give way."""
         self.open += 1
         try:
             yield self.open <= self._most or self._make_room()
-        except asyncio.CancelledError:
-            if task not in self._sent_away:
-                raise
         finally:
             self.open -= 1
-            self._sent_away.discard(task)
 
     @contextmanager
     def waiting(self) -> Iterator[None]:
@@ -66,6 +56,5 @@ class Crowd:
         if task is None:
             return False
         del self._waiting[task]
-        self._sent_away.add(task)
         task.cancel()
         return True

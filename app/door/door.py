@@ -117,6 +117,8 @@ class Door:
                     pass
         except (OSError, TimeoutError):
             pass  # the client is gone, or too slow to be waited for
+        except asyncio.CancelledError:
+            pass  # it gives way to another, or the door ends: the streams' own code would log either
         finally:
             writer.close()
 

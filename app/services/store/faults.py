@@ -23,7 +23,7 @@ _REASONS: Final = (
 )
 #: Written and taken back by a probe: so much at any time, and so much after a write has failed, for which
 #: there may have been room for a little and not for a plan.
-PROBE_BYTES, THOROUGH_BYTES = 1 << 16, 1 << 23
+PROBE_BYTES, THOROUGH_BYTES = 1 << 16, 1 << 20
 #: So long a probe waits for whoever holds the database, seconds.
 PROBE_WAIT_S = 1.0
 
