@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import math
 import socket
 from typing import Final, cast
 
@@ -14,6 +15,8 @@ _READ_BYTES: Final = 1 << 16
 _RECONNECT_EVERY_S: Final = 1.0
 #: A peer this far behind is stuck; what is sent meanwhile is lost, as on any radio.
 _MOST_WAITING_BYTES: Final = 1 << 20
+#: An accepted peer heard within this time talks.
+_TALKING_S: Final = 5.0
 #: What waits in the system's buffers grows old there and nobody knows of it: they are kept small.
 _SYSTEM_BYTES: Final = 1 << 14
 
@@ -120,7 +123,11 @@ def _keep_small(sock: socket.socket) -> None:
 
 
 class TcpServerLink:
-    """A listening socket whose newest peer is the one talked to. Opened by ``open_tcp_server``."""
+    """A listening socket with one peer at a time. Opened by ``open_tcp_server``.
+
+    A peer that talks stays: nobody else may take its place. One that has fallen silent, as after a break that
+    the system has not noticed, makes room for whoever connects next.
+    """
 
     def __init__(self, host: str) -> None:
         self._host = host
@@ -157,8 +164,11 @@ class TcpServerLink:
             raise
 
     def joined(self, peer: _Peer) -> None:
-        """A peer has connected: it takes the place of the one before."""
+        """A peer has connected: it takes the place of a silent one, and is sent away where one talks."""
         if self._peer is not None:
+            if asyncio.get_running_loop().time() < self._peer.heard_s + _TALKING_S:
+                peer.transport.close()
+                return
             self._peer.transport.close()
         self._peer = peer
         if self._closed:
@@ -169,8 +179,12 @@ class TcpServerLink:
         if self._peer is peer:
             self._peer = None
 
+    def talks_with(self, peer: _Peer) -> bool:
+        """Whether this is the peer: what comes of one that was sent away counts for nothing."""
+        return self._peer is peer
+
     def take(self, data: bytes) -> None:
-        """Bytes of a peer."""
+        """Bytes of the peer."""
         self._inbox.put(data)
 
     async def send(self, data: bytes) -> None:
@@ -216,6 +230,7 @@ class _Peer(asyncio.Protocol):
 
     def __init__(self, link: TcpServerLink) -> None:
         self._link = link
+        self.heard_s = -math.inf
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         self.transport = cast(asyncio.Transport, transport)
@@ -223,7 +238,9 @@ class _Peer(asyncio.Protocol):
         self._link.joined(self)
 
     def data_received(self, data: bytes) -> None:
-        self._link.take(data)
+        if self._link.talks_with(self):
+            self.heard_s = asyncio.get_running_loop().time()
+            self._link.take(data)
 
     def connection_lost(self, exc: Exception | None) -> None:
         self._link.left(self)

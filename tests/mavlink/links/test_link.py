@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import os
 import pty
 import socket
@@ -119,6 +120,26 @@ async def test_tcp_both_ways_and_back_again() -> None:
     await exchange(second, server)
     for link in (second, client, server):
         await link.close()
+
+
+async def test_nobody_takes_the_place_of_a_tcp_peer_that_talks() -> None:
+    """A stranger's connection is closed, its bytes are not read; once the peer is gone the next may come."""
+    server = await open_tcp_server("127.0.0.1", 0)
+    peer = await open_link(f"tcp:127.0.0.1:{server.local_port}")
+    await exchange(peer, server)
+    reader, writer = await asyncio.open_connection("127.0.0.1", server.local_port)
+    writer.write(b"forged")
+    with contextlib.suppress(ConnectionResetError):  # its bytes were thrown away unread
+        assert await asyncio.wait_for(reader.read(), 5) == b""
+    writer.close()
+    await exchange(peer, server)
+    await peer.close()
+    while server.peers:
+        await asyncio.sleep(0.01)
+    again = await open_link(f"tcp:127.0.0.1:{server.local_port}")
+    await exchange(again, server)
+    await again.close()
+    await server.close()
 
 
 async def test_a_tcp_link_closes_while_it_connects_anew() -> None:
