@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import socket
+import sys
 from collections.abc import AsyncIterator
 from contextlib import ExitStack, asynccontextmanager
 
@@ -25,11 +26,11 @@ LOST_AFTER_S = 0.6
 class Stranger:
     """A socket of the test's own, whose frames pymavlink packs."""
 
-    def __init__(self, port: int, system_id: int = 1) -> None:
+    def __init__(self, port: int, system_id: int = 1, host: str = "127.0.0.1") -> None:
         self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-        self.socket.bind(("127.0.0.1", 0))
+        self.socket.bind((host, 0))
         self.socket.setblocking(False)
-        self.address = f"127.0.0.1:{self.socket.getsockname()[1]}"
+        self.address = f"{host}:{self.socket.getsockname()[1]}"
         self._to = ("127.0.0.1", port)
         self._mav = common.MAVLink(None, srcSystem=system_id, srcComponent=1)
 
@@ -164,6 +165,26 @@ async def test_a_vehicle_that_restarts_comes_back_from_another_port() -> None:
                 again.beat()
                 await asyncio.sleep(0.05)
             await client.wait_for(lambda state: state.connected and state.doubt is None, 5)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="one address of loopback has to do elsewhere")
+async def test_from_another_machine_it_comes_back_by_word_alone() -> None:
+    """It has fallen silent, and speaks from another host: told, refused, and taken once acknowledged."""
+    async with listening() as (client, aircraft, port):
+        aircraft._tasks[1].cancel()
+        with Stranger(port, host="127.0.0.2") as elsewhere:
+            async with asyncio.timeout(10):
+                while client.state.connected or client.state.doubt is None:
+                    elsewhere.beat()
+                    await asyncio.sleep(0.05)
+            assert client.state.doubt.rule == "another-address"
+            with pytest.raises(NotConnectedError, match="acknowledge its address"):
+                await client.arm()
+            assert elsewhere.overheard() == b""
+            client.acknowledge(elsewhere.address)
+            elsewhere.beat()
+            state = await client.wait_for(lambda state: state.connected, 5)
+            assert (state.address, state.doubt) == (elsewhere.address, None)
 
 
 async def test_a_called_peer_is_heard_alone() -> None:
