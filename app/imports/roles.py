@@ -33,6 +33,8 @@ _SAYING = (
     "type", "kind", "class", "category", "zone_type", "zonetype", "area_type", "fence_type", "fencetype",
     "layer", "purpose", "usage", "restriction",
 )  # fmt: skip
+#: Kinds of airspace by their letters.
+_LETTERS = frozenset(("P", "R", "D", "Q", "W"))
 #: Values of ours: their names hold no words of others.
 _OURS = frozenset(
     ("role", "width_m", "radius_m", "priority", "min_resolution_m", "intensity_m", "height_m", "floor_m",
@@ -128,6 +130,11 @@ def _told(shape: Shape, options: ImportOptions) -> Verdict | None:
         if inside := keeps_inside(text):
             doubt: Literal["", "open"] = "open" if shape.kind == "point" else ""
             return Verdict("no_fly" if doubt else "area", f"{where} says {inside!r}", doubt)
+    letter = next((key for key in _SAYING if shape.properties.get(key, "").upper() in _LETTERS), None)
+    if letter is not None:
+        return Verdict(
+            "no_fly", f"its {letter} is {shape.properties[letter]!r}, as of a restricted area", "open"
+        )
     for where, text in texts:
         if either := says_either(text):
             return Verdict("no_fly", f"{where} says {either!r}, which can mean either side", "open")
@@ -190,6 +197,9 @@ def _forbidden_by_value(shape: Shape) -> Iterator[_Forbidden]:
 
 def _said(texts: Sequence[tuple[str, str]], shape: Shape) -> Verdict | None:
     """The innermost text that means a role and nothing else, or speaks of threats."""
+    model = shape.properties.get("model", "").lower()
+    if shape.kind == "point" and model in ("missile", "radar"):
+        return Verdict("threat", f"its model is {model!r}")
     for where, text in texts:
         role = role_of(text)
         vague = role is None and where != "the file's name" and threatens(text)

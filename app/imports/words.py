@@ -74,6 +74,8 @@ _EITHER = re.compile(
     r"|luftraum\w*|clotur\w*"
     r"|conditional|u ?space|cerca virtual|geocerca\w*|geovall\w*)\b|围栏|圍欄|空域|ジオフェンス|空域|공역"
 )
+#: How states number prohibited, restricted and danger areas: EGD012, ED-R 37A, R-5503.
+_DESIGNATOR = re.compile(r"(?:[A-Z]{2}[ -]?[RPD][ -]?\d{1,4}|[RPDW]-\d{2,5})[A-Z]?(?![A-Za-z0-9])")
 _THREATENS = re.compile(r"\b(?:threats?|missiles?|radars?|sams?|manpads?|aaa)\b")
 
 #: What a text says, all of it, to mean a role; without a number behind.
@@ -177,7 +179,7 @@ def _keeps_inside(text: str) -> str | None:
 
 @lru_cache(maxsize=512)
 def _says_either(text: str) -> str | None:
-    found = _EITHER.search(plain(text)) or _NEGATED.search(plain(text))
+    found = _EITHER.search(plain(text)) or _NEGATED.search(plain(text)) or _DESIGNATOR.match(text.strip())
     return found.group() if found else None
 
 

@@ -48,6 +48,9 @@ HARMLESS = (
     "Ctrl",
     "Vierwaldstättersee",
     "zone 4",
+    "R1",
+    "Feld R-1",
+    "DJI P4",
     "dangle",
 )
 
@@ -139,6 +142,9 @@ def test_a_layer_of_a_shapefile_forbids() -> None:
         ({"role": "area"}, "restricted", "but its role"),
         ({}, "Geofence", "either side"),
         ({}, "class D airspace", "either side"),
+        ({}, "EGD012 Lulworth", "either side"),
+        ({}, "R-5503", "either side"),
+        ({"type": "P"}, "x", "restricted area"),
         ({"type": "region"}, "danger", "but its type"),
         ({"restriction": "NO_RESTRICTION"}, "x", "either side"),
     ],
@@ -371,3 +377,10 @@ def test_shapes_and_folders_have_roles_chosen() -> None:
         with pytest.raises(RegionFileError) as caught:
             became(data, roles=read_choices([text]))
         assert caught.value.findings[0].rule == "bad-option"
+
+
+def test_a_point_with_a_model_is_a_threat() -> None:
+    """The file says so by our own value; nothing else makes a point one."""
+    data = kml(placemark("x", point(8.5, 47.3), model="radar", intensity_m=9, radius_m=100))
+    (feature,) = became(data).collection["features"]
+    assert (feature["properties"]["role"], feature["properties"]["model"]) == ("threat", "radar")
