@@ -39,7 +39,11 @@ class DoorProcess:
         command = [sys.executable, "-m", "app.door", str(descriptor)]
         command += [str(self._place.web), str(self._place.links)]
         self._process = subprocess.Popen(
-            command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, pass_fds=[descriptor]
+            command,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            pass_fds=[descriptor],
+            start_new_session=True,
         )
         assert self._process.stdout is not None
         self._process.stdout.readline()

@@ -14,6 +14,8 @@ from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from typing import TYPE_CHECKING, Final
 
+from app.priority import go_first
+
 if TYPE_CHECKING:
     from pathlib import Path
 
@@ -36,6 +38,7 @@ def main() -> None:
         # Without the interpreter's end: what is written at it belongs to the child.
         os._exit(0)
     os.setsid()
+    go_first()
 
     import json
 
@@ -48,7 +51,7 @@ def main() -> None:
     from app.version import VERSION
 
     settings = Settings(**json.loads(text))
-    configure(settings.log_level)
+    configure(settings.log_level, threaded=True)
     log = structlog.get_logger(__name__)
     place = place_of(settings.database)
     try:

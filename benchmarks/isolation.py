@@ -3,11 +3,11 @@
 A fresh service (``swathplan serve``), an aircraft that only listens and answers
 (``benchmarks.listening_aircraft``), and clients that saturate all endpoints (``benchmarks.request_flood``),
 each in a process of its own. Orders go over HTTP as anybody's do, each over a new connection, by turns
-``hold`` and ``rtl``; each is timed from the request to the answer that the aircraft shows it. Run as
-``python -m benchmarks.isolation``; prints JSON lines: one without load, one with.
+``hold``, ``resume`` and ``rtl``; each is timed from the request to the answer that the aircraft shows it. Run
+as ``python -m benchmarks.isolation``; prints JSON lines: one without load, one with.
 
 On a machine that is busy otherwise (``machine_load``: how many processes want to run) the others are measured
-too.
+too. What measures, and the aircraft, go first where the system lets them: their waits are not the service's.
 """
 
 from __future__ import annotations
@@ -30,11 +30,14 @@ from urllib.parse import urlsplit
 
 import numpy as np
 
+from app.priority import go_first
+
 ROOT = Path(__file__).resolve().parents[1]
 #: What is promised: seconds between two heartbeats, milliseconds from an order to its answer.
 GAPS_S = (0.8, 1.2)
 ANSWERED_MS = 100.0
 PAUSE_S = 0.2
+COMMANDS = ("hold", "resume", "rtl")
 VEHICLES = "/api/v1/vehicles"
 
 
@@ -67,6 +70,7 @@ class Listening:
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             text=True,
+            start_new_session=True,
         )
         self.heartbeats_s: list[float] = []
         self.orders_s: list[float] = []
@@ -126,7 +130,7 @@ def measure(address: str, vehicle_id: str, aircraft: Listening, seconds: float) 
     begun_s = time.monotonic()
     took_ms, reached_ms = [], []
     while time.monotonic() - begun_s < seconds:
-        command = ("hold", "rtl")[len(took_ms) % 2]
+        command = COMMANDS[len(took_ms) % len(COMMANDS)]
         count, sent_s = len(aircraft.orders_s), time.monotonic()
         status, told = ask(address, "POST", f"{VEHICLES}/{vehicle_id}/commands", {"command": command})
         took_ms.append((time.monotonic() - sent_s) * 1000.0)
@@ -156,9 +160,18 @@ def measure(address: str, vehicle_id: str, aircraft: Listening, seconds: float) 
 @contextmanager
 def flooded(address: str, vehicle_id: str, clients: int) -> Iterator[dict[str, int]]:
     """All endpoints kept busy meanwhile; afterwards how many answers there were of each status."""
-    command = [sys.executable, "-m", "benchmarks.request_flood", address, str(clients), vehicle_id]
+    # Uploads to the vehicle itself would have its orders refused, as they should be.
+    silent = {"name": f"silent-{free_port()}", "url": f"udpin:127.0.0.1:{free_port()}", "timeout_s": 0.1}
+    _, other = ask(address, "POST", VEHICLES, silent)
+    command = [sys.executable, "-m", "benchmarks.request_flood", address, str(clients)]
+    command += [vehicle_id, other["id"]]
     with subprocess.Popen(
-        command, cwd=ROOT, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+        command,
+        cwd=ROOT,
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
     ) as flood:
         answers: dict[str, int] = {}
         try:
@@ -179,6 +192,7 @@ def run(seconds: float = 60.0, clients: int = 64) -> Iterator[dict[str, Any]]:
         How many send requests at once.
     """
     with tempfile.TemporaryDirectory() as name, served(Path(name)) as (address, _):
+        go_first()
         port = free_port()
         aircraft = Listening(port)
         try:

@@ -16,6 +16,8 @@ import time
 
 from pymavlink.dialects.v20 import ardupilotmega as mav
 
+from app.priority import go_first
+
 #: Custom modes of ArduPlane.
 AUTO, RTL, LOITER = 10, 11, 12
 _ORDERS = {mav.MAV_CMD_DO_SET_MODE, mav.MAV_CMD_NAV_RETURN_TO_LAUNCH}
@@ -94,6 +96,7 @@ def _tell(what: str) -> None:
 
 def main() -> None:
     """Fly until standard input ends."""
+    go_first()
     aircraft = Aircraft(int(sys.argv[1]))
     heartbeat_s = place_s = 0.0
     while True:

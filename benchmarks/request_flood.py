@@ -1,8 +1,8 @@
 """Clients that keep every endpoint of a service busy, in a process of their own.
 
-``python -m benchmarks.request_flood ADDRESS CLIENTS VEHICLE``: so many connections, each sending one request
-after the other, until standard input ends; then a line of JSON on standard output counts answers by status.
-Half of the clients keep their connection, the others open a new one each time.
+``python -m benchmarks.request_flood ADDRESS CLIENTS VEHICLE OTHER``: so many connections, each sending one
+request after the other, until standard input ends; then a line of JSON on standard output counts answers by
+status. Half of the clients keep their connection, the others open a new one each time.
 """
 
 from __future__ import annotations
@@ -15,6 +15,8 @@ import sys
 from collections import Counter
 from typing import Any
 from urllib.parse import urlsplit
+
+from app.priority import go_usual
 
 _SIDE_DEG = 0.002
 _PER_ROW = 20
@@ -65,10 +67,10 @@ def _kml(count: int) -> bytes:
     return f"<kml xmlns='http://www.opengis.net/kml/2.2'><Document>{places}</Document></kml>".encode()
 
 
-def requests_of(vehicle_id: str) -> list[tuple[str, str, bytes]]:
-    """Method, path and body of one request to each kind of endpoint."""
+def requests_of(vehicle_id: str, other_id: str) -> list[tuple[str, str, bytes]]:
+    """Method, path and body of one request to each kind of endpoint; the other vehicle is worked on."""
     small, large = (json.dumps(regions(count)).encode() for count in (3, 300))
-    vehicle = f"/api/v1/vehicles/{vehicle_id}"
+    vehicle, other = f"/api/v1/vehicles/{vehicle_id}", f"/api/v1/vehicles/{other_id}"
     gets = [
         "/api/v1/plans?limit=1000", "/api/v1/scenarios?limit=1000", "/api/v1/terrain", "/api/v1/flights",
         "/api/v1/vehicles", vehicle, f"{vehicle}/commands", f"{vehicle}/logs", f"{vehicle}/forward",
@@ -84,8 +86,8 @@ def requests_of(vehicle_id: str) -> list[tuple[str, str, bytes]]:
         ("POST", "/api/v1/scenarios/import?format=kml", _kml(2000)),
         ("POST", "/api/v1/terrain", b"II*\0" + bytes(1_000_000)),
         ("POST", "/api/v1/plans", bytes(4_000_000)),
-        ("POST", f"{vehicle}/mission", b'{"plan_id": "none"}'),
-        ("POST", f"{vehicle}/preflight", b'{"plan_id": "none"}'),
+        ("POST", f"{other}/mission", b'{"plan_id": "none"}'),
+        ("POST", f"{other}/preflight", b'{"plan_id": "none"}'),
         ("GET", f"{vehicle}/telemetry", b""),
     ]
 
@@ -93,10 +95,10 @@ def requests_of(vehicle_id: str) -> list[tuple[str, str, bytes]]:
 class Flood:
     """The clients."""
 
-    def __init__(self, address: str, vehicle_id: str) -> None:
+    def __init__(self, address: str, vehicle_id: str, other_id: str) -> None:
         self._place = urlsplit(address)
         self.answers: Counter[str] = Counter()
-        self._requests = itertools.cycle(requests_of(vehicle_id))
+        self._requests = itertools.cycle(requests_of(vehicle_id, other_id))
 
     async def client(self, *, keeps: bool) -> None:
         """Send one request after the other."""
@@ -130,8 +132,8 @@ class Flood:
         return b"connection: close" not in answer
 
 
-async def _run(address: str, clients: int, vehicle_id: str) -> None:
-    flood = Flood(address, vehicle_id)
+async def _run(address: str, clients: int, vehicle_id: str, other_id: str) -> None:
+    flood = Flood(address, vehicle_id, other_id)
     tasks = [asyncio.create_task(flood.client(keeps=number % 2 == 0)) for number in range(clients)]
     await asyncio.to_thread(sys.stdin.read)
     for task in tasks:
@@ -141,4 +143,5 @@ async def _run(address: str, clients: int, vehicle_id: str) -> None:
 
 
 if __name__ == "__main__":
-    asyncio.run(_run(sys.argv[1], int(sys.argv[2]), sys.argv[3]))
+    go_usual()
+    asyncio.run(_run(sys.argv[1], int(sys.argv[2]), *sys.argv[3:]))

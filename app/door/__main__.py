@@ -12,14 +12,13 @@ import sys
 from app.door.crowd import most_connections
 from app.door.door import MOST_CONNECTIONS, Door
 from app.door.quiet import Quiet
+from app.priority import go_first
 
 
 async def _serve(listener: socket.socket, web: str, links: str) -> None:
     ending = asyncio.Event()
     loop = asyncio.get_running_loop()
     loop.add_signal_handler(signal.SIGTERM, ending.set)
-    # A terminal's Ctrl-C is for the service, which needs the door until it has answered everybody.
-    loop.add_signal_handler(signal.SIGINT, lambda: None)
     reader = asyncio.StreamReader()
     await loop.connect_read_pipe(lambda: asyncio.StreamReaderProtocol(reader), sys.stdin)
     soft, _ = resource.getrlimit(resource.RLIMIT_NOFILE)
@@ -37,6 +36,7 @@ async def _serve(listener: socket.socket, web: str, links: str) -> None:
 
 def main() -> None:
     """Run the door."""
+    go_first()
     fd, web, links = sys.argv[1:]
     _, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
     with contextlib.suppress(ValueError, OSError):

@@ -196,7 +196,7 @@ async def parameters(
 @router.get("/{vehicle_id}/logs", summary="List recordings", responses=responses(404))
 async def list_logs(vehicle_id: str, fleet: FleetDep) -> LogList:
     """Recordings of the vehicle's link (.tlog), also of a vehicle that was let go."""
-    files = fleet.recordings(vehicle_id)
+    files = await fleet.recordings(vehicle_id)
     base = f"/api/v1/vehicles/{vehicle_id}/logs"
     logs = [
         LogOut(name=f.name, size_bytes=f.size_bytes, ended_at=f.ended_at, url=f"{base}/{f.name}")
@@ -216,7 +216,7 @@ async def list_logs(vehicle_id: str, fleet: FleetDep) -> LogList:
 )
 async def get_log(vehicle_id: str, name: str, fleet: FleetDep) -> StreamingResponse:
     """A .tlog, as MAVProxy, Mission Planner, QGroundControl and pymavlink read it."""
-    return file_stream(fleet.recording(vehicle_id, name), TLOG)
+    return file_stream(await fleet.recording(vehicle_id, name), TLOG)
 
 
 @router.post(

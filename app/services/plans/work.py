@@ -18,10 +18,10 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from app.priority import stand_back
+
 #: Reports closer together than this are dropped unless the stage changes.
 REPORT_INTERVAL_S = 0.05
-#: Workers stand back behind the process that holds the links, and that which answers requests.
-NICENESS = 10
 #: Its first figure is what RLIMIT_AS limits, in pages (proc(5)).
 STATM = Path("/proc/self/statm")
 
@@ -78,7 +78,7 @@ def initialise() -> None:
 
 def limited(initialiser: Callable[[], None], memory_bytes: int) -> None:
     """Begin a worker that may take so much memory more than it begins with (RLIMIT_AS)."""
-    os.nice(NICENESS)
+    stand_back()
     initialiser()
     if not STATM.exists():
         # Without Linux's figures nobody can tell what it begins with; the limit of time holds all the same.

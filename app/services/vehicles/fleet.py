@@ -259,19 +259,21 @@ class Fleet:
                 return state.lon_deg, state.lat_deg, state.course_deg
         return None
 
-    def recordings(self, vehicle_id: str) -> tuple[RecordingFile, ...]:
+    async def recordings(self, vehicle_id: str) -> tuple[RecordingFile, ...]:
         """Recordings of a vehicle's link, also of one let go; raises NotFoundError when there is neither."""
         vehicle = self._vehicles.get(vehicle_id)
         if vehicle is not None:
-            vehicle.tape.flush()
-        files = () if self._recordings is None else self._recordings.files(vehicle_id)
+            await asyncio.to_thread(vehicle.tape.flush)
+        files = (
+            () if self._recordings is None else await asyncio.to_thread(self._recordings.files, vehicle_id)
+        )
         if vehicle is None and not files:
             raise NotFoundError("vehicle", vehicle_id)
         return files
 
-    def recording(self, vehicle_id: str, name: str) -> Path:
+    async def recording(self, vehicle_id: str, name: str) -> Path:
         """Where one recording lies; raises NotFoundError."""
-        if name not in {file.name for file in self.recordings(vehicle_id)} or self._recordings is None:
+        if name not in {file.name for file in await self.recordings(vehicle_id)} or self._recordings is None:
             raise NotFoundError("recording", name)
         return self._recordings.path(vehicle_id, name)
 

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Final
 
 from app.services.errors import NotFoundError
+from app.services.vehicles.scribe import Scribe
 from mavlink.links.recording import SUFFIX, TlogLimits, TlogWriter
 
 #: Names this service gives; anything else asked for is not there.
@@ -33,9 +34,9 @@ class Recordings:
         self.folder = folder
         self._limits = limits
 
-    def writer(self, vehicle_id: str) -> TlogWriter:
-        """A writer for a vehicle's link."""
-        return TlogWriter(self.folder / vehicle_id, self._limits)
+    def scribe(self, vehicle_id: str) -> Scribe:
+        """Who writes down a vehicle's link."""
+        return Scribe(lambda clock: TlogWriter(self.folder / vehicle_id, self._limits, clock))
 
     def files(self, vehicle_id: str) -> tuple[RecordingFile, ...]:
         """A vehicle's recordings, oldest first; none for a vehicle never heard of."""
@@ -64,12 +65,12 @@ class Tape:
     def __init__(self, recordings: Recordings | None, vehicle_id: str) -> None:
         self._recordings = recordings
         self._vehicle_id = vehicle_id
-        self._writer: TlogWriter | None = None
+        self._writer: Scribe | None = None
 
     def begin(self) -> None:
         """Record from now on."""
         if self._recordings is not None:
-            self._writer = self._recordings.writer(self._vehicle_id)
+            self._writer = self._recordings.scribe(self._vehicle_id)
 
     @property
     def write(self) -> Callable[[bytes], None] | None:
@@ -82,11 +83,11 @@ class Tape:
         return None if self._writer is None else self._writer.failure
 
     def flush(self) -> None:
-        """Put everything recorded so far where readers see it."""
+        """Put everything recorded so far where readers see it; waits for the disk."""
         if self._writer is not None:
             self._writer.flush()
 
     def end(self) -> None:
-        """Close the file."""
+        """Close the file; waits for the disk."""
         if self._writer is not None:
             self._writer.close()

@@ -11,6 +11,7 @@ import signal
 import sys
 import threading
 
+from app.priority import go_usual
 from mavlink.sim.run import main
 
 
@@ -22,5 +23,6 @@ def _end_with_the_starter() -> None:
 
 
 if __name__ == "__main__":
+    go_usual()
     threading.Thread(target=_end_with_the_starter, daemon=True).start()
     sys.exit(main(sys.argv[1:]))

@@ -215,7 +215,7 @@ class Vehicle(Heard):
         self._tasks = []
         await self._drop()
         await self.book.close()
-        self.tape.end()
+        await asyncio.to_thread(self.tape.end)
 
     async def forward_to(self, addresses: tuple[ForwardAddress, ...]) -> None:
         """Forward the link to these addresses and no others.
