@@ -15,7 +15,7 @@ from itertools import pairwise
 from mavlink.dialects import Autopilot
 from mavlink.dialects.base import GLOBAL_FRAMES
 from mavlink.dialects.mission import Mission
-from mavlink.wire.geometry import LocalMap, Xy
+from mavlink.wire.geometry import LocalMap, Xy, distance_m
 from mavlink.wire.items import Command, Frame, MissionItem
 from planner.plan import Finish, LonLat, LonLatAlt
 
@@ -35,6 +35,8 @@ _JUMP_TO_TAG = 601
 _SEA = frozenset({Frame.GLOBAL, Frame.GLOBAL_INT})
 _GROUND = frozenset({Frame.GLOBAL_TERRAIN_ALT, Frame.GLOBAL_TERRAIN_ALT_INT})
 _CHORD_M = 10.0
+#: Farther from its start than this no place of a mission is believed: home is often 0, 0.
+FARTHEST_M = 200_000.0
 #: Jumps can make a list of a thousand items a flight of a million.
 _MOST_VISITS = 20_000
 #: Corners of less than this are no turns.
@@ -170,12 +172,12 @@ def trace(
 
 
 def start_of(mission: Mission) -> LonLat:
-    """Home; the first place where home is not known."""
-    if any(mission.home):
-        return mission.home
-    for item in mission.mission:
-        if steers(item) and (item.x or item.y):
-            return item.y / 1e7, item.x / 1e7
+    """Home; the first place where home is not known, or so far away that it is another one's."""
+    items = mission.mission[1:] if mission.dialect.home_row else mission.mission
+    places = ((item.y / 1e7, item.x / 1e7) for item in items if steers(item) and (item.x or item.y))
+    first = next(places, mission.home)
+    if not any(mission.home) or distance_m(mission.home, first) > FARTHEST_M:
+        return first
     return mission.home
 
 

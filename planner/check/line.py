@@ -51,7 +51,7 @@ def _along(path: FlownPath, line: tuple[LonLatAlt, ...]) -> FlownPath:
 
 
 def tight_turns(
-    vehicle: str, limit_m: float, turns: Iterable[tuple[float, LonLat, int]]
+    vehicle: str, limit_m: float, turns: Iterable[tuple[float, LonLat, int]], *, hard: bool = True
 ) -> Iterator[Violation]:
     """The tightest turn, where it is tighter than the aircraft flies, and how many more are."""
     tight = sorted(turn for turn in turns if turn[0] < limit_m)
@@ -65,4 +65,5 @@ def tight_turns(
             limit_m - radius_m,
             "m",
             where,
+            hard,
         )

@@ -22,7 +22,7 @@ from app.services.plans.mission_scene import FileChoice, Scene, Terrains, scene_
 from app.services.plans.summary import summary_of
 from app.services.terrain.rasters import stored_terrain
 from mavlink.dialects.mission import Mission
-from mavlink.encoding.trace import Trace, length_m, trace
+from mavlink.encoding.trace import Trace, length_m, start_of, trace
 from mavlink.formats import FormatError
 from mavlink.formats.reading import decoded
 from mavlink.wire.items import MissionItem
@@ -34,6 +34,9 @@ from planner.plan import FlownPath, LonLat, Metrics, Plan, PlanVehicle, Violatio
 from planner.scenario import Scenario
 from planner.vehicle.aircraft import Aircraft
 from planner.version import __version__
+
+#: Places are rounded to 1e-7 degrees: a turn may be so much tighter than its aircraft flies.
+ROUNDED = 1e-3
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,9 +121,9 @@ def _read(content: bytes, choice: FileChoice) -> tuple[str, Mission]:
 
 def _traced(mission: Mission, scene: Scene) -> Trace:
     scenario = scene.scenario
-    home_amsl_m = (
-        scenario.home_amsl_m if scenario.home_amsl_m is not None else mission.home_altitude_m or None
-    )
+    home_amsl_m = scenario.home_amsl_m
+    if home_amsl_m is None and start_of(mission) == mission.home:
+        home_amsl_m = mission.home_altitude_m or None
     ground, home_m = scenario.terrain, scenario.home_amsl_m or 0.0
 
     def ground_m(place: LonLat) -> float:
@@ -208,7 +211,9 @@ def _violations(
 ) -> Iterator[Violation]:
     aircraft = scene.aircraft.in_wind(scenario.wind.speed_m_s)
     turns = ((turn.radius_m, turn.place, turn.seq) for turn in flown.turns)
-    yield from tight_turns(path.vehicle, aircraft.ground_turn_radius_m * (1.0 - 1e-3), turns)
+    # Of a file that nobody says the vehicle of, turns forbid only what turns out to have wings.
+    limit_m = aircraft.ground_turn_radius_m * (1.0 - ROUNDED)
+    yield from tight_turns(path.vehicle, limit_m, turns, hard=scene.type_is_said)
     yield from judge_line(scenario, aircraft, plan, path, (flown.line, flown.corners))
     if flown.unknown_heights:
         numbers = ", ".join(str(seq) for seq in flown.unknown_heights[:8])

@@ -15,7 +15,7 @@ from app.services.documents import read_object, write_json
 from app.services.errors import RefusedError
 from mavlink.dialects.base import CIRCLE_COMMANDS, fence_shapes, is_polygon
 from mavlink.dialects.mission import Mission
-from mavlink.encoding.trace import start_of, steers
+from mavlink.encoding.trace import FARTHEST_M, start_of, steers
 from mavlink.wire.geometry import distance_m
 from mavlink.wire.items import Command, MissionItem
 from planner.airspace.terrain import Ground, Terrain, local_ground
@@ -30,8 +30,6 @@ from planner.vehicle.aircraft import STANDARD_GRAVITY_M_S2, Aircraft, VehicleTyp
 
 #: Rasters by name; None for one that is not there.
 Terrains = Callable[[str], Terrain | None]
-#: Farther from its start than this no place of a mission is believed: home is often 0, 0.
-FARTHEST_M = 200_000.0
 #: The ground is looked at so far beyond the mission's places.
 _GROUND_MARGIN_M = 2_000.0
 #: What vehicles come with (AIRSPEED_CRUISE and ROLL_LIMIT_DEG of ArduPlane 4.6, FW_AIRSPD_TRIM and FW_R_LIM
@@ -79,6 +77,8 @@ class Scene:
         The scenario as it is kept beside the plan.
     notes
         What was assumed.
+    type_is_said
+        Whether anybody says the type of its vehicle.
     """
 
     scenario: Scenario
@@ -86,6 +86,7 @@ class Scene:
     text: str
     fence: Fence
     notes: tuple[str, ...]
+    type_is_said: bool
 
 
 def scene_of(
@@ -106,11 +107,20 @@ def scene_of(
         _refuse("scenario", "elsewhere", message, "judge it in the scenario of its own place, or in none")
     fence, fenced = _fenced(scenario, mission)
     text = scenario_text if scenario_text is not None else _document(mission, choice, aircraft, start, fence)
-    return Scene(fenced, aircraft, text, fence, notes)
+    declared = mission.declared
+    said = choice.vehicle_type is not None or (declared is not None and declared.mav_type is not None)
+    return Scene(fenced, aircraft, text, fence, (*notes, *_away(mission, start)), said)
 
 
 def _refuse(feature: str, rule: str, message: str, fix: str) -> NoReturn:
     raise RefusedError(f"the mission file is refused: {message}", (Finding(feature, rule, message, fix),))
+
+
+def _away(mission: Mission, start: LonLat) -> tuple[str, ...]:
+    if not any(mission.home) or mission.home == start:
+        return ()
+    away_m = distance_m(mission.home, start)
+    return (f"home is {away_m / 1000.0:.0f} km from the mission: its first place is taken for its start",)
 
 
 def _check_extent(mission: Mission, start: LonLat) -> None:
@@ -118,8 +128,8 @@ def _check_extent(mission: Mission, start: LonLat) -> None:
         if steers(item) and (item.x or item.y):
             away_m = distance_m(start, (item.y / 1e7, item.x / 1e7))
             if away_m > FARTHEST_M and not (mission.dialect.home_row and item.seq == 0):
-                message = f"it is {away_m / 1000.0:.0f} km from home"
-                _refuse(f"item {item.seq}", "too-far", message, "set home where the mission is flown")
+                message = f"it is {away_m / 1000.0:.0f} km from the mission's start"
+                _refuse(f"item {item.seq}", "too-far", message, "leave out what lies elsewhere")
 
 
 def _read(text: str, terrains: Terrains | None) -> Scenario:
@@ -182,7 +192,7 @@ def _bare(
     """A scenario of nothing but the mission's place, its aircraft and the ground where it is named."""
     frame = LocalFrame(*start)
     here = Terminal("start", (0.0, 0.0))
-    known = mission.home_altitude_m if any(mission.home) and mission.home_altitude_m else None
+    known = mission.home_altitude_m if start == mission.home and mission.home_altitude_m else None
     scenario = Scenario(choice.name, frame, (), (aircraft,), (), here, here, 0.0, "home", home_amsl_m=known)
     ground = None if choice.terrain is None else _ground(mission, choice.terrain, frame, terrains)
     if ground is None:

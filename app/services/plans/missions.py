@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import Literal
 
 from app.services.documents import read_object
 from app.services.errors import NotFoundError, RefusedError
-from mavlink.dialects import VehicleType
+from mavlink.dialects import DialectFinding, VehicleType
 from mavlink.dialects.mission import Mission
 from mavlink.encoding.encode import EncodeError, EncodeOptions, encode
 from mavlink.encoding.gimbal import GimbalError, parse_gimbal
@@ -158,8 +158,18 @@ def mission_findings(mission: Mission, kinds: Sequence[MissionType]) -> tuple[Fi
             severity=found.severity,
         )
         for kind in kinds
-        for found in mission.dialect.check(mission.items_of(kind))
+        for found in map(partial(_of_a_file, mission), mission.dialect.check(mission.items_of(kind)))
     ) + (_places_lost(mission) if MissionType.MISSION in kinds else ())
+
+
+def _of_a_file(mission: Mission, found: DialectFinding) -> DialectFinding:
+    """A finding about a mission file: there a place of 0, 0 is ArduPilot's own word for where it is then."""
+    if mission.declared is None or mission.autopilot != "ardupilot" or found.rule != "place-zero":
+        return found
+    words = (
+        "latitude 0, longitude 0 stand for where the vehicle is then: what it flies over there is not judged"
+    )
+    return replace(found, message=words, severity="warning")
 
 
 def _places_lost(mission: Mission) -> tuple[Finding, ...]:

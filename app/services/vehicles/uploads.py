@@ -183,7 +183,9 @@ def judge_upload(
         raise RefusedError(f"the autopilot would not hold this mission: {errors[0].message}", errors)
     dangers = [
         Finding(violation.feature, violation.constraint, violation.message, _AGAIN)
-        for violation in plan.hard_violations
+        for violation in plan.violations
+        # Turns of a file for nobody's vehicle forbid what has wings.
+        if violation.hard or (violation.constraint == "turn-radius" and state.type != "multirotor")
     ]
     for part in parts:
         if PARTS[part] in mission.unread:

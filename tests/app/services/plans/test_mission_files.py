@@ -98,12 +98,14 @@ def test_circles_of_both_kinds_are_fences() -> None:
 
 
 def test_turns_too_tight_for_wings_are_told() -> None:
-    """Legs of 60 m at right angles leave 30 m: too little at 20 m/s banked by 45°, enough at 10."""
+    """Legs of 60 m at right angles leave 30 m: too little at 20 m/s banked by 45°, enough at 10 m/s."""
     zigzag = file(*rows((0.0, 5.0), (0.6, 5.0), (0.6, 5.6), (8.0, 5.6)))
     tight = broken(filed(zigzag, FileChoice("f", vehicle_type="fixed_wing", airspeed_m_s=20.0)))
     assert tight["turn-radius"]["amount"] == pytest.approx(20.0**2 / 9.80665 - 30.0, rel=0.02)
     assert broken(filed(zigzag, FileChoice("f", vehicle_type="fixed_wing", airspeed_m_s=10.0))) == {}
     assert broken(filed(zigzag, COPTER)) == {}
+    unsaid = broken(filed(zigzag, FileChoice("f", airspeed_m_s=20.0)))
+    assert unsaid["turn-radius"]["hard"] is False
 
 
 def scenario(*features: dict[str, Any]) -> str:
@@ -228,8 +230,10 @@ def test_files_that_cannot_be_read_are_refused_with_their_place() -> None:
     with pytest.raises(RefusedError, match="line 2") as caught:
         filed(b"QGC WPL 110\n0 1 2\n", FileChoice("f"))
     assert caught.value.findings[0].rule == "mission-format"
-    with pytest.raises(RefusedError, match="km from home"):
-        filed(file(*rows((0.0, 30000.0))), COPTER)
+    with pytest.raises(RefusedError, match="km from the mission's start"):
+        filed(file(*rows((0.0, 1.0), (0.0, 30000.0))), COPTER)
+    far_home = read_plan(json.loads(filed(file(*rows((0.0, 30000.0), (0.0, 30010.0))), COPTER).plan))
+    assert far_home.paths[0].length_m == pytest.approx(1000.0 + 60.0, rel=0.02)
 
 
 def test_a_place_where_the_frame_has_none_stops_the_upload() -> None:
@@ -245,6 +249,17 @@ def test_a_place_where_the_frame_has_none_stops_the_upload() -> None:
         "ardupilot": {"mission item 1": "error", "mission item 2": "error"},
         "px4": {"mission item 0": "error", "mission item 1": "warning"},
     }
+
+
+def test_nowhere_is_where_the_vehicle_is_for_ardupilot_alone() -> None:
+    """A landing at 0, 0 lands where ArduPilot's aircraft is; PX4's would fly to the Gulf of Guinea."""
+    content = file(*ROUTE, "9\t0\t3\t21\t0\t0\t0\t0\t0\t0\t0\t1")
+    found = {}
+    for autopilot in ("ardupilot", "px4"):
+        mission = mission_of(filed(content, FileChoice("f", autopilot, "multirotor")).plan, MissionChoice())
+        findings = mission_findings(mission, [MissionType.MISSION])
+        found[autopilot] = [f.severity for f in findings if f.rule == "place-zero"]
+    assert found == {"ardupilot": ["warning"], "px4": ["error"]}
 
 
 def test_flights_of_a_file_are_judged_for_nothing_seen() -> None:
