@@ -100,6 +100,14 @@ def renamed(kind: str) -> Document:
     return document
 
 
+def doubted(kind: str) -> Document:
+    """The small scenario with one feature whose role is in doubt."""
+    document = with_name(kind)
+    (found, *_) = [each for each in document["features"] if each["properties"]["role"] == kind]
+    found["properties"]["role_in_doubt"] = "its file says so"
+    return document
+
+
 def threat(**properties: Any) -> Document:
     return feature(
         "T", "threat", "Point", [0.012, 0.004], **{"model": "missile", "radius_m": 400.0, **properties}
@@ -304,10 +312,9 @@ PROOFS: dict[tuple[str, str], tuple[Document, Document]] = {
     ("scenario", "seed"): (small(), member("seed", 5)),
     ("scenario", "time_budget_s"): (many(1e9), many(1e-3)),
 }  # fmt: skip
-PROOFS |= {
-    (role, "name"): (with_name(role), renamed(role))
-    for role in ("roi", "threat", "no_fly", "obstacle", "end", "importance", "base", "start", "area")
-}
+ROLES = ("roi", "threat", "no_fly", "obstacle", "end", "importance", "base", "start", "area")
+PROOFS |= {(role, "name"): (with_name(role), renamed(role)) for role in ROLES}
+PROOFS |= {(role, "role_in_doubt"): (with_name(role), doubted(role)) for role in ROLES}
 
 #: Members that hold the others, and what says which reader reads a feature.
 STRUCTURE = {
