@@ -68,10 +68,17 @@ async def get_vehicle(vehicle_id: str, fleet: FleetDep) -> VehicleOut:
     return VehicleOut.of(fleet.get(vehicle_id))
 
 
-@router.delete("/{vehicle_id}", status_code=204, summary="Let a vehicle go", responses=responses(404))
-async def disconnect(vehicle_id: str, fleet: FleetDep) -> None:
-    """Close the link; a simulated aircraft ends. The vehicle itself gets no command."""
-    await fleet.disconnect(vehicle_id)
+@router.delete("/{vehicle_id}", status_code=204, summary="Let a vehicle go", responses=responses(404, 409))
+async def disconnect(
+    vehicle_id: str,
+    fleet: FleetDep,
+    in_flight: Annotated[bool, Query(description="Let it go even while it flies.")] = False,
+) -> None:
+    """Close the link; a simulated aircraft ends. The vehicle itself gets no command.
+
+    One in flight is let go only with `in_flight=true` (409 `in-flight`): nobody hears or records it then.
+    """
+    await fleet.disconnect(vehicle_id, in_flight)
 
 
 @router.get("/{vehicle_id}/forward", summary="List forwards", responses=responses(404))
@@ -270,9 +277,10 @@ async def command(vehicle_id: str, body: CommandIn, fleet: FleetDep) -> CommandO
     Answered once the vehicle shows it (`done`), or `pending` after `wait_s`. Refused and overtaken commands
     are a 409, those nobody can tell of a 504, each a problem with the command's members and, in `errors`,
     the rule and the way out: `not-armed` (start), `mode-would-take-off` (arm), `no-landing` (land of a fixed
-    wing), `mission-differs`, `mission-unknown`, `mission-unread` (start, arm: the vehicle is asked what is on
-    board, and it is not what was sent; `as_held` passes), `command-refused` (the vehicle said no), and
-    whatever `doubt` of the vehicle says.
+    wing), `item-out-of-range` (goto_item), `in-flight` (disarm), `mission-differs`, `mission-unknown`,
+    `mission-unread` (start, arm: the vehicle is asked what is on board, and it is not what was sent;
+    `as_held` passes), `command-refused` (the vehicle said no: its answer and state in words, and what it said
+    meanwhile of the same matter), and whatever `doubt` of the vehicle says.
     """
     vehicle = fleet.get(vehicle_id)
     wish = Wish(body.command, body.seq, body.arm_first, body.hold_first, body.payload, body.as_held)

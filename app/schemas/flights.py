@@ -33,6 +33,14 @@ class EnergyOut(BaseModel):
     complete: bool = Field(description="False where readings were missing meanwhile.")
 
 
+class LinkEventOut(BaseModel):
+    """A loss of the link, at the moment the vehicle was last heard, or its end."""
+
+    kind: Literal["lost", "back"]
+    at: datetime
+    time_s: float | None = Field(description="The vehicle's time since boot.")
+
+
 class FlightOut(BaseModel):
     """One flight."""
 
@@ -49,6 +57,7 @@ class FlightOut(BaseModel):
     photos: int = Field(description="Reported by cameras.")
     actions: list[SensorActionOut] = Field(description="What the service did by itself meanwhile.")
     energy: EnergyOut | None = Field(description="By its batteries' telemetry; null where none tells.")
+    link: list[LinkEventOut] = Field(description="When the link was lost and came back.")
     logs: list[str] = Field(description="Onboard logs that filled gaps of the track.")
     links: dict[str, str]
 

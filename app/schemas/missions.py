@@ -10,6 +10,7 @@ from pydantic import BaseModel, Field, field_validator, model_validator
 from app.schemas.base import FindingOut, Strict
 from app.schemas.preflight import GIMBAL_IS, PreflightOut
 from app.services.plans.work import finding_json
+from app.services.vehicles.replaced import Replaced
 from app.services.vehicles.uploads import UploadReport
 from app.services.vehicles.vehicle import Vehicle
 
@@ -59,6 +60,30 @@ class PartOut(BaseModel):
     held: list[dict[str, Any]] | None = Field(description="Items the vehicle holds now; None: not known.")
 
 
+class PassOut(BaseModel):
+    """A pass of the plan."""
+
+    seq: int
+    roi: str
+
+
+class InFlightOut(BaseModel):
+    """What a flying aircraft makes of a mission that took the place of its own."""
+
+    message: str
+    mode: str
+    item: int | None = Field(description="It flies to this item next; null where it does not say.")
+    skipped: list[PassOut] = Field(description="Passes of the new mission that lie behind that item.")
+    cut: PassOut | None = Field(description="The pass it goes on in the middle of, its sensor off.")
+
+    @classmethod
+    def of(cls, replaced: Replaced) -> Self:
+        """The answer for it."""
+        cut = None if replaced.cut is None else PassOut(seq=replaced.cut[0], roi=replaced.cut[1])
+        skipped = [PassOut(seq=seq, roi=roi) for seq, roi in replaced.skipped]
+        return cls(message=str(replaced), mode=replaced.mode, item=replaced.item, skipped=skipped, cut=cut)
+
+
 class UploadOut(BaseModel):
     """An upload: what was meant and what the vehicle now holds."""
 
@@ -75,6 +100,7 @@ class UploadOut(BaseModel):
     notes: list[str]
     override_reason: str | None
     preflight: PreflightOut | None = Field(description="Made behind an accepted upload; None otherwise.")
+    in_flight: InFlightOut | None = Field(description="Of a mission replaced in flight; null otherwise.")
 
     @classmethod
     def of(cls, report: UploadReport, items: bool = True) -> Self:
@@ -100,6 +126,7 @@ class UploadOut(BaseModel):
             notes=list(report.notes),
             override_reason=report.override_reason,
             preflight=None if report.preflight is None else PreflightOut.of(report.preflight),
+            in_flight=None if report.replaced is None else InFlightOut.of(report.replaced),
         )
 
 

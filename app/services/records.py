@@ -133,6 +133,15 @@ class TerrainRecord:
 
 
 @dataclass(frozen=True, slots=True)
+class LinkEvent:
+    """The link of a flying vehicle was lost, when it was last heard, or came back; ``time_s`` since boot."""
+
+    kind: Literal["lost", "back"]
+    at: datetime
+    time_s: float | None
+
+
+@dataclass(frozen=True, slots=True)
 class FlownEnergy:
     """What a flight drew, as its batteries told; see ``mavlink.state.energy``."""
 
@@ -161,6 +170,8 @@ class FlightRecord:
         What its batteries told.
     logs
         Onboard logs that filled gaps of its track, by name.
+    link
+        When the link was lost and came back.
     """
 
     id: str
@@ -177,6 +188,7 @@ class FlightRecord:
     actions: tuple[SensorAction, ...] = ()
     energy: FlownEnergy | None = None
     logs: tuple[str, ...] = ()
+    link: tuple[LinkEvent, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -104,6 +104,8 @@ class VehicleState:
         Where the nose points, clockwise from true north.
     course_deg
         Where it moves over ground; None below 0.5 m/s.
+    mission_heard_s
+        When it last told which item it flies to, in the client's clock.
     mission_current, mission_total
         The item flown, and the number of items held, the home row included where there is one.
     mission_state
@@ -162,6 +164,7 @@ class VehicleState:
     home_lat_deg: float | None = None
     home_altitude_amsl_m: float | None = None
     mission_current: int | None = None
+    mission_heard_s: float | None = None
     mission_total: int | None = None
     mission_state: str | None = None
     mission_reached: int | None = None
@@ -283,6 +286,7 @@ def _mission_current(state: VehicleState, message: Message) -> VehicleState:
     return replace(
         state,
         mission_current=message.integer("seq"),
+        mission_heard_s=state.heard_s,
         mission_total=rows,
         mission_state=_MISSION_STATES.get(message.integer("mission_state")),
         mission_id=message.integer("mission_id") or None,

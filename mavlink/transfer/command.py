@@ -35,7 +35,7 @@ class CommandResult(IntEnum):
 _MEANING: Final[dict[int, str]] = {
     CommandResult.ACCEPTED: "accepted",
     CommandResult.TEMPORARILY_REJECTED: "not now: the vehicle's state does not allow it",
-    CommandResult.DENIED: "denied: the parameters are not allowed",
+    CommandResult.DENIED: "denied: its parameters or the vehicle's state do not allow it",
     CommandResult.UNSUPPORTED: "the vehicle does not know this command",
     CommandResult.FAILED: "the vehicle tried and failed",
     CommandResult.IN_PROGRESS: "still in progress",

@@ -71,8 +71,8 @@ export async function connectVehicle(name: string, url: string): Promise<Vehicle
   return vehicle;
 }
 
-export async function letGo(id: string): Promise<void> {
-  await remove(path(id));
+export async function letGo(id: string, inFlight = false): Promise<void> {
+  await remove(inFlight ? path(id, "?in_flight=true") : path(id));
   if (watched.value?.id === id) watchVehicle(null);
   await refreshVehicles();
 }

@@ -191,6 +191,8 @@ export interface Upload {
   notes: string[];
   override_reason: string | null;
   preflight: Preflight | null;
+  /** Of a mission replaced in flight: where the aircraft goes on, and what it skips. */
+  in_flight?: { message: string } | null;
 }
 
 /** What the service knows of the mission last sent to a vehicle. */

@@ -73,7 +73,7 @@ async def test_what_arduplane_saw_is_known_to_the_service(tmp_path: Path) -> Non
             )
             flight = (await client.get("/api/v1/flights")).json()["flights"][0]
             coverage = (await client.get(flight["links"]["coverage.geojson"])).json()
-            assert (await client.delete(vehicle)).status_code == 204
+            assert (await client.delete(vehicle, params={"in_flight": "true"})).status_code == 204
     collects = [f for f in plan["features"] if f["properties"]["role"] == "collect"]
     assert len(coverage["triggers"]) == len(collects)
     assert {trigger["state"] for trigger in coverage["triggers"]} == {"ok"}, coverage["triggers"]

@@ -16,6 +16,7 @@ from app.services.records import (
     FlightRecord,
     FlightState,
     FlownEnergy,
+    LinkEvent,
     SensorAction,
     TrackSample,
 )
@@ -54,6 +55,9 @@ def _record(row: FlightRow, points: int, photos: int) -> FlightRecord:
         ),
         energy=None if row.energy is None else FlownEnergy(**row.energy),
         logs=tuple(row.logs or ()),
+        link=tuple(
+            LinkEvent(**(kept | {"at": datetime.fromisoformat(kept["at"])})) for kept in row.link or ()
+        ),
     )
 
 
@@ -155,6 +159,13 @@ class FlightStore:
                 .where(FlightRow.id == flight_id, FlightRow.state == "flying")
                 .values(**values)
             )
+
+    async def heard(self, flight_id: str, event: LinkEvent) -> None:
+        """Append a loss of the link, or its end."""
+        async with self._database.writing() as session:
+            row = await session.scalar(select(FlightRow).where(FlightRow.id == flight_id))
+            if row is not None:
+                row.link = [*(row.link or ()), asdict(event) | {"at": event.at.isoformat()}]
 
     async def draw(self, flight_id: str, energy: FlownEnergy) -> None:
         """What a flight drew from its batteries so far."""

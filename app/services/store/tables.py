@@ -152,6 +152,7 @@ class FlightRow(Base):
     actions: Mapped[list[dict[str, Any]] | None] = mapped_column(JSON)
     energy: Mapped[dict[str, Any] | None] = mapped_column(JSON)
     logs: Mapped[list[str] | None] = mapped_column(JSON)
+    link: Mapped[list[dict[str, Any]] | None] = mapped_column(JSON)
 
 
 class TrackPointRow(Base):

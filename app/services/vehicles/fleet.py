@@ -11,7 +11,7 @@ from pathlib import Path
 
 import structlog
 
-from app.services.errors import ConflictError, NotFoundError, ServiceError, StorageError
+from app.services.errors import ConflictError, NotFoundError, ServiceError, StorageError, UnsafeError
 from app.services.hub import Hub
 from app.services.metrics import VEHICLES
 from app.services.plans.library import PlanLibrary
@@ -23,7 +23,7 @@ from app.services.vehicles.brief import first_vehicle, start_of
 from app.services.vehicles.connection import CONNECT_S, Home, is_replay, replayed_plan, simulated_of
 from app.services.vehicles.forwarding import read_forwards, refuse_loops
 from app.services.vehicles.keys import KeyRing
-from app.services.vehicles.recorder import HeldPlan
+from app.services.vehicles.recorder import HeldPlan, is_flying
 from app.services.vehicles.recordings import RecordingFile, Recordings
 from app.services.vehicles.times import DEFAULT_TIMES, LinkTimes
 from app.services.vehicles.transfers import Transfers
@@ -32,6 +32,7 @@ from mavlink.encoding.payload import parse_payload
 from mavlink.state.outputs import output_of
 from mavlink.station.forward.address import ForwardAddress
 from mavlink.station.terrain import Heights
+from planner.errors import Finding
 
 log = structlog.get_logger(__name__)
 
@@ -216,9 +217,26 @@ class Fleet:
         theirs = [outlet.address for other in others for outlet in other.forwards.outlets]
         refuse_loops([vehicle.url, *(other.url for other in others)], [*addresses, *theirs])
 
-    async def disconnect(self, vehicle_id: str) -> None:
-        """Let a vehicle go; raises NotFoundError."""
+    async def disconnect(self, vehicle_id: str, in_flight: bool = False) -> None:
+        """Let a vehicle go.
+
+        Parameters
+        ----------
+        in_flight
+            Whether it may be one that flies.
+
+        Raises
+        ------
+        NotFoundError
+            There is none.
+        UnsafeError
+            It flies, and nobody said that it may: rule ``in-flight``.
+        """
         vehicle = self.get(vehicle_id)
+        if not in_flight and not vehicle.replay and (vehicle.flight_id or is_flying(vehicle.state)):
+            message = f"{vehicle.name} is in flight: let go, it is neither heard nor recorded any more"
+            fix = "land it first; or say in_flight=true to let it go all the same"
+            raise UnsafeError(message, (Finding("vehicle", "in-flight", message, fix),))
         await self._kept.forget(vehicle_id)
         if self._vehicles.pop(vehicle_id, None) is None:
             raise NotFoundError("vehicle", vehicle_id)

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Awaitable, Callable
 from dataclasses import dataclass
 from typing import Final
 
 from app.services.vehicles.order_book import Order, OrderOutcome
+from app.services.vehicles.said import EXPLAINED_S, refusal, said_of
 from app.services.vehicles.vehicle import Vehicle
 from mavlink.encoding.options import DEFAULT_PAYLOAD
 from mavlink.encoding.payload import parse_payload
@@ -75,7 +77,7 @@ async def _settled(
     order.sent = True
     outcome = await giving
     if outcome.result is not None and not outcome.accepted:
-        raise _refusal(client, outcome, begun_s)
+        raise await _refusal(client, outcome, begun_s, order)
     if outcome.result is None:
         if shows(client.state):
             return "done", "it never answered, and shows it all the same"
@@ -88,9 +90,17 @@ async def _settled(
     return "done", reason
 
 
-def _refusal(client: VehicleClient, outcome: CommandOutcome, begun_s: float) -> OrderRefusedError:
-    said = [text.text for text in client.state.texts if text.heard_s >= begun_s]
-    message = f"the vehicle refused {outcome}" + (f"; it says: {'; '.join(said)}" if said else "")
+async def _refusal(
+    client: VehicleClient, outcome: CommandOutcome, begun_s: float, order: Order
+) -> OrderRefusedError:
+    with contextlib.suppress(TimeoutError):
+        await client.wait_for(lambda state: bool(said_of(state, outcome.command, begun_s)), EXPLAINED_S)
+    state = client.state
+    message = refusal(state, outcome, begun_s)
+    if order.command == "disarm" and state.armed and state.landed is not True:
+        return OrderRefusedError(
+            "in-flight", message, "land first: send rtl or land, and disarm on the ground"
+        )
     return OrderRefusedError("command-refused", message, "see what the vehicle says, and preflight")
 
 
@@ -211,11 +221,35 @@ async def _hold(vehicle: Vehicle, wish: Wish, order: Order) -> Told:
 
 async def _goto_item(vehicle: Vehicle, wish: Wish, order: Order) -> Told:
     assert wish.seq is not None
+    client = vehicle.client
+    count = await _items_held(vehicle, client)
+    if count and not 0 <= wish.seq < count:
+        raise OrderRefusedError(
+            "item-out-of-range",
+            f"not sent: the mission on board has no item {wish.seq}, its items are 0 to {count - 1}",
+            "send the number of an item of the mission",
+        )
     order.sent = True
-    outcome = await vehicle.client.goto_item(wish.seq)
+    outcome = await client.goto_item(wish.seq)
     if outcome.kind == "refused":
         raise OrderRefusedError("command-refused", str(outcome), "send the number of an item of the mission")
-    return ("done", "") if outcome.kind == "accepted" else ("unknown", str(outcome))
+    if outcome.kind == "accepted":
+        return "done", ""
+    state = client.state
+    if not state.connected:
+        return "unknown", f"not acknowledged: {client.absence}"
+    now = f"item {state.mission_current}" if count and state.mission_current is not None else "no item"
+    return "unknown", f"not acknowledged: the vehicle is heard, and says that it flies to {now}"
+
+
+async def _items_held(vehicle: Vehicle, client: VehicleClient) -> int | None:
+    """How many items the mission on board has, the home row included; None where nobody can tell."""
+    if client.state.mission_total is not None:
+        return client.state.mission_total
+    try:
+        return len(await client.mission_held(anew=vehicle.held is None))
+    except TransferFailedError:
+        return None
 
 
 async def _land(vehicle: Vehicle, wish: Wish, order: Order) -> Told:

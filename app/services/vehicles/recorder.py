@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import math
 from dataclasses import dataclass
-from datetime import UTC, datetime
+from datetime import UTC, datetime, timedelta
 from typing import Literal
 
 import structlog
 
 from app.services.errors import StorageError
-from app.services.records import FlightEvent, FlightState, FlownEnergy, SensorAction, TrackSample
+from app.services.records import FlightEvent, FlightState, FlownEnergy, LinkEvent, SensorAction, TrackSample
 from app.services.store.flights import FlightStore
 from mavlink.state.outputs import SensorOutput
 from mavlink.state.telemetry import VehicleState
@@ -24,6 +25,9 @@ log = structlog.get_logger(__name__)
 MOVING_M_S = 3.0
 #: An armed vehicle has landed when it says so at this many looks in turn: touching down, it may bounce.
 LANDED_LOOKS = 3
+
+#: What a flight drew is stored this often, for one that nobody watches to its end.
+ENERGY_S = 10.0
 
 
 def is_flying(state: VehicleState) -> bool:
@@ -91,7 +95,8 @@ class FlightRecorder:
         self._endings: list[_Ending] = []
         self._failing = False
         self._landed_looks = 0
-        self._energy: FlownEnergy | None = None
+        self._energy_due_s = 0.0
+        self._lost = False
         self._thinner = Thinner(interval_s)
         self.flight_id: str | None = None
         self._latest_id: str | None = None
@@ -127,6 +132,7 @@ class FlightRecorder:
                 else:
                     recorder.forget()
                 return
+            await self._note_link(client)
             if client.failure is not None:
                 await self._end("interrupted")
             elif state.connected and self._landed(state):
@@ -135,6 +141,18 @@ class FlightRecorder:
                 await self._change(client, plan)
             else:
                 await self._save()
+
+    async def _note_link(self, client: VehicleClient) -> None:
+        """Note a loss of the link by when the vehicle was last heard, and its end."""
+        state, lost = client.state, client.failure is not None or not client.state.connected
+        if lost == self._lost or self.flight_id is None:
+            return
+        silent_s = client.silent_s if lost and math.isfinite(client.silent_s) else 0.0
+        at = datetime.now(UTC) - timedelta(seconds=silent_s)
+        event = LinkEvent("lost" if lost else "back", at, state.time_s)
+        await self._store.heard(self.flight_id, event)
+        self._lost = lost
+        log.warning("link of a flight", vehicle=self._vehicle_name, link=event.kind, at=at.isoformat())
 
     def _landed(self, state: VehicleState) -> bool:
         """Whether a flight under way is over; one that does not say whether it has landed ends disarmed."""
@@ -185,7 +203,7 @@ class FlightRecorder:
         self._latest_id = self.flight_id
         self._thinner = Thinner(self._interval_s)
         self._landed_looks = self._events_saved = 0
-        self._energy = None
+        self._energy_due_s, self._lost = 0.0, False
         log.info("flight begun", vehicle=self._vehicle_name, flight_id=self.flight_id)
 
     async def _save(self) -> None:
@@ -197,10 +215,10 @@ class FlightRecorder:
         self._unsaved = []
         await self._store.add_events(self.flight_id, events)
         self._events_saved += len(events)
-        energy = _energy(track)
-        if energy is not None and energy != self._energy:
+        energy, now_s = _energy(track), asyncio.get_running_loop().time()
+        if energy is not None and now_s >= self._energy_due_s:
             await self._store.draw(self.flight_id, energy)
-            self._energy = energy
+            self._energy_due_s = now_s + ENERGY_S
 
     def _gather(self, track: Track) -> list[FlightEvent]:
         """Events that are not saved yet; places join those that are not."""

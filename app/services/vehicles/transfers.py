@@ -26,6 +26,7 @@ from app.services.vehicles.left_uploads import LeftUploads
 from app.services.vehicles.pointing import pointing_findings
 from app.services.vehicles.preflight import Preflight
 from app.services.vehicles.recorder import is_flying
+from app.services.vehicles.replaced import replaced
 from app.services.vehicles.uploads import (
     UploadReport,
     comparing,
@@ -97,6 +98,7 @@ class Transfers:
                 vehicle.turns.progress = {"part": part, "done": made.done, "total": made.total}
                 vehicle.tell()
 
+            flying = is_flying(vehicle.state)
             if "mission" in parts:
                 vehicle.holds_unknown()
                 vehicle.aboard.meant = None
@@ -104,6 +106,11 @@ class Transfers:
                 await send_parts(vehicle.client, report, tell)
             finally:
                 await self.record(vehicle)
+            if flying and "mission" in parts and report.parts["mission"].outcome in ("accepted", "different"):
+                with contextlib.suppress(mavlink_errors.MavlinkError):
+                    report.replaced = await replaced(
+                        vehicle.client, brief.mission, brief.plan, report.plan_vehicle, report.payload
+                    )
             if report.outcome == "accepted":
                 report.preflight = await _preflight_behind(vehicle, brief, report)
         return report

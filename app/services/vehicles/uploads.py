@@ -13,6 +13,7 @@ from app.services.vehicles.audit import Entry
 from app.services.vehicles.items import difference_json, item_json
 from app.services.vehicles.preflight import Preflight
 from app.services.vehicles.recorder import is_flying
+from app.services.vehicles.replaced import Replaced
 from mavlink.dialects import Dialect
 from mavlink.dialects.compare import Difference, differences
 from mavlink.dialects.mission import Mission
@@ -91,6 +92,7 @@ class UploadReport:
     mission: Mission
     parts: dict[PartName, PartResult] = field(default_factory=dict)
     preflight: Preflight | None = None
+    replaced: Replaced | None = None
     payload: str | None = None
     gimbal: str | None = None
     entries: tuple[Entry, ...] = ()

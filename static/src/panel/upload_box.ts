@@ -130,7 +130,7 @@ export function uploadBox(edit: () => void): { controls: HTMLElement; answers: H
     const number = vehicle?.upload ? `${vehicle.id}/${vehicle.upload.number}/${vehicle.upload.outcome}/${vehicle.upload.verified}` : null;
     if ((turned || number !== shownNumber) && busy === null) {
       shownNumber = number;
-      fill(result, vehicle?.upload ? uploadAnswer(vehicle.upload, open.value?.record.id) : null);
+      fill(result, vehicle?.upload ? uploadAnswer(vehicle.upload, open.value?.record.id) : null, vehicle?.upload?.in_flight ? h("p", { class: "warning", id: "goes-on" }, vehicle.upload.in_flight.message) : null);
     }
   };
   open.watch((shown) => {

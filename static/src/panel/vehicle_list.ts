@@ -13,9 +13,9 @@ function standing(vehicle: Vehicle): string {
 }
 
 async function release(vehicle: Vehicle): Promise<void> {
-  const flying = vehicle.state.armed ? ["It is armed. The link is closed; the aircraft itself gets no command."] : ["The link is closed; the vehicle gets no command."];
+  const flying = vehicle.state.armed ? ["It is armed and may be in flight: nobody here hears, records or orders it any more. The aircraft itself gets no command."] : ["The link is closed; the vehicle gets no command."];
   const sure = await ask({ title: `Let ${vehicle.name} go?`, lines: flying, go: "Let go" });
-  if (sure !== null) await attempt(`${vehicle.name} was not let go`, () => letGo(vehicle.id));
+  if (sure !== null) await attempt(`${vehicle.name} was not let go`, () => letGo(vehicle.id, vehicle.state.armed || Boolean(vehicle.flight_id)));
 }
 
 export function vehicleList(): HTMLElement {

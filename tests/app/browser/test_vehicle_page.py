@@ -35,7 +35,7 @@ def flying(page: Page, service: Service) -> Iterator[Page]:
     yield page
     for name, place in vehicles_of(service).items():
         if name != "sim-1":
-            httpx.delete(place, timeout=20.0)
+            httpx.delete(place, params={"in_flight": "true"}, timeout=20.0)
 
 
 @pytest.fixture(scope="module")

@@ -71,7 +71,7 @@ async def test_a_gap_is_named_with_its_time_neither_seen_nor_missed(flown: Flown
     first = flown.plan.collects[0]
     trigger = next(t for t in told["triggers"] if t["seq"] == first.seq)
     assert trigger["state"] == "unknown"
-    assert 0.0 < trigger["unknown_m"] <= first.end_m - first.start_m + 1e-6
+    assert 0.0 < trigger["unknown_m"] <= first.end_m - first.start_m + 1.0
     for name in first.regions:
         assert told["unknown_coverage"][name] > 0.02
         assert told["coverage"][name] + told["unknown_coverage"][name] <= 1.0 + 1e-9
