@@ -1,0 +1,1 @@
+"""The process that holds the links, as the service keeps it."""
