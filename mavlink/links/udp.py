@@ -17,6 +17,8 @@ _RECEIVE_BUFFER_BYTES: Final = 1 << 20
 # A silent peer is forgotten, unless it is the only one: it may have restarted on another port.
 _FORGET_AFTER_S: Final = 30.0
 _MOST_PEERS: Final = 16
+# Where there are that many, one heard within this time keeps its place.
+_TALKING_S: Final = 5.0
 # Datagrams of strangers thrown away in a turn of the event loop.
 _MOST_AT_ONCE: Final = 64
 # A MAVLink frame has at most 280 bytes, and some bridges put several into a datagram.
@@ -124,14 +126,16 @@ class UdpLink:
 
     def _hear(self, peer: Address) -> None:
         now_s = self._loop.time()
-        new = peer not in self._peers
-        self._peers[peer] = now_s
-        if new:
+        if peer not in self._peers:
             self._peers = {
                 other: heard_s for other, heard_s in self._peers.items() if now_s - heard_s < _FORGET_AFTER_S
             }
-            while len(self._peers) > _MOST_PEERS:
-                del self._peers[min(self._peers, key=self._peers.__getitem__)]
+            if len(self._peers) >= _MOST_PEERS:
+                oldest = min(self._peers, key=self._peers.__getitem__)
+                if now_s - self._peers[oldest] < _TALKING_S:
+                    return  # heard, but not answered: those that talk are not displaced
+                del self._peers[oldest]
+        self._peers[peer] = now_s
 
     def listen(self, listener: Callable[[bytes], None] | None) -> None:
         """Hand datagrams to ``listener`` the moment they arrive, not to ``receive``; None ends that.

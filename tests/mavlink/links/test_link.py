@@ -76,6 +76,20 @@ async def test_udp_answers_every_peer() -> None:
         await link.close()
 
 
+async def test_a_udp_peer_that_talks_is_not_displaced() -> None:
+    """Forty strangers come after it: it is answered all the same, and not all of them are."""
+    listener = await open_udp("127.0.0.1", 0, listen=True)
+    callers = [await open_udp("127.0.0.1", listener.local_port, listen=False) for _ in range(41)]
+    for caller in callers:
+        await caller.send(b"here")
+        assert await asyncio.wait_for(listener.receive(), 5) == b"here"
+    assert listener.peers < len(callers)
+    await listener.send(b"all")
+    assert await asyncio.wait_for(callers[0].receive(), 5) == b"all"
+    for link in (*callers, listener):
+        await link.close()
+
+
 async def test_a_port_in_use_is_said_and_a_closed_one_is_free() -> None:
     """Opening twice names the address and the reason; after closing it opens."""
     listener = await open_udp("127.0.0.1", 0, listen=True)
