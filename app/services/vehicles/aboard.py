@@ -23,8 +23,8 @@ log = structlog.get_logger(__name__)
 
 #: Orders that have an aircraft fly what it holds, or make it ready to.
 ASKED: Final = frozenset({"start", "arm"})
-#: A report of the number of items may be older than an upload; a second one is not.
-_REPORTS: Final = 2
+#: The number of items is reported once a second; one report may be older than an upload, no more.
+_REPORTED_S: Final = 3.0
 #: Another operation is waited for so long.
 _LOOKS: Final = 600
 _LOOK_S: Final = 0.05
@@ -65,13 +65,14 @@ class Aboard:
         self.meant: Meant | None = None
         self.asked_s = -math.inf
         self._restarts = 0
-        self._strange = 0
+        # Since when another number of items than which is reported, and whether that was told.
+        self._strange: tuple[int | None, float, bool] | None = None
 
     def fresh(self, now_s: float) -> bool:
         """Whether it was asked so lately that asking again tells nothing: ``start`` follows on ``arm``."""
         return now_s < self.asked_s + _FRESH_S
 
-    def lost(self, state: VehicleState) -> str | None:
+    def lost(self, state: VehicleState, now_s: float) -> str | None:
         """Why what it holds has to be read anew, told once; None where nothing speaks for it."""
         if state.restarts != self._restarts or not state.connected:
             self.asked_s = -math.inf
@@ -83,9 +84,15 @@ class Aboard:
         expected = None if self.meant is None else len(self.meant.items)
         gone = bool(expected) and state.mission_state == "none"
         other = expected is not None and state.mission_total not in (None, expected)
-        self._strange = self._strange + 1 if gone or other else 0
-        if self._strange != _REPORTS:
+        if not (gone or other):
+            self._strange = None
             return None
+        if self._strange is None or self._strange[0] != expected:
+            self._strange = expected, now_s, False
+        _, since_s, said = self._strange
+        if said or now_s < since_s + _REPORTED_S:
+            return None
+        self._strange = expected, since_s, True
         return "it holds no mission" if gone else f"it holds {state.mission_total} items, not {expected}"
 
 

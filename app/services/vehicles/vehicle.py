@@ -313,7 +313,8 @@ class Vehicle(Heard):
                 elif self.lost_since is None and math.isfinite(client.silent_s):
                     self.lost_since = datetime.now(UTC) - timedelta(seconds=client.silent_s)
                 self.tell()
-                if self.sent is not None and not self.turns.changing and (why := self.aboard.lost(state)):
+                why = None if self.turns.changing else self.aboard.lost(state, client.now_s)
+                if why is not None and self.sent is not None:
                     tries = RESOLVE_TRIES
                     self._doubt_held(why)
                 if not state.connected:
