@@ -57,7 +57,13 @@ SCENARIO_SCHEMA: dict[str, Any] = {
         "altitude_reference": {"enum": ["amsl", "home", "terrain"], "default": "terrain"},
         "terrain": {"type": "string", "description": "Id of an uploaded elevation raster."},
         "wind": {"type": "object"},
-        "clearance_m": {"type": "number", "minimum": 0},
+        "clearance_m": {
+            "type": "number",
+            "minimum": 0,
+            "description": "Kept from everything hard (no_fly, obstacle, hard threats), beside, over and "
+            "under it, and over terrain. Absent: what the vehicle's autopilot is flown off its line "
+            "(30 m ArduPlane, 20 m PX4's wings, 5 m multirotors), 30 m over terrain. 0 is 0.",
+        },
         "objective": {"type": "object"},
         "method": {"type": "object"},
         "seed": {"type": "integer"},

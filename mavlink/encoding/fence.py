@@ -50,6 +50,11 @@ def _items(piece: Piece, zone: ZonePolygon | ZoneCircle, local: LocalMap) -> lis
     if isinstance(zone, ZoneCircle):
         item = placed(Command.NAV_FENCE_CIRCLE_EXCLUSION, zone.centre, 0.0, Frame.GLOBAL)
         return [replace(item, param1=_radius_m(zone))]
+    if piece.radius_m is not None:
+        middle = piece.shape.centroid
+        centre = local.lonlat((middle.x, middle.y))
+        item = placed(Command.NAV_FENCE_CIRCLE_EXCLUSION, centre, 0.0, Frame.GLOBAL)
+        return [replace(item, param1=piece.radius_m)]
     command = (
         Command.NAV_FENCE_POLYGON_VERTEX_INCLUSION
         if piece.inside

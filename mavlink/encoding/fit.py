@@ -11,6 +11,7 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
+import numpy as np
 import shapely
 from shapely.geometry import LineString, Polygon
 from shapely.geometry.base import BaseGeometry
@@ -39,6 +40,8 @@ THINNED_M = (
 )
 #: Kept between a thinned edge and the flight, where the drawn one is no nearer.
 ROOM_M = 15.0
+#: What has so many corners, all so near to a circle by its radius, was drawn for one.
+ROUND_CORNERS, ROUND_PART = 16, 0.05
 #: Zones farther from the whole flight than this may be left out of a fence that is still too large.
 FAR_M = 5_000.0
 
@@ -53,6 +56,8 @@ class Piece:
         Of the polygon; 0 for a circle.
     thinned_m
         So far at most its edges are from the drawn ones.
+    radius_m
+        Of a circle that a polygon of many corners became, about the middle of its shape.
     """
 
     name: str
@@ -60,6 +65,7 @@ class Piece:
     inside: bool = False
     corners: int = 0
     thinned_m: float = 0.0
+    radius_m: float | None = None
 
     @classmethod
     def polygon(cls, name: str, shape: Polygon, inside: bool) -> Piece:
@@ -135,7 +141,12 @@ def _thinner(piece: Piece, now: Piece, by_m: float, flown: BaseGeometry) -> Piec
     if piece.round or piece.corners <= 3:
         return piece
     shape = thinned(piece.shape, by_m, inside=piece.inside)
-    if shape is None or len(shape.exterior.coords) - 1 >= now.corners:
+    radius_m = None if piece.inside else circle_round_m(piece.shape, by_m)
+    if radius_m is not None:
+        # One point, whatever corners it was drawn with.
+        shape = piece.shape.centroid.buffer(radius_m, quad_segs=32)
+    corners = 0 if radius_m is not None or shape is None else len(shape.exterior.coords) - 1
+    if shape is None or now.round or corners >= now.corners:
         return now
     if piece.inside:
         near_m, left_m = (float(flown.distance(area.exterior)) for area in (piece.shape, shape))
@@ -145,7 +156,18 @@ def _thinner(piece: Piece, now: Piece, by_m: float, flown: BaseGeometry) -> Piec
         clear = not flown.intersects(shape)
     if not flown.is_empty and not (clear and left_m >= min(near_m, ROOM_M)):
         return now
-    return replace(piece, shape=shape, corners=len(shape.exterior.coords) - 1, thinned_m=by_m)
+    return replace(piece, shape=shape, corners=corners, thinned_m=by_m, radius_m=radius_m)
+
+
+def circle_round_m(shape: Polygon, by_m: float) -> float | None:
+    """Radius of the circle about a polygon's middle that holds it, where it was drawn for one."""
+    middle, edge = shape.centroid, shape.exterior
+    away = shapely.get_coordinates(edge) - (middle.x, middle.y)
+    # Places on the wire are rounded to centimetres.
+    radius_m = 1.0001 * float(np.hypot(*away.T).max()) + 0.05
+    nearest_m = float(edge.distance(middle))
+    drawn_for_one = len(away) > ROUND_CORNERS and radius_m - nearest_m <= ROUND_PART * radius_m + 0.1
+    return radius_m if shape.contains(middle) and drawn_for_one and radius_m - nearest_m <= by_m else None
 
 
 def thinned(shape: Polygon, by_m: float, *, inside: bool) -> Polygon | None:

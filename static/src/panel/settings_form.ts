@@ -143,7 +143,7 @@ function mission(): Field[] {
       choices: [["terrain", "terrain"], ["home", "home"], ["amsl", "mean sea level"]],
     }),
     terrainField(),
-    numberField({ id: "s-clearance_m", label: "Clearance", unit: "m", min: 0, placeholder: "0", hint: "Kept from the ground, obstacles and zones", get: () => clearance.get<number>(), set: clearance.set }),
+    numberField({ id: "s-clearance_m", label: "Clearance", unit: "m", min: 0, placeholder: "the autopilot's", hint: "Kept from zones, hard threats, obstacles and terrain", get: () => clearance.get<number>(), set: clearance.set }),
     ...wind(),
     numberField({ id: "s-seed", label: "Seed", min: 0, placeholder: "0", get: () => seed.get<number>(), set: seed.set }),
     numberField({ id: "s-time_budget_s", label: "Time for planning", unit: "s", min: 0, placeholder: "no limit", get: () => budget.get<number>(), set: budget.set }),

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from shapely.affinity import scale
 from shapely.geometry import LineString, MultiPoint, Point, Polygon, box
 
 from mavlink.dialects import dialect_for
@@ -20,13 +21,13 @@ from tests.mavlink.plans import lonlat, make_plan, square_fence
 
 
 def ragged(middle: tuple[float, float], size_m: float, corners: int, seed: int) -> Polygon:
-    """A star-shaped polygon with a rough outline."""
+    """An oval with a rough outline."""
     rng = np.random.default_rng(seed)
     radii = size_m + 3.0 * rng.standard_normal(corners)
     angles = np.linspace(0.0, math.tau, corners, endpoint=False)
     return Polygon(
         [
-            (middle[0] + r * math.cos(a), middle[1] + r * math.sin(a))
+            (middle[0] + r * math.cos(a), middle[1] + 0.8 * r * math.sin(a))
             for a, r in zip(angles, radii, strict=True)
         ]
     )
@@ -68,9 +69,30 @@ def test_a_zone_of_many_corners_fits(store: FenceStore, corners: int) -> None:
     (piece,) = pieces
     assert store.holds([piece.corners], 0)
     assert piece.shape.covers(zone)
-    assert piece.shape.hausdorff_distance(zone) <= piece.thinned_m <= max(THINNED_M)
+    assert zone.exterior.buffer(1.0001 * piece.thinned_m, quad_segs=64).covers(piece.shape.exterior)
     assert flown.distance(piece.shape) >= min(ROOM_M, flown.distance(zone))
     assert any("N" in note and f"{piece.thinned_m:g} m" in note for note in notes)
+
+
+def test_a_circle_drawn_with_many_corners_is_one() -> None:
+    """Round the drawn one, by no more than is told; on the wire a circle. An ellipse is none."""
+    drawn = Point(4000.0, 0.0).buffer(1500.0, quad_segs=90)
+    (piece,), (note,) = fitted([Piece.polygon("CTR", drawn, False)], [], PX4_STORE)
+    assert piece.round
+    assert piece.radius_m is not None
+    disc = drawn.centroid.buffer(piece.radius_m, quad_segs=1024)
+    assert disc.covers(drawn)
+    assert piece.radius_m - 1500.0 <= piece.thinned_m
+    assert "CTR" in note
+    ring = tuple(lonlat((x, y)) for x, y in drawn.exterior.coords[:-1])
+    mission = encode(make_plan(fence=Fence((), (ZonePolygon("CTR", ring),))))
+    (item,) = mission.fence
+    assert (item.command, item.param1) == (5004, pytest.approx(1500.0, abs=2.0))
+    middle = lonlat((4000.0, 0.0))
+    assert (item.y / 1e7, item.x / 1e7) == pytest.approx(middle, abs=1e-5)
+    ellipse = scale(drawn, 1.0, 0.7)
+    (piece,), _ = fitted([Piece.polygon("E", ellipse, False)], [], PX4_STORE)
+    assert not piece.round
 
 
 def test_an_area_of_many_corners_fits_round_the_flight() -> None:
