@@ -195,14 +195,15 @@ class Door:
             slowest_s += len(part) / self._patience.body_bytes_s
             tail = (tail + part)[-len(_LAST_CHUNK) :]
             client.left = None if client.left is None else client.left - len(part)
-            with contextlib.suppress(ConnectionError):
-                # Who has answered already reads no more; the answer is on its way.
-                to_behind.write(part)
-                await to_behind.drain()
-        while len(client.held) < MOST_BYTES:
+            await _hand_on(part, to_behind)
+        # What looked like the last chunk may have been a piece of one; no time is measured from there on.
+        while client.left is None and (part := await client.part(_CHUNK_BYTES)):
+            await _hand_on(part, to_behind)
+        while client.left is not None and len(client.held) < MOST_BYTES:
             if not await client.more():
                 return
-        await asyncio.Event().wait()
+        if client.left is not None:
+            await asyncio.Event().wait()
 
     async def _answer(self, request: RequestHead, behind: _Incoming, writer: asyncio.StreamWriter) -> bool:
         """Pass the answer on; whether the connection may go on."""
@@ -240,6 +241,13 @@ class Door:
         async with asyncio.timeout(self._patience.answer_s):
             await writer.drain()
         return tail == _LAST_CHUNK if answer.chunked else answer.length in (None, size)
+
+
+async def _hand_on(part: bytes, to_behind: asyncio.StreamWriter) -> None:
+    # Who has answered already reads no more; the answer is on its way.
+    with contextlib.suppress(ConnectionError):
+        to_behind.write(part)
+        await to_behind.drain()
 
 
 def _absence(links: bool) -> str:

@@ -147,6 +147,21 @@ async def test_bodies_in_chunks_and_ends_of_connections(folder: Path) -> None:
         writer.close()
 
 
+async def test_a_chunk_that_holds_what_ends_a_body_does_not_end_it(folder: Path) -> None:
+    """A piece of a body that ends like the last chunk is passed on with what comes after it."""
+    async with house(folder) as (_, _, _, port):
+        reader, writer = await asyncio.open_connection("127.0.0.1", port)
+        writer.write(
+            b"POST /x HTTP/1.1\r\nHost: localhost\r\nTransfer-Encoding: chunked\r\n\r\n5\r\n0\r\n\r\n"
+        )
+        await asyncio.sleep(0.1)  # so that the rest comes by itself
+        writer.write(b"\r\n3\r\n\1\1\1\r\n0\r\n\r\n")
+        expected = f"web POST /x 8 {sum(b'0') + 2 * (13 + 10) + 3}"
+        async with asyncio.timeout(10):
+            assert (await reader.read()).endswith(expected.encode())
+        writer.close()
+
+
 async def test_requests_may_follow_each_other_unasked(folder: Path) -> None:
     """Two requests in one write are answered in turn (RFC 9112, 9.3.2)."""
     async with house(folder) as (_, _, _, port):
