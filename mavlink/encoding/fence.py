@@ -11,7 +11,7 @@ from shapely.ops import unary_union
 
 from mavlink.dialects.mission import numbered, placed
 from mavlink.dialects.stores import FenceStore
-from mavlink.encoding.fit import Piece, fitted
+from mavlink.encoding.fit import Piece, fitted, near_notes
 from mavlink.encoding.options import EncodeError
 from mavlink.wire.geometry import LocalMap, Xy
 from mavlink.wire.items import Command, Frame, MissionItem, MissionType
@@ -43,7 +43,7 @@ def fence_items(
             drawn.append(Piece.polygon(_key(zones, zone), shape, False))
     pieces, of_size = fitted(drawn, lines, store)
     items = [item for piece in pieces for item in _items(piece, zones[piece.name], local)]
-    return numbered(items, MissionType.FENCE), (*notes, *of_size)
+    return numbered(items, MissionType.FENCE), (*notes, *of_size, *near_notes(pieces, lines))
 
 
 def _items(piece: Piece, zone: ZonePolygon | ZoneCircle, local: LocalMap) -> list[MissionItem]:

@@ -42,6 +42,8 @@ THINNED_M = (
 ROOM_M = 15.0
 #: What has so many corners, all so near to a circle by its radius, was drawn for one.
 ROUND_CORNERS, ROUND_PART = 16, 0.05
+#: How well lines are kept, passes and what is behind turns alike.
+KEPT_TO_M = 5.0
 #: Zones farther from the whole flight than this may be left out of a fence that is still too large.
 FAR_M = 5_000.0
 
@@ -104,6 +106,18 @@ def fitted(
     if not _fits(kept, store):
         notes.append(does_not_fit(kept, store))
     return tuple(kept), tuple(notes)
+
+
+def near_notes(pieces: Iterable[Piece], lines: Sequence[LineString]) -> tuple[str, ...]:
+    """A note on each fence that the flight, flown as well as autopilots fly, may meet."""
+    flown = shapely.union_all(list(lines))
+    found = [(float(flown.distance(piece.shape.exterior)), piece.name) for piece in pieces]
+    return tuple(
+        f"fence: the flight comes to {near_m:.1f} m from the edge of {name!r}; lines are kept to some "
+        f"{KEPT_TO_M:g} m, so the fence may stop it: plan with more clearance_m, or a wider area"
+        for near_m, name in sorted(found)
+        if near_m < KEPT_TO_M
+    )
 
 
 def does_not_fit(pieces: Iterable[Piece], store: FenceStore) -> str:

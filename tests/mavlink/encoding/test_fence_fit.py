@@ -15,7 +15,7 @@ from shapely.geometry import LineString, MultiPoint, Point, Polygon, box
 from mavlink.dialects import dialect_for
 from mavlink.dialects.stores import ARDUPLANE_STORE, PX4_STORE, FenceStore
 from mavlink.encoding.encode import encode
-from mavlink.encoding.fit import FAR_M, ROOM_M, THINNED_M, Piece, fitted, thinned
+from mavlink.encoding.fit import FAR_M, ROOM_M, THINNED_M, Piece, fitted, near_notes, thinned
 from planner.plan import Fence, ZonePolygon
 from tests.mavlink.plans import lonlat, make_plan, square_fence
 
@@ -159,6 +159,20 @@ def test_a_mission_with_a_zone_of_many_corners_is_taken(autopilot: Any) -> None:
     # Places go in steps of 1e-7 degrees, some centimetre.
     assert ring.buffer(2e-7).covers(Polygon(drawn.ring))
     assert any("thinned" in note for note in mission.notes)
+
+
+def test_a_fence_that_the_flight_nearly_meets_is_told() -> None:
+    """By shapely's distance: an edge 2 m beside the line, not one 20 m beside it; inside an area as well."""
+    flown = LineString([(0.0, 0.0), (1000.0, 0.0)])
+    pieces = [
+        Piece.polygon("near", box(400, 2, 500, 50), False),
+        Piece.polygon("apart", box(400, -50, 500, -20), False),
+        Piece.polygon("area", box(-3, -900, 1900, 900), True),
+    ]
+    notes = near_notes(pieces, [flown])
+    assert len(notes) == 2
+    assert "2.0 m from the edge of 'near'" in notes[0]
+    assert "3.0 m from the edge of 'area'" in notes[1]
 
 
 def test_more_than_is_stored_is_found() -> None:
