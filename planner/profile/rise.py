@@ -315,12 +315,14 @@ def _turns_at(low_m: float, leg: Path, at_m: float, terms: Terms) -> Iterator[_C
 
 
 def _circles(length_m: float, radius_m: float) -> Iterator[tuple[int, float]]:
-    """How many whole turns, and of which radius, are at least so long: as tight as may be, or one fewer."""
-    round_m = math.tau * radius_m
-    yield max(1, math.ceil(length_m / round_m)), radius_m
-    fewer = math.floor(length_m / round_m)
-    if fewer >= 1:
-        yield fewer, stored_radius_m(length_m / (math.tau * fewer))
+    """How many whole turns, and how wide, are at least so long: as tight as may be, or a single wide one.
+
+    More than one are left as tight as they are: what climbs or descends faster than planned leaves early.
+    """
+    count = max(1, math.ceil(length_m / (math.tau * radius_m)))
+    yield count, radius_m
+    if count == 2:
+        yield 1, stored_radius_m(length_m / math.tau)
 
 
 def _beside(low_m: float, leg: Path, terms: Terms) -> _Choice | None:
