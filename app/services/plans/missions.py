@@ -166,9 +166,7 @@ def _of_a_file(mission: Mission, found: DialectFinding) -> DialectFinding:
     """A finding about a mission file: there a place of 0, 0 is ArduPilot's own word for where it is then."""
     if mission.declared is None or mission.autopilot != "ardupilot" or found.rule != "place-zero":
         return found
-    words = (
-        "latitude 0, longitude 0 stand for where the vehicle is then: what it flies over there is not judged"
-    )
+    words = "latitude 0, longitude 0 stand for where the vehicle is then"
     return replace(found, message=words, severity="warning")
 
 
