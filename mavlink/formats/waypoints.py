@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from mavlink.dialects import Autopilot, VehicleType
-from mavlink.dialects.base import GLOBAL_FRAMES
+from mavlink.dialects.base import CIRCLE_COMMANDS, GLOBAL_FRAMES, fence_shapes, is_polygon
 from mavlink.dialects.mission import Mission, declared_by, home_item, numbered
 from mavlink.formats.columns import for_file, in_file
 from mavlink.formats.errors import FormatError
@@ -96,9 +96,13 @@ def read_waypoints(
     if vehicle_type is None:
         notes.add("the file does not say its vehicle: a fixed wing is assumed; say which (--type)")
     first, second = in_file(home)
+    fence = numbered([row.item for row in lists.fence], MissionType.FENCE)
+    odd = [shape[0].seq for command, shape in fence_shapes(fence) if _is_odd(command, shape)]
+    for seq in odd:
+        notes.add("this part of the fence is no shape", "fence item", seq)
     return Mission(
         mission=numbered(items),
-        fence=numbered([row.item for row in lists.fence], MissionType.FENCE),
+        fence=fence,
         rally=numbered([row.item for row in lists.rally], MissionType.RALLY),
         autopilot=autopilot,
         vehicle="",
@@ -107,7 +111,15 @@ def read_waypoints(
         notes=notes.lines(),
         home_altitude_m=home.z if home.frame in (Frame.GLOBAL, Frame.GLOBAL_INT) else 0.0,
         declared=declared_by(autopilot, vehicle_type),
+        unread=frozenset({MissionType.FENCE} if odd else ()),
     )
+
+
+def _is_odd(command: int, shape: tuple[MissionItem, ...]) -> bool:
+    """Whether a part of a fence fences nothing: a circle without a radius, a polygon of two corners."""
+    if command in CIRCLE_COMMANDS:
+        return not 0.0 < shape[0].param1 < math.inf
+    return is_polygon(command) and len(shape) < 3
 
 
 def _home(version: str, rows: list[Row], notes: Notes) -> tuple[MissionItem | None, int]:

@@ -30,6 +30,8 @@ from planner.vehicle.aircraft import STANDARD_GRAVITY_M_S2, Aircraft, VehicleTyp
 
 #: Rasters by name; None for one that is not there.
 Terrains = Callable[[str], Terrain | None]
+#: A circle of this radius holds the whole Earth.
+_HALF_ROUND_M = 20_100_000.0
 #: The ground is looked at so far beyond the mission's places.
 _GROUND_MARGIN_M = 2_000.0
 #: What vehicles come with (AIRSPEED_CRUISE and ROLL_LIMIT_DEG of ArduPlane 4.6, FW_AIRSPD_TRIM and FW_R_LIM
@@ -234,9 +236,9 @@ def _fenced(scenario: Scenario, mission: Mission) -> tuple[Fence, Scenario]:
     for number, (command, shape) in enumerate(fence_shapes(mission.fence), start=1):
         name = f"fence {number}"
         ring = tuple(_place(item) for item in shape)
-        if command in CIRCLE_COMMANDS:
+        if command in CIRCLE_COMMANDS and shape[0].param1 > 0.0:
             centre = scenario.frame.to_local([ring[0]])[0]
-            radius_m = shape[0].param1
+            radius_m = min(shape[0].param1, _HALF_ROUND_M)
             disc = Point(*centre).buffer(radius_m, quad_segs=64)
             if command == Command.NAV_FENCE_CIRCLE_INCLUSION:
                 inclusions.append((ZonePolygon(name, _ring(scenario, disc)), disc))

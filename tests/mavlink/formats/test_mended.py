@@ -144,6 +144,16 @@ def test_a_fence_file_is_a_fence_and_stays_one() -> None:
     assert plan["mission"]["items"] == []
 
 
+def test_parts_of_a_fence_that_are_no_shapes_are_told_and_marked() -> None:
+    """A circle without a radius and a polygon of two corners fence nothing: the fence is not read whole."""
+    flat = FENCE[3].replace("\t80\t", "\t0\t")
+    for rows in ([flat], FENCE[:2]):
+        mission = read_mission("\n".join(["QGC WPL 110", ROWS[0], *rows]))
+        assert mission.unread == {MissionType.FENCE}
+        assert any("no shape" in note for note in mission.notes)
+    assert not read_mission("\n".join(["QGC WPL 110", ROWS[0], *FENCE])).unread
+
+
 def test_point_lists_are_read_as_pymavlink_reads_them(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import random
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +23,7 @@ from mavlink.formats import read_mission
 from mavlink.wire.items import MissionType
 from planner.airspace.terrain import Terrain
 from planner.geojson import read_plan
+from tests.mavlink.formats.test_mutations import plan, spoiled_json, spoiled_text
 
 FAULTS = Path(__file__).parents[3] / "faults"
 LAT, LON = 47.1, 8.2
@@ -279,3 +281,20 @@ def test_fence_and_rally_points_are_features_of_the_plan() -> None:
     roles = [feature["properties"]["role"] for feature in plan["features"]]
     assert roles == ["path", "fence", "rally"]
     assert plan["features"][2]["geometry"]["coordinates"] == [LON, LAT, 30.0]
+
+
+def test_spoiled_files_are_judged_or_refused() -> None:
+    """Whatever is lost, doubled or rubbish in a file: a verdict or a refusal; what is judged can go up."""
+    chance = random.Random(17)
+    route = file(*ROUTE, *fence_rows(5001, *SQUARE)).decode()
+    judged = 0
+    for run in range(60):
+        text = spoiled_json(plan(), chance) if run % 2 else spoiled_text(route, chance)
+        try:
+            made = filed(text.encode(), FileChoice("f", chance.choice([None, "px4"])))
+        except RefusedError:
+            continue
+        judged += 1
+        brief = brief_of(made.plan, made.scenario, MissionChoice(autopilot="ardupilot", vehicle_type="vtol"))
+        mission_findings(brief.mission, list(MissionType))
+    assert 0 < judged < 60
