@@ -65,6 +65,7 @@ async def test_a_flight_is_recorded_and_flown_again_from_its_recording(
     flights = await until(client, "/api/v1/flights", lambda body: body["flights"][0]["state"] != "flying")
     replayed = flights["flights"][0]
     assert (replayed["vehicle_name"], replayed["plan_id"]) == ("again", plan_id)
+    assert replayed["link"] == []
     assert replayed["points"] > 0.8 * flown["points"]
     track = (await client.get(replayed["links"]["track.geojson"])).json()
     assert track["features"][0]["properties"]["times_s"] == sorted(

@@ -143,7 +143,9 @@ class FlightRecorder:
                 await self._save()
 
     async def _note_link(self, client: VehicleClient) -> None:
-        """Note a loss of the link by when the vehicle was last heard, and its end."""
+        """Note a loss of the link, by when it was last heard, and its end; the end of a recording is none."""
+        if _moment(self._recorder, 0) is not None:
+            return
         state, lost = client.state, client.failure is not None or not client.state.connected
         if lost == self._lost or self.flight_id is None:
             return
