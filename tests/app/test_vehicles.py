@@ -82,7 +82,7 @@ async def test_whole_journey(client: httpx.AsyncClient, aircraft: str, payload: 
     assert record["state"] == "done", record
     plan_id = record["id"]
     # Slow enough to be met in flight on a busy machine.
-    vehicle = await connected(client, f"sim:?speedup=200&{aircraft}")
+    vehicle = await connected(client, f"sim:?speedup=80&{aircraft}")
     answer = await client.post(
         vehicle + "/mission",
         json={"plan_id": plan_id, "parts": ["mission", "fence", "rally"], "payload": payload},

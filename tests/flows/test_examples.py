@@ -44,4 +44,4 @@ def test_curl_journey_flies_and_sees(service: str, tmp_path: Path) -> None:
     assert "upload: accepted, read back equal: True" in done.stdout
     seen = json.loads(done.stdout.rsplit("seen: ", 1)[1].replace("'", '"'))
     assert set(seen) == {"R1", "R2", "R3", "R4", "R5", "R6"}
-    assert min(seen.values()) > 0.995
+    assert min(seen.values()) > 0.99

@@ -47,7 +47,7 @@ def judge(told: str, autopilot: str, folder: Path) -> None:
     assert max(off_m) < 5.0
     seen = json.loads(told.rsplit("seen: ", 1)[1].replace("'", '"'))
     assert set(seen) == {"R1", "R2", "R3", "R4", "R5", "R6"}
-    assert min(seen.values()) > 0.995
+    assert min(seen.values()) > 0.99
     assert "R1" in (folder / "swathplan-report.html").read_text()
 
 

@@ -62,7 +62,7 @@ async def until(client: httpx.AsyncClient, path: str, ready: Callable[[Any], boo
 @pytest.mark.parametrize(
     ("airframe", "payload", "parameters", "least_seen"),
     [
-        (AEROPLANE, None, {}, 0.995),
+        (AEROPLANE, None, {}, 0.99),
         (AEROPLANE, "camera:distance=10", CAMERA, 0.95),
         pytest.param(
             MULTIROTOR,
