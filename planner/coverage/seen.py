@@ -9,6 +9,7 @@ from planner.coverage.merge import MergedRegion, merge_regions
 from planner.coverage.registry import family_of
 from planner.coverage.visible import Seeing
 from planner.errors import InfeasibleError
+from planner.wishes import Region
 
 
 def check_visible(asked: Seeing, around: Surroundings) -> None:
@@ -20,7 +21,12 @@ def check_visible(asked: Seeing, around: Surroundings) -> None:
         Where a required region cannot be seen.
     """
     merged = merge_regions(asked.regions, default_sensor=asked.suite.first)
-    doubtful = {name for region in merged if not _seen(asked, region, around) for name in region.names}
+    by_name = {region.name: region for region in asked.regions}
+
+    def seen(region: MergedRegion) -> bool:
+        return _seen(asked, region, [by_name[name] for name in region.names], around)
+
+    doubtful = {name for region in merged if not seen(region) for name in region.names}
     if not doubtful:
         return
     # Those that one of them is merged with, and so on, so that they are merged as they are among all.
@@ -33,16 +39,19 @@ def check_visible(asked: Seeing, around: Surroundings) -> None:
     replace(asked, regions=left).visible(around)
 
 
-def _seen(asked: Seeing, region: MergedRegion, around: Surroundings) -> bool:
-    """Whether some passes that see a region whole may be flown; False says nothing."""
-    by_name = {each.name: each for each in asked.regions if each.name in region.names}
+def _seen(asked: Seeing, region: MergedRegion, parts: list[Region], around: Surroundings) -> bool:
+    """Whether some passes that see a region whole may be flown; False says nothing.
+
+    Parameters
+    ----------
+    parts
+        What was merged to it, in the order of its names.
+    """
     try:
         level = asked.level.of(region)
-        sensor, height_m = asked.suite.over(
-            by_name[region.names[0]].sensor, region.area, asked.airspace, level
-        )
+        sensor, height_m = asked.suite.over(parts[0].sensor, region.area, asked.airspace, level)
         family = family_of(sensor)
-        for each in by_name.values():
+        for each in parts:
             family.check(each, sensor, height_m)
         return family.can_be_flown(region, sensor, height_m, asked.at(level, around), wide=asked.wide)
     except InfeasibleError:
