@@ -84,12 +84,12 @@ def _read(document: Any, findings: Findings, terrains: Terrains | None) -> Scena
     if not isinstance(raw_features, list):
         findings.error("scenario", "no-features", "has no list of features", "Add features.")
         return None
-    if not check_size(raw_features, findings):
-        return None
     _check_crs(document.get("crs"), findings)
     check_bbox(document.get("bbox"), raw_features, findings)
     counted = near_features(raw_features, findings)
     raw_features = counted.features
+    if not check_size([f for k, f in enumerate(raw_features) if k not in counted.left_out], findings):
+        return None
     frame = frame_of(raw_features, findings, counted.left_out)
     raws = _raw_features(raw_features, findings, counted.left_out)
     if frame is None:

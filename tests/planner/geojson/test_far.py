@@ -79,6 +79,13 @@ def test_a_zone_wider_than_a_scenario_may_be_is_cut() -> None:
     assert "zones-cut" in {finding.rule for finding in scenario.warnings}
 
 
+def test_what_is_left_out_counts_for_no_limit() -> None:
+    """More zones than a scenario may have features, all but a few far away."""
+    zones = [feature(f"Z{k}", "no_fly", "Point", [2.0 + 1e-4 * k, 1.0], radius_m=5.0) for k in range(5_100)]
+    near = feature("near", "no_fly", "Point", [0.02, 0.03], radius_m=50.0)
+    assert [zone.name for zone in read_scenario(small(*zones, near)).no_fly] == ["near"]
+
+
 def test_across_the_antimeridian_near_zones_stay() -> None:
     """A zone on the other side of ±180° is near."""
     document = small(

@@ -94,13 +94,13 @@ def circle(corners: int) -> list[list[list[float]]]:
 @pytest.mark.parametrize("role", ["roi", "no_fly", "area"])
 def test_a_circle_of_many_corners_is_read_with_few(role: str) -> None:
     """Round what is to be seen and what forbids, within what is stayed in."""
-    document = small(feature("X", role, "Polygon", circle(30_000)))
+    document = small(feature("X", role, "Polygon", circle(4_900)))
     if role == "area":
         start = feature("start", "start", "Point", [0.01, 0.03])
         document["features"] = [feature("R", "roi", "Point", [0.01, 0.03]), start, document["features"][-1]]
     scenario = read_scenario(document)
     area = {"roi": scenario.regions[-1].area, "area": scenario.area}.get(role) or scenario.no_fly[0].area
-    drawn = Polygon(scenario.frame.to_local(circle(30_000)[0]))
+    drawn = Polygon(scenario.frame.to_local(circle(4_900)[0]))
     assert area is not None
     assert shapely.get_num_coordinates(area) < 1000
     assert (drawn if role == "area" else area).covers(area if role == "area" else drawn)
