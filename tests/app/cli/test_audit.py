@@ -68,9 +68,9 @@ def test_orders_are_listed(settings: Settings, tmp_path: Path) -> None:
         assert refused.value.code == Exit.BAD_INPUT
 
 
-@pytest.mark.parametrize("address", [f"http://127.0.0.1:{free_port()}", "nonsense", "http://[bad"])
+@pytest.mark.parametrize("address", ["http://127.0.0.1:{port}", "nonsense", "http://[bad"])
 def test_no_service_is_told(address: str) -> None:
     """Where nobody answers the command fails and names the way out."""
-    ended = CliRunner().invoke(cli, ["audit", "--service", address])
+    ended = CliRunner().invoke(cli, ["audit", "--service", address.replace("{port}", str(free_port()))])
     assert ended.exit_code != 0
     assert "--service" in str(ended.exception)
