@@ -16,9 +16,10 @@ from planner.coverage import decompose
 from planner.coverage.lines import flown_straight, inside
 from planner.coverage.merge import MergedRegion, split_region
 from planner.coverage.strips.classify import STEP_RAD, Spans, angles_around, fits, hull_points, spans_at
+from planner.coverage.strips.flyable import is_flyable
 from planner.coverage.strips.headings import grid
 from planner.coverage.strips.segments import Floats, Neighbourhood, too_wide
-from planner.coverage.strips.sweeps import Sweep, is_flyable
+from planner.coverage.strips.sweeps import Sweep
 from planner.errors import InfeasibleError
 from planner.route import CollectPass
 from planner.sensors.sar import SarSensor

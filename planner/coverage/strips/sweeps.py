@@ -21,7 +21,6 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from planner.coverage.lines import flown_straight
 from planner.coverage.merge import MergedRegion
 from planner.coverage.strips import kernels
 from planner.coverage.strips.classify import ROUNDING_M, hull_points, spans_at
@@ -286,38 +285,6 @@ def sweep_passes(sweep: Sweep, angle_rad: float, eta: float, order: Ints) -> tup
     return tuple(passes)
 
 
-def is_flyable(sweep: Sweep, area: shapely.Polygon | None, settle_m: float = 0.0) -> bool:
-    """Whether at some heading every lane, settling run and all, can be inside the area."""
-    if area is None:
-        return True
-    if sweep.region.approach_rad is None:
-        # Mostly one along or across does, which is found sooner than all headings are.
-        few = grid(sweep.region.area, math.pi / 2.0)
-        if flyable_headings(sweep, area, settle_m, few).any():
-            return True
-    return bool(flyable_headings(sweep, area, settle_m, sweep.angles_rad).any())
-
-
-def flyable_headings(
-    sweep: Sweep, area: shapely.Polygon | None, settle_m: float, angles_rad: Floats
-) -> NDArray[np.bool_]:
-    """At which headings every lane of a sweep, settling run and all, can be inside the area, (M,)."""
-    flyable = np.zeros(len(angles_rad), dtype=np.bool_)
-    counts = sweep.lanes(angles_rad)
-    for count in np.unique(counts):
-        rows = np.flatnonzero(counts == count)
-        if area is None:
-            flyable[rows] = True
-            continue
-        lanes = lanes_at(sweep, angles_rad[rows], np.array([0.0, 0.5, 1.0]), int(count))
-        shapely.prepare(area)
-        flown = shapely.linestrings(flown_straight(lanes.lines, settle_m))
-        inside = np.asarray(shapely.covers(area, flown), dtype=np.bool_)
-        inside &= _allowed(sweep, lanes.headings_rad)[:, None, None, :]
-        flyable[rows] = np.any(np.all(np.any(inside, axis=3), axis=2), axis=1)
-    return flyable
-
-
 def _solve(
     sweep: Sweep,
     angles_rad: Floats,
@@ -332,7 +299,7 @@ def _solve(
     shape = lanes.lines.shape[:4]
     headings_rad = np.broadcast_to(lanes.headings_rad[:, None, None, :], shape).ravel()
     cost_m, entries, exits, cramped_m = judge(lanes.lines.reshape(-1, 2, 2), headings_rad, lanes.looks)
-    cost_m = np.where(_allowed(sweep, headings_rad), cost_m, np.inf)
+    cost_m = np.where(allowed(sweep, headings_rad), cost_m, np.inf)
     before_m, behind_m = np.zeros((2, len(cost_m)))
     if between is not None:
         before_m, behind_m = between.before_m(entries), between.behind_m(exits)
@@ -380,17 +347,18 @@ def _strides(sweep: Sweep, radius_m: float) -> int:
 
 def _ways(sweep: Sweep) -> tuple[int, ...]:
     """Onward, and back where some allowed heading has its opposite allowed too."""
-    allowed = sweep.region.approach_rad
-    if allowed is None or bool(_allowed(sweep, np.asarray(allowed) + math.pi).any()):
+    given = sweep.region.approach_rad
+    if given is None or bool(allowed(sweep, np.asarray(given) + math.pi).any()):
         return (1, -1)
     return (1,)
 
 
-def _allowed(sweep: Sweep, headings_rad: Floats) -> NDArray[np.bool_]:
+def allowed(sweep: Sweep, headings_rad: Floats) -> NDArray[np.bool_]:
+    """Which headings the region may be seen along."""
     if sweep.region.approach_rad is None:
         return np.ones(headings_rad.shape, dtype=np.bool_)
-    allowed = np.asarray(sweep.region.approach_rad, dtype=np.float64)
-    apart = np.abs(np.mod(headings_rad[..., None] - allowed + math.pi, math.tau) - math.pi)
+    given = np.asarray(sweep.region.approach_rad, dtype=np.float64)
+    apart = np.abs(np.mod(headings_rad[..., None] - given + math.pi, math.tau) - math.pi)
     return np.asarray((apart <= _SAME_ANGLE_RAD).any(axis=-1), dtype=np.bool_)
 
 

@@ -15,8 +15,9 @@ from shapely.geometry import LineString, Polygon
 
 from planner.airspace.surroundings import Surroundings
 from planner.coverage.strips import kernels
+from planner.coverage.strips.flyable import is_flyable
 from planner.coverage.strips.options import collect_passes, make_options
-from planner.coverage.strips.sweeps import Sweep, is_flyable, lanes_at, sweeps
+from planner.coverage.strips.sweeps import Sweep, lanes_at, sweeps
 from planner.dubins.words import shortest
 from planner.route import CollectPass, Look, Pose
 from planner.sensors.strip import swaths_m
