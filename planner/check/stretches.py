@@ -8,6 +8,9 @@ from shapely.geometry import LineString, Point
 
 Floats = NDArray[np.float64]
 
+#: Vertices closer together than this are one place.
+_LEAST_M = 1e-9
+
 
 class Measured:
     """A line whose vertices' distances along it are known, so that a stretch costs what is in it.
@@ -44,4 +47,7 @@ class Measured:
         """How far along the place of a stretch is that lies nearest to another."""
         from_m = min(max(from_m, 0.0), self.length_m)
         stretch = self.between(from_m, to_m)
+        # GEOS divides by the lengths of segments.
+        steps_m = np.hypot(*np.diff(stretch, axis=0).T)
+        stretch = stretch[np.concatenate([[True], steps_m > _LEAST_M])]
         return from_m + float(LineString(stretch).project(Point(place))) if len(stretch) > 1 else from_m
