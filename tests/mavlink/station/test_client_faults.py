@@ -22,9 +22,12 @@ from mavlink.transfer.outcome import Accepted, Refused, Unknown
 from mavlink.wire.items import Command, MissionItem, MissionType
 
 # The count and questions are repeated early; the patience with a vehicle that asks again each second stays.
-QUICK = TransferSettings(timeout_s=0.3, retries=3, silence_s=4.0, acknowledgement_s=2.5)
+QUICK = TransferSettings(timeout_s=0.8, retries=3, silence_s=4.0, acknowledgement_s=2.5)
+#: Silent for so long it counts as lost: longer than a busy machine keeps a loop waiting, and shorter where a
+#: loss is meant.
+LOST_AFTER_S, SOON_LOST_S = 6.0, 1.5
 #: So many aircraft at once: on a busy machine more would keep each other waiting longer than that.
-AT_ONCE = 6
+AT_ONCE = 12
 ITEMS = (
     MissionItem(0, 0, Command.NAV_WAYPOINT, x=473_977_000, y=85_456_000, z=488.0),
     MissionItem(1, 3, Command.NAV_TAKEOFF, 15.0, x=473_990_000, y=85_456_000, z=80.0),
@@ -53,14 +56,16 @@ def mission(flavour: Flavour) -> tuple[MissionItem, ...]:
 
 
 @contextlib.asynccontextmanager
-async def simulated(flavour: Flavour, *faults: Fault) -> AsyncIterator[VehicleClient]:
+async def simulated(
+    flavour: Flavour, *faults: Fault, lost_after_s: float = LOST_AFTER_S
+) -> AsyncIterator[VehicleClient]:
     """A client connected to a simulated aircraft with faults."""
     ground, air = memory_pair()
     settings = SimSettings(autopilot=flavour, faults=faults, vanish_for_s=2.0)
     stop = asyncio.Event()
     flight = asyncio.create_task(serve_link(air, settings, stop=stop))
     try:
-        async with VehicleClient(ground, settings=QUICK, lost_after_s=1.5) as client:
+        async with VehicleClient(ground, settings=QUICK, lost_after_s=lost_after_s) as client:
             await client.connect(10)
             yield client
     finally:
@@ -144,7 +149,7 @@ async def test_an_aircraft_that_vanishes_is_resolved_on_its_return() -> None:
     """Unknown while it is away; when it is back the read-back shows that the upload did not take."""
 
     async def vanish(flavour: Flavour) -> None:
-        async with simulated(flavour, Fault.VANISH_MID_UPLOAD) as client:
+        async with simulated(flavour, Fault.VANISH_MID_UPLOAD, lost_after_s=SOON_LOST_S) as client:
             compare = comparison(flavour)
             result = await client.upload_verified(mission(flavour), MissionType.MISSION, compare)
             assert (result.status, result.held, client.pending) == ("unknown", None, True)
