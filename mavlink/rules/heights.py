@@ -19,7 +19,7 @@ class HeightNeeds:
     Parameters
     ----------
     climb_m_s, sink_m_s
-        Fastest that the plan climbs and descends on wings, at its airspeed; 0 where it does not.
+        Fastest that the plan climbs and descends on wings, at its airspeed in still air; 0 where it does not.
     turning_up_m_s, turning_down_m_s
         The same of its whole turns alone.
     lowest_m
