@@ -7,13 +7,12 @@ from typing import Annotated, Any
 
 import typer
 
-from app.cli.output import CommandError, Exit, Json, Output, emit, emit_json
+from app.cli.asking import DEFAULT_SERVICE, Service, asked
+from app.cli.output import Json, Output, emit, emit_json
 
 
 def audit(
-    service: Annotated[
-        str, typer.Option(help="Address of the service.", metavar="URL")
-    ] = "http://127.0.0.1:8000",
+    service: Service = DEFAULT_SERVICE,
     vehicle: Annotated[str | None, typer.Option(help="Of one vehicle: its id, or its name.")] = None,
     kind: Annotated[
         str | None, typer.Option(help="order, upload, clear, override, acknowledgement or signing.")
@@ -25,30 +24,13 @@ def audit(
     as_json: Json = False,
 ) -> None:
     """List what was ordered of vehicles, by whom, and what became of it, newest first."""
-    found = _asked(service, vehicle=vehicle, kind=kind, since=since, until=until, limit=limit)
+    filters = {"vehicle": vehicle, "kind": kind, "since": since, "until": until, "limit": limit}
+    given = {name: value for name, value in filters.items() if value is not None}
+    found = asked(service, "GET", "audit", given)
     if as_json:
         emit_json(found, output)
         return
     emit("\n".join(map(_line, found["entries"])) or "nothing was ordered", output)
-
-
-def _asked(service: str, **filters: Any) -> dict[str, Any]:
-    """The service's answer."""
-    import httpx
-
-    given = {name: value for name, value in filters.items() if value is not None}
-    try:
-        answer = httpx.get(f"{service.rstrip('/')}/api/v1/audit", params=given, timeout=30.0)
-        body: dict[str, Any] = answer.json()
-    except (httpx.HTTPError, httpx.InvalidURL, json.JSONDecodeError) as error:
-        raise CommandError(
-            f"no service answers at {service}: {error or type(error).__name__}; start it, or give --service"
-        ) from error
-    if answer.status_code == 422:
-        raise CommandError(str(body["detail"]), Exit.BAD_INPUT)
-    if answer.status_code != 200:
-        raise CommandError(str(body.get("detail", answer.status_code)))
-    return body
 
 
 def _line(entry: dict[str, Any]) -> str:

@@ -195,8 +195,8 @@ class SimulatedAircraft:
         state = self._dynamics.step(step_s, command)
         self._consumed_j += state.power_w * step_s
         out += self.payload.step(state)
-        for part in (self._camera, self.gimbal):
-            out += part.step(state) if part is not None else []
+        out += self._camera.heartbeats(state) if self._camera is not None else []
+        out += self.gimbal.step(state) if self.gimbal is not None else []
         self.missions.flying = pilot.armed and pilot.mode is Mode.AUTO
         due = self.streams.due(state.time_s)
         if due:

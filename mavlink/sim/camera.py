@@ -7,16 +7,17 @@ Source: MAVLink camera protocol v2.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 
+from mavlink.sim.component import Component
 from mavlink.sim.dynamics import AircraftState
 from mavlink.sim.payload import Payload
 from mavlink.wire.items import Command
-from mavlink.wire.messages import Message, Value
+from mavlink.wire.messages import Message
 
 COMPONENT = 100
-_CAMERA, _NO_AUTOPILOT, _ACTIVE = 30, 8, 4
-_HEARTBEAT_S = 1.0
+#: MAV_TYPE.
+_CAMERA = 30
 #: A 24 megapixel frame: the sensor in millimetres, a lens of 16 mm.
 _FOCAL_MM, _WIDTH_MM, _HEIGHT_MM, _COLUMNS, _ROWS = 16.0, 23.5, 15.6, 6000, 4000
 #: CAMERA_CAP_FLAGS: video, images, modes, images in video mode, zoom, focus.
@@ -26,15 +27,14 @@ _PHOTO_MIB, _CAPACITY_MIB = 12.0, 64_000.0
 _ASKED = {521: 259, 522: 260, 525: 261, 527: 262}
 
 
-class Camera:
+class Camera(Component):
     """Answers for a camera; the payload takes the photos."""
 
     def __init__(self, system_id: int, payload: Payload) -> None:
-        self._system_id = system_id
+        super().__init__(system_id, COMPONENT, _CAMERA)
         self._payload = payload
         self._mode = 0
         self._zoom = self._focus = 0.0
-        self._heartbeat_s = 0.0
         self._messages: dict[int, Callable[[AircraftState], Message]] = {
             259: self._information,
             260: self._settings,
@@ -61,21 +61,8 @@ class Camera:
                 return self._payload.handle(command, params, state)
         return []
 
-    def step(self, state: AircraftState) -> list[Message]:
-        """Its heartbeat, when due."""
-        if state.time_s < self._heartbeat_s:
-            return []
-        self._heartbeat_s = state.time_s + _HEARTBEAT_S
-        fields = {"type": _CAMERA, "autopilot": _NO_AUTOPILOT, "system_status": _ACTIVE, "mavlink_version": 3}
-        return [self._own("HEARTBEAT", fields)]
-
-    def acknowledgement(self, command: int, sender: tuple[int, int], result: int) -> Message:
-        """COMMAND_ACK in its own name."""
-        target = {"target_system": sender[0], "target_component": sender[1]}
-        return self._own("COMMAND_ACK", {"command": command, "result": result, **target})
-
     def _information(self, state: AircraftState) -> Message:
-        return self._own(
+        return self.own(
             "CAMERA_INFORMATION",
             {
                 "time_boot_ms": _ms(state),
@@ -92,11 +79,11 @@ class Camera:
 
     def _settings(self, state: AircraftState) -> Message:
         fields = {"mode_id": self._mode, "zoomLevel": self._zoom, "focusLevel": self._focus}
-        return self._own("CAMERA_SETTINGS", {"time_boot_ms": _ms(state), **fields})
+        return self.own("CAMERA_SETTINGS", {"time_boot_ms": _ms(state), **fields})
 
     def _storage(self, state: AircraftState) -> Message:
         used_mib = self._payload.photos * _PHOTO_MIB
-        return self._own(
+        return self.own(
             "STORAGE_INFORMATION",
             {
                 "time_boot_ms": _ms(state),
@@ -111,10 +98,7 @@ class Camera:
 
     def _capture_status(self, state: AircraftState) -> Message:
         (status,) = self._payload.reports("CAMERA_CAPTURE_STATUS", state)
-        return Message(status.name, status.fields, self._system_id, COMPONENT)
-
-    def _own(self, name: str, fields: Mapping[str, Value]) -> Message:
-        return Message(name, fields, self._system_id, COMPONENT)
+        return self.own(status.name, status.fields)
 
 
 def _ms(state: AircraftState) -> int:

@@ -9,13 +9,13 @@ DO_GIMBAL_MANAGER_PITCHYAW, DO_GIMBAL_MANAGER_CONFIGURE) and v1 (DO_MOUNT_CONTRO
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 
+from mavlink.sim.component import Component
 from mavlink.sim.dynamics import AircraftState
 from mavlink.sim.geodesy import Place, offset_m
 from mavlink.sim.payload import quaternion
 from mavlink.wire.items import Command, MissionItem
-from mavlink.wire.messages import Message, Value
+from mavlink.wire.messages import Message
 
 COMPONENT = 154
 MOST_PITCH_DEG, LEAST_PITCH_DEG, MOST_YAW_DEG = 20.0, -90.0, 180.0
@@ -24,22 +24,23 @@ _NEUTRAL, _ROLL_LOCK, _PITCH_LOCK, _YAW_LOCK, _IN_VEHICLE, _IN_EARTH = 2, 4, 8, 
 #: GIMBAL_MANAGER_CAP_FLAGS: neutral, roll, pitch and yaw axes with lock and follow, points at places.
 _CAN = 0x2 | 0xFFC | 0x10000
 _SLEW_DEG_S = 60.0
-_GIMBAL, _NO_AUTOPILOT, _ACTIVE = 26, 8, 4
+#: MAV_TYPE.
+_GIMBAL = 26
 _MAVLINK_TARGETING = 2.0
-_REPORT_S, _HEARTBEAT_S = 1.0, 1.0
+_REPORT_S = 1.0
 
 
-class Gimbal:
+class Gimbal(Component):
     """Where it points, and who points it."""
 
     def __init__(self, system_id: int) -> None:
-        self._system_id = system_id
+        super().__init__(system_id, COMPONENT, _GIMBAL)
         self._pitch_deg = self._yaw_deg = 0.0
         self._aim: tuple[float, float] | Place = (0.0, 0.0)
         self._lock = False
         self._control = (0, 0)
         self._time_s: float | None = None
-        self._report_s = self._heartbeat_s = 0.0
+        self._report_s = 0.0
 
     def handle(self, item: MissionItem, sender: tuple[int, int]) -> bool:
         """Carry out an order or a mission's item; False when it is none for a gimbal.
@@ -87,7 +88,7 @@ class Gimbal:
                     "yaw_max": math.radians(MOST_YAW_DEG),
                 }
                 names = {"vendor_name": "Swathplan", "model_name": "simulated gimbal"}
-                return self._own(
+                return self.own(
                     "GIMBAL_DEVICE_INFORMATION",
                     {"time_boot_ms": _ms(state), "cap_flags": _CAN & 0xFFF, **names, **limits},
                 )
@@ -104,11 +105,7 @@ class Gimbal:
         self._pitch_deg += min(max(pitch_deg - self._pitch_deg, -most_deg), most_deg)
         self._yaw_deg += min(max(_within(yaw_deg - self._yaw_deg), -most_deg), most_deg)
         self._yaw_deg = _within(self._yaw_deg)
-        out: list[Message] = []
-        if state.time_s >= self._heartbeat_s:
-            self._heartbeat_s = state.time_s + _HEARTBEAT_S
-            fields = {"type": _GIMBAL, "autopilot": _NO_AUTOPILOT, "system_status": _ACTIVE}
-            out.append(self._own("HEARTBEAT", {**fields, "mavlink_version": 3}))
+        out = self.heartbeats(state)
         if state.time_s >= self._report_s:
             self._report_s = state.time_s + _REPORT_S
             out.append(self.attitude(state))
@@ -120,7 +117,7 @@ class Gimbal:
         if self._lock:
             yaw_deg = _within(yaw_deg + math.degrees(state.heading_rad))
         flags = _ROLL_LOCK | _PITCH_LOCK | (_YAW_LOCK | _IN_EARTH if self._lock else _IN_VEHICLE)
-        return self._own(
+        return self.own(
             "GIMBAL_DEVICE_ATTITUDE_STATUS",
             {
                 "time_boot_ms": _ms(state),
@@ -176,14 +173,6 @@ class Gimbal:
         )
         bearing_deg = math.degrees(math.atan2(east_m, north_m))
         return min(max(down_deg, LEAST_PITCH_DEG), MOST_PITCH_DEG), _within(bearing_deg - heading_deg)
-
-    def acknowledgement(self, command: int, sender: tuple[int, int], result: int) -> Message:
-        """COMMAND_ACK in the device's name."""
-        target = {"target_system": sender[0], "target_component": sender[1]}
-        return self._own("COMMAND_ACK", {"command": command, "result": result, **target})
-
-    def _own(self, name: str, fields: Mapping[str, Value]) -> Message:
-        return Message(name, fields, self._system_id, COMPONENT)
 
 
 def _within(angle_deg: float) -> float:
