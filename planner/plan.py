@@ -18,6 +18,8 @@ SegmentKind = Literal["straight", "left", "right", "vertical"]
 PhaseKind = Literal["take_off", "climb", "mission", "return", "landing"]
 #: How a flight ends: on the ground, circling over home until a pilot lands it, circling over its end.
 Finish = Literal["land", "return", "loiter"]
+#: What releases a camera.
+Trigger = Literal["distance", "time", "video"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,10 +141,67 @@ class Transit:
 
 
 @dataclass(frozen=True, slots=True)
+class PlanCamera:
+    """What a mission and the judge of its flight need to know of a camera.
+
+    Parameters
+    ----------
+    focal_length_m, pixel_pitch_m
+        Of the lens itself, and between pixels.
+    columns, rows
+        Pixels across and along the flight direction, as it is mounted.
+    forward_overlap, side_overlap
+        Parts of a photo that the next, and that of the next lane, see again.
+    tilt_deg
+        Of its axis, from straight down forwards.
+    min_interval_s
+        Shortest time between two photos; 0 where unknown.
+    trigger
+        Photos by distance flown, by time, or one video for each collect.
+    model
+        Its name in the camera database; None for one given by its figures.
+    """
+
+    name: str
+    focal_length_m: float
+    pixel_pitch_m: float
+    columns: int
+    rows: int
+    forward_overlap: float
+    side_overlap: float
+    tilt_deg: float = 0.0
+    min_interval_s: float = 0.0
+    trigger: Trigger = "distance"
+    model: str | None = None
+    spectrum: Literal["visible", "infrared"] = "visible"
+
+
+@dataclass(frozen=True, slots=True)
+class Photos:
+    """Where the photos of one collect are taken, in order: the first at its start, the last at its end.
+
+    Parameters
+    ----------
+    seq
+        That of the collect.
+    interval_m, interval_s
+        Between two of them, over the ground and as flown; ``interval_s`` None where not timed.
+    """
+
+    vehicle: str
+    seq: int
+    sensor: str
+    places: tuple[LonLatAlt, ...]
+    interval_m: float
+    interval_s: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class Footprint:
     """Ground seen at full quality during one collect; on terrain a collect may have several.
 
     ``shadow_m2`` and ``layover_m2`` are the ground in the beam that terrain hides, of the whole collect.
+    ``gsd_m`` and ``niirs`` are the worst inside it, ``gsd_mean_m`` and ``niirs_mean`` the means.
     """
 
     vehicle: str
@@ -155,6 +214,9 @@ class Footprint:
     holes: tuple[Ring, ...] = ()
     shadow_m2: float | None = None
     layover_m2: float | None = None
+    gsd_m: float | None = None
+    gsd_mean_m: float | None = None
+    niirs_mean: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -221,6 +283,7 @@ class Metrics:
     ``energy_wh`` of all phases. ``route_length_m`` is the line over the ground from start to end, without
     turns flown for height; ``lower_bound_m`` what no mission phase over these regions is shorter than,
     threats left out, and ``gap`` by what part of its length this one is longer; None without a bound.
+    ``photos`` counts those of all cameras; None where there are none on board.
     """
 
     length_m: float
@@ -241,6 +304,7 @@ class Metrics:
     flight_duration_s: float | None = None
     route_length_m: float | None = None
     left_out: tuple[LeftOut, ...] = ()
+    photos: int | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -300,6 +364,8 @@ class Plan:
     planner_version: str
     seed: int
     warnings: tuple[str, ...] = ()
+    photos: tuple[Photos, ...] = ()
+    cameras: tuple[PlanCamera, ...] = ()
 
     def path_of(self, vehicle: str) -> FlownPath:
         """The path of one vehicle."""
@@ -308,6 +374,14 @@ class Plan:
     def collects_of(self, vehicle: str) -> tuple[Collect, ...]:
         """The collects of one vehicle in flight order."""
         return tuple(sorted((c for c in self.collects if c.vehicle == vehicle), key=lambda c: c.seq))
+
+    def photos_of(self, vehicle: str) -> tuple[Photos, ...]:
+        """The photos of one vehicle, those of each collect together, in flight order."""
+        return tuple(sorted((p for p in self.photos if p.vehicle == vehicle), key=lambda p: p.seq))
+
+    def camera(self, sensor: str) -> PlanCamera | None:
+        """The camera of a name; None where that sensor is none."""
+        return next((camera for camera in self.cameras if camera.name == sensor), None)
 
     @property
     def hard_violations(self) -> tuple[Violation, ...]:

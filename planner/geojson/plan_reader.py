@@ -16,7 +16,9 @@ from planner.plan import (
     Metrics,
     PathSegment,
     Phase,
+    Photos,
     Plan,
+    PlanCamera,
     PlanVehicle,
     Transit,
     Uncovered,
@@ -89,6 +91,8 @@ def read_plan(document: Any) -> Plan:
             planner_version=str(document["planner_version"]),
             seed=int(document["seed"]),
             warnings=tuple(document.get("warnings", ())),
+            photos=each("photos", _photos),
+            cameras=tuple(PlanCamera(**c) for c in document.get("cameras", ())),
         )
     except (KeyError, TypeError, ValueError) as error:
         _refuse("plan", "bad-plan-member", f"cannot be read: {error!r}", "Send the plan as it was written.")
@@ -190,7 +194,14 @@ def _footprint(p: Mapping[str, Any], coordinates: Any) -> Footprint:
         rings[1:],
         p.get("shadow_m2"),
         p.get("layover_m2"),
+        p.get("gsd_m"),
+        p.get("gsd_mean_m"),
+        p.get("niirs_mean"),
     )
+
+
+def _photos(p: Mapping[str, Any], places: Any) -> Photos:
+    return Photos(p["vehicle"], p["seq"], p["sensor"], _line(places), p["interval_m"], p["interval_s"])
 
 
 def _metrics(p: Mapping[str, Any]) -> Metrics:

@@ -60,9 +60,24 @@ def write_plan(plan: Plan) -> dict[str, Any]:
                 sensor=f.sensor,
                 resolution_m=f.resolution_m,
                 niirs=f.niirs,
+                **_quality(f),
                 **_hidden(f),
             )
             for f in plan.footprints
+        ),
+        *(
+            _feature(
+                "MultiPoint",
+                _line3(p.places),
+                role="photos",
+                vehicle=p.vehicle,
+                seq=p.seq,
+                sensor=p.sensor,
+                count=len(p.places),
+                interval_m=_m(p.interval_m),
+                interval_s=None if p.interval_s is None else round(p.interval_s, 3),
+            )
+            for p in plan.photos
         ),
         *(
             _ground(
@@ -80,6 +95,7 @@ def write_plan(plan: Plan) -> dict[str, Any]:
         "name": plan.name,
         "features": features,
         "vehicles": [asdict(v) for v in plan.vehicles],
+        "cameras": [asdict(c) for c in plan.cameras],
         "altitude_m": plan.altitude_m,
         "altitude_reference": plan.altitude_reference,
         "home": list(_lonlat(plan.home)),
@@ -100,6 +116,12 @@ def write_plan(plan: Plan) -> dict[str, Any]:
         "planner_version": plan.planner_version,
         "seed": plan.seed,
     }
+
+
+def _quality(f: Footprint) -> dict[str, float]:
+    """What a camera's photos are worth; nothing for other sensors."""
+    given = {"gsd_m": f.gsd_m, "gsd_mean_m": f.gsd_mean_m, "niirs_mean": f.niirs_mean}
+    return {name: value for name, value in given.items() if value is not None}
 
 
 def _hidden(f: Footprint) -> dict[str, float]:

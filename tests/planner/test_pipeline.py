@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 
 import pytest
 
@@ -10,6 +11,7 @@ from planner.errors import CancelledError, InfeasibleError
 from planner.geojson import read_plan, read_scenario, write_plan
 from planner.geojson.equipment import METHODS
 from planner.pipeline import make_plan
+from planner.plan import Photos, PlanCamera
 from tests.planner.scenarios import case, feature, small, square
 
 
@@ -68,6 +70,25 @@ def test_plans_survive_geojson() -> None:
     document = json.loads(json.dumps(write_plan(make_plan(read_scenario(case(2))))))
     again = json.loads(json.dumps(write_plan(read_plan(document))))
     assert again == document
+
+
+def test_photos_and_cameras_survive_geojson() -> None:
+    """What a plan says of cameras, photos and their quality is read back as it was written."""
+    plan = make_plan(read_scenario(case(2)))
+    collect, camera = plan.collects[0], PlanCamera("eye", 0.035, 4.5e-6, 7952, 5304, 0.75, 0.65, 10.0, 0.8)
+    photos = Photos(collect.vehicle, collect.seq, "eye", collect.line, 41.5, 1.9)
+    seen = replace(plan.footprints[0], gsd_m=0.03, gsd_mean_m=0.025, niirs=7.5, niirs_mean=7.75)
+    plan = replace(plan, cameras=(camera,), photos=(photos,), footprints=(seen,))
+    document = json.loads(json.dumps(write_plan(plan)))
+    (feature,) = (each for each in document["features"] if each["properties"]["role"] == "photos")
+    assert feature["geometry"]["type"] == "MultiPoint"
+    assert feature["properties"]["count"] == len(feature["geometry"]["coordinates"]) == 2
+    again = read_plan(document)
+    assert again.camera("eye") == camera
+    assert again.camera(collect.sensor) is None
+    assert again.photos_of(collect.vehicle)[0].interval_m == 41.5
+    assert replace(again.footprints[0], ring=()) == replace(seen, ring=())
+    assert json.loads(json.dumps(write_plan(again))) == document
 
 
 def test_contract_of_the_plan() -> None:
