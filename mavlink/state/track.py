@@ -14,6 +14,7 @@ from typing import Final, Literal
 
 from mavlink.state.energy import Energy, EnergyMeter
 from mavlink.state.outputs import CameraOutput, RelayOutput, SensorOutput, ServoOutput
+from mavlink.state.photos import PhotoSource, PhotoTaken, photos_among
 from mavlink.state.telemetry import VehicleState, finite, is_sensor_switch
 from mavlink.wire.messages import Message
 
@@ -30,6 +31,9 @@ _SAME_CLOCK_S: Final = 5.0
 
 #: Told by a camera, which is often a component of its own beside the autopilot.
 CAMERA_MESSAGES: Final = frozenset({"CAMERA_FEEDBACK", "CAMERA_IMAGE_CAPTURED", "CAMERA_CAPTURE_STATUS"})
+
+#: MAV_COMP_ID_CAMERA to CAMERA6.
+_CAMERAS: Final = range(100, 106)
 
 EventSource = Literal["camera", "payload", "relay", "servo"]
 _SOURCES: Final[dict[type, EventSource]] = {
@@ -76,6 +80,8 @@ class SensorEvent:
         Image, relay or servo number.
     amsl_m, heading_deg, roll_deg, pitch_deg
         Of a photo, as the camera says; None where it does not.
+    attitude_of
+        Whose attitude a photo tells: the airframe's, by the ``autopilot``, or that of the ``camera`` itself.
     """
 
     time_s: float
@@ -89,6 +95,7 @@ class SensorEvent:
     heading_deg: float | None = None
     roll_deg: float | None = None
     pitch_deg: float | None = None
+    attitude_of: PhotoSource = "autopilot"
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,6 +105,11 @@ class Track:
     points: tuple[TrackPoint, ...] = ()
     events: tuple[SensorEvent, ...] = ()
     energy: Energy | None = None
+
+    @property
+    def photos(self) -> tuple[PhotoTaken, ...]:
+        """The photos taken, in order of time."""
+        return photos_among(self.events)
 
 
 class TrackRecorder:
@@ -282,6 +294,7 @@ class TrackRecorder:
                 None if yaw_deg is None else yaw_deg % 360.0,
                 roll_deg,
                 pitch_deg,
+                "camera" if message.component_id in _CAMERAS else "autopilot",
             )
         )
 

@@ -2,7 +2,8 @@
 
 Source: ArduPilot's ``LogStructure.h``: POS (place, height over home), ATT (attitude), RELY (a relay changes),
 RCOU, RCO2, RCO3 (pulses of the outputs 1 to 14, 15 to 18, 19 to 32), CAM (a photo), GPS (week and
-milliseconds), PARM. ``TimeUS`` is the time since boot, that of GLOBAL_POSITION_INT.
+milliseconds), PARM. ``TimeUS`` is the time since boot, that of GLOBAL_POSITION_INT. With a feedback pin TRIG
+is the order to the shutter and CAM the photo that the camera confirms: an order alone is no photo.
 """
 
 from __future__ import annotations

@@ -10,6 +10,7 @@ from typing import Final
 from mavlink.encoding.payload import Payload
 from mavlink.state.modes import Autopilot
 from mavlink.state.outputs import RelayOutput, ServoOutput, output_of, switched_by
+from mavlink.state.photos import PhotoTaken, photos_among
 from mavlink.state.track import SensorEvent, TrackPoint
 
 #: Pulses are logged several times a second: an older one tells nothing.
@@ -44,6 +45,11 @@ class OnboardLog:
     pulses: Mapping[int, tuple[tuple[float, float], ...]] = field(default_factory=dict)
     parameters: Mapping[str, float] = field(default_factory=dict)
     unix_minus_boot_s: float | None = None
+
+    @property
+    def taken(self) -> tuple[PhotoTaken, ...]:
+        """The photos in order of time."""
+        return photos_among(self.photos)
 
 
 def switch_of(log: OnboardLog, payload: Payload) -> Switch | None:

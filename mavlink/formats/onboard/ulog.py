@@ -1,8 +1,9 @@
 """PX4's onboard logs, read by its own reader.
 
 Source: PX4's ``msg/``: VehicleGlobalPosition, VehicleAttitude, HomePosition, ActuatorOutputs (an instance for
-each port, pulses in microseconds), CameraCapture, SensorGps. Timestamps are microseconds since boot, those of
-GLOBAL_POSITION_INT.
+each port, pulses in microseconds), CameraCapture, CameraTrigger, SensorGps. Timestamps are microseconds since
+boot, those of GLOBAL_POSITION_INT. A capture is a trigger with its place; of a log with triggers alone those
+are photos that ``camera_feedback`` would have taken: with CAM_CAP_FBACK the ones that the camera confirmed.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from mavlink.state.track import SensorEvent, TrackPoint
 MAGIC: Final = b"ULog\x01\x12\x35"
 _TOPICS: Final = (
     "vehicle_global_position", "vehicle_attitude", "home_position", "actuator_outputs", "camera_capture",
-    "sensor_gps", "vehicle_gps_position",
+    "camera_trigger", "sensor_gps", "vehicle_gps_position",
 )  # fmt: skip
 _PORT_OUTPUTS: Final = 16
 _ATTITUDE_S: Final = 1.0
@@ -38,10 +39,15 @@ def read_ulog(path: Path) -> OnboardLog:
     home = topics.get(("home_position", 0))
     if places is None or home is None or not len(places["timestamp"]) or not len(home["timestamp"]):
         raise FormatError("the log holds no places (vehicle_global_position), or no home_position")
+    points = _points(places, topics.get(("vehicle_attitude", 0)), home)
+    captures = topics.get(("camera_capture", 0))
+    confirmed = log.initial_parameters.get("CAM_CAP_FBACK", 0) >= 1
     return OnboardLog(
         "px4",
-        _points(places, topics.get(("vehicle_attitude", 0)), home),
-        _photos(topics.get(("camera_capture", 0)), float(home["alt"][-1])),
+        points,
+        _triggered(topics.get(("camera_trigger", 0)), points, confirmed=confirmed)
+        if captures is None
+        else _photos(captures, float(home["alt"][-1])),
         {},
         _pulses(topics),
         {name: float(value) for name, value in log.initial_parameters.items()},
@@ -83,9 +89,29 @@ def _angles_deg(w: NDArray[Any], x: NDArray[Any], y: NDArray[Any], z: NDArray[An
     return angles
 
 
-def _photos(captures: Data | None, home_m: float) -> tuple[SensorEvent, ...]:
-    if captures is None:
+def _triggered(
+    triggers: Data | None, points: tuple[TrackPoint, ...], *, confirmed: bool
+) -> tuple[SensorEvent, ...]:
+    """A photo at each trigger, with the place and attitude of the track's nearest point."""
+    if triggers is None:
         return ()
+    times_s = np.array([point.time_s for point in points])
+    feedback = triggers.get("feedback", np.zeros(len(triggers["timestamp"]), dtype=bool))
+    made = []
+    for k, time_s in enumerate((triggers["timestamp"] / 1e6).tolist()):
+        nearest = int(np.argmin(np.abs(times_s - time_s)))
+        if abs(times_s[nearest] - time_s) > _ATTITUDE_S or (confirmed and not feedback[k]):
+            continue
+        at = points[nearest]
+        place = (at.lon_deg, at.lat_deg, at.relative_m)
+        angles = (at.heading_deg, at.roll_deg, at.pitch_deg)
+        made.append(
+            SensorEvent(time_s, "photo", "camera", *place, int(triggers["seq"][k]), at.amsl_m, *angles)
+        )
+    return tuple(made)
+
+
+def _photos(captures: Data, home_m: float) -> tuple[SensorEvent, ...]:
     angles = _angles_deg(*(captures[f"q[{k}]"] for k in range(4)))
     return tuple(
         SensorEvent(

@@ -61,6 +61,38 @@ def test_what_was_written_is_read(tmp_path: Path, written: Callable[[], bytes], 
         assert point.sensor_on is None
 
 
+@pytest.mark.parametrize(
+    ("written", "taken"),
+    [
+        (lambda: dataflash(ROWS, photos=(3, 40)), (3, 40)),
+        # A pin tells of the photos: what was ordered and not confirmed is none.
+        (lambda: dataflash(ROWS, orders=(3, 9, 40), photos=(3, 40)), (3, 40)),
+        (lambda: ulog(ROWS, captures=(5, 41, 80)), (5, 41, 80)),
+        (lambda: ulog(ROWS, captures=(5, 41), triggers={5: True, 30: False, 41: True}), (5, 41)),
+        (lambda: ulog(ROWS, triggers={5: False, 41: False}), (5, 41)),
+        (lambda: ulog(ROWS, triggers={5: True, 30: False, 41: True}, confirms=True), (5, 41)),
+        (lambda: ulog(ROWS, captures=(), triggers={5: False}, confirms=True), ()),
+    ],
+)
+def test_photos_are_where_and_as_they_were_taken(
+    tmp_path: Path, written: Callable[[], bytes], taken: tuple[int, ...]
+) -> None:
+    """Each photo with its time, place, height and attitude; orders that no camera confirmed are none."""
+    path = tmp_path / "log"
+    path.write_bytes(written())
+    photos = read_log(path, DEFAULT_PAYLOAD).taken
+    assert [photo.index for photo in photos] == list(taken)
+    for photo, row in zip(photos, (ROWS[number] for number in taken), strict=True):
+        assert photo.time_s == pytest.approx(row.time_s)
+        assert (photo.lon_deg, photo.lat_deg) == pytest.approx((row.lon_deg, row.lat_deg), abs=1e-7)
+        assert photo.altitude_amsl_m == pytest.approx(row.amsl_m, abs=0.01)
+        told = (photo.roll_rad, photo.pitch_rad)
+        assert told == pytest.approx((math.radians(row.roll_deg), math.radians(row.pitch_deg)), abs=1e-4)
+        assert photo.yaw_rad is not None
+        assert abs(math.remainder(photo.yaw_rad - math.radians(row.yaw_deg), math.tau)) < 1e-3
+        assert photo.source == "autopilot"
+
+
 def test_what_the_log_does_not_tell_is_not_known(tmp_path: Path) -> None:
     """A relay that no message names, and an output whose pulses have ended."""
     path = tmp_path / "log"

@@ -313,6 +313,30 @@ def test_photos_of_both_kinds_are_recorded_once() -> None:
     )
 
 
+def test_photos_in_radians_and_whose_attitude_they_tell() -> None:
+    """In order of time; a camera's own attitude is told apart from the airframe's, no place is no photo."""
+    of_autopilot = received(
+        "CAMERA_FEEDBACK", img_idx=4, time_usec=9_000_000, lat=470_000_000, lng=80_000_000, alt_msl=587.5,
+        roll=-30.0, pitch=6.0, yaw=-90.0,
+    )  # fmt: skip
+    down_q = (math.sqrt(0.5), 0.0, -math.sqrt(0.5), 0.0)
+    fields: dict[str, Value] = {"image_index": 7, "time_boot_ms": 8000, "lat": 1, "lon": 1, "alt": 90_000}
+    captured = Message("CAMERA_IMAGE_CAPTURED", fields | {"capture_result": 1, "q": down_q})
+    (of_camera,) = Codec().feed(Codec(1, 100).pack(captured))
+    nowhere = received("CAMERA_FEEDBACK", img_idx=1)
+    photos = record(nowhere, at(9000), of_autopilot, of_camera).track().photos
+    assert [(photo.index, photo.source, photo.time_s) for photo in photos] == [
+        (7, "camera", 8.0),
+        (4, "autopilot", 9.0),
+    ]
+    down, level = photos
+    assert down.pitch_rad == pytest.approx(-math.pi / 2.0, abs=1e-3)
+    assert level.altitude_amsl_m == 587.5
+    assert (level.roll_rad, level.pitch_rad, level.yaw_rad) == pytest.approx(
+        (math.radians(-30.0), math.radians(6.0), math.radians(270.0))
+    )
+
+
 def test_a_photo_has_the_time_of_the_camera_in_the_vehicles_clock() -> None:
     """Since 1970 or since boot, as the camera tells; what fits neither clock has the time it was heard."""
 
