@@ -36,6 +36,14 @@ class PlanVehicle:
 
 
 @dataclass(frozen=True, slots=True)
+class PlanWind:
+    """The steady wind that the plan is made for: its speed, and where it comes from, from true north."""
+
+    speed_m_s: float = 0.0
+    from_deg: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
 class PathSegment:
     """A straight, a circular arc or a climb on the spot: a piece of a path whose slope is even.
 
@@ -366,6 +374,7 @@ class Plan:
     warnings: tuple[str, ...] = ()
     photos: tuple[Photos, ...] = ()
     cameras: tuple[PlanCamera, ...] = ()
+    wind: PlanWind = PlanWind()
 
     def path_of(self, vehicle: str) -> FlownPath:
         """The path of one vehicle."""

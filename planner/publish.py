@@ -16,6 +16,7 @@ from planner.airspace.airspace import Airspace, Level
 from planner.airspace.shapes import DiscShape, banded_shapes, without_holes
 from planner.airspace.terrain import Ground
 from planner.airspace.zones import keep_out
+from planner.angles import heading_from_angle
 from planner.flown import flown_path, line_between
 from planner.frames import LocalFrame
 from planner.metrics import risks
@@ -28,6 +29,7 @@ from planner.plan import (
     Metrics,
     Plan,
     PlanVehicle,
+    PlanWind,
     Transit,
     Uncovered,
     ZoneCircle,
@@ -283,4 +285,5 @@ def assemble(
         planner_version=planner_version,
         seed=seed,
         warnings=warnings,
+        wind=PlanWind(model.wind.speed_m_s, heading_from_angle(model.wind.toward_rad + math.pi)),
     )

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
-from planner.plan import PathSegment, Plan, ZoneCircle, ZonePolygon
+from mavlink.rules.wind import fastest_m_s, is_whole_turn
+from planner.plan import PathSegment, Plan, PlanWind, ZoneCircle, ZonePolygon
 
 _NOTHING_BELOW = (0.0, "")
-#: From so much on an arc is whole turns; rounding may have taken a little.
-_WHOLE_TURN_DEG = 359.9
 
 
 @dataclass(frozen=True, slots=True)
@@ -19,9 +17,11 @@ class HeightNeeds:
     Parameters
     ----------
     climb_m_s, sink_m_s
-        Fastest that the plan climbs and descends on wings, at its airspeed in still air; 0 where it does not.
+        Fastest that the plan climbs and descends on wings, in its wind; 0 where it does not.
     turning_up_m_s, turning_down_m_s
-        The same of its whole turns alone.
+        Of its whole turns alone, where the wind is behind for as long as it is ahead.
+    wind_m_s
+        That it is planned for.
     lowest_m
         Of its passes; of its highest place where it has none.
     ground_rises
@@ -41,6 +41,7 @@ class HeightNeeds:
     return_m: float | None = None
     circle_m: float | None = None
     flown_over: tuple[float, str] = _NOTHING_BELOW
+    wind_m_s: float = 0.0
 
 
 def heights_of(plan: Plan, name: str) -> HeightNeeds:
@@ -51,22 +52,27 @@ def heights_of(plan: Plan, name: str) -> HeightNeeds:
     passes_m = [place[2] for collect in plan.collects_of(name) for place in collect.line]
     returns = vehicle.finish == "return" and vehicle.type != "multirotor"
     zones: list[ZonePolygon | ZoneCircle] = [*plan.fence.exclusion, *plan.fence.exclusion_circles]
-    sloped = [s for s in path.segments if s.kind != "vertical" and s.length_m > 0.0]
-    turns = [s for s in sloped if (s.turn_deg or 0.0) >= _WHOLE_TURN_DEG]
+    wind = PlanWind() if vehicle.type == "multirotor" else plan.wind  # what hovers gains nothing by it
+    rates_m_s = [
+        (_sine(s) * fastest_m_s(s, vehicle.airspeed_m_s, wind), is_whole_turn(s))
+        for s in path.segments
+        if s.kind != "vertical" and s.length_m > 0.0
+    ]
+    turns_m_s = [rate_m_s for rate_m_s, turns in rates_m_s if turns]
     return HeightNeeds(
-        vehicle.airspeed_m_s * _steepest(sloped, 1.0),
-        vehicle.airspeed_m_s * _steepest(sloped, -1.0),
-        vehicle.airspeed_m_s * _steepest(turns, 1.0),
-        vehicle.airspeed_m_s * _steepest(turns, -1.0),
+        max(0.0, *(rate_m_s for rate_m_s, _ in rates_m_s), 0.0),
+        max(0.0, *(-rate_m_s for rate_m_s, _ in rates_m_s), 0.0),
+        max(0.0, *turns_m_s, 0.0),
+        max(0.0, *(-rate_m_s for rate_m_s in turns_m_s), 0.0),
         min(passes_m or [max(place[2] for place in path.line)]) - home_m,
         plan.altitude_reference == "amsl",
         path.line[-1][2] - home_m if returns else None,
         path.segments[-1].radius_m if returns else None,
         max(((zone.ceiling_m, zone.name) for zone in zones if zone.ceiling_m), default=_NOTHING_BELOW),
+        wind.speed_m_s,
     )
 
 
-def _steepest(segments: Sequence[PathSegment], sign: float) -> float:
-    """Sine of the steepest slope up (1) or down (-1)."""
-    rises = (sign * (s.end_altitude_m - s.start_altitude_m) / s.length_m for s in segments)
-    return max(0.0, *rises, 0.0)
+def _sine(segment: PathSegment) -> float:
+    """Of its slope, > 0 up."""
+    return (segment.end_altitude_m - segment.start_altitude_m) / segment.length_m

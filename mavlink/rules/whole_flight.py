@@ -31,13 +31,20 @@ def _tenths(rate_m_s: float) -> float:
     return math.ceil(10.0 * rate_m_s) / 10.0
 
 
+def _flying(needs: Needs) -> str:
+    """At what speed, and in what wind."""
+    wind_m_s = needs.heights.wind_m_s
+    behind = f" with up to {wind_m_s:g} m/s of wind behind" if wind_m_s else ""
+    return f"at {needs.airspeed_m_s:g} m/s{behind}"
+
+
 def climbs(name: str) -> Rule:
     """The vehicle climbs as fast as the plan does: lower than planned it comes nearer to what lies below."""
     return check(
         name,
         lambda value, needs: value >= _RATE_PART * needs.heights.climb_m_s,
         lambda needs: (
-            f"the plan climbs at up to {needs.heights.climb_m_s:.1f} m/s at {needs.airspeed_m_s:g} m/s:"
+            f"the plan climbs at up to {needs.heights.climb_m_s:.1f} m/s {_flying(needs)}:"
             " slower, the vehicle stays below the planned line; or plan with a smaller max_climb_deg"
         ),
         lambda needs: _tenths(needs.heights.climb_m_s),
@@ -51,7 +58,7 @@ def sinks(name: str) -> Rule:
         name,
         lambda value, needs: value >= _RATE_PART * needs.heights.sink_m_s,
         lambda needs: (
-            f"the plan descends at up to {needs.heights.sink_m_s:.1f} m/s at {needs.airspeed_m_s:g} m/s:"
+            f"the plan descends at up to {needs.heights.sink_m_s:.1f} m/s {_flying(needs)}:"
             " slower, the vehicle comes in high; or plan with a smaller max_climb_deg"
         ),
         lambda needs: _tenths(needs.heights.sink_m_s),
@@ -69,10 +76,15 @@ def turns_down(name: str) -> Rule:
 
 
 def _in_circles(name: str, flown: str, rates_m_s: Callable[[HeightNeeds], tuple[float, float]]) -> Rule:
-    """A rate that circles are flown at; of the plan's rates those in circles, and at most."""
+    """A rate that circles are flown at; of the plan's rates those in circles, and at most.
+
+    Straight legs with the wind behind need what they need: a rate no faster is none too fast in circles.
+    """
     return check(
         name,
-        lambda value, needs: value <= _FASTER_PART * rates_m_s(needs.heights)[0],
+        lambda value, needs: (
+            value <= max(_FASTER_PART * rates_m_s(needs.heights)[0], _tenths(rates_m_s(needs.heights)[1]))
+        ),
         lambda needs: (
             f"circles are {flown} in at this rate, in the plan at {rates_m_s(needs.heights)[0]:.1f} m/s:"
             " steeper than its max_climb_deg, and done earlier than planned"

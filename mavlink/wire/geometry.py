@@ -24,6 +24,11 @@ def distance_m(a: LonLat, b: LonLat) -> float:
     return float(_WGS84.inv(a[0], a[1], b[0], b[1])[2])
 
 
+def course_deg(a: LonLat, b: LonLat) -> float:
+    """Direction from one place to another, clockwise from true north."""
+    return float(_WGS84.inv(a[0], a[1], b[0], b[1])[0])
+
+
 def here(place: LonLat) -> LonLat:
     """A place of a line that may go on beyond ±180°, with its longitude within."""
     lon_deg, lat_deg = place

@@ -20,6 +20,7 @@ from planner.plan import (
     Plan,
     PlanCamera,
     PlanVehicle,
+    PlanWind,
     Transit,
     Uncovered,
     Violation,
@@ -93,6 +94,7 @@ def read_plan(document: Any) -> Plan:
             warnings=tuple(document.get("warnings", ())),
             photos=each("photos", _photos),
             cameras=tuple(PlanCamera(**c) for c in document.get("cameras", ())),
+            wind=PlanWind(**document.get("wind", {})),
         )
     except (KeyError, TypeError, ValueError) as error:
         _refuse("plan", "bad-plan-member", f"cannot be read: {error!r}", "Send the plan as it was written.")

@@ -96,6 +96,7 @@ def write_plan(plan: Plan) -> dict[str, Any]:
         "features": features,
         "vehicles": [asdict(v) for v in plan.vehicles],
         "cameras": [asdict(c) for c in plan.cameras],
+        "wind": asdict(plan.wind),
         "altitude_m": plan.altitude_m,
         "altitude_reference": plan.altitude_reference,
         "home": list(_lonlat(plan.home)),

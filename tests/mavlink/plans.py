@@ -23,11 +23,13 @@ from planner.plan import (
     PhaseKind,
     Plan,
     PlanVehicle,
+    PlanWind,
     ZonePolygon,
 )
 from planner.route import Pose
 
 FRAME = LocalFrame(-117.75, 33.49)
+STILL_AIR = PlanWind()
 START = Pose(0.0, 0.0, 0.4)
 
 
@@ -251,6 +253,7 @@ def make_plan(
     finish: Finish = "land",
     min_turn_radius_m: float = 100.0,
     circles: bool = True,
+    wind: PlanWind = STILL_AIR,
 ) -> Plan:
     """A plan of one vehicle whose mission is exactly the legs: the whole flight.
 
@@ -310,6 +313,7 @@ def make_plan(
         scenario_hash="",
         planner_version="0",
         seed=0,
+        wind=wind,
     )
 
 

@@ -11,7 +11,7 @@ from planner.errors import CancelledError, InfeasibleError
 from planner.geojson import read_plan, read_scenario, write_plan
 from planner.geojson.equipment import METHODS
 from planner.pipeline import make_plan
-from planner.plan import Photos, PlanCamera
+from planner.plan import Photos, PlanCamera, PlanWind
 from tests.planner.scenarios import case, feature, small, square
 
 
@@ -70,6 +70,17 @@ def test_plans_survive_geojson() -> None:
     document = json.loads(json.dumps(write_plan(make_plan(read_scenario(case(2))))))
     again = json.loads(json.dumps(write_plan(read_plan(document))))
     assert again == document
+
+
+def test_the_wind_of_a_plan_is_its_scenario_s() -> None:
+    """Published as it was asked for, and read back; plans without it are for still air."""
+    wind = {"speed_m_s": 6.0, "from_deg": 250.0}
+    document = json.loads(json.dumps(write_plan(make_plan(read_scenario(small(wind=wind))))))
+    assert document["wind"] == pytest.approx(wind)
+    read = read_plan(document).wind
+    assert (read.speed_m_s, read.from_deg) == (document["wind"]["speed_m_s"], document["wind"]["from_deg"])
+    del document["wind"]
+    assert read_plan(document).wind == PlanWind()
 
 
 def test_photos_and_cameras_survive_geojson() -> None:
