@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 from numpy.typing import NDArray
+from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
 from planner.coverage.urban.area import Place, UrbanArea
@@ -41,14 +42,14 @@ class Sweep:
         """The same flown the other way."""
         return Sweep(self.end, self.start)
 
-    def seen(self, width_m: float, ahead_m: float) -> BaseGeometry:
+    def seen(self, width_m: float, ahead_m: float) -> Polygon:
         """Ground below it: ``width_m`` across, and as far as a frame looks beyond its ends."""
         along = np.subtract(self.end, self.start)
         length_m = float(np.hypot(*along))
         unit = along / length_m if length_m > 0.0 else np.array([1.0, 0.0])
         side = np.array([-unit[1], unit[0]]) * width_m / 2.0
         first, last = np.asarray(self.start) - unit * ahead_m, np.asarray(self.end) + unit * ahead_m
-        return shapely.polygons(np.array([first - side, last - side, last + side, first + side]))
+        return Polygon([first - side, last - side, last + side, first + side])
 
 
 @dataclass(frozen=True, slots=True)
