@@ -46,3 +46,13 @@ export function unwrap(geometry: Geometry): Geometry {
       return geometry;
   }
 }
+
+/** The same geometry with every longitude changed. */
+export function mapLongitudes(geometry: Geometry, change: (lon_deg: number) => number): Geometry {
+  if (geometry.type === "GeometryCollection") return { ...geometry, geometries: geometry.geometries.map((part) => mapLongitudes(part, change)) };
+  const walk = (value: unknown): unknown => {
+    if (!Array.isArray(value)) return value;
+    return typeof value[0] === "number" ? [change(value[0]), ...(value.slice(1) as number[])] : value.map(walk);
+  };
+  return { ...geometry, coordinates: walk(geometry.coordinates) } as Geometry;
+}

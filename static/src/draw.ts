@@ -2,10 +2,10 @@
 import type { Map as MapLibreMap } from "maplibre-gl";
 import { TerraDraw, TerraDrawCircleMode, TerraDrawLineStringMode, TerraDrawPointMode, TerraDrawPolygonMode, TerraDrawSelectMode } from "terra-draw";
 import type { GeoJSONStoreFeatures } from "terra-draw";
-import { TerraDrawMapLibreGLAdapter } from "terra-draw-maplibre-gl-adapter";
 import type { Geometry, Polygon } from "geojson";
 import { within180 } from "./antimeridian";
-import { ahead, circleOf, circleRing, distance_m, labelPoint, round7 } from "./geo";
+import { TurnedAdapter } from "./draw_adapter";
+import { ahead, boundsOf, circleOf, circleRing, distance_m, labelPoint, round7 } from "./geo";
 import { hideWhileEdited, SELECTABLE } from "./layers";
 import { warn } from "./notices";
 import { nameOf, radiusOf, scenarios } from "./scenario";
@@ -58,26 +58,26 @@ function rounded(geometry: Geometry): Geometry {
   return { type: "Polygon", coordinates: geometry.coordinates.map((ring) => ring.map(place)) };
 }
 
-/** How terra-draw can edit a feature; null for shapes with holes or several parts. */
-function editable(feature: ScenarioFeature): GeoJSONStoreFeatures | null {
+/** How terra-draw can edit a feature, where its world is turned to; null for shapes with holes or several parts. */
+function editable(feature: ScenarioFeature, turned: TurnedAdapter): GeoJSONStoreFeatures | null {
   const { geometry } = feature;
   const radius_m = radiusOf(feature);
   if (geometry.type === "Point" && radius_m > 0) {
     const ring = circleRing(geometry.coordinates as Position, radius_m, HANDLES);
     return {
       type: "Feature",
-      geometry: { type: "Polygon", coordinates: [ring] },
+      geometry: turned.inside({ type: "Polygon", coordinates: [ring] }),
       properties: { mode: EDIT_MODE.circle, radiusKilometers: radius_m / 1000 },
     };
   }
   if (geometry.type === "Point") {
-    return { type: "Feature", geometry: rounded(geometry) as never, properties: { mode: EDIT_MODE.point } };
+    return { type: "Feature", geometry: turned.inside(rounded(geometry)) as never, properties: { mode: EDIT_MODE.point } };
   }
   if (geometry.type === "LineString") {
-    return { type: "Feature", geometry: rounded(geometry) as never, properties: { mode: EDIT_MODE.linestring } };
+    return { type: "Feature", geometry: turned.inside(rounded(geometry)) as never, properties: { mode: EDIT_MODE.linestring } };
   }
   if (geometry.type === "Polygon" && geometry.coordinates.length === 1) {
-    return { type: "Feature", geometry: rounded(geometry) as never, properties: { mode: EDIT_MODE.polygon } };
+    return { type: "Feature", geometry: turned.inside(rounded(geometry)) as never, properties: { mode: EDIT_MODE.polygon } };
   }
   return null;
 }
@@ -88,14 +88,16 @@ export class Drawing {
   readonly locked = new Signal<boolean>(true);
   readonly #map: MapLibreMap;
   readonly #draw: TerraDraw;
+  readonly #turned: TurnedAdapter;
   #editing: { name: string; id: string | number } | null = null;
 
   constructor(map: MapLibreMap) {
     this.#map = map;
     let last = 0;
     const whole = { draggable: true, coordinates: { midpoints: true, draggable: true, deletable: true } };
+    this.#turned = new TurnedAdapter(map);
     this.#draw = new TerraDraw({
-      adapter: new TerraDrawMapLibreGLAdapter({ map, coordinatePrecision: 9 }),
+      adapter: this.#turned,
       idStrategy: { isValidId: (id) => typeof id === "number", getId: () => (last += 1) },
       modes: [
         new TerraDrawPolygonMode({ pointerDistance: CLOSE_PX }),
@@ -148,7 +150,10 @@ export class Drawing {
   /** Begin to draw; null stops. */
   use(tool: Tool | null): void {
     if (tool && this.locked.value) return;
-    if (tool) scenarios.selection.set(null);
+    if (tool) {
+      scenarios.selection.set(null);
+      this.#turned.turnTo(this.#map.getCenter().lng);
+    }
     this.tool.set(tool);
     this.#draw.setMode(tool ? tool.mode : IDLE);
   }
@@ -183,14 +188,15 @@ export class Drawing {
     const tool = this.tool.value;
     const drawn = this.#draw.getSnapshotFeature(id);
     if (!tool || !drawn || this.locked.value) return;
+    const geometry = this.#turned.outside(drawn.geometry as Geometry);
     this.#draw.removeFeatures([id]);
     this.use(null);
     if (tool.mode === "circle") {
-      const { centre, radius_m } = circleOf((drawn.geometry as Polygon).coordinates[0] ?? []);
+      const { centre, radius_m } = circleOf((geometry as Polygon).coordinates[0] ?? []);
       if (radius_m > 0) this.#addCircle(tool, centre, radius_m);
       else warn("The circle has no radius", "Click the centre, then click again where the circle ends.");
     } else {
-      scenarios.add(tool.role, rounded(drawn.geometry as Geometry), tool.properties);
+      scenarios.add(tool.role, rounded(geometry), tool.properties);
     }
   }
 
@@ -199,11 +205,12 @@ export class Drawing {
     const drawn = editing && this.#draw.getSnapshotFeature(editing.id);
     const feature = editing && scenarios.find(editing.name);
     if (!editing || !drawn || !feature || this.locked.value) return;
+    const geometry = this.#turned.outside(drawn.geometry as Geometry);
     if (radiusOf(feature) > 0) {
-      const { centre, radius_m } = circleOf((drawn.geometry as Polygon).coordinates[0] ?? []);
+      const { centre, radius_m } = circleOf((geometry as Polygon).coordinates[0] ?? []);
       scenarios.reshape(editing.name, rounded({ type: "Point", coordinates: centre }), { radius_m });
     } else {
-      scenarios.reshape(editing.name, rounded(drawn.geometry as Geometry));
+      scenarios.reshape(editing.name, rounded(geometry));
     }
   }
 
@@ -222,7 +229,9 @@ export class Drawing {
       if (this.#draw.hasFeature(id)) this.#draw.removeFeatures([id]);
     }
     if (feature && !this.#editing && this.tool.value === null) {
-      const shape = editable(feature);
+      const [west, , east] = boundsOf([feature]) ?? [0, 0, 0, 0];
+      this.#turned.turnTo((west + east) / 2);
+      const shape = editable(feature, this.#turned);
       const added = shape ? this.#draw.addFeatures([shape])[0] : undefined;
       if (added?.valid && added.id !== undefined) {
         this.#editing = { name: nameOf(feature), id: added.id };
@@ -237,11 +246,12 @@ export class Drawing {
   #same(feature: ScenarioFeature | undefined): boolean {
     const drawn = this.#editing && this.#draw.getSnapshotFeature(this.#editing.id);
     if (!feature || !drawn) return false;
+    const geometry = this.#turned.outside(drawn.geometry as Geometry);
     if (radiusOf(feature) > 0 && feature.geometry.type === "Point") {
-      const { centre, radius_m } = circleOf((drawn.geometry as Polygon).coordinates[0] ?? []);
+      const { centre, radius_m } = circleOf((geometry as Polygon).coordinates[0] ?? []);
       return radius_m === radiusOf(feature) && JSON.stringify(centre) === JSON.stringify(feature.geometry.coordinates);
     }
-    return JSON.stringify(rounded(drawn.geometry as Geometry)) === JSON.stringify(rounded(feature.geometry));
+    return JSON.stringify(rounded(geometry)) === JSON.stringify(rounded(feature.geometry));
   }
 
   #click(point: { x: number; y: number }): void {

@@ -20,6 +20,7 @@ import { createMap, fit, setData } from "./map";
 import { itemFeatures } from "./mission";
 import { attempt, clearNotices, report } from "./notices";
 import { openNewest } from "./newest";
+import { keepOrdered } from "./ordered";
 import { planPanel } from "./panel/plan_panel";
 import { scenarioPanel } from "./panel/scenario_panel";
 import { buildStatusStrip } from "./panel/status_strip";
@@ -75,6 +76,7 @@ async function start(): Promise<void> {
   keepFlights();
   keepRasters();
   keepVehicles();
+  keepOrdered();
   heartbeat();
   keepJudging();
   const before = restore();

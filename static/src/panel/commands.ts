@@ -5,6 +5,7 @@ import { button, h } from "../dom";
 import { command, watched, type CommandAnswer } from "../fleet";
 import { hearing } from "../hearing";
 import { news, report, warn } from "../notices";
+import { awaitEnd, lookSoon } from "../ordered";
 import type { Vehicle } from "../types";
 import { ORDERS, saying, type Order } from "./orders";
 
@@ -14,19 +15,24 @@ const UNKNOWN = 504;
 function tell(vehicle: Vehicle, order: Order, answer: CommandAnswer): void {
   const why = answer.reason ?? answer.detail ?? "";
   if (answer.outcome === "unknown") warn(`${order.label}: ${vehicle.name} did not confirm it`, why, "Look at what it does before it is told again.");
-  else if (answer.outcome === "pending") news(`${order.label}: ${vehicle.name} took it and is at it. ${why}`);
+  else if (answer.outcome === "pending") {
+    news(`${order.label}: ${vehicle.name} took it and is at it. ${why}`);
+    awaitEnd(vehicle.id, order.name);
+  }
   else news(`${order.label}: ${vehicle.name} confirmed it.`);
 }
 
 async function give(vehicle: Vehicle, order: Order, seq: number | null = null): Promise<void> {
   if ((await ask(saying(vehicle, order, seq))) === null) return;
   const armFirst = order.name === "start" && !vehicle.state.armed ? { arm_first: true as const } : {};
+  lookSoon();
   try {
     tell(vehicle, order, await command(vehicle.id, order.name, { ...(seq === null ? {} : { seq }), ...armFirst }));
   } catch (error) {
     const unknown = error instanceof ApiError && error.status === UNKNOWN;
     report(unknown ? `${order.label}: whether ${vehicle.name} does it is not known` : `${order.label}: the command was not carried out`, error);
   }
+  lookSoon();
 }
 
 /** Why no command can be given; empty when one can. */

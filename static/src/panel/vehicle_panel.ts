@@ -6,6 +6,7 @@ import { commands } from "./commands";
 import { flightsBox } from "./flights_box";
 import { gauges, kindOf, words } from "./gauges";
 import { holdingBox } from "./holding_box";
+import { orderedBox } from "./ordered_box";
 import { uploadBox } from "./upload_box";
 import { vehicleList } from "./vehicle_list";
 import { waypointList } from "./waypoint_list";
@@ -22,5 +23,5 @@ export function vehiclePanel(view: PlanView, planned: () => void, edit: () => vo
     fill(kind, vehicle ? kindOf(vehicle) : "");
   });
   const upload = uploadBox(edit);
-  return h("div", {}, vehicleList(), title, gauges(), upload.controls, commands(), words(), upload.answers, flightChart(), waypointList(view.zoomToPlace), holdingBox(), flightsBox(planned));
+  return h("div", {}, vehicleList(), title, gauges(), upload.controls, commands(), orderedBox(), words(), upload.answers, flightChart(), waypointList(view.zoomToPlace), holdingBox(), flightsBox(planned));
 }

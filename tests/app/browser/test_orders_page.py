@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import httpx
 import pytest
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Page, Route, expect
 
 from tests.app.browser.air import vehicles_of
 from tests.app.browser.conftest import EXAMPLES, Service, serving
@@ -77,3 +77,30 @@ def test_land_brings_it_down(page: Page, collecting: None) -> None:
     give(page, "land")
     await_hook(page, "vehicle().armed === false", LIMIT_S)
     expect(cell(page, "flying")).to_have_text("on the ground", timeout=LIMIT_MS)
+
+
+def test_what_was_ordered_is_found_again(page: Page, collecting: None) -> None:
+    """The list tells of each order what became of it, and does so after a reload of the page as well."""
+    page.reload()
+    page.wait_for_function("window.swathplan !== undefined")
+    go_to(page, "Fly")
+    page.get_by_text("What was ordered", exact=True).click()
+    for command in ("arm", "start", "hold", "resume", "sensor_off", "land"):
+        expect(page.locator(f"#ordered [data-order={command}]")).to_have_attribute("data-outcome", "done")
+    expect(page.locator("#ordered [data-order=upload]").first).to_contain_text("mission, fence")
+    expect(page.locator("#under-way")).to_be_hidden()
+
+
+def test_an_order_is_under_way_until_its_end_is_told(page: Page, collecting: None) -> None:
+    """While the audit has no end of an order the page says so by itself, and stops once it has one."""
+
+    def not_ended(route: Route) -> None:
+        answer = route.fetch()
+        body = answer.json()
+        body["entries"][0] |= {"outcome": "pending", "ended_at": None}
+        route.fulfill(response=answer, json=body)
+
+    page.route("**/api/v1/audit?*", not_ended)
+    expect(page.locator("#under-way")).to_have_text("Under way: Land.", timeout=LIMIT_MS)
+    page.unroute("**/api/v1/audit?*")
+    expect(page.locator("#under-way")).to_be_hidden(timeout=LIMIT_MS)

@@ -10,7 +10,7 @@ import pytest
 from playwright.sync_api import Page
 
 from tests.app.browser.conftest import EXAMPLES
-from tests.app.browser.helpers import ask, await_hook, open_scenario
+from tests.app.browser.helpers import ask, await_hook, click_place, feature, on_screen, open_scenario
 
 pytestmark = pytest.mark.browser
 
@@ -88,3 +88,45 @@ def test_a_scenario_across_the_meridian_is_one_place(page: Page, tmp_path: Path)
     assert abs(abs(ask(page, "centre()")[0]) - 180.0) < 0.05
     page.evaluate("window.swathplan.look(0, 10, 9)")
     assert {"area-line", "roi-fill"}.isdisjoint(ask(page, "rendered()"))
+
+
+def test_shapes_across_the_meridian_are_drawn_and_reshaped(page: Page, tmp_path: Path) -> None:
+    """A region's corner is dragged from one side to the other, and a new region drawn over both."""
+    source = json.loads((EXAMPLES / "sar-case-1.geojson").read_text(encoding="utf-8"))
+    ring = [[179.98, 9.99], [-179.99, 9.99], [-179.99, 10.01], [179.98, 10.01], [179.98, 9.99]]
+    region = {
+        "type": "Feature",
+        "id": "R",
+        "properties": {"role": "roi", "name": "R"},
+        "geometry": {"type": "Polygon", "coordinates": [ring]},
+    }
+    path = tmp_path / "across.geojson"
+    path.write_text(json.dumps(source | {"name": "across", "features": [region]}), encoding="utf-8")
+    open_scenario(page, path)
+    page.locator("#panel-scenario .chips button", has_text="R").click()
+    page.evaluate("window.swathplan.look(180, 10, 12)")
+    await_hook(page, "rendered()['td-point'] >= 4")
+    x, y = on_screen(page, 180.01, 10.01)
+    to_x, to_y = on_screen(page, 179.995, 10.02)
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move((x + to_x) / 2, (y + to_y) / 2)
+    page.mouse.move(to_x, to_y)
+    page.mouse.up()
+    await_hook(page, "scenario().features[0].geometry.coordinates[0][2][0] > 0")
+    moved = feature(page, "R")
+    assert moved is not None
+    corners = moved["geometry"]["coordinates"][0]
+    assert corners[2] == pytest.approx([179.995, 10.02], abs=3e-4)
+    assert corners[:2] + corners[3:] == ring[:2] + ring[3:]
+    page.keyboard.press("Escape")
+    page.get_by_role("toolbar").get_by_role("button", name="No-fly").click()
+    places = [(179.99, 9.96), (180.02, 9.96), (180.02, 9.98)]
+    for place in [*places, places[-1]]:
+        click_place(page, *place)
+    await_hook(page, "scenario().features.length === 2")
+    drawn = feature(page, "N1")
+    assert drawn is not None
+    assert [lon for lon, _ in drawn["geometry"]["coordinates"][0][:3]] == pytest.approx(
+        [179.99, -179.98, -179.98], abs=3e-4
+    )
