@@ -12,6 +12,7 @@ from shapely.geometry import MultiPolygon, Polygon
 
 from planner.airspace.airspace import Airspace, Level
 from planner.airspace.values import STILL_AIR, Wind
+from planner.check.camera_print import camera_footprint
 from planner.plan import Collect
 from planner.route import Look
 from planner.scenario import Scenario
@@ -129,7 +130,7 @@ def _crabbing(
 
 
 #: By kind of sensor.
-FOOTPRINTS: dict[str, Footprint] = {"sar": sar_footprint}
+FOOTPRINTS: dict[str, Footprint] = {"sar": sar_footprint, "camera": camera_footprint}
 
 
 def register(kind: str, of_kind: Footprint) -> None:

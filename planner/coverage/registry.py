@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from planner.coverage.strips.family import Strips
+from planner.coverage.survey.family import Lanes
 from planner.coverage.ways import Family
 from planner.sensors.base import Sensor
 
-FAMILIES: dict[str, Family] = {"sar": Strips()}
+FAMILIES: dict[str, Family] = {"sar": Strips(), "camera": Lanes()}
 
 
 def register(kind: str, family: Family) -> None:

@@ -19,8 +19,6 @@ from planner.vehicle.aircraft import (
 from planner.vehicle.steadiness import Steadiness, steadiness_of
 from planner.wishes import Method, Objective
 
-#: Sensors that scenarios may name and this version does not plan.
-NOT_YET = ("camera",)
 #: A multirotor without a stated turn limit rounds its corners with this bank.
 MULTIROTOR_BANK_DEG = 25.0
 
@@ -143,11 +141,7 @@ def read_sensor(raw: Any, index: int, findings: Findings, steady: Steadiness | N
     if steady is not None:
         margins = {"pointing_margin_deg": steady.pointing_deg, "position_margin_m": steady.position_m}
     fields = Fields(f"sensor {name if name else index}", raw, findings, margins)
-    kind = fields.choice("type", (*KINDS, *(NOT_YET if raw.get("type") in NOT_YET else ())))
-    if kind in NOT_YET:
-        said = f"is a {kind}, which this version does not plan"
-        findings.error(fields.owner, "not-supported", said, f"Use one of: {', '.join(sorted(KINDS))}.")
-        return None
+    kind = fields.choice("type", KINDS)
     if kind is None:
         fields.text("name")
         return None

@@ -23,7 +23,7 @@ def check_together(scenario: Scenario, findings: Findings) -> None:
     """Add a finding for each rule between features that the scenario breaks."""
     _names(scenario, findings)
     _swaths(scenario, findings)
-    _visits(scenario, findings)
+    _by_paper(scenario, findings)
     _area(scenario, findings)
     _terminals(scenario, findings)
 
@@ -81,7 +81,8 @@ def _swaths(scenario: Scenario, findings: Findings) -> None:
             )
 
 
-def _visits(scenario: Scenario, findings: Findings) -> None:
+def _by_paper(scenario: Scenario, findings: Findings) -> None:
+    """The paper's routing and coverage know one visit, and radars."""
     method = scenario.method
     if method.routing == "joint" or (method.routing, method.coverage) == ("auto", "auto"):
         return
@@ -92,6 +93,15 @@ def _visits(scenario: Scenario, findings: Findings) -> None:
                 "not-supported",
                 f"asks for {region.revisits} visits, which the paper's routing does not plan",
                 "Leave method.routing and method.coverage at auto, or revisits at 1.",
+            )
+        if (kind := scenario.sensor_for(region).kind) != "sar" and "unknown-sensor" not in {
+            found.rule for found in findings.all()
+        }:
+            findings.error(
+                region.name,
+                "not-supported",
+                f"is seen by a {kind}, which the paper's routing and coverage do not plan",
+                "Leave method.routing and method.coverage at auto.",
             )
 
 

@@ -75,6 +75,9 @@ class Properties(Protocol):
 
     def __contains__(self, name: str) -> bool: ...
 
+    def raw(self, name: str, default: Any = None) -> Any:
+        """The value as it stands; the default where absent."""
+
     def number(
         self,
         name: str,

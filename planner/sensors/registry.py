@@ -6,9 +6,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+from planner.sensors import camera_view, view
 from planner.sensors.base import Properties, SeenGround, Sensor
+from planner.sensors.camera_reader import read_camera
 from planner.sensors.sar_reader import read_sar
-from planner.sensors.view import seen_on_terrain
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,7 +29,10 @@ class Kind:
     seen_on_terrain: Callable[..., SeenGround]
 
 
-KINDS: dict[str, Kind] = {"sar": Kind(read_sar, seen_on_terrain)}
+KINDS: dict[str, Kind] = {
+    "sar": Kind(read_sar, view.seen_on_terrain),
+    "camera": Kind(read_camera, camera_view.seen_on_terrain),
+}
 
 
 def register(name: str, kind: Kind) -> None:

@@ -1,0 +1,1 @@
+"""Regions seen by cameras that look down: lanes whose photos overlap."""

@@ -1,0 +1,185 @@
+"""A frame camera that looks down, or tilted forward, and takes photos that overlap.
+
+Lengths are those of level ground; over relief what is planned is kept on the highest ground, where photos
+see least, and quality on the lowest, where they see it worst.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Self
+
+from planner.plan import Trigger
+from planner.route import Look
+from planner.sensors.optics import Optics
+from planner.sensors.photo_band import Pattern, pattern
+from planner.sensors.quality import Giqe4, Spectrum
+
+
+@dataclass(frozen=True, slots=True)
+class CameraSensor:
+    """A camera.
+
+    Parameters
+    ----------
+    optics
+        Lens and chip, as mounted.
+    forward_overlap, side_overlap
+        Parts of a photo that the next, and that of the next lane, see again; below 1.
+    tilt_rad
+        Of its axis, from straight down forwards.
+    min_interval_s
+        Shortest time between two photos; 0 where unknown.
+    trigger
+        Photos by distance, by time, or a video.
+    quality
+        What else than the ground sampled distance decides NIIRS; None where unknown.
+    model
+        Its name in the camera database.
+    relief_m
+        The ground's height above and below the mean.
+    pointing_margin_rad, position_margin_m
+        How far the aircraft may roll or pitch, and be off its line, for all of a region still to be seen.
+    steady_overlap
+        Whether the overlaps, too, are kept with these margins used up; otherwise on the planned line.
+    stabilised
+        Whether the camera is kept in line with the course; otherwise it turns with the aircraft's nose.
+    drift, toward_rad
+        Of the wind it is flown in: its speed by the airspeed, and where the air moves to.
+    """
+
+    name: str
+    optics: Optics
+    forward_overlap: float = 0.75
+    side_overlap: float = 0.65
+    tilt_rad: float = 0.0
+    min_interval_s: float = 0.0
+    trigger: Trigger = "distance"
+    spectrum: Spectrum = "visible"
+    quality: Giqe4 | None = None
+    model: str | None = None
+    relief_m: float = 0.0
+    pointing_margin_rad: float = 0.0
+    position_margin_m: float = 0.0
+    steady_overlap: bool = False
+    stabilised: bool = False
+    drift: float = 0.0
+    toward_rad: float = 0.0
+
+    @property
+    def kind(self) -> str:
+        """``camera``."""
+        return "camera"
+
+    @property
+    def looks(self) -> tuple[Look, ...]:
+        """Down, also where it is tilted: to neither side."""
+        return ("down",)
+
+    @property
+    def resolution_m(self) -> float | None:
+        """None: it depends on the height; see ``worst_gsd_m``."""
+        return None
+
+    def in_wind(self, drift: float, toward_rad: float) -> Self:
+        """The same camera on an aircraft in a steady wind."""
+        return replace(self, drift=drift, toward_rad=toward_rad)
+
+    def over_relief(self, relief_m: float) -> Self:
+        """The same camera over ground this much above and below its mean height."""
+        return replace(self, relief_m=relief_m)
+
+    def whole(self) -> Self:
+        """The same camera without margins."""
+        return replace(self, pointing_margin_rad=0.0, position_margin_m=0.0)
+
+    @property
+    def crabs(self) -> bool:
+        """Whether photos turn with the nose."""
+        return self.drift != 0.0 and not self.stabilised
+
+    def crab_rad(self, angle_rad: float) -> float:
+        """How far a photo is turned to the left of the course: asin(W sin δ / V), see ``vehicle.wind``."""
+        if not self.crabs:
+            return 0.0
+        return math.asin(max(-1.0, min(1.0, self.drift * math.sin(angle_rad - self.toward_rad))))
+
+    def pattern(self, angle_rad: float) -> Pattern:
+        """Photos along a lane from one metre up, and the strip in which they overlap, margins left out."""
+        # Courses told to a hundredth of a microradian: what rounding turns is the same course.
+        return pattern(self.optics, self.tilt_rad, round(self.crab_rad(angle_rad), 8), self.forward_overlap)
+
+    def swath_m(self, height_m: float) -> float:
+        """Width of the strip that a lane sees on its course through still air, margins left out."""
+        still = pattern(self.optics, self.tilt_rad, 0.0, self.forward_overlap)
+        return 2.0 * still.half_width * max(height_m - self.relief_m, 0.0)
+
+    def margin_m(self, height_m: float) -> float:
+        """How far what a photo sees may be off beside the track, by place and roll together."""
+        return self.position_margin_m + (height_m + self.relief_m) * math.tan(self.pointing_margin_rad)
+
+    def half_width_m(self, height_m: float, angle_rad: float) -> float:
+        """How far to either side of a lane all is seen, whatever of the margins is used up."""
+        return self.pattern(angle_rad).half_width * (height_m - self.relief_m) - self.margin_m(height_m)
+
+    def lane_spacing_m(self, height_m: float, angle_rad: float) -> float:
+        """The widest distance between lanes that keeps the side overlap, and leaves nothing unseen."""
+        strip_m = 2.0 * self.pattern(angle_rad).half_width * (height_m - self.relief_m)
+        lost_m = 2.0 * self.margin_m(height_m)
+        overlapping_m = (1.0 - self.side_overlap) * strip_m - (lost_m if self.steady_overlap else 0.0)
+        return min(overlapping_m, strip_m - lost_m)
+
+    def photo_spacing_m(self, height_m: float, angle_rad: float) -> float:
+        """The widest distance between photos of a lane that keeps the forward overlap."""
+        spacing_m = self.pattern(angle_rad).spacing * (height_m - self.relief_m)
+        lost_m = 2.0 * (height_m + self.relief_m) * math.tan(self.pointing_margin_rad)
+        return spacing_m - lost_m if self.steady_overlap else spacing_m
+
+    def run_in_m(self, height_m: float, angle_rad: float) -> float:
+        """How far before the ground to be seen the first photo is taken; negative: behind its beginning.
+
+        All of the strip is seen from there on, and the middle of the first photo lies on the beginning.
+        """
+        laid, high_m, low_m = self._drops(height_m, angle_rad)
+        seen_m = max(laid.before * high_m, laid.before * low_m) + self.margin_m(height_m)
+        return max(seen_m, laid.middle * high_m, laid.middle * low_m)
+
+    def run_out_m(self, height_m: float, angle_rad: float) -> float:
+        """How far beyond the ground to be seen the last photo is taken; negative: before its end."""
+        laid, high_m, low_m = self._drops(height_m, angle_rad)
+        seen_m = self.margin_m(height_m) - min(laid.beyond * high_m, laid.beyond * low_m)
+        return max(seen_m, -laid.middle * high_m, -laid.middle * low_m)
+
+    def _drops(self, height_m: float, angle_rad: float) -> tuple[Pattern, float, float]:
+        return self.pattern(angle_rad), height_m - self.relief_m, height_m + self.relief_m
+
+    @property
+    def worst_gsd(self) -> float:
+        """Ground sampled distance of the worst pixel from one metre up: where the image looks farthest.
+
+        The mean of along and across the line of sight there. Straight down all pixels are alike.
+        """
+        return self._gsd(math.tan(self.optics.half_height_rad))
+
+    @property
+    def mean_gsd(self) -> float:
+        """The same in the middle of the image."""
+        return self._gsd(0.0)
+
+    def _gsd(self, up: float) -> float:
+        # Of the image point v up: D = cos τ − v sin τ, across 1 / D and along 1 / D² of what it is below.
+        down = math.cos(self.tilt_rad) - up * math.sin(self.tilt_rad)
+        return self.optics.gsd_m(1.0) * (1.0 / down + 1.0 / (down * down)) / 2.0
+
+    def worst_gsd_m(self, height_m: float) -> float:
+        """Ground sampled distance of the worst pixel, on the lowest ground."""
+        return self.worst_gsd * (height_m + self.relief_m)
+
+    def height_for_m(self, gsd_m: float) -> float:
+        """The greatest height over the mean ground from which no pixel covers more."""
+        return gsd_m / self.worst_gsd - self.relief_m
+
+    def worst_niirs(self, height_m: float) -> float | None:
+        """NIIRS of the worst pixel, on the lowest ground; None where what decides it is unknown."""
+        return None if self.quality is None else self.quality.niirs(self.worst_gsd_m(height_m))
