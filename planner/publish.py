@@ -20,6 +20,7 @@ from planner.angles import heading_from_angle
 from planner.flown import flown_path, line_between
 from planner.frames import LocalFrame
 from planner.metrics import risks
+from planner.photos import photos_of, plan_cameras
 from planner.plan import (
     Collect,
     Fence,
@@ -27,6 +28,7 @@ from planner.plan import (
     Footprint,
     LonLat,
     Metrics,
+    Photos,
     Plan,
     PlanVehicle,
     PlanWind,
@@ -40,8 +42,10 @@ from planner.profile.finish import finish_of
 from planner.profile.lines import cut
 from planner.route import CollectPass, Terminal
 from planner.sensors.base import Sensor
+from planner.sensors.camera import CameraSensor
 from planner.sensors.registry import seen as seen_from
 from planner.sensors.suite import Suite
+from planner.sensors.worth import Worth, worth_of
 from planner.transit.certificate import proven_m
 from planner.vehicle.aircraft import Aircraft
 from planner.vehicle.model import FlightModel
@@ -113,10 +117,11 @@ def collects_and_transits(
     composed: Composed,
     legs: tuple[Leg, ...],
     passes: tuple[CollectPass, ...],
-) -> tuple[tuple[Collect, ...], tuple[Transit, ...], tuple[Footprint, ...]]:
+) -> tuple[tuple[Collect, ...], tuple[Transit, ...], tuple[Footprint, ...], tuple[Photos, ...]]:
     """The features along the line, numbered from 1 in flight order."""
     collects, transits = [], []
     footprints: list[Footprint] = []
+    photos: list[Photos] = []
     level, flight = chart.level, composed.flight
     # Its distance from the things themselves, whatever was to be kept from them.
     zones = replace(keep_out(replace(airspace, clearance_m=0.0), level, soft=False), area=None)
@@ -148,7 +153,10 @@ def collects_and_transits(
         sensor, ground = suite.named(collect.sensor), airspace.terrain
         there = level.at(altitude_m)
         footprints.extend(_footprints(chart, ground, model.name, seq, name, collect, sensor, there))
-    return tuple(collects), tuple(transits), tuple(footprints)
+        if isinstance(sensor, CameraSensor):
+            taken = photos_of(collect, seq, collects[-1].line, sensor, model)
+            photos.extend([] if taken is None else [taken])
+    return tuple(collects), tuple(transits), tuple(footprints), tuple(photos)
 
 
 def _footprints(
@@ -164,7 +172,10 @@ def _footprints(
     """The ground seen: the pass's own footprint, on terrain one for each part really seen."""
     if ground is None:
         ring = chart.ring(collect.footprint.exterior)
-        yield Footprint(vehicle, seq, name, collect.sensor, ring, sensor.resolution_m)
+        yield _valued(
+            Footprint(vehicle, seq, name, collect.sensor, ring, sensor.resolution_m),
+            worth_of(sensor, level.height_m, 0.0, 0.0),
+        )
         return
     line_m = (collect.start, collect.end)
     seen = seen_from(sensor, line_m, collect.look, level.amsl_m, ground)
@@ -173,17 +184,34 @@ def _footprints(
     parts = [part for part in shapely.get_parts(tidy) if part.area > ground.step_m**2 / 10.0]
     for part in parts:
         outer, *holes = (chart.ring(ring) for ring in (part.exterior, *part.interiors))
-        yield Footprint(
-            vehicle,
-            seq,
-            name,
-            collect.sensor,
-            outer,
-            sensor.resolution_m,
-            holes=tuple(holes),
-            shadow_m2=seen.shadow_m2,
-            layover_m2=seen.layover_m2,
+        low_m, high_m = ground.range_over(part)
+        mean_m = (low_m + high_m) / 2.0
+        yield _valued(
+            Footprint(
+                vehicle,
+                seq,
+                name,
+                collect.sensor,
+                outer,
+                sensor.resolution_m,
+                holes=tuple(holes),
+                shadow_m2=seen.shadow_m2,
+                layover_m2=seen.layover_m2,
+            ),
+            worth_of(sensor, level.amsl_m - mean_m, low_m - mean_m, high_m - mean_m),
         )
+
+
+def _valued(footprint: Footprint, worth: Worth) -> Footprint:
+    """With what its images are worth; a camera resolves what a pixel covers."""
+    return replace(
+        footprint,
+        resolution_m=worth.gsd_m if footprint.resolution_m is None else footprint.resolution_m,
+        gsd_m=worth.gsd_m,
+        gsd_mean_m=worth.gsd_mean_m,
+        niirs=worth.niirs,
+        niirs_mean=worth.niirs_mean,
+    )
 
 
 def uncovered(
@@ -258,9 +286,10 @@ def assemble(
     warnings: tuple[str, ...],
 ) -> Plan:
     """The plan of one aircraft, not yet judged: without violations and what is uncovered."""
-    collects, transits, footprints = collects_and_transits(
+    collects, transits, footprints, photos = collects_and_transits(
         chart, model, airspace, suite, composed, legs, passes
     )
+    cameras = plan_cameras(suite)
     flight, begin = composed.flight, composed.flight.path.start
     heading_deg = chart.frame.true_heading_deg(*begin.position, begin.angle_rad)
     path = flown_path(flight, model, chart.lonlats, chart.straight_edge_m, heading_deg)
@@ -278,12 +307,14 @@ def assemble(
         footprints=footprints,
         uncovered=(),
         fence=fence(chart, airspace, LineString(flight.path.sample(10.0)[:, :2])),
-        metrics=metrics,
+        metrics=replace(metrics, photos=sum(len(p.places) for p in photos) if cameras else None),
         violations=(),
         methods=methods,
         scenario_hash=scenario_hash,
         planner_version=planner_version,
         seed=seed,
         warnings=warnings,
+        photos=photos,
+        cameras=cameras,
         wind=PlanWind(model.wind.speed_m_s, heading_from_angle(model.wind.toward_rad + math.pi)),
     )

@@ -45,6 +45,8 @@ class CollectPass:
         η of eq 18 (Li et al. 2018), 0 at the innermost and 1 at the outermost line.
     footprint
         Ground seen at full resolution.
+    photo_spacing_m
+        The widest distance between photos that keeps their overlap; None where none are taken.
     """
 
     regions: tuple[str, ...]
@@ -54,6 +56,7 @@ class CollectPass:
     end: Point
     eta: float
     footprint: Polygon
+    photo_spacing_m: float | None = None
 
     @property
     def angle_rad(self) -> float:

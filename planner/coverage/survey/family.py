@@ -90,7 +90,10 @@ class LaneTarget:
         for line in options.lines[index]:
             start, end = ((float(east), float(north)) for east, north in line)
             seen = seen_on_flat(self.sensor, line, self.height_m)
-            found.append(CollectPass(self.region.names, self.sensor.name, "down", start, end, 0.5, seen))
+            angle_rad = math.atan2(end[1] - start[1], end[0] - start[0])
+            apart_m = self.sensor.photo_spacing_m(self.height_m, angle_rad)
+            laid = CollectPass(self.region.names, self.sensor.name, "down", start, end, 0.5, seen, apart_m)
+            found.append(laid)
         return tuple(found)
 
     def hidden_m(self, passes: Sequence[CollectPass]) -> float:

@@ -185,6 +185,19 @@ def spot(**properties: Any) -> Document:
     return document
 
 
+def camera(document: Document | None = None, **properties: Any) -> Document:
+    """The small scenario seen by a camera; None takes a property of it away."""
+    sensor = {"name": "eye", "type": "camera", "model": "Sony a6000 20 mm", "rer": 0.85, "snr": 40.0}
+    listed = {k: v for k, v in {**sensor, **properties}.items() if v is not None}
+    return copy.deepcopy(document or small(altitude_m=300.0)) | {"sensors": [listed]}
+
+
+def by_figures(**properties: Any) -> Document:
+    """The same by lens and chip."""
+    figures = {"focal_length_m": 0.02, "pixel_pitch_m": 4e-6, "image_px": [6000, 4000]}
+    return camera(**{"model": None, **figures, **properties})
+
+
 def member(name: str, given: Any) -> Document:
     return small(**{name: given})
 
@@ -279,6 +292,20 @@ PROOFS: dict[tuple[str, str], tuple[Document, Document]] = {
     ("sensor", "pointing_margin_deg"): (small(), sensor(pointing_margin_deg=3.0)),
     ("sensor", "position_margin_m"): (small(), sensor(position_margin_m=20.0)),
     ("sensor", "stabilised"): (small(wind=WIND), sensor(small(wind=WIND), stabilised=True)),
+    ("sensor", "model"): (camera(), camera(model="DJI Zenmuse P1 24 mm")),
+    ("sensor", "focal_length_m"): (by_figures(), by_figures(focal_length_m=0.03)),
+    ("sensor", "pixel_pitch_m"): (by_figures(), by_figures(pixel_pitch_m=3e-6)),
+    ("sensor", "image_px"): (by_figures(), by_figures(image_px=[5000, 4000])),
+    ("sensor", "forward_overlap"): (camera(), camera(forward_overlap=0.8)),
+    ("sensor", "side_overlap"): (camera(), camera(side_overlap=0.8)),
+    ("sensor", "tilt_deg"): (camera(), camera(tilt_deg=20.0)),
+    ("sensor", "min_interval_s"): (camera(), camera(min_interval_s=30.0)),
+    ("sensor", "trigger"): (camera(), camera(trigger="time")),
+    ("sensor", "spectrum"): (camera(), camera(spectrum="infrared")),
+    ("sensor", "rer"): (camera(), camera(rer=0.95)),
+    ("sensor", "snr"): (camera(), camera(snr=10.0)),
+    ("sensor", "noise_gain"): (camera(), camera(noise_gain=5.4)),
+    ("sensor", "overshoot"): (camera(), camera(overshoot=0.2)),
     ("wind", "speed_m_s"): (member("wind", WIND), member("wind", WIND | {"speed_m_s": 4.0})),
     ("wind", "from_deg"): (member("wind", WIND), member("wind", WIND | {"from_deg": 20.0})),
     ("objective", "length"): (small(CROSSED), small(CROSSED, objective={"length": 2000.0})),

@@ -1,0 +1,66 @@
+"""Cameras and photos as the plan publishes them."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from planner.plan import LonLatAlt, Photos, PlanCamera
+from planner.route import CollectPass
+from planner.sensors.camera import CameraSensor
+from planner.sensors.suite import Suite
+from planner.vehicle.model import FlightModel
+
+#: Of a length so little more than whole spacings the last is not divided.
+ROUNDING_M = 1e-6
+
+
+def plan_cameras(suite: Suite) -> tuple[PlanCamera, ...]:
+    """The cameras on board."""
+    return tuple(
+        PlanCamera(
+            sensor.name,
+            sensor.optics.focal_length_m,
+            sensor.optics.pixel_pitch_m,
+            sensor.optics.columns,
+            sensor.optics.rows,
+            sensor.forward_overlap,
+            sensor.side_overlap,
+            math.degrees(sensor.tilt_rad),
+            sensor.min_interval_s,
+            sensor.trigger,
+            sensor.model,
+            sensor.spectrum,
+        )
+        for sensor in suite.sensors
+        if isinstance(sensor, CameraSensor)
+    )
+
+
+def intervals(collect: CollectPass) -> int:
+    """Between how many equal intervals its photos are taken: as few as its spacing allows."""
+    if collect.photo_spacing_m is None:
+        raise ValueError("a pass without photos has no intervals")
+    return max(math.ceil((collect.length_m - ROUNDING_M) / collect.photo_spacing_m), 1)
+
+
+def photos_of(
+    collect: CollectPass,
+    seq: int,
+    line: tuple[LonLatAlt, LonLatAlt],
+    sensor: CameraSensor,
+    model: FlightModel,
+) -> Photos | None:
+    """The photos of a pass, at equal distances from its first point to its last; None for a video."""
+    if sensor.trigger == "video" or collect.photo_spacing_m is None:
+        return None
+    count = intervals(collect)
+    start, end = np.array(line)
+    places = start + np.linspace(0.0, 1.0, count + 1)[:, None] * (end - start)
+    interval_m = collect.length_m / count
+    interval_s = None
+    if sensor.trigger == "time":
+        interval_s = interval_m / float(model.ground_speed_m_s(collect.angle_rad))
+    listed = tuple((float(lon), float(lat), float(alt)) for lon, lat, alt in places)
+    return Photos(model.name, seq, collect.sensor, listed, interval_m, interval_s)
