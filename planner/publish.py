@@ -53,6 +53,8 @@ from planner.vehicle.model import FlightModel
 #: Vertices of straights of the published line: the chord in longitude and latitude must not leave the
 #: straight by more than a centimetre or so.
 MAX_STRAIGHT_EDGE_M = 1000.0
+#: Places of a pass are looked at no nearer to its ends.
+INSIDE_M = 1e-5
 #: From this latitude on straights have more vertices, so that the chord stays as near; the last degree counts
 #: as one.
 STEEP_DEG = 60.0
@@ -141,11 +143,13 @@ def collects_and_transits(
         (lon0, lat0), (lon1, lat1) = chart.lonlats([collect.start, collect.end])
         middle = ((collect.start[0] + collect.end[0]) / 2.0, (collect.start[1] + collect.end[1]) / 2.0)
         (start_m, start_s), (end_m, end_s) = flight.along(from_m), flight.along(until_m)
-        altitude_m = float(flight.heights.at(0.5 * (from_m + until_m)))
+        # Within: where it climbs on the spot next to a pass the height is not one.
+        inside_m = [from_m + INSIDE_M, until_m - INSIDE_M]
+        altitude_m, last_m = (float(up_m) for up_m in flight.heights.at(inside_m))
         collects.append(
             Collect(
                 model.name, seq, name, collect.regions, collect.sensor, collect.look,
-                ((lon0, lat0, altitude_m), (lon1, lat1, altitude_m)),
+                ((lon0, lat0, altitude_m), (lon1, lat1, last_m)),
                 chart.frame.true_heading_deg(*middle, collect.angle_rad),
                 start_m, end_m, start_s, end_s,
             )

@@ -28,8 +28,8 @@ class Scenario:
 
     ``looked_at`` is where zones were looked for, where some farther off were left out.
 
-    Where there is terrain the flight is level and ``altitude_reference`` is ``amsl``; see
-    ``planner.geojson.relief``.
+    Where there is terrain ``altitude_reference`` is ``amsl``; see ``planner.geojson.relief``. The flight is
+    level, unless ``lowest_amsl_m`` says how far down it may come where it follows the ground.
     """
 
     name: str
@@ -58,6 +58,8 @@ class Scenario:
     terrain: Ground | None = None
     over_ground_m: float = 0.0
     looked_at: Polygon | None = None
+    lowest_amsl_m: float | None = None
+    terrain_following: bool = False
 
     @property
     def airspace(self) -> Airspace:
@@ -75,7 +77,8 @@ class Scenario:
         ] or [self.altitude_m]
         top_m = max(altitudes_m)
         level = self.airspace.level(top_m, self.altitude_reference)
-        return replace(level, depth_m=top_m - min(altitudes_m))
+        spread_m = 0.0 if self.lowest_amsl_m is None else level.amsl_m - self.lowest_amsl_m
+        return replace(level, depth_m=top_m - min(altitudes_m), spread_m=spread_m)
 
     @property
     def height_m(self) -> float:

@@ -14,7 +14,8 @@ class Region:
     A corridor (LineString with width) and a target (Point with radius) arrive here as the area they mean.
     ``approach_rad`` holds the allowed flight directions, None for any; ``revisits`` how often it is to be
     seen, on separate occasions; ``axis`` the line a corridor follows; ``altitude_m`` is that of its passes
-    over the scenario's datum, None for the route's.
+    over the scenario's datum, None for the route's. ``over_ground_m`` is the height of passes that follow the
+    ground, None for level ones.
     """
 
     name: str
@@ -27,6 +28,7 @@ class Region:
     revisits: int = 1
     axis: LineString | None = None
     altitude_m: float | None = None
+    over_ground_m: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 from shapely.geometry import Polygon
@@ -17,6 +17,10 @@ class HasAltitude(Protocol):
     @property
     def altitude_m(self) -> float | None:
         """Of its passes, over the reference; None where it asks for none."""
+
+    @property
+    def over_ground_m(self) -> float | None:
+        """Height of its passes where they follow the ground; None where they are level."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,12 +38,18 @@ class Level:
     depth_m
         So far below it lies the lowest of the levels that a route with passes at several heights is flown at;
         0 where it is the only one.
+    spread_m
+        So far below it any place may be flown over, by a flight that follows the ground; 0 where it is level.
+    over_ground_m
+        Height of passes that follow the ground; None for level ones.
     """
 
     height_m: float
     amsl_m: float
     reference: AltitudeReference = "terrain"
     depth_m: float = 0.0
+    spread_m: float = 0.0
+    over_ground_m: float | None = None
 
     @property
     def altitude_m(self) -> float:
@@ -48,8 +58,15 @@ class Level:
 
     @property
     def lowest(self) -> Level:
-        """The lowest of the levels flown."""
-        return self.at(self.altitude_m - self.depth_m)
+        """The lowest of the levels flown, or of what is flown over ground that is followed."""
+        return self.at(self.altitude_m - max(self.depth_m, self.spread_m))
+
+    @property
+    def counted_m(self) -> tuple[float, float]:
+        """From and up to which height a shape has to reach to count: at all levels, or anywhere followed."""
+        if self.spread_m > 0.0:
+            return self.height_m - self.spread_m, self.height_m
+        return self.height_m, self.lowest.height_m
 
     def at(self, altitude_m: float) -> Level:
         """The level of another altitude over the same reference, by itself."""
@@ -60,6 +77,8 @@ class Level:
 
     def of(self, region: HasAltitude) -> Level:
         """The level of a region's passes: its own, else this one."""
+        if region.over_ground_m is not None:
+            return replace(self, over_ground_m=region.over_ground_m)
         return self if region.altitude_m is None else self.at(region.altitude_m)
 
 

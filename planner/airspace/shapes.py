@@ -134,14 +134,14 @@ def hard_shapes(airspace: Airspace, level: Level) -> Iterator[DiscShape | Polygo
     Of several levels flown: those that count at all of them. What counts at some is kept clear leg by leg.
     """
     for banded in banded_shapes(airspace, level.amsl_m - level.height_m):
-        if banded.hard and banded.counts(level.height_m, level.lowest.height_m):
+        if banded.hard and banded.counts(*level.counted_m):
             yield banded.shape.grown(banded.kept_m)
 
 
 def soft_shapes(airspace: Airspace, level: Level) -> Iterator[DiscShape]:
     """Threats that cost and do not forbid, at a level."""
     for threat in airspace.threats:
-        if not threat.hard and acts(threat, level.height_m):
+        if not threat.hard and acts(threat, level.height_m - level.spread_m):
             yield DiscShape(threat.name, threat.centre, threat.radius_m)
 
 

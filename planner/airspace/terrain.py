@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 from numpy.typing import ArrayLike, NDArray
-from scipy.ndimage import map_coordinates
+from scipy.ndimage import map_coordinates, maximum_filter, minimum_filter
 from shapely.geometry.base import BaseGeometry
 
 from planner.airspace.terrain_kernels import grounds_at
@@ -173,6 +173,32 @@ class Ground:
         inside = shapely.contains_xy(reach, east_m, north_m)
         heights = self.heights_m[np.ix_(i, j)][inside]
         return (float(heights.min()), float(heights.max()))
+
+    def relief_beside_m(self, area: BaseGeometry, reach_m: float) -> float:
+        """How much higher or lower than at a place of an area the ground is within a reach of it.
+
+        Within a square that holds the reach: at most that much more than there is. Unknown ground is none.
+        """
+        rows, columns = self.heights_m.shape
+        beside = math.ceil(reach_m / self.step_m) + 1
+        west, south, east, north = area.bounds
+        first = max(0, math.floor((west - self.west_m) / self.step_m) - beside)
+        last = min(columns, math.ceil((east - self.west_m) / self.step_m) + beside + 1)
+        low = max(0, math.floor((south - self.south_m) / self.step_m) - beside)
+        high = min(rows, math.ceil((north - self.south_m) / self.step_m) + beside + 1)
+        piece = self.heights_m[low:high, first:last]
+        known = np.isfinite(piece)
+        size = 2 * beside + 1
+        most = maximum_filter(np.where(known, piece, -np.inf), size) - piece
+        least = piece - minimum_filter(np.where(known, piece, np.inf), size)
+        east_m, north_m = np.meshgrid(
+            self.west_m + self.step_m * np.arange(first, last),
+            self.south_m + self.step_m * np.arange(low, high),
+        )
+        over = area.buffer(self.step_m * math.sqrt(2.0))
+        shapely.prepare(over)
+        inside = known & shapely.contains_xy(over, east_m, north_m)
+        return float(max(most[inside].max(initial=0.0), least[inside].max(initial=0.0)))
 
     def covers(self, area: BaseGeometry) -> bool:
         """Whether an area lies wholly on the grid."""

@@ -243,11 +243,11 @@ def keep_out(
     edge_m
         The area shrinks by this much; by the margin where not given.
     """
-    lowest, floor_to_m = (level, level.lowest.height_m) if lowest is None else (lowest, level.height_m)
+    counted_m = level.counted_m if lowest is None else (lowest.height_m, level.height_m)
     discs: list[Disc] = []
     polygons: list[PolygonZone] = []
     for banded in banded_shapes(airspace, level.amsl_m - level.height_m):
-        if not (banded.hard or soft) or not banded.counts(lowest.height_m, floor_to_m):
+        if not (banded.hard or soft) or not banded.counts(*counted_m):
             continue
         shape, grown_m = banded.shape, banded.kept_m + margin_m
         if isinstance(shape, DiscShape):

@@ -96,7 +96,7 @@ def _counts(scenario: Scenario, region: Region, collect: Collect) -> bool:
     if not _same(sensor, scenario.sensor_for(region)):
         return False
     asked_m = scenario.altitude_m if region.altitude_m is None else region.altitude_m
-    if abs(collect.line[0][2] - asked_m) > HEIGHT_TOLERANCE_M:
+    if region.over_ground_m is None and abs(collect.line[0][2] - asked_m) > HEIGHT_TOLERANCE_M:
         return False
     if region.min_resolution_m is not None and (
         sensor.resolution_m is None or sensor.resolution_m > region.min_resolution_m

@@ -77,9 +77,12 @@ def ground_violations(
             )
 
 
-def level_violations(collects: tuple[Collect, ...]) -> Iterator[Violation]:
-    """Collects are flown level."""
+def level_violations(scenario: Scenario, collects: tuple[Collect, ...]) -> Iterator[Violation]:
+    """Collects are flown level, but for those that are to follow the ground."""
+    follow = _followed(scenario)
     for collect in collects:
+        if follow.issuperset(collect.regions):
+            continue
         rise_m = abs(collect.line[1][2] - collect.line[0][2])
         if rise_m > HEIGHT_TOLERANCE_M:
             yield Violation(
@@ -93,12 +96,15 @@ def level_violations(collects: tuple[Collect, ...]) -> Iterator[Violation]:
 
 
 def altitude_violations(scenario: Scenario, collects: tuple[Collect, ...]) -> Iterator[Violation]:
-    """Collects are flown at the altitude that their regions ask for, else at the scenario's."""
+    """Level collects are flown at the altitude that their regions ask for, else at the scenario's."""
+    follow = _followed(scenario)
     asked_m = {
         region.name: scenario.altitude_m if region.altitude_m is None else region.altitude_m
         for region in scenario.regions
     }
     for collect in collects:
+        if follow.issuperset(collect.regions):
+            continue
         off_m = max(abs(collect.line[0][2] - asked_m[name]) for name in collect.regions)
         if off_m > HEIGHT_TOLERANCE_M:
             yield Violation(
@@ -109,6 +115,11 @@ def altitude_violations(scenario: Scenario, collects: tuple[Collect, ...]) -> It
                 "m",
                 collect.line[0][:2],
             )
+
+
+def _followed(scenario: Scenario) -> set[str]:
+    """Regions whose collects follow the ground."""
+    return {region.name for region in scenario.regions if region.over_ground_m is not None}
 
 
 def phase_violations(path: FlownPath) -> Iterator[Violation]:

@@ -23,12 +23,13 @@ class Measured:
 
     def __init__(self, line_m: Floats) -> None:
         self._line_m = line_m
-        self._along_m = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(line_m, axis=0).T))])
+        #: Of each vertex, its distance along the line.
+        self.along_m = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(line_m, axis=0).T))])
 
     @property
     def length_m(self) -> float:
         """From the first vertex to the last."""
-        return float(self._along_m[-1])
+        return float(self.along_m[-1])
 
     def between(self, from_m: float, to_m: float) -> Floats:
         """Vertices of a stretch, its ends among them, (M, 2); one place where it has no length."""
@@ -36,12 +37,12 @@ class Measured:
         first = self.place(from_m)
         if to_m <= from_m:
             return first[None]
-        low, high = np.searchsorted(self._along_m, from_m, "right"), np.searchsorted(self._along_m, to_m)
+        low, high = np.searchsorted(self.along_m, from_m, "right"), np.searchsorted(self.along_m, to_m)
         return np.concatenate([first[None], self._line_m[low:high], self.place(to_m)[None]])
 
     def place(self, at_m: float) -> Floats:
         """The place so far along, (2,)."""
-        return np.array([np.interp(at_m, self._along_m, column) for column in self._line_m.T])
+        return np.array([np.interp(at_m, self.along_m, column) for column in self._line_m.T])
 
     def nearest_m(self, place: tuple[float, float], from_m: float, to_m: float) -> float:
         """How far along the place of a stretch is that lies nearest to another."""

@@ -12,6 +12,7 @@ from shapely.geometry import MultiPolygon, Polygon
 from planner.check.clearance import clearance_violations, place_violations
 from planner.check.continuity import collect_violations, terminal_violations
 from planner.check.coverage import covered
+from planner.check.followed import followed_violations
 from planner.check.heights import (
     altitude_violations,
     ground_violations,
@@ -85,7 +86,7 @@ def judge(scenario: Scenario, plan: Plan) -> Verdict:
         violations += clearance_violations(scenario, plan, path, line_m)
         violations += slope_violations(path, vehicle, line_m, altitudes_m)
         violations += ground_violations(path, vehicle, altitudes_m, _grounds_m(scenario, home_ground_m))
-        violations += level_violations(plan.collects_of(vehicle.name))
+        violations += level_violations(scenario, plan.collects_of(vehicle.name))
         violations += altitude_violations(scenario, plan.collects_of(vehicle.name))
         violations += phase_violations(path)
         violations += terminal_violations(
@@ -96,6 +97,7 @@ def judge(scenario: Scenario, plan: Plan) -> Verdict:
         over_ground_m = partial(np.interp, xp=reached_m, fp=over_m)
         measured = Measured(line_m)
         violations += collect_violations(scenario, plan, path, measured, over_ground_m, aircraft.settle_m)
+        violations += followed_violations(scenario, plan, path, measured, over_ground_m, altitudes_m)
     coverage, unseen, missed = covered(scenario, plan)
     violations += missed
     length_m = math.fsum(lengths_m)

@@ -58,7 +58,7 @@ class MergedRegion:
     axes
         Of each part the line it follows as a corridor, None for others, in step with ``originals``; empty for
         pieces of what was asked for.
-    altitude_m
+    altitude_m, over_ground_m
         Of its passes, see ``Region``.
     """
 
@@ -73,6 +73,7 @@ class MergedRegion:
     visit: tuple[int, int] | None = None
     axes: tuple[LineString | None, ...] = ()
     altitude_m: float | None = None
+    over_ground_m: float | None = None
 
     @property
     def axis(self) -> LineString | None:
@@ -134,6 +135,7 @@ def split_region(region: Region) -> tuple[MergedRegion, ...]:
             None,
             (region.axis,),
             region.altitude_m,
+            region.over_ground_m,
         )
         for part in polygons_of(region.area)
     )
@@ -170,6 +172,7 @@ def merge_regions(
             limits = frozenset(round(math.degrees(angle) % 360.0, 6) % 360.0 for angle in region.approach_rad)
         key = (
             region.sensor or default_sensor, limits, region.required, region.revisits, region.altitude_m,
+            region.over_ground_m,
         )  # fmt: skip
         groups[key].extend((index, part) for part in split_region(region))
     merged = [found for group in groups.values() for found in _merge_group(group, radius_m)]

@@ -1,10 +1,10 @@
 """A scenario set on its terrain.
 
-Passes over terrain are level. With ``altitude_reference: terrain`` their level is ``altitude_m`` over the
-highest ground of the regions, a region's own over its own highest ground. Ground that comes within
-``clearance_m`` of a level is a no-fly zone there, flown round like any other. What stands on the ground,
-threats threats and obstacles, is lifted or lowered to its ground, so that all heights in the scenario count
-from home.
+Passes over terrain are level, unless the flight follows the ground (``planner.geojson.followed``). With
+``altitude_reference: terrain`` their level is ``altitude_m`` over the highest ground of the regions, a
+region's own over its own highest ground. Ground that comes within ``clearance_m`` of a level is a no-fly zone
+there, flown round like any other. What stands on the ground, threats and obstacles, is lifted or lowered to
+its ground, so that all heights in the scenario count from home.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from planner.airspace.shapes import without_holes
 from planner.airspace.terrain import Ground, Terrain, local_ground
 from planner.airspace.values import NoFlyZone, Obstacle, Threat
 from planner.geojson.fields import Findings
+from planner.geojson.followed import followed
 from planner.scenario import Scenario
 from planner.wishes import Region
 
@@ -80,7 +81,7 @@ def set_on_terrain(
     if of_route:
         if not _above("scenario", level_m, max(of_route), clearance_m, findings):
             return scenario
-        if reference == "terrain":
+        if reference == "terrain" and not scenario.terrain_following:
             findings.warning(
                 "scenario",
                 "terrain-level",
@@ -88,7 +89,17 @@ def set_on_terrain(
                 f"ground of the regions, {highest_m:.1f} m",
                 "Give altitude_reference amsl for another level.",
             )
-    levels_m = sorted({level_m if region.altitude_m is None else region.altitude_m for region in regions})
+    lowest_amsl_m = None
+    if scenario.terrain_following:
+        found = followed(scenario, regions, ground, clearance_m, level_m, findings)
+        if found is None:
+            return scenario
+        regions, level_m, lowest_amsl_m = found
+    levels_m = [
+        level_m if region.altitude_m is None else region.altitude_m
+        for region in regions
+        if region.over_ground_m is None
+    ]
     return replace(
         scenario,
         regions=tuple(regions),
@@ -97,7 +108,8 @@ def set_on_terrain(
         home_amsl_m=home_amsl_m,
         over_ground_m=clearance_m,
         terrain=ground,
-        no_fly=scenario.no_fly + _high_ground(scenario, ground, levels_m, clearance_m),
+        lowest_amsl_m=lowest_amsl_m,
+        no_fly=scenario.no_fly + _high_ground(scenario, ground, sorted(set(levels_m)), clearance_m),
         threats=tuple(_raised_threat(threat, ground, home_amsl_m) for threat in scenario.threats),
         obstacles=tuple(_raised_obstacle(obstacle, ground, home_amsl_m) for obstacle in scenario.obstacles),
     )
@@ -164,7 +176,8 @@ def _high_ground(
     west, south, east, north = _bounds(scenario)
     within = shapely.box(west, south, east, north) if scenario.area is None else scenario.area
     zones: list[NoFlyZone] = []
-    for level_m, next_m in pairwise([*levels_m, math.inf]):
+    # A flight that only follows the ground is kept out of what is not known of it.
+    for level_m, next_m in pairwise([*(levels_m or [math.inf]), math.inf]):
         high = ground.above(level_m - clearance_m, within)
         parts = [part for zone in high for part in without_holes(zone)]
         parts.sort(key=lambda polygon: -polygon.area)

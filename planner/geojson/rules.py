@@ -141,7 +141,7 @@ def _terminals(scenario: Scenario, findings: Findings) -> None:
     """Neither end lies in what is hard, nor nearer to it than is to be kept."""
     level = scenario.level
     for banded in banded_shapes(scenario.airspace, level.amsl_m - level.height_m):
-        if not banded.hard or not banded.counts(level.height_m, level.lowest.height_m):
+        if not banded.hard or not banded.counts(*level.counted_m):
             continue
         shape = banded.shape
         for terminal in _ends(scenario):

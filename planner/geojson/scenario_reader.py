@@ -32,8 +32,8 @@ NOT_YET = ("search",)
 
 MEMBERS = (
     "type", "features", "name", "bbox", "crs", "vehicles", "sensors", "altitude_m",
-    "altitude_reference", "terrain", "wind", "clearance_m", "objective", "task", "method", "seed",
-    "time_budget_s",
+    "altitude_reference", "terrain", "terrain_following", "wind", "clearance_m", "objective", "task",
+    "method", "seed", "time_budget_s",
 )  # fmt: skip
 
 CRS84 = (
@@ -152,6 +152,12 @@ def _read(document: Any, findings: Findings, terrains: Terrains | None) -> Scena
             "Send the raster first and name it by its id; without terrain the ground is flat at the height "
             "of home.",
         )  # fmt: skip
+    following = top.flag("terrain_following", False)
+    if following and terrain_name is None:
+        findings.error(
+            "scenario", "terrain-following", "follows the terrain, but names none",
+            "Name the raster as terrain, or leave terrain_following out.",
+        )  # fmt: skip
     clearance_m = top.number("clearance_m", equipment.kept_m(aircraft), minimum=0.0)
     budget_s = top.number("time_budget_s", None, above=0.0)
     name = top.text("name", "scenario")
@@ -191,6 +197,7 @@ def _read(document: Any, findings: Findings, terrains: Terrains | None) -> Scena
         scenario_hash=scenario_hash(document),
         looked_at=counted.looked_at(frame),
         home_amsl_m=None if terrain is not None else home_amsl_m(raws, start.name),
+        terrain_following=following,
     )
     if terrain is not None:
         scenario = set_on_terrain(scenario, terrain, "clearance_m" in top, findings)
@@ -205,11 +212,14 @@ def _read(document: Any, findings: Findings, terrains: Terrains | None) -> Scena
 
 
 def _at_their_altitudes(regions: tuple[Region, ...], altitude_m: float) -> tuple[Region, ...]:
-    """Where one region has an altitude of its own, every region has one."""
+    """Where one region has an altitude of its own, every region has one; but for those that are followed."""
     if all(region.altitude_m in (None, altitude_m) for region in regions):
         return tuple(replace(region, altitude_m=None) for region in regions)
     return tuple(
-        replace(region, altitude_m=altitude_m) if region.altitude_m is None else region for region in regions
+        replace(region, altitude_m=altitude_m)
+        if region.altitude_m is None and region.over_ground_m is None
+        else region
+        for region in regions
     )
 
 

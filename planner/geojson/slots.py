@@ -87,7 +87,7 @@ def closed_slots(scenario: Scenario) -> list[Slot]:
     shapes = [
         banded.shape
         for banded in banded_shapes(scenario.airspace, level.amsl_m - level.height_m)
-        if banded.hard and banded.kept_m > 0.0 and banded.counts(level.height_m, level.lowest.height_m)
+        if banded.hard and banded.kept_m > 0.0 and banded.counts(*level.counted_m)
     ]
     # Discs by their centres and radii: a polygon would be off by its chords.
     cores: list[BaseGeometry] = [

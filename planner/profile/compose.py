@@ -10,7 +10,7 @@ from functools import partial
 from planner.dubins.path import Path, Segment, join
 from planner.profile.change import Changed
 from planner.profile.flight import Flight, Times, whole_flight
-from planner.profile.heights import Heights, level
+from planner.profile.heights import Heights
 from planner.profile.rise import Rise
 from planner.profile.smoothed import smoothed_times
 from planner.profile.times import rotor_times, wing_times
@@ -36,7 +36,7 @@ class Composed:
 def compose(
     up: Rise,
     between: Sequence[Changed],
-    passes: Sequence[tuple[CollectPass | None, float]],
+    passes: Sequence[tuple[CollectPass | None, Heights]],
     down: Rise,
     times: Times,
 ) -> Composed:
@@ -49,18 +49,18 @@ def compose(
     between
         From each station to the next.
     passes
-        The pass of each station, None where one is only flown over, and its altitude.
+        The pass of each station, None where one is only flown over, and its heights.
     """
     pieces: list[Path] = [up.path]
     heights: Heights = up.heights
     legs_m: list[Span] = [(up.turns_m, up.path.length_m)]
     passes_m: list[Span] = []
-    for k, (collect, altitude_m) in enumerate(passes):
+    for k, (collect, own) in enumerate(passes):
         at_m = heights.length_m
         if collect is not None:
             passes_m.append((at_m, at_m + collect.length_m))
             pieces.append(Path((Segment("straight", collect.entry, collect.length_m),)))
-            heights = heights.then(level(collect.length_m, altitude_m))
+            heights = heights.then(own)
         if k < len(between):
             leg = between[k]
             legs_m.append((heights.length_m, heights.length_m + leg.path.length_m))

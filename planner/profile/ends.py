@@ -48,6 +48,8 @@ class Surround:
         Terrain and what is kept over it, in altitudes over the same datum; None where the ground is flat.
     clearance_m
         Kept over terrain behind take-off and before landing.
+    raised
+        Heights as they are flown along a line, where those of a level route are not.
     """
 
     top_m: float
@@ -57,6 +59,7 @@ class Surround:
     ground: Ground | None = None
     clearance_m: float = 0.0
     stop: Stop = never
+    raised: Callable[[Path, Heights], Heights] = lambda path, heights: heights
 
 
 def up(start: Terminal, ground_m: float, goal: Anchor, model: FlightModel, around: Surround) -> Rise:
@@ -194,6 +197,7 @@ def terms_of(around: Surround, slope_rad: float, model: FlightModel) -> Terms:
         ground = around.ground
         if ground is None:
             return False
+        heights = around.raised(path, heights)
         points = path.sample(ground.step_m / 2.0, ground.step_m / 2.0)
         clear_m = heights.at(points[:, 3]) - ground.at(points[:, :2])
         # At the run's end the aircraft is lower than what is kept; it may be, for as long as it climbs out.

@@ -23,10 +23,13 @@ class Kind:
     seen_on_terrain
         Ground one of them sees: the sensor, the line (2, 2) with the sensor on from end to end, the side
         looked to, the level flown over the ground's datum, the ground.
+    follows
+        Whether their passes may follow the ground, up and down; otherwise they are level.
     """
 
     read: Callable[[Properties], Sensor | None]
     seen_on_terrain: Callable[..., SeenGround]
+    follows: bool = False
 
 
 KINDS: dict[str, Kind] = {

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from shapely.geometry import MultiPolygon, Polygon
 
 from planner.airspace.airspace import Airspace, Level
+from planner.airspace.envelope import SMOOTH_M
 from planner.sensors.base import Sensor
 from planner.wishes import Region
 
@@ -45,11 +46,16 @@ class Suite:
         """A sensor and the flight height over the ground of an area, for the stages that plan its passes.
 
         On terrain the height is that over the middle between the area's lowest and highest ground, and the
-        sensor allows for the relief between.
+        sensor allows for the relief between; where passes follow the ground it is theirs, and the relief that
+        beside the track.
         """
         sensor = self.named(name)
         if airspace.terrain is None:
             return sensor, level.height_m
+        if level.over_ground_m is not None:
+            height_m = level.over_ground_m - SMOOTH_M
+            beside_m = airspace.terrain.relief_beside_m(area, sensor.swath_m(height_m) / 2.0)
+            return sensor.over_relief(beside_m + SMOOTH_M), height_m
         low_m, high_m = airspace.terrain.range_over(area)
         relief_m = (high_m - low_m) / 2.0 + RELIEF_MARGIN_M
         return sensor.over_relief(relief_m), level.amsl_m - (low_m + high_m) / 2.0

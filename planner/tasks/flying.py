@@ -19,6 +19,8 @@ from planner.profile.change import Changed, Layers, changed, kept
 from planner.profile.compose import Composed, compose, times_of
 from planner.profile.ends import Surround, climb_slope_rad, down, sink_slope_rad, up
 from planner.profile.finish import finish_of
+from planner.profile.following import Following
+from planner.profile.heights import Heights
 from planner.profile.heights import level as level_heights
 from planner.profile.lines import cut
 from planner.profile.rise import Rise
@@ -50,18 +52,33 @@ class Station:
         The pass; None where there is none.
     altitude_m
         Its own, over the flight's datum; None for the route's.
+    followed
+        Heights of a pass that follows the ground, over the flight's datum; None for a level one.
     """
 
     name: str
     arrive: Anchor
     collect: CollectPass | None = None
     altitude_m: float | None = None
+    followed: Heights | None = None
 
     @classmethod
-    def of(cls, collect: CollectPass, settle_m: float, altitude_m: float | None = None) -> Station:
+    def of(
+        cls,
+        collect: CollectPass,
+        settle_m: float,
+        altitude_m: float | None = None,
+        followed: Heights | None = None,
+    ) -> Station:
         """That of a pass with so much straight flight before it."""
         pose = collect.settling(settle_m)
-        return cls("+".join(collect.regions), Anchor(*pose.position, pose.angle_rad), collect, altitude_m)
+        arrive = Anchor(*pose.position, pose.angle_rad)
+        return cls("+".join(collect.regions), arrive, collect, altitude_m, followed)
+
+    def heights(self, levels: FlightLevels) -> Heights:
+        """Along its pass, at the levels of its flight."""
+        length_m = 0.0 if self.collect is None else self.collect.length_m
+        return self.followed or level_heights(length_m, levels.at(self.altitude_m).altitude_m)
 
 
 @dataclass(frozen=True, slots=True)
@@ -128,6 +145,7 @@ def fly_whole(
     unminded: Collection[str],
     progress: Progress,
     stop: Stop,
+    following: Following | None = None,
 ) -> tuple[Composed, tuple[Leg, ...], tuple[str, ...]]:
     """The whole flight of one aircraft, its legs, and notes on legs that not the first connector found.
 
@@ -143,6 +161,8 @@ def fly_whole(
         Of a line: its length, and what its risk counts.
     unminded
         Threats whose risk has no weight.
+    following
+        What the ground is followed by; None for a level flight.
 
     Raises
     ------
@@ -172,7 +192,9 @@ def fly_whole(
 
     progress("transit", 0.0)
     layers = _Layers(levels, unminded, cost_m, stop)
+    passes = [(station.collect, station.heights(levels)) for station in stations]
     first, goal, top = stations[0], stations[0].arrive, levels.at(stations[0].altitude_m)
+    first_m, last_m = passes[0][1].knots[0][1], passes[-1][1].knots[-1][1]
     climb_m = top.level.height_m / math.tan(climb_slope_rad(model))
     rising = made(
         lambda connector: up(
@@ -180,21 +202,33 @@ def fly_whole(
             top.home_ground_m,
             goal,
             model,
-            layers.around(top, top.ground, connector, lambda path: cut(path, 0.0, climb_m)),
+            _topped(
+                layers.around(top, top.ground, connector, lambda path: cut(path, 0.0, climb_m)),
+                first_m,
+                start.position,
+                following,
+            ),
         )
     )
-    rising = _settled(rising, first.collect, top.altitude_m)
+    rising = _settled(rising, first.collect)
+    if following is not None:
+        rising = following.over_rise(rising, first_m)
     arrived, between = rising.path, []
-    for here, there in pairwise(stations):
+    for (here, there), ((_, left), (_, reached)) in zip(pairwise(stations), pairwise(passes), strict=True):
         raise_if(stop)
         progress("transit", len(legs) / (len(stations) + 1))
-        pair = (levels.at(here.altitude_m), levels.at(there.altitude_m))
-        leg = made(partial(_changed, _leaves(here, arrived), there.arrive, pair, model, layers))
+        between_m = (left.knots[-1][1], reached.knots[0][1])
+        ends_of_leg = (_leaves(here, arrived), there.arrive)
+        if following is None:
+            leg = made(partial(_changed, *ends_of_leg, between_m, model, layers))
+        else:
+            leg = made(partial(_followed, *ends_of_leg, between_m, model, layers, following))
         arrived = _straight_on(leg.path, there.collect)
         settled_m = arrived.length_m - leg.path.length_m
         if settled_m > 0.0:
-            settled = leg.heights.then(level_heights(settled_m, pair[1].altitude_m))
-            leg = replace(leg, path=arrived, heights=settled)
+            leg = replace(leg, path=arrived, heights=leg.heights.then(level_heights(settled_m, between_m[1])))
+        if following is not None:
+            leg = replace(leg, heights=following.over_leg(leg.path, leg.heights))
         between.append(leg)
     origin, top = _leaves(stations[-1], arrived), levels.at(stations[-1].altitude_m)
     sink_m = top.level.height_m / math.tan(sink_slope_rad(model))
@@ -207,14 +241,20 @@ def fly_whole(
             grounds_m,
             origin,
             model,
-            layers.around(
-                top, top.ground, connector, lambda path: cut(path, path.length_m - sink_m, path.length_m)
+            _topped(
+                layers.around(
+                    top, top.ground, connector, lambda path: cut(path, path.length_m - sink_m, path.length_m)
+                ),
+                last_m,
+                end.position,
+                following,
             ),
             finish,
         )
     )
+    if following is not None:
+        falling = following.over_fall(falling, last_m)
     times = times_of(model, levels.datum_amsl_m)
-    passes = [(station.collect, levels.at(station.altitude_m).altitude_m) for station in stations]
     composed = compose(rising, between, passes, falling, times)
     return composed, tuple(legs), tuple(notes)
 
@@ -271,13 +311,13 @@ class _Layers:
 def _changed(
     start: Anchor,
     goal: Anchor,
-    pair: tuple[FlightLevels, FlightLevels],
+    between_m: tuple[float, float],
     model: FlightModel,
     layers: _Layers,
     connector: Connector,
 ) -> Changed:
-    """A leg from one pass to the next, each at its height."""
-    here, there = pair
+    """A leg from one pass to the next, each at its altitude."""
+    here, there = pair = tuple(layers.levels.at(altitude_m) for altitude_m in between_m)
     if here.altitude_m == there.altitude_m:
         leg = connector(start, goal, layers.zones(here, None, TRANSIT_MARGIN_M))
         return kept(leg, here.altitude_m)
@@ -292,14 +332,41 @@ def _changed(
     return changed(line, here.altitude_m, there.altitude_m, model, around, of_heights)
 
 
+def _followed(
+    start: Anchor,
+    goal: Anchor,
+    between_m: tuple[float, float],
+    model: FlightModel,
+    layers: _Layers,
+    following: Following,
+    connector: Connector,
+) -> Changed:
+    """The same over ground that is followed, clear of what reaches any height flown."""
+    levels = layers.levels
+    zones = layers.zones(levels, None, TRANSIT_MARGIN_M)
+    around = layers.around(levels, levels.level.lowest, connector, lambda path: path)
+    return following.leg(partial(connector, start, goal), *between_m, model, around, zones)
+
+
+def _topped(
+    around: Surround, station_m: float, place: tuple[float, float], following: Following | None
+) -> Surround:
+    """What a way up or down is placed in: over ground that is followed as high as either end asks."""
+    if following is None:
+        return around
+    top_m = max(station_m, following.surface_m(place))
+    return replace(around, top_m=top_m, raised=following.over_leg)
+
+
 def _leaves(station: Station, arrived: Path) -> Anchor:
     """Where the next leg begins: behind the pass, or where the last leg has come to."""
     pose = arrived.end if station.collect is None else station.collect.exit
     return Anchor(*pose.position, pose.angle_rad)
 
 
-def _settled(rising: Rise, collect: CollectPass | None, top_m: float) -> Rise:
+def _settled(rising: Rise, collect: CollectPass | None) -> Rise:
     """A rise with the settling run of the first pass."""
+    top_m = rising.heights.knots[-1][1]
     path = _straight_on(rising.path, collect)
     gap_m = path.length_m - rising.path.length_m
     heights = rising.heights.then(level_heights(gap_m, top_m)) if gap_m > 0.0 else rising.heights

@@ -78,8 +78,11 @@ class Sight:
 
     @classmethod
     def of(cls, regions: tuple[Region, ...], suite: Suite, airspace: Airspace, level: Level) -> Sight | None:
-        """Over an airspace's terrain; None where that is flat: passes see what they were laid for."""
-        return None if airspace.terrain is None else cls(regions, suite, airspace, level, airspace.terrain)
+        """Over an airspace's terrain; None where passes see what they are laid for: flat, or followed."""
+        level_flown = tuple(region for region in regions if region.over_ground_m is None)
+        if airspace.terrain is None or not level_flown:
+            return None
+        return cls(level_flown, suite, airspace, level, airspace.terrain)
 
     def seen(self, collect: CollectPass) -> BaseGeometry:
         """The ground one pass sees."""

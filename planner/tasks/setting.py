@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from planner.airspace.airspace import Airspace, Level
+from planner.airspace.envelope import SMOOTH_M, Envelope
 from planner.coverage.visible import Seeing
+from planner.profile.ends import climb_slope_rad, sink_slope_rad
+from planner.profile.following import Following
 from planner.route import Terminal
 from planner.scenario import Scenario
 from planner.sensors.suite import Suite
@@ -23,6 +27,10 @@ class Setting:
         Where it starts and where it ends.
     altitudes_m
         Of the passes over each region that has one of its own.
+    over_ground_m
+        Height over the ground of the passes over each region for which they follow it.
+    following
+        What the ground is followed by; None for a level flight.
     """
 
     airspace: Airspace
@@ -31,6 +39,8 @@ class Setting:
     suite: Suite
     ends: tuple[Terminal, Terminal]
     altitudes_m: Mapping[str, float] = field(default_factory=dict)
+    over_ground_m: Mapping[str, float] = field(default_factory=dict)
+    following: Following | None = None
 
     @classmethod
     def of(cls, scenario: Scenario) -> Setting:
@@ -47,7 +57,14 @@ class Setting:
             suite = suite.in_wind(model.drift, scenario.wind.toward_rad)
         altitudes_m = {r.name: r.altitude_m for r in scenario.regions if r.altitude_m is not None}
         ends = (scenario.start, scenario.end)
-        return cls(scenario.airspace, scenario.level, model, suite, ends, altitudes_m)
+        over_m = {r.name: r.over_ground_m for r in scenario.regions if r.over_ground_m is not None}
+        following = None
+        if scenario.terrain is not None and over_m:
+            slope = math.tan(min(climb_slope_rad(model), sink_slope_rad(model)))
+            kept_m = scenario.over_ground_m + SMOOTH_M
+            following = Following(Envelope.over(scenario.terrain, kept_m, slope), slope)
+        where = (scenario.airspace, scenario.level, model, suite, ends)
+        return cls(*where, altitudes_m, over_m, following)
 
 
 def seeing(scenario: Scenario, setting: Setting) -> Seeing:

@@ -6,8 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
+from planner.airspace.envelope import SMOOTH_M
 from planner.airspace.zones import KeepOut
-from planner.dubins.path import Path
+from planner.dubins.path import Path, Segment
 from planner.errors import InfeasibleError
 from planner.profile.compose import Composed
 from planner.progress import Progress, Stop
@@ -18,6 +19,10 @@ from planner.tasks.setting import Setting
 from planner.transit import ssas_connector
 from planner.transit.refine import Risk, connect_by_cost
 from planner.wishes import Objective
+
+
+def _line(collect: CollectPass) -> Path:
+    return Path((Segment("straight", collect.entry, collect.length_m),))
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,8 +51,14 @@ class Transits:
     ) -> tuple[Composed, tuple[Leg, ...], tuple[str, ...]]:
         """The flight through all collects, its legs, and what is to be said of them."""
         settle_m = self.setting.model.settle_m
-        own_m = self.setting.altitudes_m
-        stations = [Station.of(each, settle_m, own_m.get(each.regions[0])) for each in passes]
+        own_m, over_m = self.setting.altitudes_m, self.setting.over_ground_m
+        following = self.setting.following
+        stations = []
+        for each in passes:
+            name, followed = each.regions[0], None
+            if following is not None and name in over_m:
+                followed = following.over_pass(_line(each), over_m[name] - SMOOTH_M)
+            stations.append(Station.of(each, settle_m, own_m.get(name), followed))
         return self.by(stations, progress, stop)
 
     def by(
@@ -68,6 +79,7 @@ class Transits:
             unminded,
             progress,
             stop,
+            setting.following,
         )
 
     def _connectors(self, stop: Stop) -> dict[str, Connector]:

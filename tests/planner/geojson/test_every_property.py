@@ -334,6 +334,9 @@ PROOFS: dict[tuple[str, str], tuple[Document, Document]] = {
         with_features(disc(floor_m=400.0)), with_features(disc(floor_m=400.0), altitude_reference="amsl"),
     ),
     ("scenario", "terrain"): (small(), member("terrain", "hill")),
+    ("scenario", "terrain_following"): (
+        small(terrain="hill", clearance_m=60.0), small(terrain="hill", clearance_m=60.0, terrain_following=True),
+    ),
     ("scenario", "clearance_m"): (with_features(block()), with_features(block(), clearance_m=60.0)),
     ("scenario", "task"): (small(), member("task", "search")),
     ("scenario", "seed"): (small(), member("seed", 5)),

@@ -1,0 +1,136 @@
+"""Flights that follow the ground, from scenario to verdict, with a scanner that looks straight down."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from planner.airspace.terrain import Terrain
+from planner.check import judge
+from planner.check.footprints import FOOTPRINTS
+from planner.coverage.registry import FAMILIES
+from planner.errors import ScenarioError
+from planner.frames import LocalFrame
+from planner.geojson import read_plan, read_scenario, write_plan
+from planner.pipeline import make_plan
+from planner.registry import register_sensor
+from planner.sensors.registry import KINDS, Kind
+from tests.planner.scenarios import feature, small, square
+from tests.planner.terrains import raster
+from tests.planner.toys import scanner
+
+HEIGHT_M, KEPT_M = 150.0, 40.0
+
+
+@pytest.fixture(autouse=True)
+def toy() -> Iterator[None]:
+    """A scanner whose passes may follow the ground."""
+    kind = Kind(scanner.read, scanner.seen_on_terrain, follows=True)
+    register_sensor("scanner", kind, scanner.Scanners(), scanner.footprint)
+    yield
+    for known in (KINDS, FAMILIES, FOOTPRINTS):
+        del known["scanner"]
+
+
+def waves(high_m: float) -> Terrain:
+    """Hills a kilometre apart."""
+    frame = LocalFrame(0.01, 0.005)
+    return raster(
+        lambda e, n: 300.0 + high_m * np.sin(e / 240.0) * np.cos(n / 175.0), frame, half_deg=0.12, posts=601
+    )
+
+
+def document(*more: dict[str, Any], **members: Any) -> dict[str, Any]:
+    """Two regions over hills."""
+    asked = {
+        "terrain": "t", "terrain_following": True, "altitude_m": HEIGHT_M, "clearance_m": KEPT_M,
+        "sensors": [{"name": "eye", "type": "scanner", "swath_m": 900.0}],
+    }  # fmt: skip
+    return small(*more, **(asked | members))
+
+
+@pytest.mark.parametrize("kind", ["fixed_wing", "multirotor", "vtol"])
+@pytest.mark.parametrize("high_m", [40.0, 200.0])
+def test_the_whole_flight_keeps_over_the_ground(kind: str, high_m: float) -> None:
+    """Nothing violated: passes as high as asked, all else clear; hills steeper than it climbs, too."""
+    asked = document()
+    asked["vehicles"][0] |= {"type": kind, "autopilot": "ardupilot"}
+    scenario = read_scenario(asked, {"t": waves(high_m)})
+    plan = make_plan(scenario)
+    assert plan.violations == ()
+    assert min(plan.metrics.coverage.values()) == 1.0
+    line = np.array(plan.paths[0].line)
+    ground = scenario.terrain
+    assert ground is not None
+    over_m = line[:, 2] - ground.at(scenario.frame.to_local(line[:, :2]))
+    flown = [place for place, up_m in zip(line, over_m, strict=True) if up_m > KEPT_M - 1.0]
+    assert np.ptp([place[2] for place in flown]) > 20.0
+    for collect in plan.collects:
+        ends = scenario.frame.to_local([place[:2] for place in collect.line])
+        for place, up_m in zip(ends, (place[2] for place in collect.line), strict=True):
+            assert up_m - ground.at(place) >= HEIGHT_M - 4.5
+    again = read_plan(json.loads(json.dumps(write_plan(plan))))
+    assert judge(scenario, again).violations == ()
+
+
+def test_the_judge_tells_a_pass_that_is_too_low() -> None:
+    """The same line 10 m lower is refused as a pass at another height than asked."""
+    scenario = read_scenario(document(), {"t": waves(40.0)})
+    plan = make_plan(scenario)
+    (path,) = plan.paths
+    lower = tuple((lon, lat, up_m - 10.0) for lon, lat, up_m in path.line)
+    told = judge(scenario, replace(plan, paths=(replace(path, line=lower),))).violations
+    assert {"A", "B"} <= {each.feature for each in told if each.constraint == "collect-altitude"}
+
+
+def test_regions_have_heights_of_their_own_over_the_ground() -> None:
+    """One region from 150 m, one from 300 m: each over its own ground, the flight climbs between."""
+    asked = document()
+    asked["features"][1]["properties"]["altitude_m"] = 300.0
+    scenario = read_scenario(asked, {"t": waves(40.0)})
+    plan = make_plan(scenario)
+    assert plan.violations == ()
+    assert scenario.terrain is not None
+    for collect in plan.collects:
+        ends = scenario.frame.to_local([place[:2] for place in collect.line])
+        over_m = [p[2] - float(scenario.terrain.at(end)) for p, end in zip(collect.line, ends, strict=True)]
+        assert min(over_m) >= {"A": 150.0, "B": 300.0}[collect.roi] - 4.5
+        assert max(over_m) <= {"A": 150.0, "B": 300.0}[collect.roi] + 60.0
+
+
+def test_a_radar_beside_keeps_its_level() -> None:
+    """On one flight the scanner follows the ground and the radar's pass is level, over all its ground."""
+    sar = small()["sensors"][0]
+    eye = {"name": "eye", "type": "scanner", "swath_m": 900.0}
+    asked = document(
+        feature("S", "roi", "Polygon", square(0.02, 0.03, 0.004), sensor="sar", altitude_m=400.0),
+        sensors=[eye, sar],
+    )
+    scenario = read_scenario(asked, {"t": waves(40.0)})
+    plan = make_plan(scenario)
+    assert [v for v in plan.violations if v.hard] == []
+    level = [collect for collect in plan.collects if collect.sensor == "sar"]
+    assert level
+    assert all(c.line[0][2] == pytest.approx(c.line[1][2], abs=0.05) for c in level)
+
+
+@pytest.mark.parametrize(
+    ("members", "rule"),
+    [
+        ({"altitude_reference": "amsl", "altitude_m": 900.0}, "terrain-following"),
+        ({"terrain": None}, "terrain-following"),
+        ({"altitude_m": 42.0}, "altitude-below-clearance"),
+    ],
+)
+def test_what_cannot_be_followed_is_refused(members: dict[str, Any], rule: str) -> None:
+    """Heights over the sea, no terrain, and heights within what is kept over the ground: named."""
+    asked = document(**members)
+    asked = {name: value for name, value in asked.items() if value is not None}
+    with pytest.raises(ScenarioError) as caught:
+        read_scenario(asked, {"t": waves(40.0)})
+    assert rule in {finding.rule for finding in caught.value.findings}
