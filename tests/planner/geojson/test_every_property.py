@@ -335,7 +335,7 @@ PROOFS: dict[tuple[str, str], tuple[Document, Document]] = {
     ),
     ("scenario", "terrain"): (small(), member("terrain", "hill")),
     ("scenario", "terrain_following"): (
-        small(terrain="hill", clearance_m=60.0), small(terrain="hill", clearance_m=60.0, terrain_following=True),
+        member("terrain", "hill"), small(terrain="hill", terrain_following=True),
     ),
     ("scenario", "clearance_m"): (with_features(block()), with_features(block(), clearance_m=60.0)),
     ("scenario", "task"): (small(), member("task", "search")),
