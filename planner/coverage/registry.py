@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from planner.coverage.strips.family import Strips
-from planner.coverage.survey.family import Lanes
+from planner.coverage.survey.family import Surveys
 from planner.coverage.ways import Family
 from planner.sensors.base import Sensor
 
-FAMILIES: dict[str, Family] = {"sar": Strips(), "camera": Lanes()}
+FAMILIES: dict[str, Family] = {"sar": Strips(), "camera": Surveys()}
 
 
 def register(kind: str, family: Family) -> None:

@@ -139,17 +139,23 @@ class CameraSensor:
     def run_in_m(self, height_m: float, angle_rad: float) -> float:
         """How far before the ground to be seen the first photo is taken; negative: behind its beginning.
 
-        All of the strip is seen from there on, and the middle of the first photo lies on the beginning.
+        All of the strip is seen from there on, and ground at its beginning lies no farther from the middle of
+        the first photo than ground between two photos; no photo's middle lies outside for a place to be in
+        two photos that overlap by half or more.
         """
         laid, high_m, low_m = self._drops(height_m, angle_rad)
         seen_m = max(laid.before * high_m, laid.before * low_m) + self.margin_m(height_m)
-        return max(seen_m, laid.middle * high_m, laid.middle * low_m)
+        return self._run_m(seen_m, max(laid.middle * high_m, laid.middle * low_m), height_m, angle_rad)
 
     def run_out_m(self, height_m: float, angle_rad: float) -> float:
         """How far beyond the ground to be seen the last photo is taken; negative: before its end."""
         laid, high_m, low_m = self._drops(height_m, angle_rad)
         seen_m = self.margin_m(height_m) - min(laid.beyond * high_m, laid.beyond * low_m)
-        return max(seen_m, -laid.middle * high_m, -laid.middle * low_m)
+        return self._run_m(seen_m, max(-laid.middle * high_m, -laid.middle * low_m), height_m, angle_rad)
+
+    def _run_m(self, seen_m: float, middle_m: float, height_m: float, angle_rad: float) -> float:
+        spacing_m = self.photo_spacing_m(height_m, angle_rad)
+        return max(seen_m, min(middle_m, max(middle_m - spacing_m / 2.0, seen_m + spacing_m)))
 
     def _drops(self, height_m: float, angle_rad: float) -> tuple[Pattern, float, float]:
         return self.pattern(angle_rad), height_m - self.relief_m, height_m + self.relief_m

@@ -1,1 +1,1 @@
-"""Regions seen by cameras that look down: lanes whose photos overlap."""
+"""How cameras see regions: lanes of photos that overlap, and the patterns made of them."""

@@ -1,0 +1,162 @@
+"""Into which pieces ground is cut, each with lanes at a heading of its own."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import shapely
+from shapely.geometry import LineString, Polygon
+from shapely.geometry.base import BaseGeometry
+
+from planner.airspace.surroundings import Surroundings
+from planner.coverage import decompose
+from planner.coverage.estimate import Ends, least_tour_m
+from planner.coverage.merge import GRID_M, MergedRegion, polygons_of
+from planner.coverage.survey.lanes import Survey
+from planner.coverage.survey.options import LaneOptions
+from planner.coverage.survey.targets import LaneTarget
+from planner.errors import InfeasibleError
+from planner.progress import Stop
+from planner.sensors.camera import CameraSensor
+
+#: What seeing all of these pieces costs, about; inf where it cannot be.
+Estimate = Callable[[tuple[MergedRegion, ...]], float]
+
+#: Divisions are compared at these headings and offsets, by this many of each piece's cheapest options.
+STEP_RAD, ETAS, TELLING = math.radians(30.0), np.array([0.5]), 6
+OPTIONS_COMPARED = 24
+#: A division has to save this much of the estimated cost, and beyond this many pieces there is no further.
+LEAST_SAVING, MOST_PIECES = 0.01, 6
+#: Corridors with more legs than this are cut at all their bends untried.
+MOST_LEGS_TRIED = 12
+
+
+@dataclass(slots=True)
+class Pieces:
+    """Trial divisions of one region, with what they cost."""
+
+    camera: CameraSensor
+    height_m: float
+    around: Surroundings
+    _known: dict[bytes, LaneOptions | None]
+
+    @classmethod
+    def of(cls, camera: CameraSensor, height_m: float, around: Surroundings) -> Pieces:
+        """None tried yet."""
+        return cls(camera, height_m, around, {})
+
+    def target(self, piece: MergedRegion) -> LaneTarget:
+        """A piece as a stop."""
+        survey = Survey(piece.area, wanted(piece), self.camera, self.height_m)
+        return LaneTarget(piece, survey, self.around)
+
+    def options(self, piece: MergedRegion) -> LaneOptions | None:
+        """A few ways to see a piece; None where there are none."""
+        key = piece.area.wkb
+        if key not in self._known:
+            try:
+                self._known[key] = self.target(piece).coarse(STEP_RAD, ETAS, TELLING)
+            except InfeasibleError:
+                self._known[key] = None
+        return self._known[key]
+
+    def can_be_seen(self, piece: MergedRegion) -> bool:
+        """Whether there is a way at all."""
+        try:
+            self.target(piece).coarse(STEP_RAD, ETAS, 0)
+        except InfeasibleError:
+            return False
+        return True
+
+    def cost_m(self, pieces: tuple[MergedRegion, ...]) -> float:
+        """What seeing all of some pieces costs, about."""
+        options = [self.options(piece) for piece in pieces]
+        found = [_cheapest(each) for each in options if each is not None]
+        return least_tour_m(found, self.around) if len(found) == len(options) else math.inf
+
+
+def wanted(piece: MergedRegion) -> BaseGeometry:
+    """What of a piece is to be seen: the parts asked for, without the gaps between them."""
+    if len(piece.originals) == 1 and piece.originals[0] is piece.area:
+        return piece.area
+    parts = [shapely.intersection(part, piece.area) for part in piece.originals]
+    return shapely.union_all(parts, grid_size=GRID_M)
+
+
+def divided(region: MergedRegion, trial: Pieces, *, whole: bool, enough: Stop) -> tuple[MergedRegion, ...]:
+    """The region whole, in the parts that were merged, or cut further: as costs least.
+
+    A corridor is cut at its bends, other shapes at reflex corners and beside holes, one cut after the other
+    as long as that saves and until it is enough.
+
+    Parameters
+    ----------
+    whole
+        Not cut, where it can be seen so.
+    """
+    best: tuple[MergedRegion, ...] = (region,)
+    cost_m = trial.cost_m(best)
+    if whole and math.isfinite(cost_m):
+        return best
+    apart = tuple(_apart(region))
+    along = tuple(itertools.chain.from_iterable(_legs(part) for part in apart))
+    for start in dict.fromkeys((apart, along)):
+        start_m = trial.cost_m(start)
+        if start_m < cost_m:
+            best, cost_m = start, start_m
+    if best is along and along is not apart:
+        return best
+    while len(best) < MOST_PIECES and not (math.isfinite(cost_m) and enough()):
+        trials = [
+            (*best[:k], *(part.piece(piece) for piece in cut), *best[k + 1 :])
+            for k, part in enumerate(best)
+            if not decompose.is_plain(_outline(part))
+            for cut in decompose.cuts(_outline(part))
+        ]
+        costs = [trial.cost_m(each) for each in itertools.takewhile(lambda _: not enough(), trials)]
+        if not costs or not min(costs) < (1.0 - LEAST_SAVING) * cost_m:
+            return best
+        cost_m = min(costs)
+        best = trials[costs.index(cost_m)]
+    return best
+
+
+def visits(piece: MergedRegion, trial: Pieces) -> Iterator[MergedRegion]:
+    """A piece once for each visit asked for, from directions of its own where that can be flown."""
+    for k in range(piece.revisits if piece.revisits > 1 else 0):
+        visit = replace(piece, visit=(k, piece.revisits))
+        yield visit if trial.can_be_seen(visit) else piece
+    if piece.revisits == 1:
+        yield piece
+
+
+def _apart(region: MergedRegion) -> Sequence[MergedRegion]:
+    """What was merged, each for itself; what touches stays one."""
+    if len(region.originals) == 1:
+        return (region,)
+    whole = polygons_of(shapely.union_all(list(region.originals), grid_size=GRID_M))
+    if len(whole) == len(region.originals):
+        return region.split()
+    return [region.piece(part) for part in whole]
+
+
+def _legs(region: MergedRegion) -> Sequence[MergedRegion]:
+    """A corridor cut at each bend of its axis; itself where it is none."""
+    axis: LineString | None = region.axis
+    legs = None if axis is None else decompose.legs(region.originals[0], axis)
+    return (region,) if legs is None else [region.piece(leg) for leg in legs]
+
+
+def _outline(piece: MergedRegion) -> Polygon:
+    """What of a piece has to be seen where that is one polygon; its hull of merged ones elsewhere."""
+    parts = polygons_of(wanted(piece))
+    return parts[0] if len(parts) == 1 else piece.area
+
+
+def _cheapest(options: LaneOptions) -> Ends:
+    kept = np.argsort(options.inner_m, kind="stable")[:OPTIONS_COMPARED]
+    return options.entries[kept], options.exits[kept], options.inner_m[kept]

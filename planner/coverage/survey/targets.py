@@ -1,0 +1,107 @@
+"""Ground that is seen lane by lane, as a stop of the tour."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planner.airspace.surroundings import Surroundings
+from planner.coverage.lines import roomy
+from planner.coverage.merge import MergedRegion
+from planner.coverage.survey.headings import MOST_TELLING, headings
+from planner.coverage.survey.lanes import Survey
+from planner.coverage.survey.options import MOST_LAID, LaneOptions, collect_passes, lane_options
+from planner.coverage.ways import Between
+from planner.errors import InfeasibleError
+from planner.route import CollectPass
+
+Floats = NDArray[np.float64]
+
+#: Finer options: this many headings and offsets to either side.
+NEAR_ANGLES, NEAR_ETAS = 3, 1
+#: Lanes laid for finer ones.
+MOST_NEAR = MOST_LAID // 6
+#: Headings tried where a coarse grid leaves nothing, or no room for turns.
+FINE_STEP_RAD = math.radians(2.5)
+FINE_ETAS = np.linspace(0.0, 1.0, 5)
+
+
+@dataclass(frozen=True, slots=True)
+class LaneTarget:
+    """One piece of ground, seen lane by lane."""
+
+    region: MergedRegion
+    survey: Survey
+    around: Surroundings
+
+    def options(self, angles_rad: Floats, etas: Floats) -> LaneOptions | None:
+        """Options at these headings and offsets; None where there are none."""
+        return lane_options(self.region, self.survey, angles_rad, etas, self.around)
+
+    def coarse(self, step_rad: float, etas: Floats, telling: int = MOST_TELLING) -> LaneOptions:
+        """The options to choose an order by.
+
+        Raises
+        ------
+        InfeasibleError
+            Where no option keeps the hard constraints.
+        """
+        options = self.options(self._headings(step_rad, telling), etas)
+        if options is not None and self._with_room(options).any():
+            return options
+        finer = self.options(self._headings(FINE_STEP_RAD, telling), FINE_ETAS)
+        if finer is None:
+            if options is None:
+                raise refusal(self.region, self.around)
+            return options
+        kept = np.flatnonzero(self._with_room(finer))
+        return finer.rows(kept) if len(kept) else options or finer
+
+    def near(
+        self, picked: LaneOptions, step_rad: float, step_eta: float, between: Between | None = None
+    ) -> LaneOptions:
+        """Options round a single one; that one where there are none."""
+        angles_rad = picked.angles_rad[0] + step_rad * np.arange(-NEAR_ANGLES, NEAR_ANGLES + 1.0)
+        if self.region.approach_rad is not None:
+            angles_rad = self._headings(step_rad, 0)
+        etas = np.unique(
+            np.clip(picked.etas[0] + step_eta * np.arange(-NEAR_ETAS, NEAR_ETAS + 1.0), 0.0, 1.0)
+        )
+        found = lane_options(self.region, self.survey, angles_rad, etas, self.around, between, MOST_NEAR)
+        return picked if found is None else found
+
+    def passes(self, options: LaneOptions, index: int) -> tuple[CollectPass, ...]:
+        """The passes of one option."""
+        return collect_passes(self.region, self.survey, options, index, self.around.settle_m)
+
+    def hidden_m(self, passes: Sequence[CollectPass]) -> float:
+        """Nothing: what terrain hides from above hardly depends on the choice."""
+        return 0.0
+
+    def plain(self) -> LaneTarget:
+        """Itself: there are no simpler ways."""
+        return self
+
+    def _headings(self, step_rad: float, telling: int) -> Floats:
+        return headings(self.region, self.survey, step_rad, math.pi * self.around.radius_m, telling)
+
+    def _with_room(self, options: LaneOptions) -> NDArray[np.bool_]:
+        """Which options have room for a full turn at both ends."""
+        return roomy(options.entries, self.around) & roomy(options.exits, self.around)
+
+
+def refusal(region: MergedRegion, around: Surroundings) -> InfeasibleError:
+    """What to say where every way is forbidden."""
+    return InfeasibleError(
+        "area",
+        region.label,
+        "no lanes that see it may be flown: they leave the operating area"
+        if len(around.hard) + len(around.hard_polygons) == 0
+        else "no lanes that see it may be flown: they leave the operating area or enter a hard zone",
+        "enlarge the area round it, or cut out of it what may not be flown over",
+        region.centroid,
+    )
