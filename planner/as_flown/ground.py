@@ -23,12 +23,14 @@ from planner.as_flown.passes import Reason
 from planner.route import Look
 from planner.sensors import strip
 from planner.sensors.sar import SarSensor
-from planner.sensors.view import seen_beside
+from planner.sensors.view import seen_runs
 
 Floats = NDArray[np.float64]
 
 #: Moments of a stretch are this far apart.
 MOMENT_M = 10.0
+#: Ground of neighbouring moments overlaps by so much, or rounding would leave seams between.
+SEAM_M = 1e-3
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,6 +110,13 @@ class _Moment:
     lean_m: float
     aside_m: tuple[float, float]
     height_m: float
+
+    def at(self, out_m: float) -> Floats:
+        """The place so far beside the line that the beam's middle lay on."""
+        slope = (self.far_lead_m - self.near_lead_m) / (self.far_m - self.near_m)
+        lead_m = self.near_lead_m + slope * (out_m - self.near_m)
+        place: Floats = self.centre + self.side * out_m + self.ahead * lead_m
+        return place
 
 
 @dataclass(frozen=True, slots=True)
@@ -258,18 +267,26 @@ def _between(before: _Moment, after: _Moment) -> Iterator[Polygon]:
     near_m, far_m = max(before.near_m, after.near_m), min(before.far_m, after.far_m)
     if near_m >= far_m:
         return
-    corners = [
-        here.centre + here.side * aside_m + here.ahead * lead_m
-        for here in (before, after)
-        for aside_m, lead_m in ((near_m, here.near_lead_m), (far_m, here.far_lead_m))
-    ]
-    hull = MultiPoint(corners).convex_hull
+    yield from _spanned(before, after, (near_m, far_m))
+
+
+def _spanned(before: _Moment, after: _Moment, outs_m: tuple[float, float]) -> Iterator[Polygon]:
+    """Between two moments, from one distance beside the line to another.
+
+    Neighbours share the line that the beam lay on at a moment, whatever the antenna does between.
+    """
+    seam = np.array([-SEAM_M * before.ahead, SEAM_M * after.ahead])
+    places = [here.at(out_m) + seam[k] for k, here in enumerate((before, after)) for out_m in outs_m]
+    hull = MultiPoint(places).convex_hull
     if isinstance(hull, Polygon):
         yield hull
 
 
 def _on_terrain(stretch: Stretch, before: _Moment, after: _Moment, half_m: float) -> Iterator[Polygon]:
-    """The same on terrain, without what it hides: one slice half-way between each two moments."""
+    """The same on terrain, without what it hides: one slice half-way between each two moments.
+
+    The slice lies along the beam, yaw included, not abeam.
+    """
     assert stretch.ground is not None
     near_rad = max(before.looks_rad[0], after.looks_rad[0])
     far_rad = min(before.looks_rad[1], after.looks_rad[1])
@@ -291,7 +308,12 @@ def _on_terrain(stretch: Stretch, before: _Moment, after: _Moment, half_m: float
     edges = (math.tan(near_rad) + out_m / height_m, math.tan(far_rad) + back_m / height_m)
     if edges[0] >= edges[1]:
         return
-    pose = np.concatenate([centre + lean_m * ahead, ahead, side])
+    cos, sin = math.cos(yaw_rad), math.sin(yaw_rad)
+    turned = cos * ahead - sin * side, cos * side + sin * ahead
+    foot = centre + lean_m * turned[0]
     squint, level_m = math.tan(stretch.sensor.squint_rad), height_m + stretch.home_amsl_m
-    # Neighbouring slices of a weaving line are to touch.
-    yield from seen_beside(pose, half_m * 1.02, level_m, edges, squint, stretch.ground, yaw_rad)
+    pose = np.concatenate([foot, *turned])
+    lead_m, runs = seen_runs(pose, half_m, level_m, edges, squint, stretch.ground)
+    for low_m, high_m in runs:
+        ends = [foot + lead_m * turned[0] + out_m * turned[1] - centre for out_m in (low_m, high_m)]
+        yield from _spanned(before, after, (float(ends[0] @ side), float(ends[1] @ side)))

@@ -10,6 +10,7 @@ beam's edges, without what is in shadow or layover. An antenna fixed to the airc
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -103,7 +104,6 @@ def seen_beside(
     edges_tan: tuple[float, float],
     squint: float,
     ground: Ground,
-    yaw_rad: float = 0.0,
     ahead_m: float | None = None,
 ) -> list[Polygon]:
     """Ground seen at one moment of a flight, as wide along the track as half to either side.
@@ -116,29 +116,43 @@ def seen_beside(
         Tangents of the look angles of the beam's edges, bank included.
     squint
         Tangent of the squint angle.
-    yaw_rad
-        How far the antenna is turned forward off abeam, about the vertical.
     ahead_m
         Where the middle of it lies along the track; None for where the squint has it.
     """
+    middle_m, runs = seen_runs(pose, half_along_m, level_m, edges_tan, squint, ground, ahead_m)
     frame = _Axes(np.asarray(pose, dtype=np.float64), 2.0 * half_along_m)
-    near_tan, far_tan = (
-        tan * math.cos(yaw_rad) - squint * math.hypot(1.0, tan) * math.sin(yaw_rad) for tan in edges_tan
-    )
+    ends_m = middle_m - half_along_m, middle_m + half_along_m
+    seen = _areal(shapely.union_all([shapely.box(ends_m[0], low, ends_m[1], high) for low, high in runs]))
+    return [part for part in shapely.get_parts(frame.to_local(seen)) if isinstance(part, Polygon)]
+
+
+def seen_runs(
+    pose: Floats,
+    half_along_m: float,
+    level_m: float,
+    edges_tan: tuple[float, float],
+    squint: float,
+    ground: Ground,
+    ahead_m: float | None = None,
+) -> tuple[float, list[tuple[float, float]]]:
+    """How far ahead ground is seen at one moment of a flight, and from where to where beside the track.
+
+    Parameters are those of ``seen_beside``.
+    """
+    frame = _Axes(np.asarray(pose, dtype=np.float64), 2.0 * half_along_m)
+    near_tan, far_tan = edges_tan
     lowest_m = _lowest(ground, frame, level_m, far_tan)
     if math.isnan(lowest_m):
-        return []
+        return 0.0, []
     out_edges = _edges(0.0, (level_m - lowest_m) * far_tan, ground.step_m)
     out_m = (out_edges[:-1] + out_edges[1:]) / 2.0
-    leads_m = strip.lead_m(math.atan(squint), yaw_rad, out_m, level_m - lowest_m)
+    leads_m = strip.lead_m(math.atan(squint), 0.0, out_m, level_m - lowest_m)
     middle_m = float(leads_m[len(leads_m) // 2]) if ahead_m is None else ahead_m
     flags, heights = view_kernels.strip_flags(
         ground.heights_m, ground.west_m, ground.south_m, ground.step_m, frame.pose,
-        np.array([middle_m]), out_m, level_m, near_tan, far_tan, squint, yaw_rad,
+        np.array([middle_m]), out_m, level_m, near_tan, far_tan, squint, 0.0,
     )  # fmt: skip
-    along_edges = np.array([middle_m - half_along_m, middle_m + half_along_m])
-    seen = _visible_area(flags, along_edges, out_edges, out_m, level_m - heights, near_tan, far_tan)
-    return [part for part in shapely.get_parts(frame.to_local(seen)) if isinstance(part, Polygon)]
+    return middle_m, list(_runs(flags[0], out_edges, out_m, level_m - heights[0], near_tan, far_tan))
 
 
 def shadow_cost(
@@ -308,17 +322,32 @@ def _visible_area(
     far_tan: float,
 ) -> Polygon | MultiPolygon:
     """Union of the cells seen; where a run of them ends at the beam's edge, it ends exactly there."""
-    boxes = []
-    for i, row in enumerate(flags == view_kernels.SEEN):
-        turns = np.flatnonzero(np.diff(np.concatenate([[False], row, [False]]).astype(np.int8)))
-        tangents = out_m / np.maximum(drop_m[i], 1e-9)
-        for first, after in zip(turns[::2].tolist(), turns[1::2].tolist(), strict=True):
-            low_m = _run_end(tangents, out_m, first, first - 1, near_tan, far_tan, out_edges[first], flags[i])
-            high_m = _run_end(
-                tangents, out_m, after - 1, after, near_tan, far_tan, out_edges[after], flags[i]
-            )
-            boxes.append(shapely.box(along_edges[i], low_m, along_edges[i + 1], high_m))
+    boxes = [
+        shapely.box(along_edges[i], low_m, along_edges[i + 1], high_m)
+        for i, row in enumerate(flags)
+        for low_m, high_m in _runs(row, out_edges, out_m, drop_m[i], near_tan, far_tan)
+    ]
     return _areal(shapely.union_all(boxes))
+
+
+def _runs(
+    flags: NDArray[np.uint8],
+    out_edges: Floats,
+    out_m: Floats,
+    drop_m: Floats,
+    near_tan: float,
+    far_tan: float,
+) -> Iterator[tuple[float, float]]:
+    """From where to where one row of cells is seen."""
+    turns = np.flatnonzero(
+        np.diff(np.concatenate([[False], flags == view_kernels.SEEN, [False]]).astype(np.int8))
+    )
+    tangents = out_m / np.maximum(drop_m, 1e-9)
+    for first, after in zip(turns[::2].tolist(), turns[1::2].tolist(), strict=True):
+        yield (
+            _run_end(tangents, out_m, first, first - 1, near_tan, far_tan, out_edges[first], flags),
+            _run_end(tangents, out_m, after - 1, after, near_tan, far_tan, out_edges[after], flags),
+        )
 
 
 def _run_end(
