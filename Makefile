@@ -17,7 +17,7 @@ run: $(VENV)/.installed static/dist/index.html ## Start the service with a simul
 	$(BIN)/swathplan serve --sim --scenario examples/sar-case-1.geojson
 
 demo: $(VENV)/.installed ## The same journey without a browser: plan, upload, read back, fly, prove
-	$(BIN)/swathplan demo examples/sar-case-1.geojson
+	$(BIN)/swathplan demo --margins autopilot examples/sar-case-1.geojson
 
 # With ADDRESS=udpin:… a service and a simulator that run here already are used instead of containers.
 journey-ardupilot: ## Fly a plan in a real ArduPlane: containers, plan, upload, read back, fly, report

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import time
 from dataclasses import asdict, dataclass
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 
 #: Without news from the vehicle for this long, in real time, the flight is given up.
 STALLED_S = 20.0
+#: Of a sensor.
+MARGINS = ("pointing_margin_deg", "position_margin_m")
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,10 +37,16 @@ def demo(
     speedup: Annotated[float, typer.Option(min=1.0, help="Simulated seconds per second of flight.")] = 100.0,
     autopilot: Annotated[str, typer.Option(help="ardupilot or px4; the plan's when left out.")] = "",
     wind: Annotated[str, typer.Option(help="Wind of the simulation: m/s, direction it comes from.")] = "0,0",
+    margins: Annotated[
+        Literal["scenario", "autopilot"],
+        typer.Option(help="Settling and margins of the passes: as stated, or what the autopilot needs."),
+    ] = "scenario",
     as_json: Json = False,
 ) -> None:
     """Plan a scenario, upload it to a simulated aircraft, read it back, fly it, and tell what was seen."""
     document = read_document(scenario)
+    if margins == "autopilot":
+        _leave_margins_out(document)
     began_s = time.perf_counter()
     plan = make(document)
     planned_s = time.perf_counter() - began_s
@@ -63,6 +71,14 @@ def demo(
     told.end()
     if not result:
         raise typer.Exit(int(Exit.FAILED))
+
+
+def _leave_margins_out(document: dict[str, Any]) -> None:
+    """What is not stated of them is what the autopilot needs."""
+    for member, names in (("vehicles", ("settle_m",)), ("sensors", MARGINS)):
+        for each in document.get(member) or ():
+            for name in names if isinstance(each, dict) else ():
+                each.pop(name, None)
 
 
 class _Teller:
