@@ -21,7 +21,10 @@ PlanFile = Annotated[str, typer.Argument(help="Plan GeoJSON; - is standard input
 VehicleName = Annotated[str | None, typer.Option(help="Vehicle of the plan; its first when left out.")]
 Payload = Annotated[
     str | None,
-    typer.Option(help="How the sensor is switched: relay:0, servo:9:1900:1100, camera:distance=25 …"),
+    typer.Option(
+        help="How the sensor is switched: relay:0, servo:9:1900:1100, camera:distance=25, trigger:time …; the"
+        " plan's cameras by their own triggers when left out."
+    ),
 ]
 Gimbal = Annotated[
     str | None,

@@ -50,7 +50,8 @@ PayloadQuery = Annotated[
     Query(
         description="How the sensor is switched: relay:0, servo:9:1900:1100, actuator:1:1:-1, "
         "aux:1 or main:9 (an output of PX4's), "
-        "camera:distance=25, image:interval=2, command:….",
+        "camera:distance=25, image:interval=2, command:…, trigger:distance, trigger:time or trigger:video "
+        "(the plan's cameras). Left out: the plan's cameras by their own triggers, all else by relay:0.",
         max_length=200,
     ),
 ]

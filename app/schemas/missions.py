@@ -26,7 +26,9 @@ class MissionIn(Strict):
     )
     vehicle: str | None = Field(default=None, max_length=200, description="Vehicle of the plan; its first.")
     payload: str | None = Field(
-        default=None, max_length=200, description="How the sensor is switched, e.g. relay:0."
+        default=None,
+        max_length=200,
+        description="How the sensor is switched, e.g. relay:0; left out, a plan's cameras by their triggers.",
     )
     gimbal: str | None = Field(default=None, max_length=200, description=GIMBAL_IS)
     override: bool = Field(

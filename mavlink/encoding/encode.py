@@ -22,18 +22,11 @@ from mavlink.encoding.arcs import circle_item, flown_round, turn_item
 from mavlink.encoding.ends import beginning, ending
 from mavlink.encoding.fence import fence_items
 from mavlink.encoding.options import EncodeError, EncodeOptions
-from mavlink.encoding.payload import (
-    ActuatorPayload,
-    Payload,
-    PayloadError,
-    RelayPayload,
-    ServoPayload,
-    switch_items,
-)
 from mavlink.encoding.pointing import Pointings, pointings_of
 from mavlink.encoding.stops import MERGE_M, Stop, stops_along
+from mavlink.encoding.switching import Switching, switching_of
 from mavlink.encoding.task import Task, task_of
-from mavlink.wire.items import Command, Frame, MissionItem, MissionResult, MissionType
+from mavlink.wire.items import Command, Frame, MissionItem, MissionType
 from planner.plan import LonLat, Plan
 
 __all__ = ["EncodeError", "EncodeOptions", "Mission", "encode"]
@@ -74,11 +67,8 @@ def encode(
         No such vehicle, or something the autopilot cannot be told.
     """
     task = task_of(plan, vehicle, autopilot, options)
-    payload, payload_notes = _payload(task)
-    on, off = _switches(task, payload)
+    switching = switching_of(task)
     pointing = pointings_of(task)
-    unlisted = sorted({item.command for item in (on, off) if not task.dialect.knows(item.command)})
-    payload_notes += tuple(f"it is not known whether {task.dialect.name} takes command {n}" for n in unlisted)
     first, last = beginning(task), ending(task)
     as_turn = flown_round(task)
     stops = stops_along(
@@ -93,7 +83,7 @@ def encode(
         task.near_m,
     )
     home = [home_item(plan.home, options.home_altitude_m)] if task.dialect.home_row else []
-    flight = _flight(task, stops, on, off, pointing)
+    flight = _flight(task, stops, switching, pointing)
     fence, fence_notes = fence_items(plan, (task.path,), task.dialect.fence_store)
     return Mission(
         mission=numbered([*home, *_placed([*first.items, *flight, *last.items])]),
@@ -105,7 +95,7 @@ def encode(
         home=plan.home,
         notes=(
             *_arc_notes(task, sum(as_turn(segment) for segment in task.path.segments)),
-            *payload_notes,
+            *switching.notes,
             *pointing.notes,
             *_pass_by_notes(task),
             *first.notes,
@@ -117,39 +107,8 @@ def encode(
     )
 
 
-def _payload(task: Task) -> tuple[Payload, tuple[str, ...]]:
-    """The payload as the autopilot can switch it, and a note where it is another than asked for."""
-    payload = task.options.payload
-    if not (task.is_px4 and isinstance(payload, RelayPayload)):
-        return payload, ()
-    try:
-        actuator = ActuatorPayload(payload.relay + 1)
-    except PayloadError as error:
-        raise EncodeError(f"PX4 has no relays, and no actuator stands for this one: {error}") from error
-    return actuator, (
-        f"PX4 takes no relay in missions: actuator {actuator.actuator} is set to 1 for on, -1 for off",
-    )
-
-
-def _switches(task: Task, payload: Payload) -> tuple[MissionItem, MissionItem]:
-    switches = switch_items(payload)
-    for item in switches:
-        # Numbered as if in flight: item 0 of ArduPilot is never looked at.
-        result = task.dialect.answer(replace(item, seq=1))
-        if result != MissionResult.ACCEPTED:
-            hint = (
-                "; name one of PX4's outputs, main:9 or aux:1"
-                if task.is_px4 and isinstance(payload, ServoPayload)
-                else ""
-            )
-            raise EncodeError(
-                f"{task.dialect.name} refuses the payload's command {item.command}: {result.name}{hint}"
-            )
-    return switches
-
-
 def _flight(
-    task: Task, stops: Iterable[Stop], on: MissionItem, off: MissionItem, pointing: Pointings
+    task: Task, stops: Iterable[Stop], switching: Switching, pointing: Pointings
 ) -> list[MissionItem]:
     """Waypoints along the path, the sensor switched right behind those where a collect starts or ends."""
     items: list[MissionItem] = [*pointing.before(0)]
@@ -162,7 +121,7 @@ def _flight(
         begins = stop.turns is not None or (straight_in and not stop.off)
         if not ended and collecting == 0 and past_m > (-MERGE_M if begins else MERGE_M):
             ended = True
-            items += _before_the_end(task, off, pointing)
+            items += _before_the_end(task, switching, pointing)
         if stop.turns is not None:
             if stop.turns is not task.last_turns or task.vehicle.finish != "loiter":
                 items.append(circle_item(task, stop.turns, Command.NAV_LOITER_TO_ALT))
@@ -171,31 +130,28 @@ def _flight(
             items.append(turn_item(task, stop.arc, stop.altitude_m))
         parameters = (0.0, _acceptance_m(task, stop), 0.0, task.any_yaw)
         items.append(placed(Command.NAV_WAYPOINT, stop.place, stop.altitude_m, task.frame, parameters))
-        before, collecting = collecting, collecting + stop.on - stop.off
-        # Where collects overlap the sensor stays on until the last has ended.
-        if stop.off and (collecting == 0 or stop.on):
-            items.append(off)
+        collecting += stop.on - stop.off
+        items += switching.ended(stop.off, begins=stop.on > 0)
         begun += stop.on
         # As early as the last collect lets it; at the latest where the next one begins.
         next_up = begun if collecting == 0 else begun - 1
         while pointed < next_up:
             pointed += 1
             items += pointing.before(pointed)
-        if stop.on and (before == 0 or stop.off):
-            items.append(on)
+        items += switching.begun(stop.on, ends=stop.off > 0)
     if ended:
         return items
     last = [item for item in items if item.command == Command.NAV_WAYPOINT][-1:]
     approach = last if task.is_px4 and not task.hovers else []
-    return [*items, *_before_the_end(task, off, pointing), *approach]
+    return [*items, *_before_the_end(task, switching, pointing), *approach]
 
 
-def _before_the_end(task: Task, off: MissionItem, pointing: Pointings) -> list[MissionItem]:
+def _before_the_end(task: Task, switching: Switching, pointing: Pointings) -> list[MissionItem]:
     """Behind the mission, before it comes down: the sensor off in any case, the gimbal at rest.
 
     PX4 comes back to the landing's start on RTL; ArduPilot refuses to arm with it unless RTL_AUTOLAND is set.
     """
-    items = [off] if task.collects else []
+    items = [*switching.rest]
     items += pointing.rest
     if task.is_px4 and not task.hovers:
         items.append(unplaced(Command.DO_LAND_START))

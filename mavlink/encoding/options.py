@@ -11,7 +11,8 @@ from mavlink.encoding.payload import Payload, RelayPayload
 
 Arcs = Literal["auto", "points", "loiter"]
 
-DEFAULT_PAYLOAD: Payload = RelayPayload(relay=0)
+#: What switches a sensor that is no camera, where nothing else is said.
+DEFAULT_PAYLOAD = RelayPayload(relay=0)
 
 
 class EncodeError(ValueError):
@@ -30,7 +31,8 @@ class EncodeOptions:
         How arcs are said: ``points`` along them, or ``loiter`` turns round their centres, on ArduPlane alone
         and where the item can hold them. ``auto`` takes turns where they were measured to be flown better.
     payload
-        How the sensor is switched. PX4 has no relays: there a relay becomes the actuator of the same place.
+        How the sensor is switched; None for the plan's own way, its cameras by their triggers and all else by
+        ``DEFAULT_PAYLOAD``. PX4 has no relays: there a relay becomes the actuator of the same place.
     acceptance_radius_m
         Distance at which a waypoint counts as reached, where the autopilot lets items say it; None for the
         vehicle's own.
@@ -47,7 +49,7 @@ class EncodeOptions:
 
     chord_error_m: float = 2.0
     arcs: Arcs = "auto"
-    payload: Payload = DEFAULT_PAYLOAD
+    payload: Payload | None = None
     acceptance_radius_m: float | None = None
     off_delay_m: float | None = None
     home_altitude_m: float = 0.0

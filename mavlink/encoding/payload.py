@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, cast, get_args
 
 from mavlink.wire.items import Command, Frame, MissionItem
+from planner.plan import Trigger
 
 Parameters = tuple[float, float, float, float, float, float, float]
 
@@ -18,6 +20,13 @@ OutputGroup = Literal["main", "aux"]
 #: PX4's groups of outputs, in the order of SERVO_OUTPUT_RAW's ports, and the most outputs a board has there.
 PX4_OUTPUTS: Mapping[OutputGroup, int] = {"main": 16, "aux": 8}
 _FIRST_ACTUATOR_FUNCTION = 301
+#: Between two payloads; numbers may have a plus, too.
+_JOINED = re.compile(r"\+(?=\s*[a-z])")
+_STOPS: Mapping[Trigger, Command] = {
+    "distance": Command.DO_SET_CAM_TRIGG_DIST,
+    "time": Command.IMAGE_STOP_CAPTURE,
+    "video": Command.VIDEO_STOP_CAPTURE,
+}
 
 
 class PayloadError(ValueError):
@@ -127,6 +136,27 @@ class ImagePayload:
 
 
 @dataclass(frozen=True, slots=True)
+class TriggerPayload:
+    """The cameras of a plan, released where it has its photos; ``encoding.trigger`` says how.
+
+    Parameters
+    ----------
+    spacing
+        Largest distance (m) or interval (s) between two photos of a collect; None for a video, and where the
+        plan is still to be asked.
+    """
+
+    by: Trigger
+    spacing: float | None = None
+
+    def __post_init__(self) -> None:
+        if self.by not in get_args(Trigger):
+            raise PayloadError(f"trigger {self.by!r}: distance, time or video is meant")
+        if self.spacing is not None and not (math.isfinite(self.spacing) and self.spacing > 0.0):
+            raise PayloadError(f"photo spacing {self.spacing}: a positive number is meant")
+
+
+@dataclass(frozen=True, slots=True)
 class CommandPayload:
     """Any command, with its seven parameters for on and for off.
 
@@ -149,10 +179,37 @@ class CommandPayload:
                     raise PayloadError(f"parameter {number} travels as an integer, {value} does not fit")
 
 
-Payload = RelayPayload | ServoPayload | ActuatorPayload | CameraPayload | ImagePayload | CommandPayload
+#: Switched by one item on and one off.
+OutputPayload = RelayPayload | ServoPayload | ActuatorPayload | CameraPayload | ImagePayload | CommandPayload
 
 
-def switch_items(payload: Payload) -> tuple[MissionItem, MissionItem]:
+@dataclass(frozen=True, slots=True)
+class JointPayload:
+    """Several payloads of one vehicle: an output for what is no camera, and the plan's cameras."""
+
+    parts: tuple[OutputPayload | TriggerPayload, ...]
+
+
+Payload = OutputPayload | TriggerPayload | JointPayload
+
+
+def parts_of(payload: Payload) -> tuple[OutputPayload | TriggerPayload, ...]:
+    """The payloads that a payload is made of; itself where it is one alone."""
+    return payload.parts if isinstance(payload, JointPayload) else (payload,)
+
+
+def off_items(payload: Payload) -> tuple[MissionItem, ...]:
+    """The items that switch a payload off and take no photo, not yet numbered."""
+    found: list[MissionItem] = []
+    for part in parts_of(payload):
+        if isinstance(part, TriggerPayload):
+            found.append(_item(_STOPS[part.by]))
+        else:
+            found.append(switch_items(part)[1])
+    return tuple(found)
+
+
+def switch_items(payload: OutputPayload) -> tuple[MissionItem, MissionItem]:
     """The items that switch a payload on and off, in the frame of items without a place, not yet numbered."""
     if isinstance(payload, RelayPayload):
         return _item(Command.DO_SET_RELAY, payload.relay, 1.0), _item(
@@ -184,14 +241,17 @@ def parse_payload(text: str) -> Payload:
 
     ``relay:0`` · ``servo:9:1900:1100`` (output, on, off in µs) · ``actuator:1:1:-1`` (number, on, off) ·
     ``aux:3:1:1:-1`` or ``main:…`` (PX4's output, the actuator it follows, on, off) ·
-    ``camera:distance=25`` (m) · ``image:interval=2`` (s) · ``command:2000:0,2,0/2001:0`` (command and
-    parameters for on, then for off; the off command may be left out when it is the same).
+    ``camera:distance=25`` (m) · ``image:interval=2`` (s) · ``trigger:distance``, ``trigger:time`` or
+    ``trigger:video`` (the plan's cameras) · ``command:2000:0,2,0/2001:0`` (command and parameters for on,
+    then for off; the off command may be left out when it is the same). Several are joined by ``+``.
 
     Raises
     ------
     PayloadError
         Naming what is not understood.
     """
+    if _JOINED.search(text):
+        return _joint(text)
     kind, _, rest = text.strip().partition(":")
     try:
         if kind == "relay":
@@ -209,6 +269,9 @@ def parse_payload(text: str) -> Payload:
             return CameraPayload(_named(rest, "distance"))
         if kind == "image":
             return ImagePayload(_named(rest, "interval"))
+        if kind == "trigger":
+            by, equals, spacing = rest.partition("=")
+            return TriggerPayload(cast(Trigger, by), float(spacing) if equals else None)
         if kind == "command":
             return _parse_command(rest)
     except PayloadError:
@@ -216,8 +279,23 @@ def parse_payload(text: str) -> Payload:
     except (TypeError, ValueError) as error:
         raise PayloadError(f"payload {text!r}: {error}") from error
     raise PayloadError(
-        f"payload {text!r}: begins with none of relay, servo, actuator, main, aux, camera, image, command"
+        f"payload {text!r}: begins with none of relay, servo, actuator, main, aux, camera, image, trigger,"
+        " command"
     )
+
+
+def separated(text: str) -> list[str]:
+    """The specifications that one joins."""
+    return [each.strip() for each in _JOINED.split(text)]
+
+
+def _joint(text: str) -> JointPayload:
+    parts = [part for each in separated(text) for part in parts_of(parse_payload(each))]
+    outputs = [part for part in parts if not isinstance(part, TriggerPayload)]
+    triggers = [part.by for part in parts if isinstance(part, TriggerPayload)]
+    if len(outputs) > 1 or len(set(triggers)) < len(triggers):
+        raise PayloadError(f"payload {text!r}: one output, and each trigger once, are joined by +")
+    return JointPayload(tuple(parts))
 
 
 def _on_off(values: Sequence[str]) -> tuple[float, float]:

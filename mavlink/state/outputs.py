@@ -19,10 +19,12 @@ from mavlink.encoding.payload import (
     ActuatorPayload,
     CameraPayload,
     ImagePayload,
+    JointPayload,
     Payload,
     Px4Output,
     RelayPayload,
     ServoPayload,
+    TriggerPayload,
 )
 from mavlink.state.modes import Autopilot
 from mavlink.wire.messages import Message
@@ -85,14 +87,17 @@ class ServoOutput:
 
 @dataclass(frozen=True, slots=True)
 class CameraOutput:
-    """A camera told to take pictures at an interval; its pictures are recorded whatever the payload is."""
+    """A camera told to take pictures at an interval, or a video; photos are recorded whatever is switched."""
 
     index: int | None = None
+    video: bool = False
 
     def reads(self, message: Message) -> bool | None:
-        """Whether an interval is set; None when the message does not tell."""
+        """Whether an interval is set, or a video taken; None when the message does not tell."""
         if message.name != "CAMERA_CAPTURE_STATUS":
             return None
+        if self.video:
+            return message.integer("video_status") > 0
         return message.integer("image_status") >= _INTERVAL_SET
 
 
@@ -110,6 +115,10 @@ def switched_by(payload: Payload, autopilot: Autopilot) -> Payload:
     """The payload as an autopilot switches it: PX4 has no relays, an actuator stands for each."""
     if autopilot == "px4" and isinstance(payload, RelayPayload):
         return ActuatorPayload(payload.relay + 1)
+    if autopilot == "px4" and isinstance(payload, JointPayload):
+        return JointPayload(
+            tuple(ActuatorPayload(p.relay + 1) if isinstance(p, RelayPayload) else p for p in payload.parts)
+        )
     return payload
 
 
@@ -143,7 +152,7 @@ def pulse_parameters(
 def output_of(
     payload: Payload, autopilot: Autopilot, values: Mapping[str, float] | None = None
 ) -> SensorOutput | None:
-    """The output to watch; None when the payload has none, or the parameters name none.
+    """The output to watch; None when the payload has none, is several, or the parameters name none.
 
     Parameters
     ----------
@@ -160,7 +169,10 @@ def output_of(
             return ServoOutput(port, channel + 1, float(payload.on_pwm_us), float(payload.off_pwm_us))
         case ActuatorPayload():
             return _actuator(payload, values or {})
-        case CameraPayload() | ImagePayload():
+        case TriggerPayload(by="video"):
+            # ArduPilot tells of no video.
+            return CameraOutput(video=True) if autopilot == "px4" else None
+        case CameraPayload() | ImagePayload() | TriggerPayload():
             return CameraOutput()
     return None
 

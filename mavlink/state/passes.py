@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from typing import Final
+from collections.abc import Iterator, Sequence
+from typing import Final, Literal
 
-from mavlink.encoding.payload import Payload, switch_items
+from mavlink.encoding.payload import OutputPayload, Payload, TriggerPayload, parts_of, switch_items
 from mavlink.state.modes import Autopilot
 from mavlink.state.outputs import switched_by
 from mavlink.wire.items import Command, MissionItem
@@ -21,6 +21,7 @@ _SWITCHES: Final = frozenset(
         Command.DO_SET_ACTUATOR,
         Command.DO_SET_CAM_TRIGG_DIST,
         Command.IMAGE_STOP_CAPTURE,
+        Command.VIDEO_STOP_CAPTURE,
     }
 )
 
@@ -31,18 +32,42 @@ def passes_of(items: Sequence[MissionItem], payload: Payload, autopilot: Autopil
     An aircraft that reports one of them as its current item is within that pass. One that is never switched
     off ends with the mission.
     """
-    on, off = switch_items(switched_by(payload, autopilot))
-    found: list[range] = []
+    found = [run for part in parts_of(switched_by(payload, autopilot)) for run in _runs(items, part)]
+    return tuple(sorted(found, key=lambda run: run.start))
+
+
+def _runs(items: Sequence[MissionItem], part: OutputPayload | TriggerPayload) -> Iterator[range]:
     begun: int | None = None
     for item in items:
-        if begun is None and _same(item, on):
+        switched = _switched(item, part)
+        if begun is None and switched == "on":
             begun = item.seq
-        elif begun is not None and _same(item, off):
-            found.append(range(begun, item.seq + 1))
+        elif begun is not None and switched == "off":
+            yield range(begun, item.seq + 1)
             begun = None
+        elif begun is None and switched == "once":
+            yield range(item.seq, item.seq + 1)
     if begun is not None:
-        found.append(range(begun, items[-1].seq + 1))
-    return tuple(found)
+        yield range(begun, items[-1].seq + 1)
+
+
+def _switched(item: MissionItem, part: OutputPayload | TriggerPayload) -> Literal["on", "off", "once"] | None:
+    """What an item does to a payload: a pass begins or ends, or is one photo alone."""
+    if not isinstance(part, TriggerPayload):
+        on, off = switch_items(part)
+        return "on" if _same(item, on) else "off" if _same(item, off) else None
+    match part.by, item.command:
+        case "distance", Command.DO_SET_CAM_TRIGG_DIST:
+            return "on" if item.param1 > 0.0 else "off"
+        case "distance", Command.DO_DIGICAM_CONTROL:
+            return "once"
+        case "time", Command.IMAGE_START_CAPTURE:
+            return "on" if item.param2 > 0.0 else "once"
+        case ("time", Command.IMAGE_STOP_CAPTURE) | ("video", Command.VIDEO_STOP_CAPTURE):
+            return "off"
+        case "video", Command.VIDEO_START_CAPTURE:
+            return "on"
+    return None
 
 
 def _same(item: MissionItem, order: MissionItem) -> bool:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 
-from mavlink.encoding.payload import Payload, switch_items
+from mavlink.encoding.payload import Payload, off_items
 from mavlink.state.modes import mode_parameters
 from mavlink.state.outputs import switched_by
 from mavlink.state.telemetry import VehicleState
@@ -107,9 +107,13 @@ class FlightCommands(ABC):
 
     async def switch_off(self, payload: Payload) -> CommandOutcome:
         """Switch a payload off at once, whatever the mode. Raises PayloadError where it has no such."""
-        _, off = switch_items(switched_by(payload, self.state.autopilot))
-        parameters = (off.param1, off.param2, off.param3, off.param4, float(off.x), float(off.y), off.z)
-        return await self.command(off.command, parameters)
+        worst: CommandOutcome | None = None
+        for off in off_items(switched_by(payload, self.state.autopilot)):
+            parameters = (off.param1, off.param2, off.param3, off.param4, float(off.x), float(off.y), off.z)
+            answer = await self.command(off.command, parameters)
+            worst = answer if worst is None or not answer.accepted else worst
+        assert worst is not None
+        return worst
 
     async def return_to_launch(self) -> CommandOutcome:
         """Break off and come back."""

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 from app.services.records import FlightEvent, TrackSample
-from mavlink.encoding.payload import CameraPayload, ImagePayload, parse_payload
+from mavlink.encoding.payload import CameraPayload, ImagePayload, TriggerPayload, parse_payload, parts_of
 from mavlink.wire.geometry import distance_m
 
 #: Further apart than this times the spacing: a photo is missing between two.
@@ -45,11 +45,12 @@ class Spacing:
 
 def spacing_of(payload: str | None) -> Spacing | None:
     """The spacing of a payload's photos; None when it takes none."""
-    match None if payload is None else parse_payload(payload):
-        case CameraPayload(distance_m=distance):
-            return Spacing(distance_m=distance)
-        case ImagePayload(interval_s=interval):
-            return Spacing(interval_s=interval)
+    for part in () if payload is None else parts_of(parse_payload(payload)):
+        match part:
+            case CameraPayload(distance_m=spacing) | TriggerPayload(by="distance", spacing=float(spacing)):
+                return Spacing(distance_m=spacing)
+            case ImagePayload(interval_s=spacing) | TriggerPayload(by="time", spacing=float(spacing)):
+                return Spacing(interval_s=spacing)
     return None
 
 

@@ -72,7 +72,7 @@ def encode_plan(plan: Plan, choice: MissionChoice) -> Mission:
             options = replace(options, payload=parse_payload(choice.payload))
         return encode(plan, vehicle=vehicle, autopilot=choice.autopilot, options=options)
     except PayloadError as error:
-        fix = "write e.g. relay:0, servo:9:1900:1100, aux:1, camera:distance=25 or image:interval=2"
+        fix = "write e.g. relay:0, servo:9:1900:1100, aux:1, camera:distance=25 or trigger:time"
         raise RefusedError(str(error), (Finding("payload", "payload", str(error), fix),)) from error
     except GimbalError as error:
         fix = "write e.g. manager:tilt=45, manager:tilt=45,yaw=course, mount:tilt=45 or none"

@@ -10,9 +10,9 @@ from app.services.documents import read_object
 from app.services.plans.missions import MissionChoice, mission_of, plan_of, sent
 from app.services.vehicles.preflight import settle_m
 from mavlink.dialects.mission import Mission
-from mavlink.encoding.options import DEFAULT_PAYLOAD
 from mavlink.encoding.payload import Payload, parse_payload
 from mavlink.encoding.payload_in import payload_in
+from mavlink.encoding.trigger import payload_of, specified
 from mavlink.rules.table import Needs, needs_of
 from planner.plan import LonLat, Plan
 
@@ -27,12 +27,16 @@ class Brief:
         Without its lines and the ground it sees, which make it large.
     scenario
         As it was posted, of its features the start alone.
+    payload
+        How the sensor is switched, its spacing filled in where the plan's cameras say it; None for the usual
+        output.
     """
 
     plan: Plan
     scenario: dict[str, Any]
     mission: Mission
     needs: Needs
+    payload: str | None = None
 
 
 def brief_of(plan_text: str, scenario_text: str, choice: MissionChoice) -> Brief:
@@ -40,17 +44,21 @@ def brief_of(plan_text: str, scenario_text: str, choice: MissionChoice) -> Brief
     plan, scenario = plan_of(plan_text), read_object(scenario_text)
     mission = sent(mission_of(plan_text, choice))
     needs = mission_needs(plan, scenario, mission, choice)
+    payload = choice.payload if mission.declared else specified(plan, mission.vehicle, choice.payload)
     paths = tuple(replace(path, line=(), segments=()) for path in plan.paths)
     plan = replace(plan, paths=paths, transits=(), footprints=(), uncovered=())
     starts = [feature for feature in scenario.get("features") or () if _role(feature) == "start"]
-    return Brief(plan, scenario | {"features": starts}, mission, needs)
+    return Brief(plan, scenario | {"features": starts}, mission, needs, payload)
 
 
 def mission_needs(plan: Plan, scenario: Mapping[str, Any], mission: Mission, choice: MissionChoice) -> Needs:
     """What a mission needs of its vehicle."""
-    payload: Payload | None = DEFAULT_PAYLOAD if mission.declared is None else payload_in(mission)
-    if choice.payload is not None:
-        payload = parse_payload(choice.payload)
+    wanted = None if choice.payload is None else parse_payload(choice.payload)
+    payload: Payload | None
+    if mission.declared is None:
+        payload = payload_of(plan, mission.vehicle, wanted)
+    else:
+        payload = payload_in(mission) if wanted is None else wanted
     return needs_of(plan, mission, payload, settle_m(scenario, mission.vehicle))
 
 

@@ -29,7 +29,8 @@ class Checks:
             choice = for_vehicle(vehicle, choice)
             brief = await self._brief(plan_id, choice)
             report = await inspect(vehicle.client, plan_id, brief)
-            if report.mission_held is not None and _as_sent(vehicle, plan_id, brief.mission, choice):
+            asked = replace(choice, payload=brief.payload)
+            if report.mission_held is not None and _as_sent(vehicle, plan_id, brief.mission, asked):
                 vehicle.found(report.mission_held)
                 vehicle.tell()
             return report

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import AsyncIterator, Sequence
+from dataclasses import replace
 from typing import Any
 
 import structlog
@@ -92,6 +93,7 @@ class Transfers:
             findings = _pointed(brief) if "mission" in parts else ()
             findings += judge_upload(brief.plan, brief.mission, parts, vehicle.state, override, stale)
             await _bring_home(vehicle, brief.plan)
+            choice = replace(choice, payload=brief.payload)
             report = await self._begin(vehicle, plan_id, brief.mission, parts, override, findings, choice)
 
             def tell(part: PartName, made: Progress) -> None:

@@ -32,7 +32,7 @@ from app.services.vehicles.turns import Turns
 from app.services.vehicles.uploads import UploadReport, read_back
 from mavlink import errors as mavlink_errors
 from mavlink.encoding.options import DEFAULT_PAYLOAD
-from mavlink.encoding.payload import CameraPayload, parse_payload
+from mavlink.encoding.payload import CameraPayload, JointPayload, TriggerPayload, parse_payload
 from mavlink.state.passes import passes_of
 from mavlink.station.client import VehicleClient
 from mavlink.station.forward.address import ForwardAddress
@@ -354,7 +354,10 @@ class Vehicle(Heard):
         self.held = HeldPlan(held.plan_id, held.plan_vehicle, held.payload, output, held.gimbal)
         self.safety.hold(payload, passes_of(items, payload, self.state.autopilot), len(items))
         # A shutter released by distance shows in its photos alone, and not when it rests.
-        self.client.show_sensor(None if isinstance(payload, CameraPayload) else output)
+        by_distance = isinstance(payload, CameraPayload) or (
+            isinstance(payload, TriggerPayload) and payload.by == "distance"
+        )
+        self.client.show_sensor(None if by_distance or isinstance(payload, JointPayload) else output)
         # It may fly at once: what shows its payload must be listened to by then.
         self._look_now.set()
 

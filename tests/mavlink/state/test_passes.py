@@ -6,7 +6,7 @@ import pytest
 
 from mavlink.dialects.base import Autopilot, VehicleType
 from mavlink.encoding.encode import encode
-from mavlink.encoding.options import EncodeOptions
+from mavlink.encoding.options import DEFAULT_PAYLOAD, EncodeOptions
 from mavlink.encoding.payload import parse_payload
 from mavlink.state.passes import landing_of, passes_of
 from mavlink.wire.items import Command, Frame, MissionItem
@@ -57,7 +57,7 @@ def test_the_landing_begins_behind_the_last_pass(autopilot: Autopilot, kind: Veh
     assert first is not None
     landing = items[first:]
     assert landing[-1].command == Command.NAV_LAND
-    assert first > passes_of(items, EncodeOptions().payload, autopilot)[-1][-1]
+    assert first > passes_of(items, DEFAULT_PAYLOAD, autopilot)[-1][-1]
     if kind == "fixed_wing":
         assert landing[0].command == Command.NAV_LOITER_TO_ALT
         assert max(item.z for item in landing if item.x) < plan.altitude_m
