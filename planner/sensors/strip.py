@@ -64,14 +64,14 @@ def strip_on(sensor: SarSensor, height_m: float, courses_rad: ArrayLike, look: L
     turned = np.concatenate([turned, -turned])
     near_m = low_m * edge_tan(sensor, sensor.steepest_rad, turned).max(axis=0) + sensor.position_margin_m
     far_m = high_m * edge_tan(sensor, sensor.flattest_rad, turned).min(axis=0) - sensor.position_margin_m
-    leads = np.stack(
-        [
-            lead_m(sensor.squint_rad + off, yaw, out_m, drop_m)
-            for off in (-margin_rad, margin_rad)
-            for drop_m in (high_m, low_m)
-            for out_m in (near_m, far_m, _turning_m(sensor.squint_rad + off, yaw, drop_m, near_m, far_m))
-        ]
+    # One row for each squint and drop: planning asks for so many strips that calls would cost more than sums.
+    squints_rad = sensor.squint_rad + np.array([[-margin_rad], [-margin_rad], [margin_rad], [margin_rad]])
+    drops_m = np.array([[high_m], [low_m], [high_m], [low_m]])
+    turning_m = _turning_m(squints_rad, yaw, drops_m, near_m, far_m)
+    outs_m = np.stack(
+        [np.broadcast_to(near_m, turning_m.shape), np.broadcast_to(far_m, turning_m.shape), turning_m]
     )
+    leads = lead_m(squints_rad, yaw, outs_m, drops_m).reshape(-1, len(courses))
     half_m = aperture_m(sensor, low_m, yaw) / 2.0 + sensor.position_margin_m
     return Strip(near_m, far_m - near_m, half_m + leads.max(axis=0), half_m - leads.min(axis=0))
 
@@ -95,9 +95,9 @@ def aperture_m(sensor: SarSensor, drop_m: ArrayLike, yaw_rad: ArrayLike) -> Floa
     return np.asarray(np.asarray(drop_m) / math.cos(sensor.incidence_rad) * one_m, dtype=np.float64)
 
 
-def lead_m(squint_rad: float, yaw_rad: ArrayLike, out_m: ArrayLike, drop_m: ArrayLike) -> Floats:
+def lead_m(squint_rad: ArrayLike, yaw_rad: ArrayLike, out_m: ArrayLike, drop_m: ArrayLike) -> Floats:
     """How far ahead of the aircraft ground is seen that lies beside the track and below it."""
-    tan, out, drop = math.tan(squint_rad), np.asarray(out_m), np.asarray(drop_m)
+    tan, out, drop = np.tan(squint_rad), np.asarray(out_m), np.asarray(drop_m)
     cos, sin = np.cos(yaw_rad), np.sin(yaw_rad)
     # Of y = y_b cos ψ − x_b sin ψ with x_b = √(y_b² + d²) tan θ_sq, the root y_b.
     side = tan * sin
@@ -106,12 +106,13 @@ def lead_m(squint_rad: float, yaw_rad: ArrayLike, out_m: ArrayLike, drop_m: Arra
     return np.asarray(beside * sin + np.hypot(beside, drop) * tan * cos, dtype=np.float64)
 
 
-def _turning_m(squint_rad: float, yaw: Floats, drop_m: float, near_m: Floats, far_m: Floats) -> Floats:
+def _turning_m(squint_rad: Floats, yaw: Floats, drop_m: Floats, near_m: Floats, far_m: Floats) -> Floats:
     """Where in the strip the lead is greatest or least, squint and crab against each other; else an edge."""
-    tan = math.tan(squint_rad)
-    if abs(tan) < 1e-9:
-        return near_m
+    tan = np.tan(squint_rad)
+    squinted = np.abs(tan) >= 1e-9
     # dx/dy_b = sin ψ + tan θ_sq cos ψ sin θ vanishes at this look angle.
-    look = np.arcsin(np.clip(-np.tan(yaw) / tan, -1.0 + 1e-9, 1.0 - 1e-9))
+    sine = -np.tan(yaw) / np.where(squinted, tan, 1.0)
+    look = np.arcsin(np.minimum(np.maximum(sine, -1.0 + 1e-9), 1.0 - 1e-9))
     out_m = drop_m * (np.tan(look) * np.cos(yaw) - tan / np.cos(look) * np.sin(yaw))
-    return np.asarray(np.clip(out_m, near_m, np.maximum(near_m, far_m)), dtype=np.float64)
+    within_m = np.minimum(np.maximum(out_m, near_m), np.maximum(near_m, far_m))
+    return np.asarray(np.where(squinted, within_m, near_m), dtype=np.float64)

@@ -32,6 +32,8 @@ CHROMIUM_FLAGS = [
 START_LIMIT_S = 60.0
 #: Slower for a good picture: see docs/map.md.
 SPEEDUP = int(os.environ.get("SWATHPLAN_TEST_SPEEDUP", "200"))
+#: The processor draws a quarter of the points where nobody looks; the page's own pixels are as ever.
+SCALE = 1.0 if "SWATHPLAN_SCREENSHOT" in os.environ else 0.5
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,7 +112,10 @@ def page(browser: Browser, service: Service) -> Iterator[Page]:
     function is to evaluate a text, which the page's policy forbids: it is off here, and has its own test.
     """
     context = browser.new_context(
-        bypass_csp=True, viewport={"width": 1400, "height": 860}, color_scheme="light"
+        bypass_csp=True,
+        viewport={"width": 1400, "height": 860},
+        color_scheme="light",
+        device_scale_factor=SCALE,
     )
     opened = context.new_page()
     failures: list[str] = []

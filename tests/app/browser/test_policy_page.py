@@ -7,14 +7,14 @@ import time
 import pytest
 from playwright.sync_api import Browser
 
-from tests.app.browser.conftest import EXAMPLES, Service
+from tests.app.browser.conftest import EXAMPLES, SCALE, Service
 
 pytestmark = pytest.mark.browser
 
 
 def test_nothing_of_the_page_is_refused(browser: Browser, service: Service) -> None:
     """World, scenario, a validation, pictures from elsewhere: drawn, and no violation is told."""
-    context = browser.new_context()
+    context = browser.new_context(device_scale_factor=SCALE)
     page = context.new_page()
     told: list[str] = []
     page.on("pageerror", lambda error: told.append(str(error)))
