@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
 import shapely
 from shapely.geometry import MultiPolygon, Point, Polygon
 from shapely.geometry.base import BaseGeometry
@@ -105,17 +106,12 @@ def _clusters(urban: UrbanArea, standing: list[Building]) -> tuple[Cluster, ...]
     half_m = urban.span_m / 2.0
     closed = _mitred(_mitred(shapely.union_all(grown), half_m), -half_m)
     joined = shapely.union_all([closed, *grown])
-    found = []
-    for outline in shapely.get_parts(joined):
-        if not isinstance(outline, Polygon):
-            continue
-        tops = [
-            building.height_m
-            for building, shape in zip(standing, grown, strict=True)
-            if outline.intersects(shape.representative_point())
-        ]
-        found.append(Cluster(outline, max(tops)))
-    return tuple(found)
+    outlines = [part for part in shapely.get_parts(joined) if isinstance(part, Polygon)]
+    inside = shapely.point_on_surface(np.array(grown, dtype=object))
+    tops_m = [0.0] * len(outlines)
+    for member, outline in shapely.STRtree(outlines).query(inside, predicate="intersects").T:
+        tops_m[outline] = max(tops_m[outline], standing[member].height_m)
+    return tuple(Cluster(outline, top_m) for outline, top_m in zip(outlines, tops_m, strict=True))
 
 
 def _passable(ground: BaseGeometry, span_m: float) -> BaseGeometry:
