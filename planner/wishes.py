@@ -15,7 +15,8 @@ class Region:
     ``approach_rad`` holds the allowed flight directions, None for any; ``revisits`` how often it is to be
     seen, on separate occasions; ``axis`` the line a corridor follows; ``altitude_m`` is that of its passes
     over the scenario's datum, None for the route's. ``over_ground_m`` is the height of passes that follow the
-    ground, None for level ones.
+    ground, None for level ones. ``min_resolution_m``, ``gsd_m`` and ``min_niirs`` ask for quality: the worst
+    inside it.
     """
 
     name: str
@@ -29,6 +30,8 @@ class Region:
     axis: LineString | None = None
     altitude_m: float | None = None
     over_ground_m: float | None = None
+    gsd_m: float | None = None
+    min_niirs: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,6 +16,7 @@ from planner.check.heights import HEIGHT_TOLERANCE_M
 from planner.check.places import middle
 from planner.plan import Collect, Plan, Violation
 from planner.scenario import Scenario
+from planner.sensors.camera import CameraSensor
 from planner.wishes import Region
 
 #: Overlays are done on a grid: without one, outlines equal but for rounding can be taken for disjoint.
@@ -90,6 +91,10 @@ def _same(one: Any, other: Any) -> bool:
     return all(getattr(one, trait) == getattr(other, trait) for trait in traits)
 
 
+def _resolves(resolution_m: float | None, asked_m: float | None) -> bool:
+    return asked_m is None or (resolution_m is not None and resolution_m <= asked_m)
+
+
 def _counts(scenario: Scenario, region: Region, collect: Collect) -> bool:
     """Whether a collect sees with a sensor, a resolution, a height and a direction that the region allows."""
     sensor = next(s for s in scenario.sensors if s.name == collect.sensor)
@@ -98,9 +103,8 @@ def _counts(scenario: Scenario, region: Region, collect: Collect) -> bool:
     asked_m = scenario.altitude_m if region.altitude_m is None else region.altitude_m
     if region.over_ground_m is None and abs(collect.line[0][2] - asked_m) > HEIGHT_TOLERANCE_M:
         return False
-    if region.min_resolution_m is not None and (
-        sensor.resolution_m is None or sensor.resolution_m > region.min_resolution_m
-    ):
+    # What cameras resolve is judged photo by photo.
+    if not isinstance(sensor, CameraSensor) and not _resolves(sensor.resolution_m, region.min_resolution_m):
         return False
     if region.approach_rad is None:
         return True

@@ -25,6 +25,8 @@ POINT_TARGET_RADIUS_M = 1.0
 DISC_QUADRANT = 32
 #: Altitudes beyond these are a slip of the pen.
 LOWEST_M, HIGHEST_M = 1.0, 30_000.0
+#: Where the scale of NIIRS ends.
+HIGHEST_NIIRS = 9.0
 #: More visits than this are a slip of the pen: each is a stop of the tour.
 MOST_REVISITS = 50
 
@@ -132,12 +134,12 @@ def read_region(raw: RawFeature, frame: LocalFrame, findings: Findings) -> Regio
         revisits = 1
     if fields.raw("time_window_s") is not None:
         _not_yet(raw, "time_window_s", "time windows", "Leave time_window_s out.", findings)
-    if fields.raw("min_niirs") is not None:
-        _not_yet(raw, "min_niirs", "a NIIRS limit for SAR", "Use min_resolution_m.", findings)
     priority = fields.number("priority", 1.0, minimum=0.0)
     required = fields.flag("required", True)
     sensor = fields.text("sensor", None)
     min_resolution_m = fields.number("min_resolution_m", None, above=0.0)
+    gsd_m = fields.number("gsd_m", None, above=0.0)
+    min_niirs = fields.number("min_niirs", None, minimum=0.0, maximum=HIGHEST_NIIRS)
     altitude_m = fields.number("altitude_m", None, minimum=LOWEST_M, maximum=HIGHEST_M)
     headings = _headings(fields)
     fields.refuse_unknown()
@@ -148,8 +150,9 @@ def read_region(raw: RawFeature, frame: LocalFrame, findings: Findings) -> Regio
         centre = area.centroid
         approach = tuple(frame.angle_rad(centre.x, centre.y, heading) for heading in headings)
     return Region(
-        raw.name, area, priority, required, sensor, min_resolution_m, approach, revisits, axis, altitude_m
-    )
+        raw.name, area, priority, required, sensor, min_resolution_m, approach, revisits, axis, altitude_m,
+        gsd_m, min_niirs,
+    )  # fmt: skip
 
 
 def _headings(fields: Fields) -> tuple[float, ...] | None:

@@ -50,8 +50,7 @@ def followed(
     found: list[Region] = []
     asked = {region.name: region.altitude_m for region in scenario.regions}
     for region in regions:
-        sensor = next((s for s in scenario.sensors if s.name == region.sensor), scenario.sensors[0])
-        if not KINDS[sensor.kind].follows:
+        if not may_follow(scenario, region):
             found.append(region if region.altitude_m is not None else replace(region, altitude_m=level_m))
             continue
         height_m = scenario.altitude_m if asked[region.name] is None else asked[region.name]
@@ -79,3 +78,9 @@ def followed(
     # Between regions the flight keeps over what lies there.
     low_m, high_m = ground.range_over(shapely.union_all([*places, *ends]).convex_hull)
     return found, max(high_m + max(*follow_m, clearance_m), level_m), low_m + min(*follow_m, clearance_m)
+
+
+def may_follow(scenario: Scenario, region: Region) -> bool:
+    """Whether the sensor of a region sees it from passes that follow the ground."""
+    sensor = next((s for s in scenario.sensors if s.name == region.sensor), scenario.sensors[0])
+    return KINDS[sensor.kind].follows

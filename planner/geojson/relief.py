@@ -16,11 +16,13 @@ from itertools import pairwise
 import shapely
 from shapely.geometry.base import BaseGeometry
 
+from planner.airspace.envelope import SMOOTH_M
 from planner.airspace.shapes import without_holes
 from planner.airspace.terrain import Ground, Terrain, local_ground
 from planner.airspace.values import NoFlyZone, Obstacle, Threat
 from planner.geojson.fields import Findings
-from planner.geojson.followed import followed
+from planner.geojson.followed import followed, may_follow
+from planner.geojson.heights import Heights
 from planner.scenario import Scenario
 from planner.wishes import Region
 
@@ -35,20 +37,23 @@ MAX_ZONES = 200
 
 
 def set_on_terrain(
-    scenario: Scenario, terrain: Terrain, clearance_given: bool, findings: Findings
+    scenario: Scenario, terrain: Terrain, heights: Heights, clearance_given: bool, findings: Findings
 ) -> Scenario:
     """The scenario with its ground, level and clearance; unchanged after a finding that refuses it.
 
     Parameters
     ----------
+    heights
+        Between which those that nothing gives are chosen.
     clearance_given
         Whether the document named a clearance; else ``OVER_GROUND_M`` is kept over the ground.
     """
     ground = local_ground(terrain, scenario.frame, _bounds(scenario))
     home_amsl_m = float(ground.at(scenario.start.position))
-    tops_m = _tops(scenario, ground, findings)
-    if tops_m is None:
+    ranges_m = _ranges(scenario, ground, findings)
+    if ranges_m is None:
         return scenario
+    tops_m = {name: top_m for name, (_, top_m) in ranges_m.items()}
     if ground.step_m > 1.5 * terrain.resolution_m and ground.step_m > 1.5:
         findings.warning(
             "terrain",
@@ -68,17 +73,34 @@ def set_on_terrain(
     reference = scenario.altitude_reference
     highest_m = max(tops_m.values())
     level_m = scenario.altitude_m + {"amsl": 0.0, "home": home_amsl_m, "terrain": highest_m}[reference]
+    standing = replace(scenario, terrain=ground, over_ground_m=clearance_m)
     regions: list[Region] = []
+    asked: list[Region] = []
     for region in scenario.regions:
-        if region.altitude_m is None:
+        low_m, top_m = ranges_m[region.name]
+        if scenario.terrain_following and may_follow(scenario, region):
+            # Over all of its ground it is flown over as high, but for how well that is followed.
+            low_m = top_m - 2.0 * SMOOTH_M
+        given_m = level_m if heights.altitude_given else None
+        if region.altitude_m is not None:
+            over_m = {"amsl": 0.0, "home": home_amsl_m, "terrain": top_m}[reference]
+            given_m = region.altitude_m + over_m
+        of_top_m = None if given_m is None else given_m - top_m
+        chosen_m = heights.over_top_m(region, standing, top_m - low_m, of_top_m, findings)
+        asked.append(region if chosen_m is None else replace(region, altitude_m=chosen_m))
+        if chosen_m is not None:
+            regions.append(replace(region, altitude_m=top_m + chosen_m))
+            continue
+        if region.altitude_m is None or given_m is None:
             regions.append(region)
             continue
-        over_m = {"amsl": 0.0, "home": home_amsl_m, "terrain": tops_m[region.name]}[reference]
-        regions.append(replace(region, altitude_m=region.altitude_m + over_m))
-        if not _above(region.name, region.altitude_m + over_m, tops_m[region.name], clearance_m, findings):
+        regions.append(replace(region, altitude_m=given_m))
+        if not _above(region.name, given_m, top_m, clearance_m, findings):
             return scenario
+    if not heights.altitude_given:
+        level_m = max((r.altitude_m for r in regions if r.altitude_m is not None), default=level_m)
     of_route = [tops_m[region.name] for region in regions if region.altitude_m is None]
-    if of_route:
+    if of_route and heights.altitude_given:
         if not _above("scenario", level_m, max(of_route), clearance_m, findings):
             return scenario
         if reference == "terrain" and not scenario.terrain_following:
@@ -91,7 +113,7 @@ def set_on_terrain(
             )
     lowest_amsl_m = None
     if scenario.terrain_following:
-        found = followed(scenario, regions, ground, clearance_m, level_m, findings)
+        found = followed(replace(scenario, regions=tuple(asked)), regions, ground, clearance_m, level_m, findings)
         if found is None:
             return scenario
         regions, level_m, lowest_amsl_m = found
@@ -146,13 +168,13 @@ def _bounds(scenario: Scenario) -> tuple[float, float, float, float]:
     return (west - margin_m, south - margin_m, east + margin_m, north + margin_m)
 
 
-def _tops(scenario: Scenario, ground: Ground, findings: Findings) -> dict[str, float] | None:
-    """Highest ground of each region; None after a finding where some ground that must be known is not."""
-    tops_m: dict[str, float] = {}
+def _ranges(scenario: Scenario, ground: Ground, findings: Findings) -> dict[str, tuple[float, float]] | None:
+    """Lowest and highest ground of each region; None after a finding where some that must be known is not."""
+    ranges_m: dict[str, tuple[float, float]] = {}
     known = True
     ends = {end.name: shapely.Point(end.position).buffer(1.0) for end in (scenario.start, scenario.end)}
     for name, area in [(region.name, region.area) for region in scenario.regions] + list(ends.items()):
-        top_m = ground.range_over(area)[1]
+        low_m, top_m = ground.range_over(area)
         if math.isnan(top_m):
             known = False
             findings.error(
@@ -162,8 +184,8 @@ def _tops(scenario: Scenario, ground: Ground, findings: Findings) -> dict[str, f
                 "Use a raster that covers it, or fill the gap.",
             )
         elif name not in ends:
-            tops_m[name] = top_m
-    return tops_m if known else None
+            ranges_m[name] = (low_m, top_m)
+    return ranges_m if known else None
 
 
 def _high_ground(

@@ -16,6 +16,7 @@ from planner.geojson import equipment, features
 from planner.geojson.extent import check_bbox, frame_of, within
 from planner.geojson.far import near_features
 from planner.geojson.fields import Fields, Findings
+from planner.geojson.heights import Heights, at_chosen_heights, tell_unused, with_wishes
 from planner.geojson.home import home_amsl_m, kept_clear
 from planner.geojson.plausible import check_plausible
 from planner.geojson.relief import set_on_terrain
@@ -31,9 +32,9 @@ from planner.wishes import Region
 NOT_YET = ("search",)
 
 MEMBERS = (
-    "type", "features", "name", "bbox", "crs", "vehicles", "sensors", "altitude_m",
-    "altitude_reference", "terrain", "terrain_following", "wind", "clearance_m", "objective", "task",
-    "method", "seed", "time_budget_s",
+    "type", "features", "name", "bbox", "crs", "vehicles", "sensors", "altitude_m", "min_height_m",
+    "max_height_m", "altitude_reference", "terrain", "terrain_following", "wind", "clearance_m", "objective",
+    "task", "method", "seed", "time_budget_s",
 )  # fmt: skip
 
 CRS84 = (
@@ -136,7 +137,10 @@ def _read(document: Any, findings: Findings, terrains: Terrains | None) -> Scena
             "scenario", "not-supported", f"has {len(aircraft)} vehicles; this version plans for one",
             "Send one scenario a vehicle.",
         )  # fmt: skip
-    altitude_m = top.number("altitude_m", minimum=features.LOWEST_M, maximum=features.HIGHEST_M)
+    altitude_m = top.number("altitude_m", None, minimum=features.LOWEST_M, maximum=features.HIGHEST_M)
+    heights = Heights.read(top)
+    if not heights.decided(regions):
+        top.number("altitude_m")
     reference: Any = top.choice("altitude_reference", ("amsl", "home", "terrain"), "terrain")
     task = top.choice("task", (*TASKS, *(name for name in NOT_YET if name not in TASKS)), "collect")
     if task is not None and task not in TASKS:
@@ -171,7 +175,7 @@ def _read(document: Any, findings: Findings, terrains: Terrains | None) -> Scena
     for base in bases:
         if base is not start:
             findings.warning(base.name, "not-used", "is a base that no vehicle starts from", "Remove it.")
-    if findings.errors or start is None or altitude_m is None or clearance_m is None:
+    if findings.errors or start is None or clearance_m is None:
         return None
     scenario = Scenario(
         name=name or "scenario",
@@ -181,7 +185,7 @@ def _read(document: Any, findings: Findings, terrains: Terrains | None) -> Scena
         sensors=tuple(s for s in sensors if s is not None),
         start=start,
         end=ends[0] if ends else Terminal(start.name, start.position),
-        altitude_m=altitude_m,
+        altitude_m=altitude_m or 0.0,
         altitude_reference=reference,
         area=areas[0] if areas else None,
         threats=tuple(threats),
@@ -199,10 +203,14 @@ def _read(document: Any, findings: Findings, terrains: Terrains | None) -> Scena
         home_amsl_m=None if terrain is not None else home_amsl_m(raws, start.name),
         terrain_following=following,
     )
+    scenario = with_wishes(scenario)
+    tell_unused(scenario, heights, findings)
     if terrain is not None:
-        scenario = set_on_terrain(scenario, terrain, "clearance_m" in top, findings)
+        scenario = set_on_terrain(scenario, terrain, heights, "clearance_m" in top, findings)
     else:
-        scenario = kept_clear(scenario, findings)
+        scenario = kept_clear(at_chosen_heights(scenario, heights, findings), findings)
+    if findings.errors and not heights.altitude_given:
+        return None
     scenario = replace(scenario, regions=_at_their_altitudes(scenario.regions, scenario.altitude_m))
     check_together(scenario, findings)
     if not findings.errors:

@@ -226,7 +226,8 @@ PROOFS: dict[tuple[str, str], tuple[Document, Document]] = {
     ("roi", "width_m"): (with_features(line()), with_features(line(width_m=250.0))),
     ("roi", "radius_m"): (with_features(target()), with_features(target(radius_m=150.0))),
     ("roi", "time_window_s"): (small(), of_feature("A", time_window_s=[0, 600])),
-    ("roi", "min_niirs"): (small(), of_feature("A", min_niirs=5)),
+    ("roi", "min_niirs"): (small(), of_feature("A", min_niirs=5.4)),
+    ("roi", "gsd_m"): (camera(), camera(of_feature("A", gsd_m=0.03))),
     ("threat", "model"): (
         with_features(threat(model="radar", intensity_m=300.0)), with_features(threat(intensity_m=300.0)),
     ),
@@ -330,6 +331,12 @@ PROOFS: dict[tuple[str, str], tuple[Document, Document]] = {
     ("scenario", "bbox"): (small(), member("bbox", [0.0, 0.0, 0.01, 0.01])),
     ("scenario", "crs"): (small(), member("crs", "EPSG:3857")),
     ("scenario", "altitude_m"): (small(), member("altitude_m", 600.0)),
+    ("scenario", "min_height_m"): (
+        camera(of_feature("A", gsd_m=0.01)), camera(of_feature("A", gsd_m=0.01) | {"min_height_m": 200.0}),
+    ),
+    ("scenario", "max_height_m"): (
+        camera(of_feature("A", gsd_m=0.1)), camera(of_feature("A", gsd_m=0.1) | {"max_height_m": 480.0}),
+    ),
     ("scenario", "altitude_reference"): (
         with_features(disc(floor_m=400.0)), with_features(disc(floor_m=400.0), altitude_reference="amsl"),
     ),
