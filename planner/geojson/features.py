@@ -151,7 +151,7 @@ def read_region(raw: RawFeature, frame: LocalFrame, findings: Findings) -> Regio
         approach = tuple(frame.angle_rad(centre.x, centre.y, heading) for heading in headings)
     return Region(
         raw.name, area, priority, required, sensor, min_resolution_m, approach, revisits, axis, altitude_m,
-        gsd_m, min_niirs,
+        gsd_m=gsd_m, min_niirs=min_niirs,
     )  # fmt: skip
 
 

@@ -16,7 +16,6 @@ from itertools import pairwise
 import shapely
 from shapely.geometry.base import BaseGeometry
 
-from planner.airspace.envelope import SMOOTH_M
 from planner.airspace.shapes import without_holes
 from planner.airspace.terrain import Ground, Terrain, local_ground
 from planner.airspace.values import NoFlyZone, Obstacle, Threat
@@ -24,6 +23,7 @@ from planner.geojson.fields import Findings
 from planner.geojson.followed import followed, may_follow
 from planner.geojson.heights import Heights
 from planner.scenario import Scenario
+from planner.sensors.wanted import UnknownQualityError, wanted_of
 from planner.wishes import Region
 
 #: Kept over the ground where the scenario names no ``clearance_m``.
@@ -79,8 +79,7 @@ def set_on_terrain(
     for region in scenario.regions:
         low_m, top_m = ranges_m[region.name]
         if scenario.terrain_following and may_follow(scenario, region):
-            # Over all of its ground it is flown over as high, but for how well that is followed.
-            low_m = top_m - 2.0 * SMOOTH_M
+            low_m = top_m - _beside_m(scenario, region, ground)
         given_m = level_m if heights.altitude_given else None
         if region.altitude_m is not None:
             over_m = {"amsl": 0.0, "home": home_amsl_m, "terrain": top_m}[reference]
@@ -113,7 +112,9 @@ def set_on_terrain(
             )
     lowest_amsl_m = None
     if scenario.terrain_following:
-        found = followed(replace(scenario, regions=tuple(asked)), regions, ground, clearance_m, level_m, findings)
+        found = followed(
+            replace(scenario, regions=tuple(asked)), regions, ground, clearance_m, level_m, findings
+        )
         if found is None:
             return scenario
         regions, level_m, lowest_amsl_m = found
@@ -135,6 +136,16 @@ def set_on_terrain(
         threats=tuple(_raised_threat(threat, ground, home_amsl_m) for threat in scenario.threats),
         obstacles=tuple(_raised_obstacle(obstacle, ground, home_amsl_m) for obstacle in scenario.obstacles),
     )
+
+
+def _beside_m(scenario: Scenario, region: Region, ground: Ground) -> float:
+    """How much lower than below passes that follow it the ground beside them is, as far as photos show it."""
+    sensor = scenario.sensor_for(region)
+    try:
+        most_m = min((wanted.height_m for wanted in wanted_of(region, sensor)), default=0.0)
+    except UnknownQualityError:
+        return 0.0
+    return ground.relief_beside_m(region.area, sensor.swath_m(max(most_m, 0.0)) / 2.0)
 
 
 def _above(name: str, level_m: float, top_m: float, clearance_m: float, findings: Findings) -> bool:
