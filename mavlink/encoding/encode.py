@@ -81,6 +81,7 @@ def encode(
         as_turn,
         (task.taken_off_m, task.landing_m),
         task.near_m,
+        switching.on_delay_m,
     )
     home = [home_item(plan.home, options.home_altitude_m)] if task.dialect.home_row else []
     flight = _flight(task, stops, switching, pointing)

@@ -56,6 +56,7 @@ def stops_along(
     flown_round: Callable[[PathSegment], bool] = lambda _: False,
     between_m: tuple[float, float] = (0.0, math.inf),
     near_m: float = 0.0,
+    on_delay_m: Callable[[Collect], float] = lambda _: 0.0,
 ) -> tuple[Stop, ...]:
     """Ends of the straights, points on the arcs, and exactly both ends of each collect, in flight order.
 
@@ -75,13 +76,18 @@ def stops_along(
         Which arcs are flown round their centres.
     near_m
         Places where nothing happens are left out so near to others: what hovers would stop there.
+    on_delay_m
+        How far past a collect's beginning its sensor is switched on, at most to its middle.
     """
     altitude = partial(altitude_along, path)
     stops: list[Stop] = []
     skipped: list[tuple[float, float]] = []
     for collect in collects:
         start, end_place = (here(place[:2]) for place in collect.line)
-        stops.append(Stop(collect.start_m, start, altitude(collect.start_m), on=1))
+        delay_m = min(on_delay_m(collect), (collect.end_m - collect.start_m) / 2.0)
+        if delay_m > 0.0:
+            start = _beyond(collect, local, delay_m - (collect.end_m - collect.start_m))
+        stops.append(Stop(collect.start_m + delay_m, start, altitude(collect.start_m + delay_m), on=1))
         end = Stop(collect.end_m, end_place, altitude(collect.end_m))
         beyond_m = collect.end_m + off_delay_m
         if may_overshoot is not None and _straight_left_m(path, collect) < off_delay_m - MERGE_M:
@@ -196,7 +202,7 @@ def _straight_left_m(path: FlownPath, collect: Collect) -> float:
 
 
 def _beyond(collect: Collect, local: LocalMap, distance_m: float) -> LonLat:
-    """A place past a collect's end, in the direction of its line."""
+    """A place past a collect's end, in the direction of its line; before it for less than 0."""
     (start_x, start_y), (end_x, end_y) = (local.xy(place[:2]) for place in collect.line)
     part = distance_m / math.hypot(end_x - start_x, end_y - start_y)
     return local.lonlat((end_x + part * (end_x - start_x), end_y + part * (end_y - start_y)))

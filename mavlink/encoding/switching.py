@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
 from mavlink.encoding.options import DEFAULT_PAYLOAD, EncodeError
@@ -33,11 +33,14 @@ class Switching:
         One for each collect, as they begin.
     ends
         Their numbers as they end.
+    late_m
+        Of a collect by its ``seq``, how far past its beginning the waypoint that begins it must lie.
     """
 
     switches: tuple[Switch, ...]
     ends: tuple[int, ...]
     notes: tuple[str, ...] = ()
+    late_m: Mapping[int, float] = field(default_factory=dict)
     _begun: int = 0
     _ended: int = 0
     _on: list[int] = field(default_factory=list)
@@ -46,6 +49,10 @@ class Switching:
     def rest(self) -> tuple[MissionItem, ...]:
         """Everything off, whatever went before."""
         return tuple(dict.fromkeys(item for switch in self.switches for item in switch.rest))
+
+    def on_delay_m(self, collect: Collect) -> float:
+        """How far past a collect's beginning the waypoint that begins it must lie."""
+        return self.late_m.get(collect.seq, 0.0)
 
     def ended(self, count: int, *, begins: bool) -> tuple[MissionItem, ...]:
         """What stands where so many collects end; where collects overlap a sensor stays on to the last end.
@@ -83,7 +90,9 @@ def switching_of(task: Task) -> Switching:
     _taken(task, items, payload)
     unlisted = sorted({item.command for item in items if not task.dialect.knows(item.command)})
     notes += tuple(f"it is not known whether {task.dialect.name} takes command {n}" for n in unlisted)
-    return Switching(switches, tuple(ends), (*notes, *trigger_notes(task, payload)))
+    # A radar that is on early sees no less; a camera has its first photo too early then, and one too many.
+    late_m = {c.seq: task.turns_early_m for c in collects if trigger_of(task.plan, c, payload) is not None}
+    return Switching(switches, tuple(ends), (*notes, *trigger_notes(task, payload)), late_m)
 
 
 def _switch(task: Task, collect: Collect, payload: Payload, output: OutputPayload) -> Switch:

@@ -33,15 +33,18 @@ from mavlink.encoding.task import Task
 from mavlink.wire.items import Command, Frame, MissionItem
 from planner.plan import Collect, Photos, Plan, Trigger
 
-#: How late a photo by distance comes at least on average, in seconds of flight: half of what lies between
-#: two looks.
-_LATE_S: Final[Mapping[Autopilot, float]] = {"ardupilot": 0.010, "px4": 0.025}
+#: How often each autopilot looks, and how late a photo by distance comes on average, in seconds of flight:
+#: 0.33 m at 22.4 m/s by ArduPlane, 0.5 m at 14 m/s by PX4.
+_LOOK_S: Final[Mapping[Autopilot, float]] = {"ardupilot": 0.02, "px4": 0.05}
+_LATE_S: Final[Mapping[Autopilot, float]] = {"ardupilot": 0.015, "px4": 0.035}
 #: By how much the way between the two ends of a collect may be longer than planned: wings pass places late
 #: or early by some tenths of a second, what hovers comes to a stop there.
 _END_S: Final = 0.5
 _END_HOVERING_S, _END_HOVERING_M = 0.1, 1.0
-#: No order is farther from what was planned than this part of it.
-_MOST_STRETCHED: Final = 0.25
+#: A run of photos is made longer by at most this part of a spacing, and each spacing by at most that.
+_MOST_LONGER, _MOST_STRETCHED = 0.5, 0.1
+#: A run by time may have so many photos more, for an aircraft slower than planned.
+_MOST_MORE: Final = 0.25
 _SHOOT: Final = 1
 
 
@@ -151,11 +154,14 @@ def camera_switch(task: Task, collect: Collect, by: Trigger) -> Switch:
 
 def ordered_spacing_m(task: Task, photos: Photos, collect: Collect) -> float:
     """The distance to order so that one photo less than planned is taken before the end of a collect."""
-    speed_m_s = _speed_m_s(collect)
+    speed_m_s, gaps = _speed_m_s(collect), len(photos.places) - 1
+    look_m, late_m = (table[task.dialect.autopilot] * speed_m_s for table in (_LOOK_S, _LATE_S))
     end_m = _END_HOVERING_S * speed_m_s + _END_HOVERING_M if task.hovers else _END_S * speed_m_s
-    longer_m = min(end_m / (len(photos.places) - 1), _MOST_STRETCHED * photos.interval_m)
-    late_m = min(_LATE_S[task.dialect.autopilot] * speed_m_s, _MOST_STRETCHED * photos.interval_m)
-    return round(photos.interval_m + longer_m - late_m, 3)
+    # At a steady speed photos may come less late than on average, all of them alike.
+    longer_m = min(end_m + look_m / 4.0 * gaps, _MOST_LONGER * photos.interval_m) / gaps
+    if gaps > 1:
+        longer_m = min(longer_m, _MOST_STRETCHED * photos.interval_m)
+    return round(photos.interval_m + longer_m - min(late_m, _MOST_STRETCHED * photos.interval_m), 3)
 
 
 def interval_s(photos: Photos, collect: Collect) -> float:
@@ -166,13 +172,19 @@ def interval_s(photos: Photos, collect: Collect) -> float:
 
 
 def _by_time(task: Task, photos: Photos, collect: Collect, rest: tuple[MissionItem, ...]) -> Switch:
-    """A counted run of photos, which ends by itself.
+    """A counted run of photos, which ends by itself should nothing else end it.
 
     ArduPilot takes the last one at the collect's end. PX4 hands single photos to another driver than runs:
-    there the run has all of them.
+    there the last of the run comes half an interval before the end.
     """
-    count = len(photos.places) - (0 if task.is_px4 else 1)
-    on = _item(Command.IMAGE_START_CAPTURE, 0.0, round(interval_s(photos, collect), 3), float(count))
+    gaps = len(photos.places) - 1
+    planned_s = interval_s(photos, collect)
+    end_s = min(_END_S, _MOST_LONGER * planned_s) / gaps
+    if gaps > 1:
+        end_s = min(end_s, _MOST_STRETCHED * planned_s)
+    ordered_s = planned_s - end_s if task.is_px4 else planned_s + end_s - _LATE_S["ardupilot"]
+    most = gaps + 1 + math.ceil(_MOST_MORE * gaps)
+    on = _item(Command.IMAGE_START_CAPTURE, 0.0, round(ordered_s, 3), float(most))
     last = () if task.is_px4 else (_single("time"),)
     return Switch((on,), (*last, *rest), rest)
 

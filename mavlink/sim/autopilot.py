@@ -197,7 +197,10 @@ class SimulatedAircraft:
         out += self.payload.step(state)
         out += self._camera.heartbeats(state) if self._camera is not None else []
         out += self.gimbal.step(state) if self.gimbal is not None else []
-        self.missions.flying = pilot.armed and pilot.mode is Mode.AUTO
+        flying = pilot.armed and pilot.mode is Mode.AUTO
+        if self.missions.flying and not flying:
+            out += self.payload.rest(state)
+        self.missions.flying = flying
         due = self.streams.due(state.time_s)
         if due:
             snapshot = self._snapshot()

@@ -108,6 +108,12 @@ class Fault(StrEnum):
     SENSOR_DEAD = "sensor_dead"
     """The sensor never switches on, whatever is ordered."""
 
+    PHOTOS_LOST = "photos_lost"
+    """Every seventh photo is ordered and never taken: the count of its feedback leaves one out."""
+
+    FEEDBACK_LOST = "feedback_lost"
+    """Every seventh photo is taken, and nobody hears of it."""
+
     SENSOR_SKIPS = "sensor_skips"
     """The second time the sensor is switched on it stays off: one pass sees nothing."""
 

@@ -13,7 +13,7 @@ import math
 from mavlink.sim.component import Component
 from mavlink.sim.dynamics import AircraftState
 from mavlink.sim.geodesy import Place, offset_m
-from mavlink.sim.payload import quaternion
+from mavlink.sim.shutter import quaternion
 from mavlink.wire.items import Command, MissionItem
 from mavlink.wire.messages import Message
 

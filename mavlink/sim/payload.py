@@ -1,7 +1,7 @@
 """Payload outputs of the simulated aircraft: relays, servos, camera trigger, and the sensor they switch.
 
 Source: MAVLink ``common.xml`` (DO_SET_RELAY, DO_SET_SERVO, DO_SET_ACTUATOR, DO_SET_CAM_TRIGG_DIST,
-IMAGE_START_CAPTURE, SERVO_OUTPUT_RAW, CAMERA_FEEDBACK, CAMERA_IMAGE_CAPTURED, CAMERA_CAPTURE_STATUS).
+IMAGE_START_CAPTURE, SERVO_OUTPUT_RAW, CAMERA_CAPTURE_STATUS).
 """
 
 from __future__ import annotations
@@ -11,9 +11,9 @@ from collections.abc import Sequence
 
 from mavlink.sim.dynamics import AircraftState
 from mavlink.sim.faults import Fault
-from mavlink.sim.geodesy import Place, distance_m
 from mavlink.sim.modes import Flavour
 from mavlink.sim.settings import SimSettings
+from mavlink.sim.shutter import Shutter
 from mavlink.wire.items import Command
 from mavlink.wire.messages import Message
 
@@ -51,17 +51,13 @@ class Payload:
         if settings.autopilot is Flavour.PX4:
             self._actuators((-1.0,) * _ACTUATORS)
         self._relays = 0
-        self._spacing_m = 0.0
-        self._interval_s = 0.0
-        self._left: int | None = None
-        self._last_place: Place | None = None
-        self._last_photo_s = 0.0
-        self._photos = 0
+        self.shutter = Shutter(settings, faults)
+        self.shutter.broken = self._failed
 
     @property
     def photos(self) -> int:
         """Photos taken so far."""
-        return self._photos
+        return self.shutter.taken
 
     def handle(self, command: int, params: Params, state: AircraftState) -> list[Message] | None:
         """Carry out a payload command; None when it is none, or names an output that is not there.
@@ -95,25 +91,28 @@ class Payload:
                 if not math.isnan(value):
                     answers += self._switch(value > 0.0, state)
             case Command.DO_SET_CAM_TRIGG_DIST:
-                self._trigger(spacing_m=max(p1, 0.0))
                 answers += self._switch(p1 > 0.0, state)
-                if p1 > 0.0 and p3 == 1.0:
-                    answers += self._photo(state)
+                answers += self.shutter.by_distance(p1, state, at_once=p3 == 1.0)
             case Command.DO_SET_CAM_TRIGG_INTERVAL:
                 # Milliseconds, unlike IMAGE_START_CAPTURE's seconds.
-                self._trigger(interval_s=max(p1, 0.0) / 1000.0)
                 answers += self._switch(p1 > 0.0, state)
+                answers += self._run(max(p1, 0.0) / 1000.0, None, state)
+            case Command.IMAGE_START_CAPTURE if p3 == 1.0 or not (p2 > 0.0 or p3 > 0.0):
+                answers += self.shutter.release(state)
             case Command.IMAGE_START_CAPTURE:
-                self._trigger(interval_s=max(p2, 0.0), photos=int(p3) if p3 > 0.0 else None)
                 answers += self._switch(True, state)
-                answers += self._photo(state)
-            case Command.IMAGE_STOP_CAPTURE | Command.VIDEO_STOP_CAPTURE:
-                self._trigger()
+                answers += self._run(max(p2, 0.0), int(p3) if p3 > 0.0 else None, state)
+            case Command.IMAGE_STOP_CAPTURE:
+                self.shutter.stop()
                 answers += self._switch(False, state)
             case Command.VIDEO_START_CAPTURE:
                 answers += self._switch(True, state)
+                self.shutter.video_since_s = state.time_s if self.sensor_on else None
+            case Command.VIDEO_STOP_CAPTURE:
+                self.shutter.video_since_s = None
+                answers += self._switch(False, state)
             case Command.DO_DIGICAM_CONTROL:
-                answers += self._photo(state)
+                answers += self.shutter.release(state)
             case Command.DO_TRIGGER_CONTROL:
                 answers += self._switch(p1 == 1.0, state)
             case settings.sensor_command:
@@ -123,15 +122,25 @@ class Payload:
         return answers
 
     def step(self, state: AircraftState) -> list[Message]:
-        """Photos due by distance or time."""
-        if self._spacing_m > 0.0:
-            if self._last_place is None:
-                self._last_place = state.place
-            elif distance_m(self._last_place, state.place) >= self._spacing_m:
-                return self._photo(state)
-        elif self._interval_s > 0.0 and state.time_s - self._last_photo_s >= self._interval_s - 1e-9:
-            return self._photo(state)
+        """Photos due by distance or time; a counted run has ended with its last."""
+        running = self.shutter.interval_s > 0.0
+        told = self.shutter.step(state)
+        if running and self.shutter.interval_s == 0.0:
+            told += self._switch(False, state)
+        return told
+
+    def rest(self, state: AircraftState) -> list[Message]:
+        """The mission is left."""
+        if self.shutter.rest():
+            return self._switch(False, state)
         return []
+
+    def _run(self, interval_s: float, count: int | None, state: AircraftState) -> list[Message]:
+        if interval_s <= 0.0:
+            self.shutter.stop()
+            return []
+        told = self.shutter.by_time(interval_s, count, state)
+        return told if self.shutter.interval_s > 0.0 else told + self._switch(False, state)
 
     def reports(self, name: str, state: AircraftState) -> list[Message]:
         """Messages of a name that tell of the payload now; none for other names."""
@@ -168,16 +177,20 @@ class Payload:
         )
 
     def _capture_status(self, state: AircraftState) -> Message:
+        # ArduPilot tells of no video.
+        since_s = self.shutter.video_since_s or 0.0
+        px4 = self._settings.autopilot is Flavour.PX4
+        tells_video = self.shutter.video_since_s is not None and px4
         return Message(
             "CAMERA_CAPTURE_STATUS",
             {
                 "time_boot_ms": _ms(state),
-                "image_status": 2 if self._interval_s > 0.0 else 0,
-                "video_status": 0,
-                "image_interval": self._interval_s,
-                "recording_time_ms": 0,
+                "image_status": 2 if self.shutter.interval_s > 0.0 else 0,
+                "video_status": int(tells_video),
+                "image_interval": self.shutter.interval_s,
+                "recording_time_ms": round(1000.0 * (state.time_s - since_s)) if tells_video else 0,
                 "available_capacity": 0.0,
-                "image_count": self._photos,
+                "image_count": self.photos,
             },
         )
 
@@ -192,6 +205,7 @@ class Payload:
         if on and not self._ordered_on:
             self._switched_on += 1
         self._ordered_on = on
+        self.shutter.broken = self._failed
         on = on and not self._failed
         if on == self.sensor_on:
             return []
@@ -201,75 +215,6 @@ class Payload:
     @property
     def _failed(self) -> bool:
         return self._dead or (self._skips and self._switched_on == _SKIPPED)
-
-    def _trigger(self, *, spacing_m: float = 0.0, interval_s: float = 0.0, photos: int | None = None) -> None:
-        self._spacing_m, self._interval_s, self._left = spacing_m, interval_s, photos
-        self._last_place = None
-        self._last_photo_s = -math.inf if interval_s > 0.0 else 0.0
-
-    def _photo(self, state: AircraftState) -> list[Message]:
-        self._last_place, self._last_photo_s = state.place, state.time_s
-        if self._failed:
-            return []
-        self._photos += 1
-        if self._left is not None:
-            self._left -= 1
-            if self._left <= 0:
-                self._trigger()
-        return [self._feedback(state)]
-
-    def _feedback(self, state: AircraftState) -> Message:
-        lat, lon = round(state.lat_deg * 1e7), round(state.lon_deg * 1e7)
-        relative_m = state.altitude_m - self._settings.home.altitude_m
-        if self._settings.autopilot is Flavour.ARDUPILOT:
-            return Message(
-                "CAMERA_FEEDBACK",
-                {
-                    "time_usec": round(state.time_s * 1e6),
-                    "target_system": 0,
-                    "cam_idx": 0,
-                    "img_idx": self._photos & 0xFFFF,
-                    "lat": lat,
-                    "lng": lon,
-                    "alt_msl": state.altitude_m,
-                    "alt_rel": relative_m,
-                    "roll": math.degrees(state.bank_rad),
-                    "pitch": math.degrees(state.pitch_rad),
-                    "yaw": math.degrees(state.heading_rad),
-                    "foc_len": 0.0,
-                    "flags": 0,
-                    "completed_captures": self._photos & 0xFFFF,
-                },
-            )
-        return Message(
-            "CAMERA_IMAGE_CAPTURED",
-            {
-                "time_boot_ms": _ms(state),
-                "time_utc": 0,
-                "camera_id": 1,
-                "lat": lat,
-                "lon": lon,
-                "alt": round(state.altitude_m * 1000.0),
-                "relative_alt": round(relative_m * 1000.0),
-                "q": quaternion(state.bank_rad, state.pitch_rad, state.heading_rad),
-                "image_index": self._photos - 1,
-                "capture_result": 1,
-                "file_url": "",
-            },
-        )
-
-
-def quaternion(roll_rad: float, pitch_rad: float, yaw_rad: float) -> tuple[float, float, float, float]:
-    """Attitude quaternion (w, x, y, z) of Tait-Bryan angles, yaw first."""
-    cr, sr = math.cos(roll_rad / 2.0), math.sin(roll_rad / 2.0)
-    cp, sp = math.cos(pitch_rad / 2.0), math.sin(pitch_rad / 2.0)
-    cy, sy = math.cos(yaw_rad / 2.0), math.sin(yaw_rad / 2.0)
-    return (
-        cr * cp * cy + sr * sp * sy,
-        sr * cp * cy - cr * sp * sy,
-        cr * sp * cy + sr * cp * sy,
-        cr * cp * sy - sr * sp * cy,
-    )
 
 
 def _ms(state: AircraftState) -> int:

@@ -218,6 +218,13 @@ def parser() -> argparse.ArgumentParser:
         default="yes",
         help="whether the sensor says by itself that it is on, as NAMED_VALUE_INT SAR_ON (default: yes)",
     )
+    p.add_argument(
+        "--camera-interval",
+        type=float,
+        default=0.0,
+        metavar="S",
+        help="shortest time between two photos (default: none)",
+    )
     p.add_argument("--battery-wh", type=float, default=defaults.battery_wh)
     p.add_argument("--seed", type=int, default=0)
     p.add_argument(
@@ -258,6 +265,7 @@ def settings_of(arguments: argparse.Namespace) -> SimSettings:
         speedup=arguments.speedup,
         dynamics=arguments.dynamics,
         battery_wh=arguments.battery_wh,
+        camera_interval_s=arguments.camera_interval,
         sensor_reports=arguments.sensor_reports == "yes",
         signing_key=arguments.signing_key,
         faults=tuple(arguments.fault),

@@ -80,6 +80,8 @@ class SimSettings:
         Mission capacity; None: 655 for ArduPilot, 1000 for PX4.
     camera, gimbal
         Whether it carries a camera and a gimbal that are MAVLink components of their own.
+    camera_interval_s
+        Shortest time between two photos: what is ordered sooner comes later on ArduPilot, not at all on PX4.
     started_unix_s
         The time of day at its start, in seconds since 1970; 0: it does not know.
     firmware
@@ -124,6 +126,7 @@ class SimSettings:
     sensor_command: int = 31010
     camera: bool = True
     gimbal: bool = True
+    camera_interval_s: float = 0.0
     started_unix_s: float = 0.0
     boot_s: float = 0.0
     sensor_reports: bool = True
@@ -154,6 +157,8 @@ class SimSettings:
             value = getattr(self, name)
             if not (math.isfinite(value) and value > 0.0):
                 raise ValueError(f"{name} must be a positive number, not {value!r}")
+        if not (math.isfinite(self.camera_interval_s) and self.camera_interval_s >= 0.0):
+            raise ValueError(f"camera_interval_s must be 0 or more, not {self.camera_interval_s!r}")
         if self.l1_period_s is not None and not self.l1_period_s > 0.0:
             raise ValueError(f"l1_period_s must be a positive number, not {self.l1_period_s!r}")
         if self.dynamics == "jsbsim" and self.hovers:

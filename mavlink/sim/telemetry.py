@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from mavlink.sim.dynamics import AircraftState
 from mavlink.sim.geodesy import Place
 from mavlink.sim.modes import Flavour, Mode, custom_mode
-from mavlink.sim.payload import quaternion
 from mavlink.sim.settings import SimSettings
+from mavlink.sim.shutter import quaternion
 from mavlink.wire.messages import Message
 
 _CELLS = 6

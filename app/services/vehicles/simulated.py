@@ -32,6 +32,7 @@ _NUMBERS = {
     "l1_period": "--l1-period",
     "acceptance": "--acceptance",
     "battery_wh": "--battery-wh",
+    "camera_interval": "--camera-interval",
 }
 _WORDS = {
     "autopilot": ("ardupilot", "px4"),
