@@ -9,7 +9,9 @@ from fastapi import APIRouter, Query, Response
 from app.deps import DeskDep, PlanningDep
 from app.problems import responses
 from app.routers.streams import page_answer
+from app.schemas.plans import ProfileOut
 from app.services.plans.missions import AutopilotName, MissionChoice, exported
+from app.services.plans.profile import profile_of
 from app.services.reports.report import write_report
 
 router = APIRouter(prefix="/api/v1/plans/{plan_id}", tags=["artefacts"])
@@ -37,6 +39,17 @@ async def scenario(plan_id: str, planning: PlanningDep) -> Response:
 async def plan(plan_id: str, planning: PlanningDep) -> Response:
     """The plan as a GeoJSON FeatureCollection; 409 while there is none."""
     return Response(await planning.plan_text(plan_id), media_type=GEOJSON)
+
+
+@router.get("/profile", summary="Heights along the flight", responses=responses(404, 409, 422))
+async def profile(plan_id: str, planning: PlanningDep, desk: DeskDep) -> ProfileOut:
+    """Heights along each path, of the aircraft and of the ground below, and of the ground under each photo.
+
+    Over an elevation raster a path is told at places half as far apart as the raster's posts, 3,000 at most.
+    """
+    plan_text, scenario_text = await planning.plan_text(plan_id), await planning.scenario_text(plan_id)
+    made = await desk.run("plan", profile_of, plan_text, scenario_text, planning.terrain_folder)
+    return ProfileOut.model_validate(made)
 
 
 VehicleQuery = Annotated[

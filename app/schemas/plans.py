@@ -91,3 +91,33 @@ class PlanList(BaseModel):
 
     plans: list[PlanOut]
     total: int
+
+
+class PathProfileOut(BaseModel):
+    """Heights along one path; the lists are of the same length."""
+
+    vehicle: str
+    sortie: int
+    at_m: list[float] = Field(description="Along the path, in three dimensions, as its phases count.")
+    altitude_m: list[float] = Field(description="Of the aircraft, over altitude_reference.")
+    ground_m: list[float | None] = Field(description="Of the ground below it, over the same; null: unknown.")
+
+
+class PhotosProfileOut(BaseModel):
+    """The ground under the photos of one collect, in their order."""
+
+    vehicle: str
+    seq: int
+    ground_m: list[float | None] = Field(description="Over altitude_reference; null: unknown.")
+
+
+class ProfileOut(BaseModel):
+    """Heights along a plan's lines, of the aircraft and of the ground."""
+
+    altitude_reference: Literal["amsl", "home", "terrain"]
+    ground: Literal["flat", "raster"] | None = Field(
+        description="What is known of the ground: flat at the height of home, or an elevation raster. null: "
+        "nothing, of a mission file or where the scenario's raster is gone."
+    )
+    paths: list[PathProfileOut]
+    photos: list[PhotosProfileOut]
