@@ -6,6 +6,8 @@ import { flown } from "./flights";
 import { keeping } from "./keeping";
 import { open, running } from "./plans";
 import { scenarios } from "./scenario";
+import { countAt } from "./survey/overlap";
+import { overlap, shots } from "./survey/view";
 
 export interface Hook {
   /** Features drawn on the screen now, by layer. */
@@ -28,6 +30,9 @@ export interface Hook {
   kept(): { id: string | null; state: string };
   /** The watched vehicle: where it is, whether it flies, how many places its live track has. */
   vehicle(): { lon_deg: number | null; lat_deg: number | null; armed: boolean; sensor_on: boolean; flight: string | null; track: number } | null;
+  /** Photos of the plan on the map, and how many of them see a place: null while that is not counted. */
+  photos(): number;
+  seenBy(lon_deg: number, lat_deg: number): number | null;
   /** The flight whose seen ground is on the map. */
   flown(): string | null;
 }
@@ -70,6 +75,8 @@ export function installHook(map: MapLibreMap): void {
       const { lon_deg, lat_deg, armed, sensor_on } = vehicle.state;
       return { lon_deg, lat_deg, armed, sensor_on: sensor_on === true, flight: vehicle.flight_id, track: track.points.length };
     },
+    photos: () => shots.value.length,
+    seenBy: (lon_deg, lat_deg) => (overlap.value ? countAt(overlap.value, [lon_deg, lat_deg]) : null),
     flown: () => flown.value?.flight.id ?? null,
   };
 }

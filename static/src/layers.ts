@@ -1,9 +1,10 @@
 /** How the scenario, the plan and the flight look on the map: layers, in drawing order, and what toggles them. */
 import type { ExpressionSpecification, FilterSpecification, LayerSpecification, Map as MapLibreMap } from "maplibre-gl";
 import { FONT, repaint } from "./map";
+import { CLASSES } from "./survey/overlap";
 import { onThemeChange, palette, type Palette } from "./theme";
 
-export const SOURCES = ["scenario", "plan", "compared", "held", "waypoints", "seen", "track"] as const;
+export const SOURCES = ["scenario", "plan", "compared", "held", "waypoints", "photos", "cursor", "seen", "track"] as const;
 
 export interface Group {
   id: string;
@@ -11,6 +12,10 @@ export interface Group {
   swatch: string;
   colour: keyof Palette;
   layers: string[];
+  /** Listed only while something of it can be on the map. */
+  of?: "photos";
+  /** What its colours stand for. */
+  classes?: readonly { label: string; colour: string }[];
 }
 
 /** The legend's entries; each can be hidden. */
@@ -30,6 +35,9 @@ export const GROUPS: Group[] = [
   { id: "compared", label: "Path compared with", swatch: "line", colour: "area", layers: ["compared-line"] },
   { id: "held", label: "Mission read from the vehicle", swatch: "dashed", colour: "held", layers: ["held-line"] },
   { id: "collect", label: "Collect (sensor on)", swatch: "thick", colour: "collect", layers: ["collect-line", "collect-label"] },
+  { id: "photos", of: "photos", label: "Photo, from near", swatch: "dot", colour: "photo", layers: ["photo-place"] },
+  { id: "prints", of: "photos", label: "Ground of each photo, from near", swatch: "area", colour: "photo", layers: ["photo-print", "photo-print-one"] },
+  { id: "overlap", of: "photos", label: "Photos that see a place", swatch: "none", colour: "photo", layers: ["overlap"], classes: CLASSES },
   { id: "waypoints", label: "Mission items: number, height", swatch: "dot", colour: "path", layers: ["waypoint", "waypoint-label"] },
   { id: "fence", label: "Fence of a mission file", swatch: "dashed", colour: "noFly", layers: ["fence_out-fill", "fence_out-line", "fence_in-line"] },
   { id: "rally", label: "Rally point", swatch: "dot", colour: "terminal", layers: ["rally"] },
@@ -41,6 +49,9 @@ export const GROUPS: Group[] = [
 ];
 
 const kindIs = (kind: string): FilterSpecification => ["all", ["==", ["get", "kind"], kind], ["!", ["get", "label"]]] as unknown as FilterSpecification;
+const kindOf = (kind: string): FilterSpecification => ["==", ["get", "kind"], kind];
+/** The ground of the photo of a number. */
+export const onePhoto = (number: number): FilterSpecification => ["all", ["==", ["get", "kind"], "print"], ["==", ["get", "number"], number]];
 const roleIs = (role: string): FilterSpecification => ["==", ["get", "role"], role];
 
 const fenceIs = (kind: string): FilterSpecification => ["all", ["==", ["get", "role"], "fence"], ["==", ["get", "kind"], kind]];
@@ -68,7 +79,9 @@ function layers(c: Palette): LayerSpecification[] {
     ...shape("importance", "scenario", kindIs("importance"), c.importance, 0.12, 1, [1, 2]),
     ...shape("seen", "seen", roleIs("seen"), c.seen, 0.22, 1.2),
     ...shape("unknown", "seen", roleIs("unknown"), c.area, 0.3, 1.2, [2, 2]),
-    ...shape("footprint", "plan", roleIs("footprint"), c.footprint, 0.16, 0.8),
+    // Lanes of a camera overlap by more than half: their ground is told by how many photos see it.
+    { id: "footprint-fill", type: "fill", source: "plan", filter: ["all", roleIs("footprint"), ["!=", ["get", "of_photos"], true]] as unknown as FilterSpecification, paint: { "fill-color": c.footprint, "fill-opacity": 0.16 } },
+    { id: "footprint-line", type: "line", source: "plan", filter: roleIs("footprint"), paint: { "line-color": c.footprint, "line-width": ["case", ["==", ["get", "of_photos"], true], 0.4, 0.8] } },
     ...shape("roi", "scenario", kindIs("roi"), c.roi, 0.2, 2),
     ...shape("missile", "scenario", kindIs("missile"), c.missile, 0.16, 1.6),
     ...shape("radar", "scenario", kindIs("radar"), c.radar, 0.12, 1.6, [3, 2]),
@@ -96,6 +109,12 @@ function layers(c: Palette): LayerSpecification[] {
       id: "collect-line", type: "line", source: "plan", filter: roleIs("collect"),
       layout: { "line-cap": "round" },
       paint: { "line-color": c.collect, "line-width": 4.5 },
+    },
+    { id: "photo-print", type: "line", source: "photos", filter: kindOf("print"), minzoom: 24, paint: { "line-color": c.photo, "line-width": 0.6, "line-opacity": 0.4 } },
+    { id: "photo-print-one", type: "line", source: "photos", filter: onePhoto(0), paint: { "line-color": c.photo, "line-width": 3 } },
+    {
+      id: "photo-place", type: "circle", source: "photos", filter: kindOf("place"), minzoom: 24,
+      paint: { "circle-radius": 2.6, "circle-color": c.halo, "circle-stroke-color": c.photo, "circle-stroke-width": 1.4 },
     },
     {
       id: "path-arrow", type: "symbol", source: "plan", filter: roleIs("path"),
@@ -153,9 +172,13 @@ function layers(c: Palette): LayerSpecification[] {
       id: "waypoint-label", type: "symbol", source: "waypoints", minzoom: 11.5,
       layout: {
         "text-field": ["step", ["zoom"], ["get", "label"], 13.5, ["case", ["==", ["get", "height"], ""], ["get", "label"], ["concat", ["get", "label"], " · ", ["get", "height"]]]],
-        "text-font": FONT, "text-size": 11, "text-anchor": "top-left", "text-offset": [0.35, 0.2], "symbol-sort-key": ["case", ["get", "current"], 0, 1],
+        "text-font": FONT, "text-size": 11, "text-max-width": 30, "text-anchor": "top-left", "text-offset": [0.35, 0.2], "symbol-sort-key": ["case", ["get", "current"], 0, 1],
       },
       paint: { "text-color": c.path, "text-halo-color": c.halo, "text-halo-width": 1.6 },
+    },
+    {
+      id: "cursor", type: "circle", source: "cursor",
+      paint: { "circle-radius": 8, "circle-color": "transparent", "circle-stroke-color": c.trackOn, "circle-stroke-width": 3 },
     },
     {
       id: "scenario-label", type: "symbol", source: "scenario", filter: ["get", "label"],
@@ -194,7 +217,7 @@ export function addLayers(map: MapLibreMap): void {
 }
 
 export function showGroup(map: MapLibreMap, group: Group, visible: boolean): void {
-  for (const layer of group.layers) map.setLayoutProperty(layer, "visibility", visible ? "visible" : "none");
+  for (const layer of group.layers) if (map.getLayer(layer)) map.setLayoutProperty(layer, "visibility", visible ? "visible" : "none");
 }
 
 /** Hide a feature while it is being reshaped by its handles. */

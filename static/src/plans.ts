@@ -219,7 +219,12 @@ export function planFeatures(plan: PlanCollection): Feature[] {
   const collects = plan.features.filter((feature) => feature.properties?.["role"] === "collect");
   collects.sort((a, b) => Number(a.properties?.["start_m"] ?? 0) - Number(b.properties?.["start_m"] ?? 0));
   collects.forEach((collect, index) => numbers.set(collect, index + 1));
-  return plan.features.map((feature) => {
+  const photographed = new Set((plan.cameras ?? []).filter(({ trigger }) => trigger !== "video").map(({ name }) => name));
+  // Photos have a source of their own.
+  return plan.features.filter((feature) => feature.properties?.["role"] !== "photos").map((feature) => {
+    if (feature.properties["role"] === "footprint" && photographed.has(String(feature.properties["sensor"]))) {
+      return { ...feature, properties: { ...feature.properties, of_photos: true } };
+    }
     const place = numbers.get(feature);
     const { role, radius_m } = feature.properties ?? {};
     if (role === "fence" && feature.geometry.type === "Point" && typeof radius_m === "number") {

@@ -18,6 +18,7 @@ export interface Palette {
   path: string;
   phase: string;
   collect: string;
+  photo: string;
   held: string;
   footprint: string;
   uncovered: string;
@@ -44,6 +45,7 @@ const LIGHT: Palette = {
   path: "#26323a",
   phase: "#8a4b00",
   collect: "#008f7a",
+  photo: "#3d4fb8",
   held: "#d08a00",
   footprint: "#00a892",
   uncovered: "#e0361f",
@@ -70,6 +72,7 @@ const DARK: Palette = {
   path: "#dfe8ec",
   phase: "#ffb46b",
   collect: "#2fe0c4",
+  photo: "#a9b6ff",
   held: "#ffd166",
   footprint: "#2fe0c4",
   uncovered: "#ff7a5c",

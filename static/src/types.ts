@@ -75,6 +75,7 @@ export interface Metrics {
   planning_time_s: Record<string, number>;
   lower_bound_m?: number | null;
   gap?: number | null;
+  photos?: number | null;
 }
 
 export interface PlanRecord {
@@ -127,12 +128,38 @@ export interface Violation {
   hard: boolean;
 }
 
+export interface PlanCamera {
+  name: string;
+  focal_length_m: number;
+  pixel_pitch_m: number;
+  /** Across and along the flight direction. */
+  columns: number;
+  rows: number;
+  forward_overlap: number;
+  side_overlap: number;
+  tilt_deg: number;
+  min_interval_s: number;
+  trigger: "distance" | "time" | "video";
+  model: string | null;
+  spectrum: "visible" | "infrared";
+}
+
+export interface PlanVehicle {
+  name: string;
+  type: "fixed_wing" | "multirotor" | "vtol";
+  airspeed_m_s: number;
+}
+
 export interface PlanCollection extends FeatureCollection<Geometry, Record<string, unknown>> {
   name?: string;
   metrics: Metrics;
   violations: Violation[];
   methods?: Record<string, string>;
+  vehicles?: PlanVehicle[];
+  cameras?: PlanCamera[];
+  wind?: { speed_m_s: number; from_deg: number };
   altitude_m?: number;
+  altitude_reference?: "amsl" | "home" | "terrain";
   scenario_hash?: string;
   planner_version?: string;
   seed?: number;

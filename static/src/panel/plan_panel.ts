@@ -12,7 +12,9 @@ import { judgement } from "../validation";
 import { comparison } from "./compare";
 import { moreOf } from "./more";
 import { phaseTable } from "./phase_table";
+import { profileBox } from "./profile_box";
 import { operatingStrip } from "./strip";
+import { surveyBox } from "./survey_box";
 import { waypointList } from "./waypoint_list";
 
 export interface PlanView {
@@ -121,7 +123,7 @@ function result({ record, plan }: OpenPlan, view: PlanView): HTMLElement {
         ["Collecting", metres(m.collection_length_m)],
         ["Duty cycle", percent(m.duty_cycle)],
         ["Path length ratio", number(m.path_length_ratio, 3)],
-        ...(typeof m.gap === "number" ? [["At most from the best", percent(m.gap)] as [string, string]] : []),
+        ...(typeof m.gap === "number" && (m.lower_bound_m ?? 0) > 0 ? [["At most from the best", percent(m.gap)] as [string, string]] : []),
         ...(m.flight_length_m == null ? [] : [["Whole flight", metres(m.flight_length_m)] as [string, string]]),
         ...(m.flight_duration_s == null ? [] : [["Flight time, take-off to landing", seconds(m.flight_duration_s)] as [string, string]]),
         [m.flight_duration_s == null ? "Time of the mission alone" : "Of it the mission", seconds(m.duration_s)],
@@ -202,5 +204,5 @@ export function planPanel(view: PlanView): HTMLElement {
     fill(box, plan ? result(plan, view) : null);
     beside.hidden = plan === null;
   });
-  return h("div", {}, h("div", { class: "row" }, go), progress(view), stale, box, waypointList(view.zoomToPlace), beside, earlier());
+  return h("div", {}, h("div", { class: "row" }, go), progress(view), stale, box, surveyBox(), profileBox(), waypointList(view.zoomToPlace), beside, earlier());
 }

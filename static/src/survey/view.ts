@@ -1,0 +1,82 @@
+/** What of a camera survey is drawn: places of photos, the ground each sees, how often each place is seen. */
+import type { Map as MapLibreMap } from "maplibre-gl";
+import type { Feature } from "geojson";
+import { setData } from "../map";
+import { open } from "../plans";
+import { Signal } from "../signal";
+import { cornersOf, overlapOf, pictureOf, type Overlap } from "./overlap";
+import { needProfile, profile } from "./profile";
+import { gsd_m, hasPhotos, printOf, shotsOf, type Shot } from "./shots";
+
+/** Photos of the plan on the map, and how often they see each place; null while that is not known. */
+export const shots = new Signal<Shot[]>([]);
+export const overlap = new Signal<Overlap | null>(null);
+
+export const OVERLAP_LAYER = "overlap";
+const OVERLAP_SOURCE = "overlap";
+/** Below them on the map. */
+const UNDER = "roi-fill";
+const TILE_PX = 512;
+const ROUND_THE_WORLD_M = 40_075_016.686;
+/** From these sizes on the screen on they are drawn. */
+const PRINT_PX = 90;
+const PLACE_PX = 6;
+
+/** The zoom from which a length has so many pixels. */
+function zoomFor(length_m: number, lat_deg: number, pixels: number): number {
+  return Math.max(0, Math.min(22, Math.log2((pixels * ROUND_THE_WORLD_M * Math.cos((lat_deg * Math.PI) / 180)) / (TILE_PX * length_m))));
+}
+
+function features(all: Shot[], rings: (ReturnType<typeof printOf>)[]): Feature[] {
+  return all.flatMap((shot, index): Feature[] => {
+    const properties = { number: shot.number, seq: shot.seq, sensor: shot.camera.name, height_m: shot.height_m, gsd_m: shot.height_m === null ? null : gsd_m(shot.camera, shot.height_m) };
+    const ring = rings[index];
+    return [
+      { type: "Feature", properties: { ...properties, kind: "place" }, geometry: { type: "Point", coordinates: shot.at.slice(0, 2) } },
+      ...(ring ? [{ type: "Feature" as const, properties: { ...properties, kind: "print" }, geometry: { type: "Polygon" as const, coordinates: [[...ring, ring[0] as [number, number]]] } }] : []),
+    ];
+  });
+}
+
+function scaleLayers(map: MapLibreMap, all: Shot[], spacing_m: number): void {
+  const [shot] = all;
+  if (!shot) return;
+  const lat = shot.at[1] as number;
+  const { camera, height_m } = shot;
+  const wide_m = ((camera.columns * camera.pixel_pitch_m) / camera.focal_length_m) * (height_m ?? 1);
+  map.setLayerZoomRange("photo-place", zoomFor(spacing_m, lat, PLACE_PX), 24);
+  map.setLayerZoomRange("photo-print", zoomFor(wide_m, lat, PRINT_PX), 24);
+}
+
+/** The picture takes the place of the one before it; it lies under regions and lines. */
+function drawOverlap(map: MapLibreMap, found: Overlap | null, visible: boolean): void {
+  if (map.getLayer(OVERLAP_LAYER)) map.removeLayer(OVERLAP_LAYER);
+  if (map.getSource(OVERLAP_SOURCE)) map.removeSource(OVERLAP_SOURCE);
+  if (!found) return;
+  map.addSource(OVERLAP_SOURCE, { type: "canvas", canvas: pictureOf(found), coordinates: cornersOf(found), animate: false });
+  map.addLayer({ id: OVERLAP_LAYER, type: "raster", source: OVERLAP_SOURCE, layout: { visibility: visible ? "visible" : "none" }, paint: { "raster-opacity": 0.5, "raster-resampling": "nearest", "raster-fade-duration": 0 } }, UNDER);
+}
+
+/** Draw what belongs to the plan on the map, whenever that or what is known of the ground changes. */
+export function showSurvey(map: MapLibreMap, visible: () => boolean): void {
+  let drawn: unknown = null;
+  const draw = (): void => {
+    const shown = open.value;
+    const key = shown && hasPhotos(shown) ? shown.plan : null;
+    const now = key && [key, profile.value];
+    if (now === drawn || (Array.isArray(now) && Array.isArray(drawn) && now[0] === drawn[0] && now[1] === drawn[1])) return;
+    drawn = now;
+    const all = shown && key ? shotsOf(shown, profile.value) : [];
+    const rings = all.map(printOf);
+    const found = overlapOf(rings.filter((ring) => ring !== null));
+    const photos = key?.features.find(({ properties }) => properties["role"] === "photos");
+    scaleLayers(map, all, Number(photos?.properties["interval_m"] ?? 1));
+    setData(map, "photos", features(all, rings));
+    drawOverlap(map, found, visible());
+    shots.set(all);
+    overlap.set(found);
+    if (key && profile.value === null) void needProfile();
+  };
+  open.watch(draw);
+  profile.watch(draw);
+}
