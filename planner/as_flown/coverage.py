@@ -20,6 +20,7 @@ from planner.airspace.airspace import Airspace
 from planner.as_flown import ground, spot, unknown
 from planner.as_flown.limits import MAX_BANK_RAD, MAX_PITCH_RAD
 from planner.as_flown.passes import FlownPass, PlannedPass, Reason, flown_pass, matched, runs
+from planner.as_flown.photo_judge import PhotoCoverage, PhotoJudge
 from planner.as_flown.track import Gap, Line, Record, TrackSample, gaps_of
 from planner.as_flown.unknown import UnknownPart
 from planner.frames import LocalFrame
@@ -74,7 +75,8 @@ class FlownCoverage:
     """What was seen at full resolution, in the local frame.
 
     ``seen``, ``unknown`` and ``unseen`` make up each region; ``unseen`` was missed for certain. ``fraction``
-    and ``unknown_fraction`` are of the region's area, never above 1. ``gaps`` are those of each record.
+    and ``unknown_fraction`` are of the region's area, never above 1. ``gaps`` are those of each record;
+    ``photos`` is None where no camera was planned.
     """
 
     fraction: dict[str, float]
@@ -86,6 +88,7 @@ class FlownCoverage:
     unknown_parts: tuple[UnknownPart, ...] = ()
     gaps: tuple[tuple[Gap, ...], ...] = ()
     not_counted: tuple[NotCounted, ...] = ()
+    photos: PhotoCoverage | None = None
 
 
 def flown_coverage(asked: Asked, plan: Plan, records: Sequence[Record]) -> FlownCoverage:
@@ -110,6 +113,9 @@ class _Judge:
         self._home_m = asked.airspace.home_amsl_m or 0.0
         self._models = {a.name: FlightModel.of(a, asked.airspace.wind) for a in asked.aircraft}
         self._passes = tuple(PlannedPass.of(c, asked.frame, self._beside_m(c)) for c in plan.collects)
+        self._cameras = PhotoJudge(
+            plan, asked.suite, asked.frame, self._passes, self._home_m, asked.airspace.terrain
+        )
         self._ground: dict[str, list[Polygon]] = {}
         self._flown: dict[tuple[str, int], list[ground.Floats]] = {}
         self._lines: dict[str | None, list[tuple[Line, tuple[Gap, ...]]]] = {}
@@ -143,11 +149,16 @@ class _Judge:
         self._lines.setdefault(vehicle, []).append((line, gaps))
         passes = tuple(p for p in self._passes if vehicle is None or p.collect.vehicle == vehicle)
         in_pass = matched(line, passes)
+        self._cameras.take(record, line, in_pass, passes)
+        by_photos = np.array([*(self._cameras.sees(p.collect.sensor) for p in passes), False], dtype=bool)
+        if by_photos[:-1].all():
+            by_photos[:] = True
         label = _labels(in_pass, passes)
         why = self._obstacles(line, in_pass)
-        counted = np.zeros(len(line.places), dtype=bool)
+        counted: NDArray[np.bool_] = by_photos[in_pass]
         reasons = np.array(why, dtype=object)
-        for run in runs(line.sensor_on & np.array([w is None for w in why], dtype=bool), line, label):
+        looked = line.sensor_on & ~counted
+        for run in runs(looked & np.array([w is None for w in why], dtype=bool), line, label):
             rows = _moving(line, run)
             if len(rows) < 2:
                 reasons[run] = "too-short"
@@ -156,7 +167,11 @@ class _Judge:
             counted[rows[found.counted]] = True
             reasons[run] = found.reason
         for row, planned in enumerate(passes):
-            stretches = [line.places[r] for r in runs(line.sensor_on & (in_pass == row), line)]
+            on = line.sensor_on
+            if by_photos[row]:
+                along_m = planned.along_m(line.places)
+                on = (along_m >= 0.0) & (along_m <= planned.length_m)
+            stretches = [line.places[r] for r in runs(on & (in_pass == row), line)]
             if sum(len(each) for each in stretches) > 1:
                 self._flown.setdefault(planned.key, []).extend(stretches)
         self._leave_out(number, line, counted, reasons)
@@ -237,13 +252,16 @@ class _Judge:
     def verdict(self) -> FlownCoverage:
         """What all of them saw."""
         seen_by = {name: _areal(union_all(parts, grid_size=GRID_M)) for name, parts in self._ground.items()}
-        parts = tuple(self._unknown_parts())
+        parts = (*self._unknown_parts(), *self._cameras.unknown_parts())
+        photos = self._photos()
         nobody_knows = self._unknown_ground(parts)
         fraction, seen, unseen, dark, dark_fraction = {}, {}, {}, {}, {}
         nothing = Polygon()
         for region in self._asked.regions:
             name, sensor = region.name, self._asked.suite.of(region).name
             found = seen_by.get(sensor, nothing)
+            if photos is not None and name in photos.regions:
+                found = photos.regions[name].seen
             seen[name] = _areal(intersection(region.area, found, grid_size=GRID_M))
             missing = _areal(difference(region.area, found, grid_size=GRID_M))
             unclear = nobody_knows.get(sensor, nothing)
@@ -255,8 +273,19 @@ class _Judge:
         flown = [flown_pass(by_key[key], stretches) for key, stretches in self._flown.items()]
         return FlownCoverage(
             fraction, seen, unseen, tuple(sorted(flown, key=lambda p: (p.seq, p.vehicle))),
-            dark, dark_fraction, parts, tuple(self._gaps), tuple(self._not_counted),
+            dark, dark_fraction, parts, tuple(self._gaps), tuple(self._not_counted), photos,
         )  # fmt: skip
+
+    def _photos(self) -> PhotoCoverage | None:
+        """What cameras saw, held against what is wished, or else planned, of each region."""
+        if not self._plan.cameras:
+            return None
+        limits_m = {}
+        for region in self._asked.regions:
+            mine = {p.key for p in self._passes if region.name in p.collect.regions}
+            gsds_m = [f.gsd_m for f in self._plan.footprints if (f.vehicle, f.seq) in mine]
+            limits_m[region.name] = max((gsd_m for gsd_m in gsds_m if gsd_m is not None), default=math.inf)
+        return self._cameras.coverage(self._asked.regions, limits_m)
 
     def _unknown_parts(self) -> Iterable[UnknownPart]:
         everybody = self._lines.get(None, [])
@@ -280,15 +309,18 @@ class _Judge:
             outline = Polygon(local(print_.ring), [local(hole) for hole in print_.holes])
             rings.setdefault((print_.vehicle, print_.seq), []).append(outline)
         prints = {planned.key: union_all(rings.get(planned.key, [])) for planned in self._passes}
-        margins = {planned.key: self._margins_m(planned.collect) for planned in self._passes}
+        margins = {planned.key: self._margins_m(planned) for planned in self._passes}
         by_key = {planned.key: planned for planned in self._passes}
         found: dict[str, list[BaseGeometry]] = {}
         for key, shape in unknown.unknown_ground(parts, by_key, prints, margins).items():
             found.setdefault(by_key[key].collect.sensor, []).append(shape)
         return {name: _areal(union_all(shapes, grid_size=GRID_M)) for name, shapes in found.items()}
 
-    def _margins_m(self, collect: Collect) -> tuple[float, float]:
-        """How far behind and ahead of a place ground lies whose aperture has the place in it."""
+    def _margins_m(self, planned: PlannedPass) -> tuple[float, float]:
+        """How far behind and ahead of a place ground lies whose aperture or photo has the place in it."""
+        collect = planned.collect
+        if self._cameras.sees(collect.sensor):
+            return (self._cameras.margin_m(planned),) * 2
         sensor = self._asked.suite.named(collect.sensor)
         if not isinstance(sensor, SarSensor) or sensor.turned_rad is not None:
             return math.inf, math.inf

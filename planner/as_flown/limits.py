@@ -29,6 +29,14 @@ MAX_OFF_COURSE_RAD = math.radians(10.0)
 #: Slant ranges nearer or farther than those of the planned pass by this part lie outside its range gate.
 RANGE_PART = 0.1
 
+#: Photos: the axis from where it was to look, beyond which it was turned away from what it was to see.
+MAX_TURNED_RAD = math.radians(30.0)
+#: Ground seen farther from the vertical lies flat before the horizon, where neither an image maps it nor the
+#: height is known well enough.
+FLATTEST_RAD = math.radians(75.0)
+#: A ground sampled distance counts as kept up to this part more: heights over ground are known no better.
+GSD_PART = 0.02
+
 
 def look_range_rad(sensor: SarSensor, flown_m: float, planned_m: float) -> tuple[float, float] | None:
     """Look angles from the vertical between which ground counts; None where there are none.

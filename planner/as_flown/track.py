@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planner.as_flown.limits import MAX_TRIM_RAD
+from planner.as_flown.photo import Photo
 from planner.frames import LocalFrame
 
 Floats = NDArray[np.float64]
@@ -72,11 +73,14 @@ class Record:
         Its name in the plan; None for any.
     gap_after
         Where the flight went on when the record had ended.
+    photos
+        Those that a camera or its autopilot reported as taken, in order of time.
     """
 
     samples: tuple[TrackSample, ...]
     vehicle: str | None = None
     gap_after: Gap | None = None
+    photos: tuple[Photo, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
