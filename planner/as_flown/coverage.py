@@ -23,6 +23,7 @@ from planner.as_flown.passes import FlownPass, PlannedPass, Reason, flown_pass, 
 from planner.as_flown.photo_judge import PhotoCoverage, PhotoJudge
 from planner.as_flown.track import Gap, Line, Record, TrackSample, gaps_of
 from planner.as_flown.unknown import UnknownPart
+from planner.as_flown.wished import wished_gsd_m
 from planner.frames import LocalFrame
 from planner.plan import Collect, Plan
 from planner.sensors.sar import SarSensor
@@ -113,8 +114,10 @@ class _Judge:
         self._home_m = asked.airspace.home_amsl_m or 0.0
         self._models = {a.name: FlightModel.of(a, asked.airspace.wind) for a in asked.aircraft}
         self._passes = tuple(PlannedPass.of(c, asked.frame, self._beside_m(c)) for c in plan.collects)
+        model = next(iter(self._models.values()))
+        suite = asked.suite.in_wind(model.drift, model.wind.toward_rad)
         self._cameras = PhotoJudge(
-            plan, asked.suite, asked.frame, self._passes, self._home_m, asked.airspace.terrain
+            plan, suite, asked.frame, self._passes, self._home_m, asked.airspace.terrain
         )
         self._ground: dict[str, list[Polygon]] = {}
         self._flown: dict[tuple[str, int], list[ground.Floats]] = {}
@@ -280,11 +283,10 @@ class _Judge:
         """What cameras saw, held against what is wished, or else planned, of each region."""
         if not self._plan.cameras:
             return None
-        limits_m = {}
-        for region in self._asked.regions:
-            mine = {p.key for p in self._passes if region.name in p.collect.regions}
-            gsds_m = [f.gsd_m for f in self._plan.footprints if (f.vehicle, f.seq) in mine]
-            limits_m[region.name] = max((gsd_m for gsd_m in gsds_m if gsd_m is not None), default=math.inf)
+        limits_m = {
+            region.name: wished_gsd_m(region, self._asked.suite.of(region), self._plan, self._passes)
+            for region in self._asked.regions
+        }
         return self._cameras.coverage(self._asked.regions, limits_m)
 
     def _unknown_parts(self) -> Iterable[UnknownPart]:

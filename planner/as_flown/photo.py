@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -69,6 +70,14 @@ class Shots:
     def chosen(self, which: NDArray[np.bool_]) -> Shots:
         """Some of them."""
         return Shots(self.place[which], self.axis[which], self.across[which], self.upward[which])
+
+
+def joined_shots(parts: Sequence[Shots]) -> Shots:
+    """Photos of one camera, all together."""
+    columns = zip(*((s.place, s.axis, s.across, s.upward) for s in parts), strict=True)
+    return (
+        Shots(*(np.concatenate(column) for column in columns)) if parts else Shots(*([np.zeros((0, 3))] * 4))
+    )
 
 
 def axes(

@@ -22,7 +22,7 @@ from planner.airspace.terrain import Ground
 from planner.as_flown.frames import Frames, frames_of, frames_on
 from planner.as_flown.limits import FLATTEST_RAD, GSD_PART, MAX_TURNED_RAD
 from planner.as_flown.passes import PlannedPass, runs
-from planner.as_flown.photo import Shots, axes, half_tangents, outlines
+from planner.as_flown.photo import Shots, axes, half_tangents, joined_shots, outlines
 from planner.as_flown.photo_ground import PhotoGrid
 from planner.as_flown.photo_pass import (
     PhotoPass,
@@ -61,8 +61,8 @@ class RegionPhotos:
         Ground so seen; ``assumed`` beside it from photos that nobody reported.
     asked
         How many photos see a place at least where both overlaps are kept.
-    overlap_fraction
-        Part of the region that so many photos see.
+    overlap_fraction, planned_overlap_fraction
+        Part of the region that so many photos see, as flown and as planned: where lanes end fewer do.
     gsd_worst_m, gsd_mean_m
         Over what photos see of it; None where they see nothing.
     """
@@ -73,6 +73,7 @@ class RegionPhotos:
     assumed: BaseGeometry
     asked: int
     overlap_fraction: float
+    planned_overlap_fraction: float
     gsd_worst_m: float | None
     gsd_mean_m: float | None
     forward: Reached
@@ -288,7 +289,7 @@ class PhotoJudge:
             if self.sees(self._suite.of(region).name)
         }
         told = [
-            photo_pass(planned, self._photos[key], _joined(self._taken[key]))
+            photo_pass(planned, self._photos[key], _joined(self._taken[key]), self._count > 0)
             for key, planned in self._passes.items()
             if key in self._photos and self._cameras[planned.collect.sensor].trigger != "video"
         ]
@@ -301,6 +302,24 @@ class PhotoJudge:
             self._assumed,
         )
 
+    def _planned(self, sensor: str) -> Shots:
+        """The photos of a camera as they are planned, flown level."""
+        camera, sees = self._cameras[sensor], self._suite.named(sensor)
+        parts = []
+        for planned in self._passes.values():
+            if planned.collect.sensor != sensor:
+                continue
+            at_m = self._wanted_m(camera, planned)
+            places = planned.first + at_m[:, None] * planned.ahead
+            up_m = planned.height_m(places, self._home_m) + self._level_m
+            course_rad = math.atan2(planned.ahead[1], planned.ahead[0])
+            crab_rad = sees.crab_rad(course_rad) if isinstance(sees, CameraSensor) else 0.0
+            yaw_rad = np.full(len(at_m), math.pi / 2.0 - course_rad - crab_rad)
+            level = np.zeros(len(at_m))
+            turned = axes(camera, level, level, yaw_rad, np.zeros(len(at_m), dtype=bool))
+            parts.append(Shots(np.column_stack([places, up_m]), *turned))
+        return joined_shots(parts)
+
     def _region(self, region: Region, limit_m: float) -> RegionPhotos:
         name = self._suite.of(region).name
         camera = self._cameras[name]
@@ -312,7 +331,8 @@ class PhotoJudge:
             both = self.grid(region.area, name, assumed=True)
             assumed = intersection(region.area, both.shape_of(both.seen(most_m) & ~grid.seen(most_m)))
         asked = asked_photos(camera)
-        enough = intersection(region.area, grid.shape_of(grid.counts >= asked))
+        planned = PhotoGrid.over(region.area, self._short_m(camera))
+        planned.lay(self._planned(name), camera, self._ground, 0.0)
         gsd_m = grid.finest_m[grid.counts > 0]
         rows = dict(enumerate(self._passes.values()))
         mine = {row: each for row, each in rows.items() if region.name in each.collect.regions}
@@ -321,7 +341,8 @@ class PhotoJudge:
         video = camera.trigger == "video"
         return RegionPhotos(
             grid, limit_m, seen, assumed, asked,
-            min(float(enough.area / region.area.area), 1.0),
+            _share(grid.shape_of(grid.counts >= asked), region.area),
+            _share(planned.shape_of(planned.counts >= asked), region.area),
             float(gsd_m.max()) if gsd_m.size else None,
             float(gsd_m.mean(dtype=np.float64)) if gsd_m.size else None,
             Reached() if video else Reached.of(forward),
@@ -333,6 +354,10 @@ def asked_photos(camera: PlanCamera) -> int:
     """How many photos see a place at least where both overlaps are kept; of a video, how many lanes."""
     forward = 1 if camera.trigger == "video" else math.floor(1.0 / (1.0 - camera.forward_overlap) + 1e-9)
     return forward * math.floor(1.0 / (1.0 - camera.side_overlap) + 1e-9)
+
+
+def _share(part: BaseGeometry, whole: BaseGeometry) -> float:
+    return min(float(intersection(part, whole).area / whole.area), 1.0)
 
 
 def _joined(parts: Sequence[Taken]) -> Taken:

@@ -71,12 +71,12 @@ class Taken:
     corners: Floats
 
 
-def photo_pass(planned: PlannedPass, photos: Photos, taken: Taken) -> PhotoPass:
-    """What was taken of what was planned."""
+def photo_pass(planned: PlannedPass, photos: Photos, taken: Taken, reported: bool) -> PhotoPass:
+    """What was taken of what was planned; of an autopilot that reports no photos nobody knows of losses."""
     interval_m = photos.interval_m
     at_m = np.concatenate([[-interval_m], taken.along_m, [planned.length_m + interval_m]])
     lost = []
-    for k, gap_m in enumerate(np.diff(at_m).tolist()):
+    for k, gap_m in enumerate(np.diff(at_m).tolist() if reported else []):
         count = round(gap_m / interval_m) - 1
         if gap_m > MISSING_PART * interval_m and count > 0:
             from_m, to_m = max(float(at_m[k]), 0.0), min(float(at_m[k + 1]), planned.length_m)
