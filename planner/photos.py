@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from planner.plan import LonLatAlt, Photos, PlanCamera
+from planner.profile.heights import Heights
 from planner.route import CollectPass
 from planner.sensors.camera import CameraSensor
 from planner.sensors.suite import Suite
@@ -49,15 +50,24 @@ def photos_of(
     collect: CollectPass,
     seq: int,
     line: tuple[LonLatAlt, LonLatAlt],
+    heights: Heights,
     sensor: CameraSensor,
     model: FlightModel,
 ) -> Photos | None:
-    """The photos of a pass, at equal distances from its first point to its last; None for a video."""
+    """The photos of a pass, at equal distances from its first point to its last; None for a video.
+
+    Parameters
+    ----------
+    line, heights
+        Of the pass: its ends, and the altitudes along it.
+    """
     if sensor.trigger == "video" or collect.photo_spacing_m is None:
         return None
     count = intervals(collect)
     start, end = np.array(line)
-    places = start + np.linspace(0.0, 1.0, count + 1)[:, None] * (end - start)
+    part = np.linspace(0.0, 1.0, count + 1)
+    places = start + part[:, None] * (end - start)
+    places[:, 2] = heights.at(part * heights.length_m)
     interval_m = collect.length_m / count
     interval_s = None
     if sensor.trigger == "time":

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 from shapely.geometry import LinearRing, LineString, MultiPolygon, Polygon
 from shapely.geometry.base import BaseGeometry
 
@@ -39,6 +39,7 @@ from planner.plan import (
 )
 from planner.profile.compose import Composed
 from planner.profile.finish import finish_of
+from planner.profile.heights import Heights
 from planner.profile.lines import cut
 from planner.route import CollectPass, Terminal
 from planner.sensors.base import Sensor
@@ -50,11 +51,11 @@ from planner.transit.certificate import proven_m
 from planner.vehicle.aircraft import Aircraft
 from planner.vehicle.model import FlightModel
 
+Floats = NDArray[np.float64]
+
 #: Vertices of straights of the published line: the chord in longitude and latitude must not leave the
 #: straight by more than a centimetre or so.
 MAX_STRAIGHT_EDGE_M = 1000.0
-#: Places of a pass are looked at no nearer to its ends.
-INSIDE_M = 1e-5
 #: From this latitude on straights have more vertices, so that the chord stays as near; the last degree counts
 #: as one.
 STEEP_DEG = 60.0
@@ -143,9 +144,8 @@ def collects_and_transits(
         (lon0, lat0), (lon1, lat1) = chart.lonlats([collect.start, collect.end])
         middle = ((collect.start[0] + collect.end[0]) / 2.0, (collect.start[1] + collect.end[1]) / 2.0)
         (start_m, start_s), (end_m, end_s) = flight.along(from_m), flight.along(until_m)
-        # Within: where it climbs on the spot next to a pass the height is not one.
-        inside_m = [from_m + INSIDE_M, until_m - INSIDE_M]
-        altitude_m, last_m = (float(up_m) for up_m in flight.heights.at(inside_m))
+        heights = flight.heights.within(from_m, until_m)
+        (_, altitude_m), (_, last_m) = heights.knots[0], heights.knots[-1]
         collects.append(
             Collect(
                 model.name, seq, name, collect.regions, collect.sensor, collect.look,
@@ -156,9 +156,9 @@ def collects_and_transits(
         )  # fmt: skip
         sensor, ground = suite.named(collect.sensor), airspace.terrain
         there = level.at(altitude_m)
-        footprints.extend(_footprints(chart, ground, model.name, seq, name, collect, sensor, there))
+        footprints.extend(_footprints(chart, ground, model.name, seq, name, collect, sensor, there, heights))
         if isinstance(sensor, CameraSensor):
-            taken = photos_of(collect, seq, collects[-1].line, sensor, model)
+            taken = photos_of(collect, seq, collects[-1].line, heights, sensor, model)
             photos.extend([] if taken is None else [taken])
     return tuple(collects), tuple(transits), tuple(footprints), tuple(photos)
 
@@ -172,6 +172,7 @@ def _footprints(
     collect: CollectPass,
     sensor: Sensor,
     level: Level,
+    heights: Heights,
 ) -> Iterator[Footprint]:
     """The ground seen: the pass's own footprint, on terrain one for each part really seen."""
     if ground is None:
@@ -182,13 +183,17 @@ def _footprints(
         )
         return
     line_m = (collect.start, collect.end)
-    seen = seen_from(sensor, line_m, collect.look, level.amsl_m, ground)
+    levels_m: float | Floats = level.amsl_m
+    if not heights.is_level:
+        count = max(2, math.ceil(collect.length_m / ground.step_m) + 1)
+        levels_m = heights.at(np.linspace(0.0, collect.length_m, count)) + level.amsl_m - level.altitude_m
+    seen = seen_from(sensor, line_m, collect.look, levels_m, ground)
     # Specks of a cell or two say nothing on a map.
     tidy = seen.area.simplify(ground.step_m / 20.0)
     parts = [part for part in shapely.get_parts(tidy) if part.area > ground.step_m**2 / 10.0]
     for part in parts:
         outer, *holes = (chart.ring(ring) for ring in (part.exterior, *part.interiors))
-        low_m, high_m = ground.range_over(part)
+        high_m, low_m = _heights_over(ground, part, line_m, levels_m)
         mean_m = (low_m + high_m) / 2.0
         yield _valued(
             Footprint(
@@ -202,8 +207,23 @@ def _footprints(
                 shadow_m2=seen.shadow_m2,
                 layover_m2=seen.layover_m2,
             ),
-            worth_of(sensor, level.amsl_m - mean_m, low_m - mean_m, high_m - mean_m),
+            worth_of(sensor, mean_m, mean_m - high_m, mean_m - low_m),
         )
+
+
+def _heights_over(
+    ground: Ground, part: Polygon, line_m: ArrayLike, levels_m: float | Floats
+) -> tuple[float, float]:
+    """Greatest and least height over ground from which a part of it is seen, from beside it."""
+    if isinstance(levels_m, float):
+        low_m, high_m = ground.range_over(part)
+        return levels_m - low_m, levels_m - high_m
+    start, end = np.asarray(line_m, dtype=np.float64)
+    along = end - start
+    posts = ground.posts_of(part)
+    at = (posts[:, :2] - start) @ along / (along @ along)
+    over_m = np.interp(at, np.linspace(0.0, 1.0, len(levels_m)), levels_m) - posts[:, 2]
+    return float(over_m.max()), float(over_m.min())
 
 
 def _valued(footprint: Footprint, worth: Worth) -> Footprint:

@@ -155,6 +155,13 @@ class Ground:
 
         Bounds, not samples: of a bilinear surface no place is beyond the posts round it.
         """
+        heights_m = self.posts_of(area)[:, 2]
+        if len(heights_m) == 0 or not self.covers(area):
+            return (math.nan, math.nan)
+        return (float(heights_m.min()), float(heights_m.max()))
+
+    def posts_of(self, area: BaseGeometry) -> Floats:
+        """The posts round an area, (N, 3): place and height, NaN where that is not known."""
         reach = area.buffer(self.step_m * math.sqrt(2.0))
         rows, columns = self.heights_m.shape
         west, south, east, north = reach.bounds
@@ -166,13 +173,12 @@ class Ground:
             max(0, math.floor((south - self.south_m) / self.step_m)),
             min(rows, math.ceil((north - self.south_m) / self.step_m) + 1),
         )
-        if len(i) == 0 or len(j) == 0 or not self.covers(area):
-            return (math.nan, math.nan)
+        if len(i) == 0 or len(j) == 0:
+            return np.empty((0, 3))
         east_m, north_m = np.meshgrid(self.west_m + self.step_m * j, self.south_m + self.step_m * i)
         shapely.prepare(reach)
         inside = shapely.contains_xy(reach, east_m, north_m)
-        heights = self.heights_m[np.ix_(i, j)][inside]
-        return (float(heights.min()), float(heights.max()))
+        return np.column_stack([east_m[inside], north_m[inside], self.heights_m[np.ix_(i, j)][inside]])
 
     def relief_beside_m(self, area: BaseGeometry, reach_m: float) -> float:
         """How much higher or lower than at a place of an area the ground is within a reach of it.

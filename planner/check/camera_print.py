@@ -61,7 +61,7 @@ def camera_footprint(
     sensor: CameraSensor,
     line_m: Floats,
     look: Look,
-    altitude_m: float,
+    altitude_m: float | Floats,
     airspeed_m_s: float,
     airspace: Airspace,
     level: Level,

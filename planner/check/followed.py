@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from planner.check.kinematics import LENGTH_TOLERANCE
 from planner.check.places import PLACE_TOLERANCE_M, lonlat
 from planner.check.stretches import Measured
-from planner.plan import FlownPath, Plan, Violation
+from planner.plan import Collect, FlownPath, Plan, Violation
 from planner.scenario import Scenario
 
 Floats = NDArray[np.float64]
@@ -20,25 +20,34 @@ Floats = NDArray[np.float64]
 FOLLOWED_WITHIN_M = 4.0
 
 
-def followed_violations(
-    scenario: Scenario,
-    plan: Plan,
-    path: FlownPath,
-    line: Measured,
-    over_ground_m: Callable[[float], float],
-    altitudes_m: Floats,
-) -> Iterator[Violation]:
+def along(scenario: Scenario, plan: Plan, collect: Collect, step_m: float) -> tuple[Floats, Floats]:
+    """Places evenly along a collect, no farther apart than a step, and the altitudes of the path there.
+
+    Returns
+    -------
+    tuple of ndarray
+        (N, 2) metres east and north, and (N,) over the plan's datum.
+    """
+    path = plan.path_of(collect.vehicle)
+    line = Measured(scenario.frame.to_local([place[:2] for place in path.line]))
+    altitudes_m = np.array([place[2] for place in path.line])
+    reached_m = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(line.along_m), np.diff(altitudes_m)))])
+    start, end = scenario.frame.to_local([place[:2] for place in collect.line])
+    low_m, high_m = np.interp([collect.start_m, collect.end_m], reached_m, line.along_m)
+    # Distances of the plan are those of arcs, the line's own those of its chords.
+    allowed_m = PLACE_TOLERANCE_M + LENGTH_TOLERANCE * float(low_m)
+    from_m = line.nearest_m((float(start[0]), float(start[1])), low_m - allowed_m, high_m + allowed_m)
+    length_m = float(np.hypot(*(end - start)))
+    at_m = np.linspace(0.0, length_m, max(2, math.ceil(length_m / step_m) + 1))
+    places = start + at_m[:, None] / max(length_m, 1e-9) * (end - start)
+    return places, np.interp(from_m + at_m, line.along_m, altitudes_m)
+
+
+def followed_violations(scenario: Scenario, plan: Plan, path: FlownPath) -> Iterator[Violation]:
     """Collects that follow the ground come nowhere lower over it than asked for, less ``FOLLOWED_WITHIN_M``.
 
     How high they come is judged by what their photos are worth. Looked at no farther apart than half the
     ground's posts.
-
-    Parameters
-    ----------
-    line, altitudes_m
-        The flown line over the ground, and the altitudes of its vertices over the sea, (N,).
-    over_ground_m
-        Distance over the ground along the line at a distance along it in three dimensions.
     """
     ground = scenario.terrain
     asked_m = {r.name: r.over_ground_m for r in scenario.regions if r.over_ground_m is not None}
@@ -46,14 +55,8 @@ def followed_violations(
         return
     for collect in plan.collects_of(path.vehicle):
         wanted_m = max((asked_m[name] for name in collect.regions if name in asked_m), default=0.0)
-        (east_m, north_m), last = scenario.frame.to_local([place[:2] for place in collect.line])
-        allowed_m = PLACE_TOLERANCE_M + LENGTH_TOLERANCE * over_ground_m(collect.start_m)
-        low_m, high_m = over_ground_m(collect.start_m), over_ground_m(collect.end_m)
-        from_m = line.nearest_m((east_m, north_m), low_m - allowed_m, high_m + allowed_m)
-        length_m = math.hypot(last[0] - east_m, last[1] - north_m)
-        at_m = from_m + np.linspace(0.0, length_m, max(2, math.ceil(2.0 * length_m / ground.step_m) + 1))
-        places = np.array([line.place(float(along_m)) for along_m in at_m])
-        over_m = np.interp(at_m, line.along_m, altitudes_m) - ground.at(places)
+        places, altitudes_m = along(scenario, plan, collect, ground.step_m / 2.0)
+        over_m = altitudes_m - ground.at(places)
         short_m = wanted_m - FOLLOWED_WITHIN_M - over_m
         worst = int(np.argmax(np.where(np.isnan(short_m), np.inf, short_m)))
         if not short_m[worst] <= PLACE_TOLERANCE_M:

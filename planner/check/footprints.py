@@ -13,7 +13,8 @@ from shapely.geometry import MultiPolygon, Polygon
 from planner.airspace.airspace import Airspace, Level
 from planner.airspace.values import STILL_AIR, Wind
 from planner.check.camera_print import camera_footprint
-from planner.plan import Collect
+from planner.check.followed import along
+from planner.plan import Collect, Plan
 from planner.route import Look
 from planner.scenario import Scenario
 from planner.sensors.sar import SarSensor
@@ -33,15 +34,18 @@ class Footprint(Protocol):
         sensor: Any,
         line_m: Floats,
         look: Look,
-        altitude_m: float,
+        altitude_m: Any,
         airspeed_m_s: float,
         airspace: Airspace,
         level: Level,
     ) -> Polygon | MultiPolygon:
-        """Seen at full resolution with the sensor on all along a line (2, 2); without what terrain hides."""
+        """Seen at full resolution with the sensor on all along a line (2, 2); without what terrain hides.
+
+        ``altitude_m`` is one, or, where the ground is followed, those of places evenly along the line.
+        """
 
 
-def footprint(scenario: Scenario, collect: Collect) -> Polygon | MultiPolygon:
+def footprint(scenario: Scenario, plan: Plan, collect: Collect) -> Polygon | MultiPolygon:
     """Ground seen at full resolution during a collect, in the local frame; without what terrain hides."""
     sensor = scenario.suite.named(collect.sensor)
     line_m = scenario.frame.to_local([place[:2] for place in collect.line])
@@ -49,7 +53,12 @@ def footprint(scenario: Scenario, collect: Collect) -> Polygon | MultiPolygon:
     # What hovers points its nose along the line: as in still air.
     airspace = replace(scenario.airspace, wind=STILL_AIR) if aircraft.hovers else scenario.airspace
     altitude_m = collect.line[0][2]
-    where = (altitude_m, aircraft.airspeed_m_s, airspace, scenario.level.at(altitude_m))
+    flown_m: float | Floats = altitude_m
+    if scenario.terrain is not None and any(
+        region.over_ground_m is not None and region.name in collect.regions for region in scenario.regions
+    ):
+        flown_m = along(scenario, plan, collect, scenario.terrain.step_m)[1]
+    where = (flown_m, aircraft.airspeed_m_s, airspace, scenario.level.at(altitude_m))
     return FOOTPRINTS[sensor.kind](sensor, line_m, collect.look, *where)
 
 

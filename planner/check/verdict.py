@@ -97,7 +97,7 @@ def judge(scenario: Scenario, plan: Plan) -> Verdict:
         over_ground_m = partial(np.interp, xp=reached_m, fp=over_m)
         measured = Measured(line_m)
         violations += collect_violations(scenario, plan, path, measured, over_ground_m, aircraft.settle_m)
-        violations += followed_violations(scenario, plan, path, measured, over_ground_m, altitudes_m)
+        violations += followed_violations(scenario, plan, path)
     coverage, unseen, missed = covered(scenario, plan)
     violations += missed
     length_m = math.fsum(lengths_m)

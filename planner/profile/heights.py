@@ -10,6 +10,8 @@ from numpy.typing import ArrayLike, NDArray
 
 #: Knots nearer than this along the line are one place; two heights there are a climb on the spot.
 SAME_M = 1e-6
+#: Parts of a line are looked at no nearer to their ends, where heights may be changed on the spot.
+WITHIN_M = 1e-5
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,6 +47,22 @@ class Heights:
         part = np.where(run_m > SAME_M, (places - at_m[last - 1]) / np.maximum(run_m, SAME_M), 1.0)
         part = np.clip(part, 0.0, 1.0)
         return np.asarray(altitude_m[last - 1] + part * (altitude_m[last] - altitude_m[last - 1]))
+
+    def within(self, from_m: float, until_m: float) -> Heights:
+        """Those of a part of the line, its ends looked at from within."""
+        inside = [
+            (at_m - from_m, up_m)
+            for at_m, up_m in self.knots
+            if from_m + WITHIN_M < at_m < until_m - WITHIN_M
+        ]
+        first_m, last_m = self.at([from_m + WITHIN_M, until_m - WITHIN_M])
+        return Heights(((0.0, float(first_m)), *inside, (until_m - from_m, float(last_m))))
+
+    @property
+    def is_level(self) -> bool:
+        """Whether it is one altitude all along."""
+        altitudes_m = [altitude_m for _, altitude_m in self.knots]
+        return max(altitudes_m) - min(altitudes_m) <= SAME_M
 
     def reverse(self) -> Heights:
         """The same heights flown the other way."""

@@ -34,23 +34,32 @@ def seen_on_flat(sensor: CameraSensor, line_m: ArrayLike, height_m: float) -> Po
 
 
 def seen_on_terrain(
-    sensor: CameraSensor, line_m: ArrayLike, _look: Any, level_m: float, ground: Ground
+    sensor: CameraSensor, line_m: ArrayLike, _look: Any, level_m: float | Floats, ground: Ground
 ) -> SeenGround:
-    """The same over terrain: to where the rays at its edges first meet the ground; nothing where unknown."""
+    """The same over terrain: to where the rays at its edges first meet the ground; nothing where unknown.
+
+    Parameters
+    ----------
+    level_m
+        Altitude of the line; of places evenly along it, its ends among them, where it follows the ground.
+    """
     start, end, along, left = _axes(line_m)
     seen, (low, high) = _strip(sensor, _angle_rad(along))
     knots = np.linspace(low, high, END_RAYS)
     spans = np.array([seen.span(float(k)) for k in knots])
     count = min(max(2, math.ceil(math.dist(start, end) / ground.step_m) + 1), MOST_SIDE_RAYS)
     stations = start + np.linspace(0.0, 1.0, count)[:, None] * (end - start)
+    known_m = np.atleast_1d(np.asarray(level_m, dtype=np.float64))
+    levels_m = np.interp(np.linspace(0.0, 1.0, count), np.linspace(0.0, 1.0, len(known_m)), known_m)
+    first_m, last_m = (np.full(END_RAYS, levels_m[k]) for k in (0, -1))
     rings = []
-    for origins, slopes in (
-        (np.tile(start, (END_RAYS, 1)), spans[:, :1] * along + knots[:, None] * left),
-        (stations, np.tile(spans[-1].mean() * along + high * left, (count, 1))),
-        (np.tile(end, (END_RAYS, 1)), spans[::-1, 1:] * along + knots[::-1, None] * left),
-        (stations[::-1], np.tile(spans[0].mean() * along + low * left, (count, 1))),
+    for origins, slopes, from_m in (
+        (np.tile(start, (END_RAYS, 1)), spans[:, :1] * along + knots[:, None] * left, first_m),
+        (stations, np.tile(spans[-1].mean() * along + high * left, (count, 1)), levels_m),
+        (np.tile(end, (END_RAYS, 1)), spans[::-1, 1:] * along + knots[::-1, None] * left, last_m),
+        (stations[::-1], np.tile(spans[0].mean() * along + low * left, (count, 1)), levels_m[::-1]),
     ):
-        rings.append(_met(origins, slopes, level_m, ground))
+        rings.append(_met(origins, slopes, from_m, ground))
     ring = np.concatenate(rings)
     if np.isnan(ring).any():
         return SeenGround(Polygon())
@@ -59,24 +68,26 @@ def seen_on_terrain(
     return SeenGround(parts[0] if len(parts) == 1 else MultiPolygon(parts))
 
 
-def _met(origins: Floats, slopes: Floats, level_m: float, ground: Ground) -> Floats:
-    """Where rays from a level first meet the ground, (N, 2); NaN where that is not known.
+def _met(origins: Floats, slopes: Floats, levels_m: Floats, ground: Ground) -> Floats:
+    """Where rays from some altitudes first meet the ground, (N, 2); NaN where that is not known.
 
     Parameters
     ----------
     origins, slopes
         (N, 2): places, and metres over the ground for each metre down.
+    levels_m
+        (N,).
     """
-    deepest_m = level_m - float(np.nanmin(ground.heights_m))
+    deepest_m = float(levels_m.max() - np.nanmin(ground.heights_m))
     drops = np.linspace(0.0, deepest_m, LOOKS + 1)
     places = origins[:, None, :] + drops[None, :, None] * slopes[:, None, :]
-    under = level_m - drops[None, :] <= ground.at(places)
+    under = levels_m[:, None] - drops[None, :] <= ground.at(places)
     hit = under.any(axis=1)
     first = under.argmax(axis=1)
     below, over = drops[first], drops[np.maximum(first - 1, 0)]
     for _ in range(HALVINGS):
         middle = (below + over) / 2.0
-        inside = level_m - middle <= ground.at(origins + middle[:, None] * slopes)
+        inside = levels_m - middle <= ground.at(origins + middle[:, None] * slopes)
         below, over = np.where(inside, middle, below), np.where(inside, over, middle)
     met: Floats = origins + over[:, None] * slopes
     met[~hit | np.isnan(ground.at(met))] = np.nan

@@ -22,7 +22,8 @@ class Kind:
         Its properties, all but ``type``, to a sensor of that kind; None after a finding.
     seen_on_terrain
         Ground one of them sees: the sensor, the line (2, 2) with the sensor on from end to end, the side
-        looked to, the level flown over the ground's datum, the ground.
+        looked to, the level flown over the ground's datum, the ground. Where they follow the ground the level
+        may be an array: of places evenly along the line.
     follows
         Whether their passes may follow the ground, up and down; otherwise they are level.
     """
@@ -34,7 +35,7 @@ class Kind:
 
 KINDS: dict[str, Kind] = {
     "sar": Kind(read_sar, view.seen_on_terrain),
-    "camera": Kind(read_camera, camera_view.seen_on_terrain),
+    "camera": Kind(read_camera, camera_view.seen_on_terrain, follows=True),
 }
 
 

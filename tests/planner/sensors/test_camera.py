@@ -179,3 +179,18 @@ def test_ground_that_is_not_known_is_not_seen() -> None:
     assert seen_on_terrain(
         PLAIN, [(2950.0, 0.0), (2990.0, 0.0)], "down", 150.0, grid(lambda e, n: 0.0 * e)
     ).area.is_empty
+
+
+def test_what_is_seen_from_a_line_beside_a_slope_is_that_over_level_ground() -> None:
+    """A line that rises with a plane sees a strip as wide as from that height; a level one sees a wedge."""
+    camera = CameraSensor("cam", Optics(0.035, 4.5e-6, 7952, 5304))
+    ground = grid(lambda east, north: 0.1 * east, half_m=1000.0, step_m=10.0)
+    line = [(-300.0, 0.0), (300.0, 0.0)]
+    rising = seen_on_terrain(camera, line, "down", 0.1 * np.linspace(-300.0, 300.0, 7) + 120.0, ground).area
+    flat = seen_on_flat(camera, line, 120.0)
+    for at_m in (-250.0, 0.0, 250.0):
+        across = [box(at_m - 1.0, -500.0, at_m + 1.0, 500.0).intersection(each) for each in (rising, flat)]
+        assert across[0].area == pytest.approx(across[1].area, rel=0.02)
+    assert seen_on_terrain(camera, line, "down", np.full(5, 200.0), ground).area.equals_exact(
+        seen_on_terrain(camera, line, "down", 200.0, ground).area, 1e-9
+    )
