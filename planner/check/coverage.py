@@ -32,7 +32,7 @@ def covered(
     coverage: dict[str, float] = {}
     unseen: dict[str, Polygon | MultiPolygon] = {}
     violations = []
-    seen_by = [(collect, footprint(scenario, plan, collect)) for collect in plan.collects]
+    seen_by = [(collect, footprint(scenario, collect, plan)) for collect in plan.collects]
     for region in scenario.regions:
         prints = [
             ground

@@ -45,8 +45,11 @@ class Footprint(Protocol):
         """
 
 
-def footprint(scenario: Scenario, plan: Plan, collect: Collect) -> Polygon | MultiPolygon:
-    """Ground seen at full resolution during a collect, in the local frame; without what terrain hides."""
+def footprint(scenario: Scenario, collect: Collect, plan: Plan | None = None) -> Polygon | MultiPolygon:
+    """Ground seen at full resolution during a collect, in the local frame; without what terrain hides.
+
+    The plan's path says how high a collect that follows the ground is; without it, it is level.
+    """
     sensor = scenario.suite.named(collect.sensor)
     line_m = scenario.frame.to_local([place[:2] for place in collect.line])
     aircraft = next(a for a in scenario.aircraft if a.name == collect.vehicle)
@@ -54,8 +57,12 @@ def footprint(scenario: Scenario, plan: Plan, collect: Collect) -> Polygon | Mul
     airspace = replace(scenario.airspace, wind=STILL_AIR) if aircraft.hovers else scenario.airspace
     altitude_m = collect.line[0][2]
     flown_m: float | Floats = altitude_m
-    if scenario.terrain is not None and any(
-        region.over_ground_m is not None and region.name in collect.regions for region in scenario.regions
+    if (
+        plan is not None
+        and scenario.terrain is not None
+        and any(
+            region.over_ground_m is not None and region.name in collect.regions for region in scenario.regions
+        )
     ):
         flown_m = along(scenario, plan, collect, scenario.terrain.step_m)[1]
     where = (flown_m, aircraft.airspeed_m_s, airspace, scenario.level.at(altitude_m))
