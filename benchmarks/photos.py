@@ -17,6 +17,9 @@ from planner.sensors.camera import CameraSensor
 
 Floats = NDArray[np.float64]
 
+#: Places this near to a photo's edge are in it: those of plans are rounded.
+WITHIN_M = 1e-3
+
 
 @dataclass(frozen=True, slots=True)
 class Photo:
@@ -76,6 +79,9 @@ def seen_by(taken: Sequence[Photo], at: Floats) -> NDArray[np.int64]:
         ring = shapely.get_coordinates(photo.ground)[:-1]
         inside = np.ones(len(at), dtype=np.bool_)
         for (x0, y0), (x1, y1) in zip(ring, np.roll(ring, -1, axis=0), strict=True):
-            inside &= (x1 - x0) * (at[:, 1] - y0) - (y1 - y0) * (at[:, 0] - x0) >= -1e-3
+            from_edge = ((x1 - x0) * (at[:, 1] - y0) - (y1 - y0) * (at[:, 0] - x0)) / math.dist(
+                (x0, y0), (x1, y1)
+            )
+            inside &= from_edge >= -WITHIN_M
         counts[photo.lane] += inside
     return counts

@@ -16,6 +16,9 @@ from planner.sensors.optics import Optics
 from planner.sensors.photo_band import Pattern, pattern
 from planner.sensors.quality import Giqe4, Spectrum
 
+#: Photos, and lanes, that overlap by this much or more see every place twice.
+TWICE = 0.5
+
 
 @dataclass(frozen=True, slots=True)
 class CameraSensor:
@@ -137,25 +140,37 @@ class CameraSensor:
         return spacing_m - lost_m if self.steady_overlap else spacing_m
 
     def run_in_m(self, height_m: float, angle_rad: float) -> float:
-        """How far before the ground to be seen the first photo is taken; negative: behind its beginning.
+        """How far before the ground on a lane's line the first photo is taken; negative: behind its start.
 
-        All of the strip is seen from there on, and ground at its beginning lies no farther from the middle of
-        the first photo than ground between two photos; no photo's middle lies outside for a place to be in
-        two photos that overlap by half or more.
+        Its middle lies no farther from there than that of the nearer of two photos from a place between them,
+        and where photos overlap by half or more the beginning is in the next photo, too.
         """
         laid, high_m, low_m = self._drops(height_m, angle_rad)
-        seen_m = max(laid.before * high_m, laid.before * low_m) + self.margin_m(height_m)
-        return self._run_m(seen_m, max(laid.middle * high_m, laid.middle * low_m), height_m, angle_rad)
+        middle_m = max(laid.middle * high_m, laid.middle * low_m)
+        return self._run_m(self.seen_in_m(height_m, angle_rad), middle_m, height_m, angle_rad)
 
     def run_out_m(self, height_m: float, angle_rad: float) -> float:
-        """How far beyond the ground to be seen the last photo is taken; negative: before its end."""
+        """How far beyond the ground on a lane's line the last photo is taken; negative: before its end."""
         laid, high_m, low_m = self._drops(height_m, angle_rad)
-        seen_m = self.margin_m(height_m) - min(laid.beyond * high_m, laid.beyond * low_m)
-        return self._run_m(seen_m, max(-laid.middle * high_m, -laid.middle * low_m), height_m, angle_rad)
+        middle_m = max(-laid.middle * high_m, -laid.middle * low_m)
+        return self._run_m(self.seen_out_m(height_m, angle_rad), middle_m, height_m, angle_rad)
+
+    def seen_in_m(self, height_m: float, angle_rad: float) -> float:
+        """How far before ground anywhere in a lane's strip a photo may be taken at the latest to see it."""
+        laid, high_m, low_m = self._drops(height_m, angle_rad)
+        return max(laid.before * high_m, laid.before * low_m) + self.margin_m(height_m)
+
+    def seen_out_m(self, height_m: float, angle_rad: float) -> float:
+        """How far beyond ground anywhere in a lane's strip a photo may be taken at the earliest to see it."""
+        laid, high_m, low_m = self._drops(height_m, angle_rad)
+        return self.margin_m(height_m) - min(laid.beyond * high_m, laid.beyond * low_m)
 
     def _run_m(self, seen_m: float, middle_m: float, height_m: float, angle_rad: float) -> float:
         spacing_m = self.photo_spacing_m(height_m, angle_rad)
-        return max(seen_m, min(middle_m, max(middle_m - spacing_m / 2.0, seen_m + spacing_m)))
+        inside_m = middle_m - spacing_m / 2.0
+        if self.forward_overlap >= TWICE:
+            inside_m = min(middle_m, max(inside_m, seen_m + spacing_m))
+        return max(seen_m, inside_m)
 
     def _drops(self, height_m: float, angle_rad: float) -> tuple[Pattern, float, float]:
         return self.pattern(angle_rad), height_m - self.relief_m, height_m + self.relief_m

@@ -19,8 +19,9 @@ from planner.coverage.strips.classify import ROUNDING_M, angles_around, hull_poi
 
 Floats = NDArray[np.float64]
 
-#: Swath at each of some headings.
+#: Swath at each of some headings; and lanes that each takes, not rounded up.
 Swaths = Callable[[Floats], Floats]
+Held = Callable[[Floats], Floats]
 
 #: Headings closer than this are one.
 SAME_RAD = 1e-7
@@ -50,19 +51,6 @@ def grid(area: Polygon, step_rad: float) -> Floats:
 
 def telling(area: Polygon, swaths: Swaths) -> Floats:
     """Directions of edges, and where the number of lanes changes, over the whole circle, ascending."""
-    edges = np.concatenate(
-        [_edges(np.asarray(ring.coords)[:, :2]) for ring in (area.exterior, *area.interiors)]
-    )
-    along = edges[np.hypot(*edges.T) > ROUNDING_M]
-    hull = _edges(hull_points(area))
-    both = np.concatenate([along, hull])
-    directions_rad = np.arctan2(both[:, 1], both[:, 0])
-    directions_rad = np.concatenate([directions_rad, directions_rad + math.pi])
-    return _distinct(np.concatenate([directions_rad, _breaks(area, swaths, directions_rad)]))
-
-
-def _breaks(area: Polygon, swaths: Swaths, edges_rad: Floats) -> Floats:
-    """Headings just on the side of fewer lanes of where the number of swaths that hold the region changes."""
     points_m = hull_points(area)
 
     def held(angles_rad: Floats) -> Floats:
@@ -73,6 +61,24 @@ def _breaks(area: Polygon, swaths: Swaths, edges_rad: Floats) -> Floats:
         np.divide(across_m, swath_m, out=count, where=swath_m > 0.0)
         return count
 
+    return singled_out(area, held)
+
+
+def singled_out(area: Polygon, held: Held) -> Floats:
+    """The same where something else than a swath's width decides how many lanes there are."""
+    edges = np.concatenate(
+        [_edges(np.asarray(ring.coords)[:, :2]) for ring in (area.exterior, *area.interiors)]
+    )
+    along = edges[np.hypot(*edges.T) > ROUNDING_M]
+    hull = _edges(hull_points(area))
+    both = np.concatenate([along, hull])
+    directions_rad = np.arctan2(both[:, 1], both[:, 0])
+    directions_rad = np.concatenate([directions_rad, directions_rad + math.pi])
+    return _distinct(np.concatenate([directions_rad, _breaks(area, held, directions_rad)]))
+
+
+def _breaks(area: Polygon, held: Held, edges_rad: Floats) -> Floats:
+    """Headings just on the side of fewer lanes of where the number of lanes that hold the region changes."""
     looked_rad = _distinct(np.concatenate([grid(area, BREAK_STEP_RAD), edges_rad]))
     after_rad = np.append(looked_rad[1:], looked_rad[0] + math.tau)
     here, there = held(looked_rad), held(after_rad)

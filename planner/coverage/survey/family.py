@@ -69,7 +69,7 @@ class Surveys:
         enough: Stop,
     ) -> tuple[LaneTarget, ...]:
         """The stops that see a region: its pieces, each as often as it is to be visited."""
-        trial = Pieces.of(sensor, height_m, around)
+        trial = Pieces(sensor, height_m, around)
         pieces = divided(region, trial, whole=division == "whole" or not wide, enough=enough)
         if not math.isfinite(trial.cost_m(pieces)):
             raise refusal(region, around)
@@ -79,7 +79,7 @@ class Surveys:
         self, region: MergedRegion, sensor: CameraSensor, height_m: float, around: Surroundings, *, wide: bool
     ) -> bool:
         """Whether lanes over some division of it may be flown."""
-        trial = Pieces.of(sensor, height_m, around)
+        trial = Pieces(sensor, height_m, around)
         pieces = divided(region, trial, whole=True, enough=never)
         return math.isfinite(trial.cost_m(pieces))
 
@@ -91,7 +91,7 @@ class Surveys:
         self, region: MergedRegion, sensor: CameraSensor, height_m: float, around: Surroundings
     ) -> Iterator[LaneTarget]:
         """All of it lane by lane."""
-        trial = Pieces.of(sensor, height_m, around)
+        trial = Pieces(sensor, height_m, around)
         if trial.options(region) is None:
             raise refusal(region, around)
         yield trial.target(region)

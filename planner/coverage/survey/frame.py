@@ -9,10 +9,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from planner.sensors.camera import CameraSensor
+from planner.sensors.camera import TWICE, CameraSensor
 
 Floats = NDArray[np.float64]
 
+#: Lanes are longer by this at either end than they have to be.
+SPARE_M = 0.01
 #: A length that a height and a heading give.
 Figure = Callable[[float, float], float]
 
@@ -25,20 +27,46 @@ class Frames:
     ----------
     spacing_m
         Between lanes at most; not more than 0 where no lanes keep the overlap.
-    twice_m
-        How far from the outermost lane a place is still seen from the next one, too.
+    half_m
+        How far to either side of a lane all is seen.
+    inset_m
+        How far inside a region's edge the outermost lane may run: as far as places between two lanes lie from
+        the nearer one; where lanes overlap by half or more, no farther than where the next one sees it.
     photos_m
         Between photos at most.
     """
 
     spacing_m: Floats
-    twice_m: Floats
+    half_m: Floats
+    inset_m: Floats
     photos_m: Floats
 
     @property
     def good(self) -> NDArray[np.bool_]:
         """At which headings lanes keep the overlaps."""
         return np.asarray((self.spacing_m > 0.0) & (self.photos_m > 0.0), dtype=np.bool_)
+
+
+@dataclass(frozen=True, slots=True)
+class Runs:
+    """How far before ground lanes flown at headings begin, and how far beyond it they end, (M,) each, metres.
+
+    Parameters
+    ----------
+    line_in_m, line_out_m
+        Ground on the lane's own line.
+    beside_in_m, beside_out_m
+        Ground that the lane answers for: in two of its photos where they overlap by half or more.
+    other_in_m, other_out_m
+        Ground that its neighbours answer for, in its first or last photo.
+    """
+
+    line_in_m: Floats
+    line_out_m: Floats
+    beside_in_m: Floats
+    beside_out_m: Floats
+    other_in_m: Floats
+    other_out_m: Floats
 
 
 def frames(camera: CameraSensor, height_m: float, angles_rad: Floats) -> Frames:
@@ -49,13 +77,25 @@ def frames(camera: CameraSensor, height_m: float, angles_rad: Floats) -> Frames:
         return np.minimum(*(_each(camera, figure, height_m, way_rad) for way_rad in ways))
 
     spacing_m, half_m = lesser(camera.lane_spacing_m), lesser(camera.half_width_m)
-    return Frames(spacing_m, half_m - spacing_m, lesser(camera.photo_spacing_m))
+    inset_m = np.minimum(spacing_m / 2.0, half_m)
+    if camera.side_overlap >= TWICE:
+        inset_m = np.minimum(inset_m, half_m - spacing_m)
+    return Frames(spacing_m, half_m, inset_m, lesser(camera.photo_spacing_m))
 
 
-def runs_m(camera: CameraSensor, height_m: float, angles_rad: Floats) -> tuple[Floats, Floats]:
-    """Run-in and run-out of lanes flown at headings (M,)."""
-    run_in_m = _each(camera, camera.run_in_m, height_m, angles_rad)
-    return run_in_m, _each(camera, camera.run_out_m, height_m, angles_rad)
+def runs(camera: CameraSensor, height_m: float, angles_rad: Floats) -> Runs:
+    """Runs of lanes flown at headings (M,)."""
+
+    def each(figure: Figure) -> Floats:
+        return _each(camera, figure, height_m, angles_rad)
+
+    line = (each(camera.run_in_m), each(camera.run_out_m))
+    seen = (each(camera.seen_in_m), each(camera.seen_out_m))
+    beside = line
+    if camera.forward_overlap >= TWICE:
+        photos_m = each(camera.photo_spacing_m)
+        beside = (seen[0] + photos_m, seen[1] + photos_m)
+    return Runs(*(run_m + SPARE_M for run_m in (*line, *beside, *seen)))
 
 
 def _each(camera: CameraSensor, figure: Figure, height_m: float, angles_rad: Floats) -> Floats:

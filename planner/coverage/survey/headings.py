@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from shapely.geometry import Polygon
 
 from planner.coverage.merge import MergedRegion
-from planner.coverage.strips.headings import grid, telling
+from planner.coverage.strips.headings import grid, singled_out
 from planner.coverage.survey.lanes import Survey, edges_of, lanes_at
 
 Floats = NDArray[np.float64]
@@ -52,12 +52,16 @@ def _telling(survey: Survey, turn_m: float, most: int) -> Floats:
         assert isinstance(thinned, Polygon)
         ground = thinned
 
-    table_m = survey.frames(TABLE_RAD).spacing_m
+    laid = survey.frames(TABLE_RAD)
 
-    def spacing_m(at_rad: Floats) -> Floats:
-        return np.asarray(np.interp(np.mod(at_rad, math.pi), TABLE_RAD, table_m), dtype=np.float64)
+    def held(at_rad: Floats) -> Floats:
+        spacing_m, inset_m = (
+            np.interp(np.mod(at_rad, math.pi), TABLE_RAD, table_m)
+            for table_m in (laid.spacing_m, laid.inset_m)
+        )
+        return survey.needed(at_rad, np.asarray(spacing_m), np.asarray(inset_m))
 
-    angles_rad = _distinct(np.mod(telling(ground, spacing_m), math.pi))
+    angles_rad = _distinct(np.mod(singled_out(ground, held), math.pi))
     angles_rad = angles_rad[survey.frames(angles_rad).good]
     counts = survey.counts(angles_rad)
     rough_m = ground.area / survey.frames(angles_rad).spacing_m + counts * turn_m

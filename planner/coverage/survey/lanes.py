@@ -1,15 +1,17 @@
 """Lanes of photos over a region at a heading: how many, where, and from where to where.
 
-In axes turned by the heading θ, x̂ ahead and ŷ to the left, a region spans w across. Each lane answers for the
-ground within half a spacing d of it, so that n = ⌈w / d⌉ lanes do, and its first and last photos lie half an
-interval inside. Every place of the region, edges included, then lies as near to the middle of a photo as one
-between lanes and photos does, so that overlaps hold everywhere. What n lanes have to spare, s = n·d − w, is
-taken from their distances and from what the outer ones see beyond the edges.
+In axes turned by the heading θ, x̂ ahead and ŷ to the left, a region spans w across. The outer lanes run e
+inside its edges, the others no more than a spacing d apart, n = ⌈(w − 2e) / d⌉ + 1; one does where w ≤ d.
+Each lane answers for the ground that is nearest to it: on its own line the first and last photos lie half
+an interval inside; what lies beside is in two of its photos, and a neighbour sees it, too. So places at
+the edges of a region are seen as those between lanes and photos are. What n lanes have to spare is taken from
+their distances or from e.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,12 +22,14 @@ from shapely.geometry.base import BaseGeometry
 
 from planner.coverage.strips.classify import ROUNDING_M, hull_points, spans_at
 from planner.coverage.strips.kernels import strip_extents
-from planner.coverage.survey.frame import Frames, frames, runs_m
-from planner.sensors.camera import CameraSensor
+from planner.coverage.survey.frame import Frames, Runs, frames, runs
+from planner.sensors.camera import TWICE, CameraSensor
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
+#: Ground on a lane's line is looked for this far beside it.
+LINE_M = 1e-3
 #: Headings that leave hardly any spacing take no more lanes than this.
 MOST_LANES = 2000
 #: Each lane is flown onward, at the heading, or back.
@@ -42,26 +46,42 @@ class Survey:
         What lanes are laid over.
     wanted
         What of it is to be seen; the rest is flown over.
+    least
+        Lanes at least.
     """
 
     ground: Polygon
     wanted: BaseGeometry
     camera: CameraSensor
     height_m: float
+    least: int = 1
 
     def frames(self, angles_rad: Floats) -> Frames:
         """The camera's figures at headings."""
         return frames(self.camera, self.height_m, angles_rad)
 
+    def runs(self, courses_rad: Floats) -> Runs:
+        """Runs of lanes flown on courses."""
+        return runs(self.camera, self.height_m, courses_rad)
+
     def across_m(self, angles_rad: Floats) -> Floats:
         """The ground's width across headings."""
         return spans_at(hull_points(self.ground), angles_rad).across_m
 
+    def needed(self, angles_rad: Floats, spacing_m: Floats, inset_m: Floats) -> Floats:
+        """Lanes that headings take with these figures, not rounded up; inf where none do."""
+        across_m = self.across_m(angles_rad) - ROUNDING_M
+        good = spacing_m > 0.0
+        several = np.full(len(across_m), np.inf)
+        np.divide(across_m - 2.0 * inset_m, spacing_m, out=several, where=good)
+        lanes = np.where(good & (across_m <= spacing_m), 1.0, np.maximum(several, 0.5) + 1.0)
+        return np.maximum(lanes, self.least)
+
     def counts(self, angles_rad: Floats) -> Ints:
         """How many lanes each heading takes."""
-        across_m = self.across_m(angles_rad)
-        spacing_m = np.maximum(self.frames(angles_rad).spacing_m, across_m / MOST_LANES)
-        return np.maximum(np.ceil((across_m - ROUNDING_M) / spacing_m), 1.0).astype(np.int64)
+        laid = self.frames(angles_rad)
+        needed = self.needed(angles_rad, laid.spacing_m, laid.inset_m)
+        return np.ceil(np.minimum(needed, MOST_LANES)).astype(np.int64)
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,12 +96,15 @@ class Lanes:
         Shape (M, K, N, 2, 2, 2): heading, offset, lane from right to left, state, start and end.
     low_m, high_m
         ŷ of the edges of the strip that each lane answers for, (M, K, N).
+    seen_m
+        The same of the strip that it sees besides.
     """
 
     headings_rad: Floats
     lines: Floats
     low_m: Floats
     high_m: Floats
+    seen_m: tuple[Floats, Floats]
 
 
 def lanes_at(survey: Survey, angles_rad: Floats, etas: Floats, count: int) -> Lanes:
@@ -92,25 +115,28 @@ def lanes_at(survey: Survey, angles_rad: Floats, etas: Floats, count: int) -> La
     """
     laid = survey.frames(angles_rad)
     spans = spans_at(hull_points(survey.ground), angles_rad)
-    places_m = _places(laid, spans.y_min_m, spans.y_max_m, etas, count)
+    places_m = places_across(laid, spans.y_min_m, spans.y_max_m, etas, count)
     between_m = (places_m[..., 1:] + places_m[..., :-1]) / 2.0
     edge = (len(angles_rad), len(etas), 1)
     low_m = np.concatenate([np.broadcast_to(spans.y_min_m[:, None, None], edge), between_m], axis=2)
     high_m = np.concatenate([between_m, np.broadcast_to(spans.y_max_m[:, None, None], edge)], axis=2)
-    extent_m = strip_extents(edges_of(survey.ground), angles_rad, low_m, high_m)
+    seen_m = _seen_too(survey, laid, places_m, spans.y_min_m, spans.y_max_m)
+    edges = edges_of(survey.ground)
+    extents = [
+        strip_extents(edges, angles_rad, low, high)
+        for low, high in ((places_m - LINE_M, places_m + LINE_M), (low_m, high_m), seen_m)
+    ]
     states, headings = [], []
     for way in (1, -1):
         courses_rad = angles_rad if way == 1 else angles_rad + math.pi
-        run_in_m, run_out_m = (run[:, None, None] for run in _runs(survey, courses_rad))
-        first_m, last_m = (extent_m[..., 0], extent_m[..., 1])[::way]
-        x_m = np.stack([first_m - way * run_in_m, last_m + way * run_out_m], axis=-1)
+        x_m = _ends(extents, survey.runs(courses_rad), way)
         x_m = _at_least(x_m, way, laid.photos_m[:, None, None])
         cos, sin = np.cos(angles_rad)[:, None, None, None], np.sin(angles_rad)[:, None, None, None]
         east_m = cos * x_m - sin * places_m[..., None]
         north_m = sin * x_m + cos * places_m[..., None]
         states.append(np.stack([east_m, north_m], axis=-1))
         headings.append(courses_rad)
-    return Lanes(np.stack(headings, axis=1), np.stack(states, axis=3), low_m, high_m)
+    return Lanes(np.stack(headings, axis=1), np.stack(states, axis=3), low_m, high_m, seen_m)
 
 
 def pieces_m(
@@ -126,27 +152,37 @@ def pieces_m(
         Gaps without ground that are shorter are photographed, too.
     """
     angle_rad, course_rad = float(lanes.headings_rad[0, 0]), float(lanes.headings_rad[0, state])
+    way = 1.0 if state == 0 else -1.0
     cos, sin = math.cos(angle_rad), math.sin(angle_rad)
     turned = shapely.transform(survey.wanted, lambda p: p @ np.array([[cos, -sin], [sin, cos]]))
     west_m, _, east_m, _ = turned.bounds
-    strip = shapely.box(west_m - 1.0, lanes.low_m[0, 0, lane], east_m + 1.0, lanes.high_m[0, 0, lane])
-    bounds = shapely.bounds(shapely.get_parts(shapely.intersection(turned, strip)))
-    if len(bounds) == 0:
-        return [line]
-    run_in_m, run_out_m = (float(run[0]) for run in _runs(survey, np.array([course_rad])))
-    unit = np.array([cos, sin]) * (1.0 if state == 0 else -1.0)
-    along_m = np.sort(bounds[:, [0, 2]] * (1.0 if state == 0 else -1.0), axis=1)
-    spans = along_m[np.argsort(along_m[:, 0])] + np.array([-run_in_m, run_out_m])
-    photos_m = float(survey.frames(np.array([angle_rad])).photos_m[0])
+    low_m, high_m = float(lanes.low_m[0, 0, lane]), float(lanes.high_m[0, 0, lane])
+    y_m = float(line[0] @ (-sin, cos))
+    run = survey.runs(np.array([course_rad]))
+    unit = way * np.array([cos, sin])
     begin_m, end_m = (float(end @ unit) for end in line)
+    photos_m = float(survey.frames(np.array([angle_rad])).photos_m[0])
+    spans = []
+    for low, high, in_m, out_m in (
+        (y_m - LINE_M, y_m + LINE_M, run.line_in_m, run.line_out_m),
+        (low_m, high_m, run.beside_in_m, run.beside_out_m),
+        (*(float(edge[0, 0, lane]) for edge in lanes.seen_m), run.other_in_m, run.other_out_m),
+    ):
+        strip = shapely.box(west_m - 1.0, low, east_m + 1.0, high)
+        bounds = shapely.bounds(shapely.get_parts(shapely.intersection(turned, strip)))
+        # Of nothing the bounds are NaN.
+        along_m = np.sort(way * bounds[np.isfinite(bounds[:, 0])][:, [0, 2]], axis=1)
+        spans.append(along_m + np.array([-float(in_m[0]), float(out_m[0])]))
     joined: list[list[float]] = []
-    for first, last in spans.tolist():
-        if last - first < photos_m:
-            first, last = (first + last - photos_m) / 2.0, (first + last + photos_m) / 2.0
+    for first, last in sorted(np.concatenate(spans).tolist()):
+        short_m = max(photos_m - (last - first), 0.0) / 2.0
+        first, last = first - short_m, last + short_m
         if joined and first - joined[-1][1] < least_gap_m:
             joined[-1][1] = max(joined[-1][1], last)
         else:
             joined.append([first, last])
+    if not joined:
+        return [line]
     joined[0][0], joined[-1][1] = begin_m, end_m
     return [line[0] + (np.array(piece)[:, None] - begin_m) * unit for piece in joined]
 
@@ -157,23 +193,55 @@ def edges_of(ground: Polygon) -> Floats:
     return np.concatenate([ring[:-1], ring[1:]], axis=1)
 
 
-def _places(laid: Frames, low_m: Floats, high_m: Floats, etas: Floats, count: int) -> Floats:
+def places_across(laid: Frames, low_m: Floats, high_m: Floats, etas: Floats, count: int) -> Floats:
     """ŷ of lanes, (M, K, N)."""
     across_m = high_m - low_m
-    spare_m = np.maximum(count * laid.spacing_m - across_m, 0.0)
     if count == 1:
+        spare_m = np.maximum(laid.spacing_m - across_m, 0.0)
         middle_m = (low_m + high_m)[:, None] / 2.0 + (etas[None, :] - 0.5) * spare_m[:, None]
         return middle_m[:, :, None]
-    # Where there is enough to spare, the outer lanes run where their places are seen from the next one, too.
-    least_m = (across_m - (count - 1) * laid.spacing_m) / 2.0
-    most_m = np.maximum(least_m, np.minimum(laid.spacing_m / 2.0, laid.twice_m))
+    least_m = np.minimum((across_m - (count - 1) * laid.spacing_m) / 2.0, laid.inset_m)
+    # Lanes that are more than there have to be come no nearer than half a spacing.
+    most_m = np.maximum(
+        least_m, np.minimum(laid.inset_m, (across_m - (count - 1) * laid.spacing_m / 2.0) / 2.0)
+    )
     inset_m = least_m[:, None] + etas[None, :] * (most_m - least_m)[:, None]
     step_m = (across_m[:, None] - 2.0 * inset_m) / (count - 1)
-    return (low_m[:, None] + inset_m)[:, :, None] + step_m[:, :, None] * np.arange(count)
+    places_m: Floats = (low_m[:, None] + inset_m)[:, :, None] + step_m[:, :, None] * np.arange(count)
+    return places_m
 
 
-def _runs(survey: Survey, courses_rad: Floats) -> tuple[Floats, Floats]:
-    return runs_m(survey.camera, survey.height_m, courses_rad)
+def _seen_too(
+    survey: Survey, laid: Frames, places_m: Floats, low_m: Floats, high_m: Floats
+) -> tuple[Floats, Floats]:
+    """Edges of the strips that lanes see besides, (M, K, N) each: to the next lanes, or the region's edges.
+
+    Every place lies in those of two lanes at least; all are empty where lanes overlap by less than half.
+    """
+    count = places_m.shape[2]
+    if count == 1 or survey.camera.side_overlap < TWICE:
+        return places_m, places_m
+    low = np.concatenate([np.empty_like(places_m[..., :1]), places_m[..., :-1]], axis=2)
+    high = np.concatenate([places_m[..., 1:], np.empty_like(places_m[..., :1])], axis=2)
+    low[..., :2], high[..., -2:] = low_m[:, None, None], high_m[:, None, None]
+    half_m = laid.half_m[:, None, None]
+    return np.maximum(low, places_m - half_m), np.minimum(high, places_m + half_m)
+
+
+def _ends(extents: Sequence[Floats], run: Runs, way: int) -> Floats:
+    """Where lanes begin and end, x̂ (…, 2), for extents (…, 2) of ground on, beside and about them."""
+    runs_m = (
+        (run.line_in_m, run.line_out_m),
+        (run.beside_in_m, run.beside_out_m),
+        (run.other_in_m, run.other_out_m),
+    )
+    first_m, last_m = [], []
+    for extent_m, (in_m, out_m) in zip(extents, runs_m, strict=True):
+        onward_m = way * extent_m[..., ::way]
+        first_m.append(onward_m[..., 0] - in_m[:, None, None])
+        last_m.append(onward_m[..., 1] + out_m[:, None, None])
+    x_m: Floats = way * np.stack([np.min(first_m, axis=0), np.max(last_m, axis=0)], axis=-1)
+    return x_m
 
 
 def _at_least(x_m: Floats, way: int, least_m: Floats) -> Floats:

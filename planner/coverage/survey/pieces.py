@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import shapely
@@ -21,7 +21,7 @@ from planner.coverage.survey.options import LaneOptions
 from planner.coverage.survey.targets import LaneTarget
 from planner.errors import InfeasibleError
 from planner.progress import Stop
-from planner.sensors.camera import CameraSensor
+from planner.sensors.camera import TWICE, CameraSensor
 
 #: What seeing all of these pieces costs, about; inf where it cannot be.
 Estimate = Callable[[tuple[MergedRegion, ...]], float]
@@ -42,16 +42,18 @@ class Pieces:
     camera: CameraSensor
     height_m: float
     around: Surroundings
-    _known: dict[bytes, LaneOptions | None]
+    _known: dict[bytes, LaneOptions | None] = field(default_factory=dict)
+    _cut: set[bytes] = field(default_factory=set)
 
-    @classmethod
-    def of(cls, camera: CameraSensor, height_m: float, around: Surroundings) -> Pieces:
-        """None tried yet."""
-        return cls(camera, height_m, around, {})
+    def cut(self, piece: MergedRegion) -> MergedRegion:
+        """A piece cut from something wider: where lanes overlap by half and more it takes two at least."""
+        self._cut.add(piece.area.wkb)
+        return piece
 
     def target(self, piece: MergedRegion) -> LaneTarget:
         """A piece as a stop."""
-        survey = Survey(piece.area, wanted(piece), self.camera, self.height_m)
+        several = self.camera.side_overlap >= TWICE and piece.area.wkb in self._cut
+        survey = Survey(piece.area, wanted(piece), self.camera, self.height_m, 2 if several else 1)
         return LaneTarget(piece, survey, self.around)
 
     def options(self, piece: MergedRegion) -> LaneOptions | None:
@@ -112,7 +114,7 @@ def divided(region: MergedRegion, trial: Pieces, *, whole: bool, enough: Stop) -
         return best
     while len(best) < MOST_PIECES and not (math.isfinite(cost_m) and enough()):
         trials = [
-            (*best[:k], *(part.piece(piece) for piece in cut), *best[k + 1 :])
+            (*best[:k], *(trial.cut(part.piece(piece)) for piece in cut), *best[k + 1 :])
             for k, part in enumerate(best)
             if not decompose.is_plain(_outline(part))
             for cut in decompose.cuts(_outline(part))
