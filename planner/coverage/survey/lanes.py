@@ -139,54 +139,6 @@ def lanes_at(survey: Survey, angles_rad: Floats, etas: Floats, count: int) -> La
     return Lanes(np.stack(headings, axis=1), np.stack(states, axis=3), low_m, high_m, seen_m)
 
 
-def pieces_m(
-    survey: Survey, lanes: Lanes, lane: int, state: int, line: Floats, least_gap_m: float
-) -> list[Floats]:
-    """Parts of a lane at the first heading and offset with photos, in flight order: gaps left out.
-
-    Parameters
-    ----------
-    line
-        The lane in its state, (2, 2).
-    least_gap_m
-        Gaps without ground that are shorter are photographed, too.
-    """
-    angle_rad, course_rad = float(lanes.headings_rad[0, 0]), float(lanes.headings_rad[0, state])
-    way = 1.0 if state == 0 else -1.0
-    cos, sin = math.cos(angle_rad), math.sin(angle_rad)
-    turned = shapely.transform(survey.wanted, lambda p: p @ np.array([[cos, -sin], [sin, cos]]))
-    west_m, _, east_m, _ = turned.bounds
-    low_m, high_m = float(lanes.low_m[0, 0, lane]), float(lanes.high_m[0, 0, lane])
-    y_m = float(line[0] @ (-sin, cos))
-    run = survey.runs(np.array([course_rad]))
-    unit = way * np.array([cos, sin])
-    begin_m, end_m = (float(end @ unit) for end in line)
-    photos_m = float(survey.frames(np.array([angle_rad])).photos_m[0])
-    spans = []
-    for low, high, in_m, out_m in (
-        (y_m - LINE_M, y_m + LINE_M, run.line_in_m, run.line_out_m),
-        (low_m, high_m, run.beside_in_m, run.beside_out_m),
-        (*(float(edge[0, 0, lane]) for edge in lanes.seen_m), run.other_in_m, run.other_out_m),
-    ):
-        strip = shapely.box(west_m - 1.0, low, east_m + 1.0, high)
-        bounds = shapely.bounds(shapely.get_parts(shapely.intersection(turned, strip)))
-        # Of nothing the bounds are NaN.
-        along_m = np.sort(way * bounds[np.isfinite(bounds[:, 0])][:, [0, 2]], axis=1)
-        spans.append(along_m + np.array([-float(in_m[0]), float(out_m[0])]))
-    joined: list[list[float]] = []
-    for first, last in sorted(np.concatenate(spans).tolist()):
-        short_m = max(photos_m - (last - first), 0.0) / 2.0
-        first, last = first - short_m, last + short_m
-        if joined and first - joined[-1][1] < least_gap_m:
-            joined[-1][1] = max(joined[-1][1], last)
-        else:
-            joined.append([first, last])
-    if not joined:
-        return [line]
-    joined[0][0], joined[-1][1] = begin_m, end_m
-    return [line[0] + (np.array(piece)[:, None] - begin_m) * unit for piece in joined]
-
-
 def edges_of(ground: Polygon) -> Floats:
     """Both ends of each edge of its outline, (E, 4)."""
     ring = np.asarray(shapely.get_coordinates(ground.exterior), dtype=np.float64)

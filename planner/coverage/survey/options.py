@@ -14,7 +14,8 @@ from planner.airspace.surroundings import Surroundings
 from planner.coverage.lines import NO_ROOM_M, judge_lines, poses_of, roomy
 from planner.coverage.merge import MergedRegion
 from planner.coverage.strips.headings import anchor_rad
-from planner.coverage.survey.lanes import STATES, Lanes, Survey, lanes_at, pieces_m
+from planner.coverage.survey.gaps import photographed
+from planner.coverage.survey.lanes import STATES, Lanes, Survey, lanes_at
 from planner.coverage.survey.orders_kernels import VARIANTS, lane_orders
 from planner.coverage.ways import Between
 from planner.route import CollectPass
@@ -119,14 +120,11 @@ def collect_passes(
     lanes = lanes_at(survey, angle_rad, np.array([eta]), len(order))
     photos_m = float(survey.frames(angle_rad).photos_m[0])
     least_gap_m = max(LEAST_PHOTOS * photos_m, settle_m + photos_m)
-    plain = survey.wanted is survey.ground and is_convex(survey.ground)
-    passes: list[CollectPass] = []
-    for number in order.tolist():
-        lane, state = divmod(number, STATES)
-        line = lanes.lines[0, 0, lane, state]
-        pieces = [line] if plain else pieces_m(survey, lanes, lane, state, line, least_gap_m)
-        passes.extend(collect_along(region, survey, piece, eta) for piece in pieces)
-    return tuple(passes)
+    if survey.wanted is survey.ground and is_convex(survey.ground):
+        flown = [[lanes.lines[0, 0, number // STATES, number % STATES]] for number in order.tolist()]
+    else:
+        flown = photographed(survey, lanes, order, least_gap_m)
+    return tuple(collect_along(region, survey, part, eta) for parts in flown for part in parts)
 
 
 def collect_along(region: MergedRegion, survey: Survey, line: Floats, eta: float) -> CollectPass:
