@@ -69,11 +69,21 @@ class Fitting:
         within
             Where they may be flown; the ground itself where not given.
         """
+        lanes, extras = self.lanes(ground, direction_rad, within)
+        return lanes + extras
+
+    def lanes(
+        self, ground: BaseGeometry, direction_rad: float, within: BaseGeometry | None = None
+    ) -> tuple[tuple[Sweep, ...], tuple[Sweep, ...]]:
+        """The same sweeps, lanes and those over what lanes leave apart."""
         turned = _turned(ground, -direction_rad)
         room = turned if within is None else _turned(within, -direction_rad)
         lanes = list(self._chords(turned, self._offset(turned)))
-        found = lanes + self._left_over(turned, room, lanes)
-        return tuple(_back(line, direction_rad) for line in found)
+        extras = self._left_over(turned, room, lanes)
+        return (
+            tuple(_back(line, direction_rad) for line in lanes),
+            tuple(_back(line, direction_rad) for line in extras),
+        )
 
     def lanes_needed(self, ground: BaseGeometry, direction_rad: float) -> int:
         """How many pieces of lane a direction cuts the ground into, at its best offset."""
@@ -179,7 +189,7 @@ def _extent(line: BaseGeometry) -> Floats:
 
 def _back(line: Floats, direction_rad: float) -> Sweep:
     cosine, sine = math.cos(direction_rad), math.sin(direction_rad)
-    (a, b), (c, d) = line
+    (a, b), (c, d) = line.tolist()
     return Sweep(
         (cosine * a - sine * b, sine * a + cosine * b), (cosine * c - sine * d, sine * c + cosine * d)
     )
