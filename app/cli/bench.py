@@ -24,6 +24,7 @@ class Benchmark(StrEnum):
     START = "start"
     ISOLATION = "isolation"
     READS = "reads"
+    URBAN = "urban"
 
 
 def _options(pairs: list[str]) -> dict[str, Any]:

@@ -1,0 +1,23 @@
+"""``bench urban`` compares methods by name on the maps asked for."""
+
+from __future__ import annotations
+
+from benchmarks.urban import COMPARED, run
+from planner.coverage.urban.methods import METHODS
+
+
+def test_rows_tell_what_each_method_comes_to() -> None:
+    """One map, all compared: everything is seen, the free ground over the width is the least length."""
+    rows = list(run("shape-rectangle", COMPARED))
+    assert [row["method"] for row in rows] == list(COMPARED)
+    for row in rows:
+        assert row["coverage"] == 1.0
+        assert row["length_m"] > row["sweep_m"] > row["free"] * 600.0 * 500.0 / 20.0
+        assert row["turns"] > row["sweeps"] > 0
+        assert row["overlap_m"] > 0.0
+        assert row["duration_s"] > row["length_m"] / 10.0
+
+
+def test_the_paper_and_both_its_baselines_are_there() -> None:
+    """By the names that they are asked for."""
+    assert {"majeed2019", "majeed2019-highs", "boustrophedon-cells", "coverage-alternatives"} <= set(METHODS)
