@@ -101,13 +101,28 @@ class CameraOutput:
         return message.integer("image_status") >= _INTERVAL_SET
 
 
-SensorOutput = RelayOutput | ServoOutput | CameraOutput
+@dataclass(frozen=True, slots=True)
+class PhotoOutput:
+    """A shutter released by distance: nothing shows whether it would be, but each photo that it was."""
+
+    index: int | None = None
+
+    def reads(self, message: Message) -> bool | None:
+        """True for a photo; None when the message is none, which tells nothing."""
+        taken = message.name == "CAMERA_FEEDBACK" or (
+            message.name == "CAMERA_IMAGE_CAPTURED" and message.integer("capture_result") == 1
+        )
+        return True if taken else None
+
+
+SensorOutput = RelayOutput | ServoOutput | CameraOutput | PhotoOutput
 
 #: Messages that outputs are read from which the autopilot sends only when asked, and how often a second.
 INTERVALS_HZ: Final[Mapping[type, Mapping[int, float]]] = {
     RelayOutput: {RELAY_STATUS: 10.0},
     ServoOutput: {SERVO_OUTPUT_RAW: 10.0},
     CameraOutput: {CAMERA_CAPTURE_STATUS: 4.0},
+    PhotoOutput: {},
 }
 
 
@@ -172,7 +187,9 @@ def output_of(
         case TriggerPayload(by="video"):
             # ArduPilot tells of no video.
             return CameraOutput(video=True) if autopilot == "px4" else None
-        case CameraPayload() | ImagePayload() | TriggerPayload():
+        case CameraPayload() | TriggerPayload(by="distance"):
+            return PhotoOutput()
+        case ImagePayload() | TriggerPayload():
             return CameraOutput()
     return None
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from typing import Final, Literal
 
 from mavlink.state.energy import Energy, EnergyMeter
-from mavlink.state.outputs import CameraOutput, RelayOutput, SensorOutput, ServoOutput
+from mavlink.state.outputs import CameraOutput, PhotoOutput, RelayOutput, SensorOutput, ServoOutput
 from mavlink.state.photos import PhotoSource, PhotoTaken, photos_among
 from mavlink.state.telemetry import VehicleState, finite, is_sensor_switch
 from mavlink.wire.messages import Message
@@ -40,6 +40,7 @@ _SOURCES: Final[dict[type, EventSource]] = {
     RelayOutput: "relay",
     ServoOutput: "servo",
     CameraOutput: "camera",
+    PhotoOutput: "camera",
 }
 
 

@@ -304,6 +304,7 @@ class Driver(Believing):
             if message.name in CAMERA_MESSAGES and message.system_id == self.state.system_id:
                 for recorder in self._recorders:
                     recorder.take(message, self.state)
+                self._change(self.sensor.watched(self.state, message, now_s))
             self._change(self._identity.watched(self.state, message, now_s))
             return
         self._heard_s = now_s

@@ -57,6 +57,22 @@ async def test_a_return_in_a_pass(client: httpx.AsyncClient, autopilot: str, kin
     assert "RTL" in (await switched_off(client, vehicle))["reason"]
 
 
+async def test_a_return_while_a_camera_takes_photos(client: httpx.AsyncClient) -> None:
+    """Nothing but its photos shows that it is on: ArduPilot's goes on with them, and is switched off."""
+    plan_id = await planned(client, small_scenario("ardupilot", "fixed_wing"))
+    url = "sim:?speedup=20&turn_radius=60&sensor_reports=no"
+    vehicle = await connected(client, url)
+    body = {"plan_id": plan_id, "payload": "camera:distance=20"}
+    assert (await client.post(vehicle + "/mission", json=body)).json()["verified"]
+    await in_flight(client, vehicle)
+    await until(client, vehicle, lambda body: body["sensor"]["on"])
+    assert (await order(client, vehicle, "rtl")).json()["outcome"] == "done"
+    told = await until(client, vehicle, lambda body: body["sensor"]["last_action"])
+    assert "RTL" in told["sensor"]["last_action"]["reason"]
+    assert "accepted" in told["sensor"]["last_action"]["outcome"]
+    await until(client, vehicle, lambda body: body["sensor"]["on"] is None)
+
+
 @pytest.mark.parametrize(("autopilot", "kind"), [("ardupilot", "multirotor"), ("px4", "fixed_wing")])
 async def test_a_pause_in_a_pass(client: httpx.AsyncClient, autopilot: str, kind: str) -> None:
     """Also where it stays in the mission's mode; whoever resumes is told what is left unseen."""

@@ -32,7 +32,7 @@ from app.services.vehicles.turns import Turns
 from app.services.vehicles.uploads import UploadReport, read_back
 from mavlink import errors as mavlink_errors
 from mavlink.encoding.options import DEFAULT_PAYLOAD
-from mavlink.encoding.payload import CameraPayload, JointPayload, TriggerPayload, parse_payload
+from mavlink.encoding.payload import parse_payload
 from mavlink.state.passes import passes_of
 from mavlink.station.client import VehicleClient
 from mavlink.station.forward.address import ForwardAddress
@@ -353,11 +353,7 @@ class Vehicle(Heard):
         output = await self.safety.output(self.client, payload)
         self.held = HeldPlan(held.plan_id, held.plan_vehicle, held.payload, output, held.gimbal)
         self.safety.hold(payload, passes_of(items, payload, self.state.autopilot), len(items))
-        # A shutter released by distance shows in its photos alone, and not when it rests.
-        by_distance = isinstance(payload, CameraPayload) or (
-            isinstance(payload, TriggerPayload) and payload.by == "distance"
-        )
-        self.client.show_sensor(None if by_distance or isinstance(payload, JointPayload) else output)
+        self.client.show_sensor(output)
         # It may fly at once: what shows its payload must be listened to by then.
         self._look_now.set()
 

@@ -18,6 +18,7 @@ from mavlink.sim.run import serve_link
 from mavlink.sim.settings import SimSettings
 from mavlink.state.outputs import (
     CameraOutput,
+    PhotoOutput,
     RelayOutput,
     SensorOutput,
     ServoOutput,
@@ -26,6 +27,7 @@ from mavlink.state.outputs import (
     pulse_parameters,
     switched_by,
 )
+from mavlink.state.sensor import SensorWatch
 from mavlink.state.telemetry import VehicleState, updated
 from mavlink.state.track import Track, TrackRecorder, unwrapped_s
 from mavlink.station.client import VehicleClient
@@ -54,7 +56,11 @@ def pulses(time_s: float, port: int = 0, **channels: int) -> Message:
         ("relay:3", RelayOutput(3)),
         ("servo:9", ServoOutput(0, 9, 1900.0, 1100.0)),
         ("servo:17:1000:2000", ServoOutput(1, 1, 1000.0, 2000.0)),
-        ("camera:distance=25", CameraOutput()),
+        ("camera:distance=25", PhotoOutput()),
+        ("trigger:distance=25", PhotoOutput()),
+        ("trigger:time=1.5", CameraOutput()),
+        ("trigger:video", None),
+        ("relay:1+trigger:distance=25", None),
         ("image:interval=2", CameraOutput()),
         ("command:31010:1/0", None),
     ],
@@ -249,3 +255,29 @@ async def test_cameras_beside_the_autopilot_are_heard() -> None:
                 await asyncio.sleep(0.01)
     assert [event.kind for event in recorder.track().events] == ["photo", "photo"]
     await there.close()
+
+
+def test_each_photo_shows_a_while_that_its_camera_is_on() -> None:
+    """Released by distance, a camera that rests shows nothing: then nobody can tell, and it may be on."""
+    watch, state, told = SensorWatch(PhotoOutput()), VehicleState(), []
+    photo = received("CAMERA_FEEDBACK", img_idx=1)
+    times_s = (1.0, 2.0, 4.0, 4.5, 9.0)
+    for time_s in times_s:
+        messages = [received("GLOBAL_POSITION_INT", time_boot_ms=round(1000 * time_s), lat=1, lon=1)]
+        for message in (*messages, *([photo] if time_s == 2.0 else [])):
+            state = watch.watched(updated(state, message, time_s), message, time_s)
+        told.append(state.sensor_shown)
+    assert told == [None, True, True, True, None]
+    failed = received("CAMERA_IMAGE_CAPTURED", image_index=2, capture_result=0)
+    assert watch.watched(updated(state, failed, 9.0), failed, 9.0).sensor_shown is None
+
+
+def test_videos_show_on_px4() -> None:
+    """By the camera's own status; ArduPilot's says nothing of them."""
+    payload = parse_payload("trigger:video")
+    output = output_of(payload, "px4")
+    assert output is not None
+    for video, interval, on in ((1, 0, True), (0, 0, False), (0, 2, False)):
+        message = received("CAMERA_CAPTURE_STATUS", image_status=interval, video_status=video)
+        assert output.reads(message) is on
+    assert output_of(payload, "ardupilot") is None
