@@ -23,6 +23,7 @@ from app.routers import (
     interface,
     plans,
     scenarios,
+    sensors,
     sorties,
     terrain,
     vehicles,
@@ -41,6 +42,7 @@ TAGS = [
     {"name": "plans", "description": "Scenarios become plans."},
     {"name": "artefacts", "description": "What a plan gives: GeoJSON, missions, a report."},
     {"name": "scenarios", "description": "Scenarios judged without planning them."},
+    {"name": "sensors", "description": "Cameras that scenarios may name."},
     {"name": "terrain", "description": "Elevation rasters for scenarios to lie on."},
     {"name": "vehicles", "description": "Connected vehicles: state, missions, commands."},
     {"name": "flights", "description": "What was flown, and what was seen."},
@@ -73,7 +75,9 @@ def create_app(settings: Settings | None = None, build_house: Callable[[Limits],
         finally:
             await house.close()
 
-    modules = (plans, artefacts, scenarios, terrain, vehicles, flights, sorties, audit, health, interface)
+    modules = (
+        plans, artefacts, scenarios, sensors, terrain, vehicles, flights, sorties, audit, health, interface,
+    )  # fmt: skip
     app = assemble(
         settings,
         lifespan,

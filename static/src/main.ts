@@ -2,6 +2,7 @@
 import "./style.css";
 import { showAircraft } from "./aircraft";
 import { connection, heartbeat } from "./api";
+import { keepCameras } from "./cameras";
 import { byId } from "./dom";
 import { Drawing } from "./draw";
 import { acceptDrops } from "./drop";
@@ -83,6 +84,7 @@ async function start(): Promise<void> {
   showAircraft(map);
   keepFlights();
   keepRasters();
+  keepCameras();
   keepVehicles();
   keepOrdered();
   heartbeat();

@@ -7,7 +7,9 @@ import { nameOf, scenarios } from "../scenario";
 import type { Role, ScenarioFeature } from "../types";
 import { findingWords } from "../notices";
 import { judgement } from "../validation";
+import { fieldOf } from "./field_findings";
 import { areaField, choiceField, numberField, textField, tickField, type Field } from "./fields";
+import { scaled } from "./members";
 
 /** Corners as lines of "longitude, latitude"; only for a point, a line, or a polygon of one ring. */
 function coordinateText(geometry: Geometry): string | null {
@@ -48,7 +50,8 @@ function headings(text: string): number[] {
 /** What decides which fields there are; the form is built anew when it changes. */
 export function formKey(feature: ScenarioFeature | undefined): string {
   if (!feature) return "";
-  return [nameOf(feature), feature.properties.role, feature.geometry.type, String(feature.properties["model"]), String(feature.properties["role_in_doubt"])].join("|");
+  const sensors = feature.properties.role === "roi" ? (scenarios.document.value.sensors ?? []).map((sensor) => String(sensor["name"])) : [];
+  return [...sensors, nameOf(feature), feature.properties.role, feature.geometry.type, String(feature.properties["model"]), String(feature.properties["role_in_doubt"])].join("|");
 }
 
 function roleFields(name: string, role: string, geometryType: string, model: unknown): Field[] {
@@ -74,6 +77,11 @@ function roleFields(name: string, role: string, geometryType: string, model: unk
         ...(sensors.length > 1
           ? [choiceField({ id: "f-sensor", label: "Sensor", choices: [["", "the first"], ...sensors.map((s) => [s, s] as const)], get: get<string>("sensor"), set: (v) => scenarios.setProperty(name, "sensor", v || undefined) })]
           : []),
+        numberField({
+          id: "f-gsd_m", label: "A pixel at most", unit: "cm", min: 0, placeholder: "any", hint: "Ground sampled distance: what the worst pixel may cover; it decides the height",
+          ...scaled({ get: <T>() => scenarios.find(name)?.properties["gsd_m"] as T | undefined, set: set("gsd_m") }, 100),
+        }),
+        number("min_niirs", "NIIRS at least", "", { min: 0, max: 9, placeholder: "any", hint: "Needs the sensor's edge response and signal to noise" }),
         number("min_resolution_m", "Resolution wanted", "m", { min: 0, placeholder: "any" }),
         number("altitude_m", "Altitude", "m", { min: 0, placeholder: "the flight's" }),
         number("revisits", "Times to be seen", "", { min: 1, max: 50, placeholder: "1" }),
@@ -148,7 +156,7 @@ export function featureForm(feature: ScenarioFeature, zoom: () => void): Field {
   }
   const said = h("ul", { class: "findings" });
   const tell = (): void => {
-    const found = judgement.value.findings.filter((finding) => finding.feature === name);
+    const found = judgement.value.findings.filter((finding) => finding.feature === name && fieldOf(finding) === null);
     fill(said, ...found.map((finding) => h("li", { class: finding.severity ?? "error" }, findingWords(finding))));
   };
   const element = h(

@@ -1,5 +1,6 @@
 /** Form fields bound to a value somewhere else: shown by `sync`, written back when the operator is done. */
-import { h } from "../dom";
+import { fill, h } from "../dom";
+import type { Signal } from "../signal";
 
 export interface Field {
   element: HTMLElement;
@@ -69,6 +70,31 @@ export function textField(options: Common<string> & { placeholder?: string; refu
   });
   return {
     element: labelled(id, options.label, input, options.hint),
+    sync: () => {
+      if (document.activeElement !== input) input.value = get() ?? "";
+    },
+  };
+}
+
+/** A text for which the browser shows what of a list fits while it is being typed. */
+export function suggestField<T extends { name: string }>(
+  options: Common<string> & { placeholder?: string; wide?: boolean; suggestions: Signal<T[]>; words(entry: T): string; refuse(text: string): string },
+): Field {
+  const { id, get, set } = options;
+  const choices = h("datalist", { id: `${id}-list` });
+  const input = h("input", { id, type: "text", list: choices.id, placeholder: options.placeholder, autocomplete: "off", spellcheck: "false" });
+  options.suggestions.watch((entries) => fill(choices, ...entries.map((entry) => h("option", { value: entry.name }, options.words(entry)))));
+  input.addEventListener("change", () => {
+    const text = input.value.trim();
+    const refusal = options.refuse(text);
+    sayInvalid(input, refusal);
+    if (!refusal) set(text === "" ? undefined : text);
+  });
+  const element = labelled(id, options.label, input, options.hint);
+  element.append(choices);
+  element.classList.toggle("wide", options.wide ?? false);
+  return {
+    element,
     sync: () => {
       if (document.activeElement !== input) input.value = get() ?? "";
     },

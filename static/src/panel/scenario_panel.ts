@@ -12,6 +12,7 @@ import { keeping, keepBeside, takeTheirs, type KeepState } from "../keeping";
 import { judge, judgement, type Judgement } from "../validation";
 import { ROLE_WORDS } from "../role_words";
 import { featureForm, formKey } from "./feature_form";
+import { fieldOf, goToField, markFields } from "./field_findings";
 import { textField, type Field } from "./fields";
 import { keptBox } from "./kept_box";
 import { settingsForm, settingsKey } from "./settings_form";
@@ -73,13 +74,18 @@ function findingItem(finding: Finding, view: View): HTMLElement {
     finding.rule ? h("code", {}, ` ${finding.rule}`) : null,
   );
   const go = (): void => {
-    view.zoomTo([finding.feature]);
-    scenarios.selection.set(finding.feature);
+    if (known) {
+      view.zoomTo([finding.feature]);
+      scenarios.selection.set(finding.feature);
+    }
+    const field = fieldOf(finding);
+    if (field) goToField(field);
   };
+  const leads = known || fieldOf(finding) !== null;
   return h(
     "li",
     { class: finding.severity ?? "error" },
-    known ? h("button", { type: "button", class: "link", title: "Show on the map", onclick: go }, text) : text,
+    leads ? h("button", { type: "button", class: "link", title: known ? "Show on the map" : "Go to the field", onclick: go }, text) : text,
   );
 }
 
@@ -136,6 +142,9 @@ function features(view: View): HTMLElement {
   return section("Features", true, box);
 }
 
+/** The title of a section; the first of several is the one there was before. */
+const titleOf = (part: HTMLDetailsElement): string => (part.querySelector("summary")?.textContent ?? "").replace(/ 1$/, "");
+
 /** A box that holds a form, built anew only when its key changes and otherwise brought up to date. */
 function kept(key: () => string, build: () => Field | null): HTMLElement {
   const box = h("div", {});
@@ -145,10 +154,16 @@ function kept(key: () => string, build: () => Field | null): HTMLElement {
     const wanted = key();
     if (wanted !== shown) {
       shown = wanted;
+      // What was open and had the focus stays so where there is the like of it.
+      const opened = new Map([...box.querySelectorAll("details")].map((part) => [titleOf(part), part.open]));
+      const focused = box.contains(document.activeElement) ? document.activeElement?.id : undefined;
       form = build();
       fill(box, form?.element ?? null);
+      for (const part of box.querySelectorAll("details")) part.open = opened.get(titleOf(part)) ?? part.open;
+      if (focused) document.getElementById(focused)?.focus();
     }
     form?.sync();
+    markFields(box, judgement.value.findings);
   };
   scenarios.document.watch(update);
   scenarios.selection.watch(update);

@@ -1,11 +1,11 @@
 /** Forms for what belongs to the whole scenario: aircraft, sensors, altitude, methods, weights. */
-import { button, h, section } from "../dom";
+import { h, section } from "../dom";
 import { scenarios } from "../scenario";
 import type { Member, Scenario } from "../types";
-import { choiceField, numberField, textField, tickField, type Field } from "./fields";
+import { choiceField, numberField, type Field } from "./fields";
+import { choice, member, name, nested, number, top } from "./members";
+import { sensorSections, sensorsKey } from "./sensor_form";
 import { terrainField } from "./terrain_field";
-
-type List = "vehicles" | "sensors";
 
 const METHODS: Record<string, readonly string[]> = {
   coverage: ["auto", "li2018"],
@@ -14,66 +14,6 @@ const METHODS: Record<string, readonly string[]> = {
   smoothing: ["auto", "fillet", "shortcut"],
 };
 const WEIGHTS = ["length", "missile", "radar", "energy", "turns"] as const;
-
-/** Read and write one property of the nth vehicle or sensor; undefined takes it away. */
-function member(list: List, index: number, property: string) {
-  return {
-    get: <T>() => scenarios.document.value[list]?.[index]?.[property] as T | undefined,
-    set: (value: unknown): void =>
-      scenarios.change((draft) => {
-        const target = draft[list]?.[index];
-        if (!target) return;
-        if (value === undefined) delete target[property];
-        else target[property] = value;
-      }),
-  };
-}
-
-function nested(group: "method" | "objective", property: string) {
-  return {
-    get: <T>() => (scenarios.document.value[group] as Member | undefined)?.[property] as T | undefined,
-    set: (value: unknown): void =>
-      scenarios.change((draft) => {
-        const target: Member = { ...(draft[group] as Member | undefined) };
-        if (value === undefined) delete target[property];
-        else target[property] = value;
-        if (Object.keys(target).length === 0) delete draft[group];
-        else (draft as Member)[group] = target;
-      }),
-  };
-}
-
-function top(property: keyof Scenario) {
-  return {
-    get: <T>() => scenarios.document.value[property] as T | undefined,
-    set: (value: unknown): void =>
-      scenarios.change((draft) => {
-        if (value === undefined) delete draft[property];
-        else draft[property] = value;
-      }),
-  };
-}
-
-function number(list: List, index: number, property: string, label: string, unit: string, extra: object = {}): Field {
-  const { get, set } = member(list, index, property);
-  return numberField({ id: `${list}-${index}-${property}`, label, unit, min: 0, get: () => get<number>(), set, ...extra });
-}
-
-/** A choice whose first entry is what holds when nothing is said. */
-function choice(list: List, index: number, property: string, label: string, choices: readonly (string | readonly [string, string])[]): Field {
-  const { get, set } = member(list, index, property);
-  const first = choices[0] as string | readonly [string, string];
-  const usual = typeof first === "string" ? first : first[0];
-  return choiceField({ id: `${list}-${index}-${property}`, label, choices, get: () => get<string>() ?? usual, set });
-}
-
-function name(list: List, index: number): Field {
-  const { get, set } = member(list, index, "name");
-  return textField({
-    id: `${list}-${index}-name`, label: "Name", get: () => get<string>(), set,
-    refuse: (text) => (text === "" ? "A name is needed." : ""),
-  });
-}
 
 function vehicle(index: number): Field[] {
   return [
@@ -101,47 +41,22 @@ function finish(index: number): Field {
   return choiceField({ id: `vehicles-${index}-finish`, label: "How its mission ends", choices, get: () => get<string>() ?? "auto", set: (value) => set(value === "auto" ? undefined : value) });
 }
 
-function steered(index: number): Field {
-  const { get, set } = member("sensors", index, "stabilised");
-  return tickField({
-    id: `sensors-${index}-stabilised`, label: "Steered abeam of the course", hint: "In wind an antenna fixed to the aircraft turns with the nose; a steered one does not",
-    get: () => get<boolean>() ?? false, set: (value) => set(value ? true : undefined),
-  });
-}
-
-function sensor(index: number): Field[] {
-  return [
-    name("sensors", index),
-    choice("sensors", index, "look", "Looks", ["right", "left", "both"]),
-    choice("sensors", index, "mode", "Mode", ["stripmap", "spotlight", ["scansar", "ScanSAR"]]),
-    number("sensors", index, "incidence_deg", "Incidence", "°", { max: 90, required: true }),
-    number("sensors", index, "elevation_beamwidth_deg", "Beam, elevation", "°", { max: 180, required: true }),
-    number("sensors", index, "azimuth_beamwidth_deg", "Beam, azimuth", "°", { max: 180, placeholder: "from the aperture" }),
-    number("sensors", index, "aperture_length_m", "Aperture length", "m"),
-    number("sensors", index, "wavelength_m", "Wavelength", "m"),
-    number("sensors", index, "resolution_m", "Resolution", "m"),
-    number("sensors", index, "squint_deg", "Squint", "°", { min: -60, max: 60, placeholder: "0", hint: "Forward is positive" }),
-    ...(scenarios.document.value.sensors?.[index]?.["mode"] === "scansar"
-      ? [number("sensors", index, "sub_swaths", "Sub-swaths", "", { min: 1, placeholder: "3" })]
-      : []),
-    steered(index),
-    number("sensors", index, "pointing_margin_deg", "Pointing margin", "°", { max: 15, placeholder: "its autopilot's", hint: "Planned with this much less of the beam at every edge, because the aircraft sways; left empty, what its autopilot needs: 1.5° to 3°" }),
-    number("sensors", index, "position_margin_m", "Position margin", "m", { placeholder: "its autopilot's", hint: "Planned with this much less of the swath at every edge, because the aircraft is not quite on its line; left empty, what its autopilot needs: 2 to 5 m" }),
-  ];
-}
-
 function mission(): Field[] {
   const altitude = top("altitude_m");
+  const lowest = top("min_height_m");
+  const highest = top("max_height_m");
   const reference = top("altitude_reference");
   const seed = top("seed");
   const budget = top("time_budget_s");
   const clearance = top("clearance_m");
   return [
-    numberField({ id: "s-altitude_m", label: "Altitude", unit: "m", min: 0, required: true, get: () => altitude.get<number>(), set: altitude.set }),
+    numberField({ id: "s-altitude_m", label: "Altitude", unit: "m", min: 0, placeholder: "by the quality wanted", hint: "Left empty, regions are flown over as high as what they ask for allows", get: () => altitude.get<number>(), set: altitude.set }),
     choiceField({
       id: "s-altitude_reference", label: "Altitude over", get: () => reference.get<string>(), set: reference.set,
       choices: [["terrain", "terrain"], ["home", "home"], ["amsl", "mean sea level"]],
     }),
+    numberField({ id: "s-min_height_m", label: "Least height", unit: "m", min: 0, placeholder: "10", hint: "Over the ground; heights chosen by the quality wanted are not lower. Over terrain the clearance where left empty", get: () => lowest.get<number>(), set: lowest.set }),
+    numberField({ id: "s-max_height_m", label: "Greatest height", unit: "m", min: 0, placeholder: "the altitude", hint: "Over the ground; heights chosen by the quality wanted are not greater", get: () => highest.get<number>(), set: highest.set }),
     terrainField(),
     numberField({ id: "s-clearance_m", label: "Clearance", unit: "m", min: 0, placeholder: "the autopilot's", hint: "Kept from zones, hard threats, obstacles and terrain", get: () => clearance.get<number>(), set: clearance.set }),
     ...wind(),
@@ -174,21 +89,6 @@ function wind(): Field[] {
   ];
 }
 
-/** One more sensor, a copy of the last; and the nth taken away. */
-function addSensor(): void {
-  scenarios.change((draft) => {
-    const sensors = draft.sensors ?? [];
-    const taken = new Set(sensors.map((each) => String(each["name"])));
-    let number = sensors.length + 1;
-    while (taken.has(`sar-${number}`)) number += 1;
-    draft.sensors = [...sensors, { ...structuredClone(sensors.at(-1) ?? { type: "sar" }), name: `sar-${number}` }];
-  });
-}
-
-function removeSensor(index: number): void {
-  scenarios.change((draft) => void draft.sensors?.splice(index, 1));
-}
-
 function weights(): Field[] {
   return WEIGHTS.map((weight) => {
     const { get, set } = nested("objective", weight);
@@ -201,36 +101,23 @@ function weights(): Field[] {
 
 /** What decides which fields there are. */
 export function settingsKey(scenario: Scenario): string {
-  return `${scenario.vehicles?.length ?? 0}|${(scenario.sensors ?? []).map((sensor) => sensor["mode"] === "scansar").join()}`;
+  return `${scenario.vehicles?.length ?? 0}|${sensorsKey(scenario.sensors ?? [])}`;
 }
 
 export function settingsForm(scenario: Scenario): Field {
   const fields: Field[] = [];
-  const grid = (made: Field[]): HTMLElement => {
-    fields.push(...made);
-    return h("div", { class: "grid" }, ...made.map((field) => field.element));
+  const plain = (field: Field): HTMLElement => {
+    fields.push(field);
+    return field.element;
   };
-  const numbered = (word: string, count: number, index: number): string => (count > 1 ? `${word} ${index + 1}` : word);
+  const grid = (made: Field[]): HTMLElement => h("div", { class: "grid" }, ...made.map(plain));
   const vehicles = scenario.vehicles ?? [];
-  const sensors = scenario.sensors ?? [];
   const element = h(
     "div",
     {},
     section("Altitude, ground and wind", true, grid(mission())),
-    ...vehicles.map((_, index) => section(numbered("Aircraft", vehicles.length, index), false, grid(vehicle(index)))),
-    ...sensors.map((_, index) =>
-      section(
-        numbered("Sensor", sensors.length, index),
-        false,
-        grid(sensor(index)),
-        h(
-          "div",
-          { class: "row" },
-          index === sensors.length - 1 ? button("Add a sensor", addSensor) : null,
-          sensors.length > 1 ? button("Remove", () => removeSensor(index), { class: "danger", "aria-label": `Remove sensor ${index + 1}` }) : null,
-        ),
-      ),
-    ),
+    ...sensorSections(grid, plain),
+    ...vehicles.map((_, index) => section(vehicles.length > 1 ? `Aircraft ${index + 1}` : "Aircraft", false, grid(vehicle(index)))),
     section("Methods", false, grid(methods())),
     section("Weights", false, grid(weights())),
   );

@@ -112,7 +112,7 @@ def test_places_are_counted_by_the_photos_that_see_them(page: Page, plan: dict[s
             continue
         counts.append(sum(margin > 0.0 for margin in margins))
         assert ask(page, f"seenBy({lon}, {lat})") == counts[-1], (lon, lat)
-    assert max(counts) >= 9
+    assert max(counts) >= 5
     assert 0 in counts
 
 

@@ -1,0 +1,47 @@
+"""Bodies of answers about the camera database."""
+
+from __future__ import annotations
+
+from typing import Literal, Self
+
+from pydantic import BaseModel, Field
+
+from planner.sensors.cameras import Camera, Kind
+from planner.sensors.quality import Spectrum
+
+
+class SensorOut(BaseModel):
+    """One camera with its lens, by the figures its maker publishes."""
+
+    name: str = Field(
+        description="What a sensor's `model` says in a scenario.", examples=["Sony a6000 16 mm"]
+    )
+    kind: Kind
+    type: Literal["camera"] = "camera"
+    spectrum: Spectrum
+    focal_length_m: float = Field(description="Of the lens itself, not its equivalent on 35 mm film.")
+    pixel_pitch_m: float
+    image_px: tuple[int, int] = Field(description="Pixels across and along the flight direction.")
+    min_interval_s: float = Field(description="Shortest time between two photos; 0: not published.")
+    source: str = Field(description="Where the figures are published.")
+
+    @classmethod
+    def of(cls, camera: Camera) -> Self:
+        """The answer for a camera."""
+        optics = camera.optics
+        return cls(
+            name=camera.name,
+            kind=camera.kind,
+            spectrum=camera.spectrum,
+            focal_length_m=optics.focal_length_m,
+            pixel_pitch_m=optics.pixel_pitch_m,
+            image_px=(optics.columns, optics.rows),
+            min_interval_s=camera.min_interval_s,
+            source=camera.source,
+        )
+
+
+class SensorList(BaseModel):
+    """The camera database."""
+
+    sensors: list[SensorOut]

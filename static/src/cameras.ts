@@ -1,0 +1,66 @@
+/** The service's database of cameras, asked for once; and what a camera sees from a height. */
+import { connection, list } from "./api";
+import { attempt } from "./notices";
+import { Signal } from "./signal";
+import type { Member } from "./types";
+
+export interface KnownCamera {
+  name: string;
+  kind: string;
+  type: string;
+  spectrum?: "visible" | "infrared";
+  focal_length_m: number;
+  pixel_pitch_m: number;
+  /** Across and along the flight direction. */
+  image_px: [number, number];
+  min_interval_s: number;
+  source: string;
+}
+
+/** Empty until they were read. */
+export const cameras = new Signal<KnownCamera[]>([]);
+
+export function keepCameras(): void {
+  connection.watch((state) => {
+    if (state !== "up" || cameras.value.length > 0) return;
+    void attempt("The camera database was not read; cameras can be given by their figures", async () => {
+      const found = await list<KnownCamera>("/sensors", "sensors");
+      cameras.set(found.filter(({ type }) => type === "camera"));
+    });
+  });
+}
+
+export const known = (name: unknown): KnownCamera | undefined => cameras.value.find((camera) => camera.name.toLowerCase() === String(name ?? "").toLowerCase());
+
+export interface Optics {
+  focal_length_m: number;
+  pixel_pitch_m: number;
+  columns: number;
+  rows: number;
+}
+
+/** Lens and chip of a scenario's camera; null while they are not known. */
+export function opticsOf(sensor: Member | undefined): Optics | null {
+  const found: Member | undefined = sensor?.["model"] === undefined ? sensor : (known(sensor["model"]) as Member | undefined);
+  const [columns, rows] = Array.isArray(found?.["image_px"]) ? (found["image_px"] as number[]) : [];
+  const [focal_length_m, pixel_pitch_m] = [Number(found?.["focal_length_m"]), Number(found?.["pixel_pitch_m"])];
+  return focal_length_m > 0 && pixel_pitch_m > 0 && columns && rows ? { focal_length_m, pixel_pitch_m, columns, rows } : null;
+}
+
+export interface Seen {
+  gsd_m: number;
+  across_m: number;
+  along_m: number;
+  lanes_m: number;
+  photos_m: number;
+}
+
+/** Straight down, in still air, without margins: what the overlaps make of a height. */
+export function seenFrom(optics: Optics, height_m: number, forward: number, side: number): Seen {
+  const gsd_m = (optics.pixel_pitch_m / optics.focal_length_m) * height_m;
+  const [across_m, along_m] = [optics.columns * gsd_m, optics.rows * gsd_m];
+  return { gsd_m, across_m, along_m, lanes_m: (1 - side) * across_m, photos_m: (1 - forward) * along_m };
+}
+
+/** The height from which a pixel covers this much straight down. */
+export const heightFor_m = (optics: Optics, gsd_m: number): number => (gsd_m * optics.focal_length_m) / optics.pixel_pitch_m;
