@@ -22,7 +22,25 @@ def asked(
     content: bytes | None = None,
     timeout_s: float = 30.0,
 ) -> dict[str, Any]:
-    """The service's answer.
+    """The service's answer as JSON; raises as ``fetched``."""
+    body = fetched(service, method, path, params, content=content, timeout_s=timeout_s)
+    try:
+        told: dict[str, Any] = json.loads(body)
+    except ValueError as error:
+        raise _nobody(service, error) from error
+    return told
+
+
+def fetched(
+    service: str,
+    method: Literal["GET", "POST"],
+    path: str,
+    params: dict[str, Any],
+    *,
+    content: bytes | None = None,
+    timeout_s: float = 30.0,
+) -> bytes:
+    """The service's answer as it is.
 
     Raises
     ------
@@ -34,13 +52,17 @@ def asked(
     url = f"{service.rstrip('/')}/api/v1/{path}"
     try:
         answer = httpx.request(method, url, params=params, content=content, timeout=timeout_s)
+        if answer.status_code == 200:
+            return answer.content
         body: dict[str, Any] = answer.json()
     except (httpx.HTTPError, httpx.InvalidURL, json.JSONDecodeError) as error:
-        raise CommandError(
-            f"no service answers at {service}: {error or type(error).__name__}; start it, or give --service"
-        ) from error
+        raise _nobody(service, error) from error
     if answer.status_code == 422:
         raise CommandError(str(body["detail"]), Exit.BAD_INPUT)
-    if answer.status_code != 200:
-        raise CommandError(str(body.get("detail", answer.status_code)))
-    return body
+    raise CommandError(str(body.get("detail", answer.status_code)))
+
+
+def _nobody(service: str, error: Exception) -> CommandError:
+    return CommandError(
+        f"no service answers at {service}: {error or type(error).__name__}; start it, or give --service"
+    )

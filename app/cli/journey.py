@@ -14,7 +14,7 @@ from app.cli.output import CommandError, Exit, Json, emit, emit_json, read_docum
 from app.cli.planning import ScenarioFile, make
 
 if TYPE_CHECKING:
-    from app.services.records import TrackSample
+    from app.services.records import FlightEvent, TrackSample
     from mavlink.state.telemetry import VehicleState
     from mavlink.station.client import VehicleClient
 
@@ -29,6 +29,7 @@ class Flight:
     """A flight that has ended."""
 
     samples: tuple[TrackSample, ...]
+    photos: tuple[FlightEvent, ...]
     duration_s: float
 
 
@@ -141,7 +142,7 @@ async def _fly(
         began_s = time.perf_counter()
         flight = await _to_the_end(client)
         took_s = time.perf_counter() - began_s
-    seen = seen_by(read_scenario(document), plan, flight.samples)
+    seen = seen_by(read_scenario(document), plan, flight.samples, flight.photos)
     worst_m = max((collect.cross_track_max_m for collect in seen.passes), default=float("nan"))
     told.tell(
         f"flown: {flight.duration_s / 60:.1f} min in {took_s:.1f} s, {len(seen.passes)} of "
@@ -152,13 +153,22 @@ async def _fly(
     )
     regions = " ".join(f"{name} {fraction:.2%}" for name, fraction in seen.fraction.items())
     least = min(seen.fraction.values(), default=0.0)
+    if seen.photos is not None:
+        planned = sum(each.planned for each in seen.photos.passes)
+        told.tell(
+            f"photos: {seen.photos.taken} taken of {planned}, {seen.photos.counted} counted",
+            photos_taken=seen.photos.taken,
+            photos_planned=planned,
+            photos_counted=seen.photos.counted,
+        )
     told.tell(f"seen {least:.2%} or more of each region: {regions}", seen=seen.fraction)
     return len(seen.passes) == len(plan.collects)
 
 
 async def _to_the_end(client: VehicleClient) -> Flight:
     """Arm, start, and wait for the landing, or for the return that ArduPilot ends in circles over home."""
-    from app.services.vehicles.recorder import Thinner, is_flying
+    from app.services.flights.photos import photos_of
+    from app.services.vehicles.recorder import Thinner, flight_event, is_flying
 
     recorder = client.start_recording()
     for order in (client.arm, client.start_mission):
@@ -177,8 +187,10 @@ async def _to_the_end(client: VehicleClient) -> Flight:
         if not state.connected or time.monotonic() - news_s > STALLED_S:
             raise CommandError(f"the flight stalled at item {last_seq}, mode {state.mode}")
     client.stop_recording(recorder)
-    samples = tuple(Thinner(0.0).more(recorder.track()))
-    return Flight(samples, samples[-1].time_s - samples[0].time_s)
+    track = recorder.track()
+    samples = tuple(Thinner(0.0).more(track))
+    photos = photos_of([flight_event(event) for event in track.events])
+    return Flight(samples, photos, samples[-1].time_s - samples[0].time_s)
 
 
 def _returning(state: VehicleState) -> bool:

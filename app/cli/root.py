@@ -7,7 +7,20 @@ from typing import Annotated
 
 import typer
 
-from app.cli import audit, bench, exchange, journey, links, logs, missions, planning, sensors, serve, signing
+from app.cli import (
+    audit,
+    bench,
+    exchange,
+    flown,
+    journey,
+    links,
+    logs,
+    missions,
+    planning,
+    sensors,
+    serve,
+    signing,
+)
 from app.cli.output import CommandError, Exit, fail
 
 cli = typer.Typer(
@@ -39,7 +52,8 @@ def _root(
     pass
 
 
-for module in (serve, links, planning, missions, exchange, journey, sensors, audit, logs, signing, bench):
+MODULES = (serve, links, planning, missions, exchange, journey, sensors, audit, logs, flown, signing, bench)
+for module in MODULES:
     module.register(cli)
 
 

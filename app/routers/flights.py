@@ -26,6 +26,12 @@ GEOJSON_ANSWER: dict[int | str, dict[str, Any]] = {
     200: {"content": {GEOJSON: {"schema": {"type": "object"}}}}
 }
 
+GEOTIFF = "image/tiff; application=geotiff"
+GEOTIFF_ANSWER: dict[int | str, dict[str, Any]] = {
+    200: {"content": {GEOTIFF: {"schema": {"type": "string", "format": "binary"}}}}
+}
+RegionName = Annotated[str | None, Query(max_length=200, description="One region; all when left out.")]
+
 
 @router.get("", summary="List flights", responses=responses(422))
 async def list_flights(
@@ -76,6 +82,28 @@ async def track_gpx(flight_id: str, flights: FlightsDep) -> Response:
 async def coverage(flight_id: str, flights: FlightsDep) -> Response:
     """Ground of each region seen and not seen as flown, the fractions, and the cross-track errors."""
     return Response(write_json(await flights.coverage(flight_id)), media_type=GEOJSON)
+
+
+@router.get(
+    "/{flight_id}/overlap.tif",
+    summary="How many photos saw the ground",
+    response_class=Response,
+    responses=responses(404, 409) | GEOTIFF_ANSWER,
+)
+async def overlap_raster(flight_id: str, flights: FlightsDep, roi: RegionName = None) -> Response:
+    """GeoTIFF over the regions that a camera was to see: photos that see each cell, 0 for none."""
+    return Response(await flights.raster(flight_id, "overlap", roi), media_type=GEOTIFF)
+
+
+@router.get(
+    "/{flight_id}/gsd.tif",
+    summary="How finely photos saw the ground",
+    response_class=Response,
+    responses=responses(404, 409) | GEOTIFF_ANSWER,
+)
+async def gsd_raster(flight_id: str, flights: FlightsDep, roi: RegionName = None) -> Response:
+    """GeoTIFF: the least ground sampled distance of each cell in metres, NaN where no photo sees it."""
+    return Response(await flights.raster(flight_id, "gsd", roi), media_type=GEOTIFF)
 
 
 @router.get(

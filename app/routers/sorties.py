@@ -18,6 +18,12 @@ GEOJSON_ANSWER: dict[int | str, dict[str, Any]] = {
     200: {"content": {GEOJSON: {"schema": {"type": "object"}}}}
 }
 
+GEOTIFF = "image/tiff; application=geotiff"
+GEOTIFF_ANSWER: dict[int | str, dict[str, Any]] = {
+    200: {"content": {GEOTIFF: {"schema": {"type": "string", "format": "binary"}}}}
+}
+RegionName = Annotated[str | None, Query(max_length=200, description="One region; all when left out.")]
+
 
 @router.get(
     "/coverage",
@@ -32,6 +38,28 @@ async def coverage(plan_id: str, flights: FlightsDep) -> Response:
     between two of its parts is `unknown`, neither seen nor missed, until an onboard log tells.
     """
     return Response(write_json(await flights.plan_coverage(plan_id)), media_type=GEOJSON)
+
+
+@router.get(
+    "/overlap.tif",
+    summary="How many photos of all flights saw the ground",
+    response_class=Response,
+    responses=responses(404, 409) | GEOTIFF_ANSWER,
+)
+async def overlap_raster(plan_id: str, flights: FlightsDep, roi: RegionName = None) -> Response:
+    """As `overlap.tif` of a flight, of all flights of the plan together."""
+    return Response(await flights.plan_raster(plan_id, "overlap", roi), media_type=GEOTIFF)
+
+
+@router.get(
+    "/gsd.tif",
+    summary="How finely photos of all flights saw the ground",
+    response_class=Response,
+    responses=responses(404, 409) | GEOTIFF_ANSWER,
+)
+async def gsd_raster(plan_id: str, flights: FlightsDep, roi: RegionName = None) -> Response:
+    """As `gsd.tif` of a flight, of all flights of the plan together."""
+    return Response(await flights.plan_raster(plan_id, "gsd", roi), media_type=GEOTIFF)
 
 
 @router.post(

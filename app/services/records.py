@@ -8,6 +8,7 @@ from datetime import datetime
 from typing import Any, Literal
 
 from mavlink.state.energy import EnergySource
+from mavlink.state.photos import PhotoSource
 from mavlink.station.forward.address import ForwardAddress
 
 PlanState = Literal["queued", "running", "done", "failed", "cancelled"]
@@ -41,7 +42,10 @@ class TrackSample:
 
 @dataclass(frozen=True, slots=True)
 class FlightEvent:
-    """A photo, or a switch of the sensor, in the vehicle's time since boot; angles as a camera tells them."""
+    """A photo, or a switch of the sensor, in the vehicle's time since boot; angles as a camera tells them.
+
+    ``attitude_of`` a photo: the ``autopilot``'s airframe, or the ``camera`` itself; None of what is no photo.
+    """
 
     time_s: float
     kind: Literal["on", "off", "photo"]
@@ -54,6 +58,7 @@ class FlightEvent:
     heading_deg: float | None = None
     roll_deg: float | None = None
     pitch_deg: float | None = None
+    attitude_of: PhotoSource | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -100,10 +100,19 @@ def flown_coverage(asked: Asked, plan: Plan, records: Sequence[Record]) -> Flown
     records
         One for each flight.
     """
+    return _judged(asked, plan, records).verdict()
+
+
+def photo_judge(asked: Asked, plan: Plan, records: Sequence[Record]) -> PhotoJudge:
+    """What the cameras of flights of one plan took, to be laid on grids."""
+    return _judged(asked, plan, records).cameras
+
+
+def _judged(asked: Asked, plan: Plan, records: Sequence[Record]) -> _Judge:
     judge = _Judge(asked, plan)
     for number, record in enumerate(records):
         judge.take(number, record)
-    return judge.verdict()
+    return judge
 
 
 class _Judge:
@@ -116,7 +125,7 @@ class _Judge:
         self._passes = tuple(PlannedPass.of(c, asked.frame, self._beside_m(c)) for c in plan.collects)
         model = next(iter(self._models.values()))
         suite = asked.suite.in_wind(model.drift, model.wind.toward_rad)
-        self._cameras = PhotoJudge(
+        self.cameras = PhotoJudge(
             plan, suite, asked.frame, self._passes, self._home_m, asked.airspace.terrain
         )
         self._ground: dict[str, list[Polygon]] = {}
@@ -152,8 +161,8 @@ class _Judge:
         self._lines.setdefault(vehicle, []).append((line, gaps))
         passes = tuple(p for p in self._passes if vehicle is None or p.collect.vehicle == vehicle)
         in_pass = matched(line, passes)
-        self._cameras.take(record, line, in_pass, passes)
-        by_photos = np.array([*(self._cameras.sees(p.collect.sensor) for p in passes), False], dtype=bool)
+        self.cameras.take(record, line, in_pass, passes)
+        by_photos = np.array([*(self.cameras.sees(p.collect.sensor) for p in passes), False], dtype=bool)
         if by_photos[:-1].all():
             by_photos[:] = True
         label = _labels(in_pass, passes)
@@ -255,7 +264,7 @@ class _Judge:
     def verdict(self) -> FlownCoverage:
         """What all of them saw."""
         seen_by = {name: _areal(union_all(parts, grid_size=GRID_M)) for name, parts in self._ground.items()}
-        parts = (*self._unknown_parts(), *self._cameras.unknown_parts())
+        parts = (*self._unknown_parts(), *self.cameras.unknown_parts())
         photos = self._photos()
         nobody_knows = self._unknown_ground(parts)
         fraction, seen, unseen, dark, dark_fraction = {}, {}, {}, {}, {}
@@ -287,7 +296,7 @@ class _Judge:
             region.name: wished_gsd_m(region, self._asked.suite.of(region), self._plan, self._passes)
             for region in self._asked.regions
         }
-        return self._cameras.coverage(self._asked.regions, limits_m)
+        return self.cameras.coverage(self._asked.regions, limits_m)
 
     def _unknown_parts(self) -> Iterable[UnknownPart]:
         everybody = self._lines.get(None, [])
@@ -321,8 +330,8 @@ class _Judge:
     def _margins_m(self, planned: PlannedPass) -> tuple[float, float]:
         """How far behind and ahead of a place ground lies whose aperture or photo has the place in it."""
         collect = planned.collect
-        if self._cameras.sees(collect.sensor):
-            return (self._cameras.margin_m(planned),) * 2
+        if self.cameras.sees(collect.sensor):
+            return (self.cameras.margin_m(planned),) * 2
         sensor = self._asked.suite.named(collect.sensor)
         if not isinstance(sensor, SarSensor) or sensor.turned_rad is not None:
             return math.inf, math.inf

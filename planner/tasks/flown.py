@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from planner.as_flown import coverage
+from planner.as_flown.photo_judge import PhotoJudge
 from planner.as_flown.track import Record, TrackSample
 from planner.plan import Plan
 from planner.scenario import Scenario
@@ -17,7 +18,15 @@ def flown_coverage(scenario: Scenario, plan: Plan, track: Sequence[TrackSample])
 
 def sortie_coverage(scenario: Scenario, plan: Plan, records: Sequence[Record]) -> coverage.FlownCoverage:
     """Of several flights together; see ``planner.as_flown.coverage.flown_coverage``."""
-    asked = coverage.Asked(
+    return coverage.flown_coverage(_asked(scenario), plan, records)
+
+
+def sortie_photos(scenario: Scenario, plan: Plan, records: Sequence[Record]) -> PhotoJudge:
+    """The photos of several flights together, to be laid on grids."""
+    return coverage.photo_judge(_asked(scenario), plan, records)
+
+
+def _asked(scenario: Scenario) -> coverage.Asked:
+    return coverage.Asked(
         scenario.frame, scenario.regions, scenario.suite, scenario.aircraft, scenario.airspace
     )
-    return coverage.flown_coverage(asked, plan, records)

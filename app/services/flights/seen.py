@@ -21,11 +21,13 @@ from app.services.flights.as_flown import (
     SLIVER_M,
     SLIVER_M2,
     Recorded,
+    Trigger,
     gaps,
     regions_json,
     triggers,
 )
 from app.services.flights.phases import flown_phases
+from app.services.flights.photo_coverage import photo_triggers, photos_json, taken_of
 from app.services.flights.photos import spacing_of
 from app.services.flights.refly import refly_scenario
 from app.services.flights.track_json import feature, line_of, track_geojson
@@ -72,9 +74,14 @@ class Sortie:
         return None if self.terrain_folder is None else partial(stored_terrain, self.terrain_folder)
 
 
-def seen_by(scenario: Scenario, plan: Plan, samples: tuple[TrackSample, ...]) -> FlownCoverage:
-    """The ground a track saw; without a height or a roll nothing is seen."""
-    return sortie_coverage(scenario, plan, (Record(_places(samples)),))
+def seen_by(
+    scenario: Scenario,
+    plan: Plan,
+    samples: tuple[TrackSample, ...],
+    photos: Sequence[FlightEvent] = (),
+) -> FlownCoverage:
+    """The ground a track saw, and its photos; without a height or a roll nothing is seen."""
+    return sortie_coverage(scenario, plan, (Record(_places(samples), photos=taken_of(photos, samples)),))
 
 
 def _places(samples: Sequence[TrackSample]) -> tuple[Place, ...]:
@@ -95,6 +102,11 @@ def _places(samples: Sequence[TrackSample]) -> tuple[Place, ...]:
 
 def judged(sortie: Sortie, scenario: Scenario, plan: Plan) -> FlownCoverage:
     """What was seen, and what nobody knows."""
+    return sortie_coverage(scenario, plan, records_of(sortie))
+
+
+def records_of(sortie: Sortie) -> list[Record]:
+    """What the judge takes of its flights."""
     records = []
     for number, flight in enumerate(sortie.flights):
         later = [
@@ -103,8 +115,9 @@ def judged(sortie: Sortie, scenario: Scenario, plan: Plan) -> FlownCoverage:
             if other.record.vehicle_id == flight.record.vehicle_id and other.samples
         ]
         gap = _gap_after(flight, later[0] if later else None)
-        records.append(Record(_places(flight.samples), flight.record.plan_vehicle, gap))
-    return sortie_coverage(scenario, plan, records)
+        photos = taken_of(flight.photos, flight.samples)
+        records.append(Record(_places(flight.samples), flight.record.plan_vehicle, gap, photos))
+    return records
 
 
 def _gap_after(flight: Flown, later: Flown | None) -> Gap | None:
@@ -139,6 +152,8 @@ def coverage_of(sortie: Sortie) -> dict[str, Any]:
     while the sensor was on, ``triggers`` with how the sensor was switched over each and which photos are
     missing, ``phases`` with how long each of a flight's was to take and took, ``regions`` with what was
     wanted of each, what is missing, and whether it counts as ``seen``: from ``seen_fraction`` of it on;
+    ``photos`` with how many were taken, counted and lost, and the overlaps and ground sampled distances
+    reached; ``assumed`` ground is that of photos which nobody reported, and neither seen nor unseen by it;
     ``gaps`` of the record, each with its time; ``not_counted`` with what was flown with the sensor on for
     nothing, and why; ``energy`` planned and drawn; ``flights``.
     """
@@ -148,7 +163,14 @@ def coverage_of(sortie: Sortie) -> dict[str, Any]:
         Recorded(f.record.plan_vehicle, f.samples, f.photos, spacing_of(f.record.payload))
         for f in sortie.flights
     ]
-    shapes = (("seen", result.seen), ("unseen", result.unseen), ("unknown", result.unknown))
+    by_photos = {} if result.photos is None else result.photos.regions
+    assumed = {name: region.assumed for name, region in by_photos.items()}
+    shapes = (
+        ("seen", result.seen),
+        ("unseen", result.unseen),
+        ("unknown", result.unknown),
+        ("assumed", assumed),
+    )
     features = [
         feature(written(shape, scenario.frame), role=role, roi=name, fraction=result.fraction[name])
         for role, by_name in shapes
@@ -171,7 +193,8 @@ def coverage_of(sortie: Sortie) -> dict[str, Any]:
         "unknown_coverage": result.unknown_fraction,
         "planned_coverage": plan.metrics.coverage,
         "collects": [asdict(collect) for collect in result.passes],
-        "triggers": [asdict(t) for t in triggers(scenario, plan, recorded, result.unknown_parts)],
+        "triggers": [asdict(t) for t in _triggers(scenario, plan, recorded, result)],
+        "photos": photos_json(scenario, result),
         "phases": [
             asdict(phase)
             for flight in sortie.flights[:1]
@@ -187,6 +210,21 @@ def coverage_of(sortie: Sortie) -> dict[str, Any]:
         "energy": [_energy(flight, plan) for flight in sortie.flights],
         "features": features,
     }
+
+
+def _triggers(
+    scenario: Scenario, plan: Plan, recorded: Sequence[Recorded], result: FlownCoverage
+) -> list[Trigger]:
+    """Of all collects; those of photos by their photos, whatever of the payload was recorded."""
+    by_photos = photo_triggers(plan, result, {one.vehicle for one in recorded})
+    told = {trigger.seq for trigger in by_photos}
+    switched = triggers(scenario, plan, recorded, result.unknown_parts)
+    return sorted([*by_photos, *(t for t in switched if t.seq not in told)], key=lambda t: t.seq)
+
+
+def asked_of(sortie: Sortie) -> tuple[Scenario, Plan]:
+    """What was to be seen, and the plan to see it; raises as ``coverage_of``."""
+    return _asked(sortie, read_object(sortie.scenario_text)), plan_of(sortie.plan_text)
 
 
 def _asked(sortie: Sortie, document: dict[str, Any]) -> Scenario:

@@ -11,6 +11,7 @@ from app.services.desk import Desk
 from app.services.errors import ConflictError, NotFoundError
 from app.services.flights.filling import filling
 from app.services.flights.gpx import write_gpx
+from app.services.flights.photo_raster import RasterKind, raster_of
 from app.services.flights.photos import photos_of, spacing_of, switched_by_photos
 from app.services.flights.seen import Flown, Sortie, coverage_of, refly_of, report_of
 from app.services.flights.track_json import track_geojson
@@ -55,6 +56,14 @@ class FlightService:
             The flight followed no plan of this service, or the plan has been deleted.
         """
         return await self._desk.run("flight", coverage_of, await self._alone(flight_id))
+
+    async def raster(self, flight_id: str, kind: RasterKind, roi: str | None) -> bytes:
+        """How often or how finely one flight's photos saw regions, as GeoTIFF; raises as ``coverage``."""
+        return await self._desk.run("flight", raster_of, await self._alone(flight_id), kind, roi)
+
+    async def plan_raster(self, plan_id: str, kind: RasterKind, roi: str | None) -> bytes:
+        """The same of all flights of a plan together; raises as ``plan_coverage``."""
+        return await self._desk.run("flight", raster_of, await self._sortie(plan_id), kind, roi)
 
     async def plan_coverage(self, plan_id: str) -> dict[str, Any]:
         """The ground that all flights of a plan saw together.

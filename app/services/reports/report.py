@@ -74,6 +74,13 @@ _DRAWN_AS = {
 }
 
 
+def _camera(photos: dict[str, Any] | None) -> dict[str, Any] | None:
+    """Photos with how many were planned and are missing."""
+    if photos is None:
+        return None
+    return photos | {name: sum(each[name] for each in photos["passes"]) for name in ("planned", "missing")}
+
+
 def write_flight_report(
     record: FlightRecord, scenario: dict[str, Any], track: dict[str, Any], coverage: dict[str, Any]
 ) -> str:
@@ -94,6 +101,7 @@ def write_flight_report(
         triggers=[trigger | {"line": lines.get(trigger["seq"])} for trigger in coverage["triggers"]],
         photos=any(t["photos_taken"] or t["photos_expected"] for t in coverage["triggers"]),
         missed=[trigger for trigger in coverage["triggers"] if trigger["state"] != "ok"],
+        camera=_camera(coverage["photos"]),
         gaps=coverage["gaps"],
         not_counted=coverage["not_counted"],
         energy=coverage["energy"][0] if coverage["energy"] else None,

@@ -196,6 +196,7 @@ class FlightEventRow(Base):
     heading_deg: Mapped[float | None] = mapped_column(Float)
     roll_deg: Mapped[float | None] = mapped_column(Float)
     pitch_deg: Mapped[float | None] = mapped_column(Float)
+    attitude_of: Mapped[str | None] = mapped_column(String(9))
 
 
 class TerrainRow(Base):

@@ -291,6 +291,7 @@ def flight_event(event: SensorEvent) -> FlightEvent:
         heading_deg=event.heading_deg,
         roll_deg=event.roll_deg,
         pitch_deg=event.pitch_deg,
+        attitude_of=event.attitude_of if event.kind == "photo" else None,
     )
 
 

@@ -20,7 +20,7 @@ def test_help_lists_every_command() -> None:
     command = [sys.executable, "-m", "app.cli", "--help"]
     ended = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=30, check=True)
     commands = ("serve", "plan", "validate", "export", "upload", "download", "convert", "import", "sim")
-    commands = (*commands, "bench", "demo", "audit")
+    commands = (*commands, "bench", "demo", "audit", "flown")
     assert all(f" {name} " in ended.stdout for name in commands)
 
 

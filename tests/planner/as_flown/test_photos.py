@@ -34,16 +34,21 @@ BEYOND_M = 20.0
 CAMERA = PlanCamera("cam", 0.035, 4.5e-6, 6000, 4000, 0.75, 0.65, tilt_deg=0.0)
 
 
-@lru_cache
-def planned(trigger: str = "distance") -> tuple[Scenario, Plan]:
-    """One region of some lanes."""
+def asked(trigger: str = "distance") -> dict[str, Any]:
+    """A scenario of one region of some lanes."""
     document = small()
     ring = [[0.0, 0.0], [0.002, 0.0], [0.002, 0.002], [0.0, 0.002], [0.0, 0.0]]
     document["features"][:2] = [feature("A", "roi", "Polygon", [ring])]
     document["altitude_m"] = HEIGHT_M
     camera: dict[str, Any] = {"focal_length_m": 0.035, "pixel_pitch_m": 4.5e-6, "image_px": [6000, 4000]}
     document["sensors"] = [{"name": "cam", "type": "camera", "trigger": trigger, **camera}]
-    scenario = read_scenario(document)
+    return document
+
+
+@lru_cache
+def planned(trigger: str = "distance") -> tuple[Scenario, Plan]:
+    """The same, read and planned."""
+    scenario = read_scenario(asked(trigger))
     return scenario, make_plan(scenario)
 
 
