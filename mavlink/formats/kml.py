@@ -9,7 +9,17 @@ from collections.abc import Sequence
 import simplekml
 
 from mavlink.wire.geometry import LocalMap, here, offset
-from planner.plan import Collect, FlownPath, Footprint, LonLat, LonLatAlt, Plan, ZoneCircle, ZonePolygon
+from planner.plan import (
+    Collect,
+    FlownPath,
+    Footprint,
+    LonLat,
+    LonLatAlt,
+    Photos,
+    Plan,
+    ZoneCircle,
+    ZonePolygon,
+)
 
 _PATH = "ff00a5ff"
 _COLLECT = "ff00ff00"
@@ -17,13 +27,15 @@ _FOOTPRINT = "4000ff00"
 _AREA = "ffffffff"
 _BARRED = "400000ff"
 _CIRCLE_POINTS = 72
+#: Of the icons every viewer has.
+_DOT = "http://maps.google.com/mapfiles/kml/shapes/placemark_circle.png"
 
 #: simplekml counts its ids, and keeps what it is writing, in class variables.
 _LOCK = threading.Lock()
 
 
 def write_kml(plan: Plan, vehicle: str | None = None) -> str:
-    """The paths, collects and footprints of a plan, and its fence, as a KML document.
+    """The paths, collects, photos and footprints of a plan, and its fence, as a KML document.
 
     Parameters
     ----------
@@ -61,6 +73,8 @@ def _document(plan: Plan, names: list[str], mode: str) -> str:
                 _add_path(folder, path, mode)
         for collect in plan.collects_of(name):
             _add_collect(folder, collect, mode)
+        for photos in plan.photos_of(name):
+            _add_photos(folder, photos, mode)
         for footprint in plan.footprints:
             if footprint.vehicle == name:
                 _add_footprint(folder, footprint)
@@ -93,6 +107,17 @@ def _add_collect(folder: simplekml.Folder, collect: Collect, mode: str) -> None:
     )
     line.style.linestyle.color = _COLLECT
     line.style.linestyle.width = 5
+
+
+def _add_photos(folder: simplekml.Folder, photos: Photos, mode: str) -> None:
+    """The places of one collect's photos, as one thing that can be hidden."""
+    places = folder.newmultigeometry(name=f"photos {photos.seq}: {_text(photos.sensor)}")
+    places.description = f"{len(photos.places)} photos, every {photos.interval_m:.1f} m"
+    places.style.iconstyle.icon.href = _DOT
+    places.style.iconstyle.scale = 0.5
+    for place in _line(photos.places):
+        point = places.newpoint(coords=[place])
+        point.altitudemode = mode
 
 
 def _add_footprint(folder: simplekml.Folder, footprint: Footprint) -> None:

@@ -8,21 +8,21 @@ from typing import Final
 
 from mavlink.encoding.payload import RelayPayload, ServoPayload
 from mavlink.rules import whole_flight
-from mavlink.rules.base import Needs, ParameterFinding, Rule, Values, any_of, camera, check, lands
+from mavlink.rules.base import Needs, ParameterFinding, Rule, Values, any_of, check, lands, part_of
+from mavlink.rules.camera import ARDUPILOT as CAMERA
 from mavlink.rules.flight import bank, corners, l1_period, loiter, speed
 from mavlink.rules.gimbal import ARDUPILOT as GIMBAL
 from mavlink.wire.items import Command
 
 
 def _relay_names(needs: Needs) -> tuple[str, ...]:
-    assert isinstance(needs.payload, RelayPayload)
-    number = needs.payload.relay + 1
-    return (f"RELAY{number}_FUNCTION",)
+    relay = part_of(needs, RelayPayload)
+    return () if relay is None else (f"RELAY{relay.relay + 1}_FUNCTION",)
 
 
 def _servo_names(needs: Needs) -> tuple[str, ...]:
-    assert isinstance(needs.payload, ServoPayload)
-    return (f"SERVO{needs.payload.servo}_FUNCTION",)
+    servo = part_of(needs, ServoPayload)
+    return () if servo is None else (f"SERVO{servo.servo}_FUNCTION",)
 
 
 #: FENCE_TYPE's bits: a greatest height, a circle round home, the fences uploaded; 8 is a least height.
@@ -31,34 +31,19 @@ _HOME_FENCE: Final = 2
 _DRAWN_FENCES: Final = 4
 #: Fences that are the vehicle's own lie at least this far outside the mission, or it turns back on its way.
 _FENCE_ROOM_M: Final = 20.0
-_SHUTTERS: Final = tuple(f"SERVO{number}_FUNCTION" for number in range(1, 17))
 
 _PAYLOAD: Final = (
-    check(
-        "CAM1_TYPE",
-        lambda value, needs: value > 0,
-        lambda needs: "without a camera driver the trigger items are accepted and nothing is taken",
-        lambda needs: 1.0,
-        "error",
-        camera,
-    ),
-    any_of(
-        lambda needs: _SHUTTERS,
-        lambda value, needs: round(value) == 10,
-        lambda needs: "no output has function 10 (camera trigger), which CAM1_TYPE 1 (servo) needs",
-        camera,
-    ),
     any_of(
         _servo_names,
         lambda value, needs: round(value) in (0, 1) or 51 <= value <= 66,
         lambda needs: "an output with a function of its own does not obey DO_SET_SERVO; 0 does",
-        lambda needs: isinstance(needs.payload, ServoPayload),
+        lambda needs: part_of(needs, ServoPayload) is not None,
     ),
     any_of(
         _relay_names,
         lambda value, needs: round(value) == 1,
         lambda needs: "the relay that switches the sensor is no relay; 1 makes it one, RELAYx_PIN says where",
-        lambda needs: isinstance(needs.payload, RelayPayload),
+        lambda needs: part_of(needs, RelayPayload) is not None,
     ),
 )
 
@@ -135,6 +120,7 @@ PLANE: Final[tuple[Rule, ...]] = (
     _AUTOLAND,
     *_FENCE,
     *_PAYLOAD,
+    *CAMERA,
     *GIMBAL,
 )
 VTOL: Final[tuple[Rule, ...]] = (
@@ -155,4 +141,4 @@ VTOL: Final[tuple[Rule, ...]] = (
         lands,
     ),
 )
-COPTER: Final[tuple[Rule, ...]] = (*whole_flight.COPTER, *_FENCE, *_PAYLOAD, *GIMBAL)
+COPTER: Final[tuple[Rule, ...]] = (*whole_flight.COPTER, *_FENCE, *_PAYLOAD, *CAMERA, *GIMBAL)

@@ -4,17 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Final, Literal
+from typing import Final, Literal, TypeVar
 
 from mavlink.dialects.mission import Mission
 from mavlink.encoding.gimbal import Hold, Protocol, hold_of, protocol_of
-from mavlink.encoding.payload import ActuatorPayload, CameraPayload, ImagePayload, Payload, RelayPayload
+from mavlink.encoding.payload import OutputPayload, Payload, TriggerPayload, parts_of
+from mavlink.encoding.trigger import interval_s
 from mavlink.rules.heights import HeightNeeds, heights_of
+from mavlink.state.outputs import switched_by
 from mavlink.wire.geometry import distance_m
 from mavlink.wire.items import Command, Frame
 from planner.plan import Plan
 
 Values = Mapping[str, float]
+Part = TypeVar("Part")
 
 #: Items that are flown to.
 _FLOWN_TO: Final = frozenset(
@@ -117,6 +120,8 @@ class Needs:
         Of the mission's places, above home and from it; 0 where it has none.
     gimbal
         None where the sensor is bolted on.
+    photo_s
+        Shortest time between two photos; None where there are none.
     """
 
     airspeed_m_s: float
@@ -129,13 +134,14 @@ class Needs:
     farthest_m: float = 0.0
     gimbal: GimbalNeeds | None = None
     heights: HeightNeeds = field(default_factory=HeightNeeds)
+    photo_s: float | None = None
 
 
 def needs_of(plan: Plan, mission: Mission, payload: Payload | None, settle_m: float | None = None) -> Needs:
     """What a plan's mission needs."""
     vehicle = next(vehicle for vehicle in plan.vehicles if vehicle.name == mission.vehicle)
-    if mission.autopilot == "px4" and isinstance(payload, RelayPayload):
-        payload = ActuatorPayload(payload.relay + 1)  # as the encoder says it
+    if payload is not None:
+        payload = switched_by(payload, mission.autopilot)
     highest_m, farthest_m = _reach(mission)
     return Needs(
         vehicle.airspeed_m_s,
@@ -148,7 +154,15 @@ def needs_of(plan: Plan, mission: Mission, payload: Payload | None, settle_m: fl
         farthest_m,
         _gimbal(plan, mission),
         heights_of(plan, mission.vehicle),
+        _photo_s(plan, mission.vehicle),
     )
+
+
+def _photo_s(plan: Plan, vehicle: str) -> float | None:
+    """The shortest time between two photos as planned; None where there are none."""
+    collects = {collect.seq: collect for collect in plan.collects_of(vehicle)}
+    photos = [p for p in plan.photos_of(vehicle) if p.seq in collects and len(p.places) > 1]
+    return min((interval_s(p, collects[p.seq]) for p in photos), default=None)
 
 
 def _gimbal(plan: Plan, mission: Mission) -> GimbalNeeds | None:
@@ -243,9 +257,14 @@ def any_of(
     return Rule(names, judge, applies)
 
 
-def camera(needs: Needs) -> bool:
-    """Whether the sensor is triggered as a camera."""
-    return isinstance(needs.payload, (CameraPayload, ImagePayload))
+def parts(needs: Needs) -> tuple[OutputPayload | TriggerPayload, ...]:
+    """How the sensors are switched, one by one."""
+    return () if needs.payload is None else parts_of(needs.payload)
+
+
+def part_of(needs: Needs, kind: type[Part]) -> Part | None:
+    """The payload of a kind; None where no sensor is switched so."""
+    return next((part for part in parts(needs) if isinstance(part, kind)), None)
 
 
 def lands(needs: Needs) -> bool:

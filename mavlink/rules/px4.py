@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 from typing import Final
 
-from mavlink.encoding.payload import ActuatorPayload, CameraPayload
+from mavlink.encoding.payload import ActuatorPayload
 from mavlink.rules import whole_flight
-from mavlink.rules.base import Needs, ParameterFinding, Rule, Values, check, lands
+from mavlink.rules.base import Needs, ParameterFinding, Rule, Values, check, lands, part_of
+from mavlink.rules.camera import PX4 as CAMERA
 from mavlink.rules.flight import SWITCH_DISTANCE, bank, corners, loiter, speed
 from mavlink.rules.gimbal import PX4 as GIMBAL
 from mavlink.state.outputs import px4_outputs
@@ -23,8 +24,9 @@ _ACTUATORS: Final = range(301, 305)
 
 def _judge_output(values: Values, needs: Needs) -> ParameterFinding | None:
     """Whether an output follows the actuator that switches the sensor; the named one, where one is."""
-    payload = needs.payload
-    assert isinstance(payload, ActuatorPayload)
+    payload = part_of(needs, ActuatorPayload)
+    if payload is None:
+        return None
     found = [
         (output.function_parameter, values[output.function_parameter])
         for output in px4_outputs(payload)
@@ -47,8 +49,8 @@ def _judge_output(values: Values, needs: Needs) -> ParameterFinding | None:
 
 
 def _outputs(needs: Needs) -> tuple[str, ...]:
-    assert isinstance(needs.payload, ActuatorPayload)
-    return tuple(output.function_parameter for output in px4_outputs(needs.payload))
+    payload = part_of(needs, ActuatorPayload)
+    return () if payload is None else tuple(output.function_parameter for output in px4_outputs(payload))
 
 
 _COMMON: Final = (
@@ -59,15 +61,7 @@ _COMMON: Final = (
         lambda needs: 3.0,
         applies=lambda needs: needs.fence,
     ),
-    check(
-        "TRIG_MODE",
-        lambda value, needs: round(value) == 4,
-        lambda needs: "distance triggers need mode 4 (set before start-up), else nothing is taken",
-        lambda needs: 4.0,
-        "error",
-        lambda needs: isinstance(needs.payload, CameraPayload),
-    ),
-    Rule(_outputs, _judge_output, lambda needs: isinstance(needs.payload, ActuatorPayload)),
+    Rule(_outputs, _judge_output, lambda needs: part_of(needs, ActuatorPayload) is not None),
     check(
         "COM_DISARM_PRFLT",
         lambda value, needs: value <= 0 or value >= 5.0,
@@ -81,6 +75,7 @@ _COMMON: Final = (
         lambda needs: 2.0,
         applies=lands,
     ),
+    *CAMERA,
     *GIMBAL,
 )
 

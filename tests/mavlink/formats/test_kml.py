@@ -12,6 +12,7 @@ from shapely.geometry import Point, Polygon
 
 from mavlink.formats import write_kml
 from planner.plan import Fence, Plan, ZoneCircle
+from tests.mavlink.cameras import with_photos
 from tests.mavlink.plans import FRAME, lonlat, make_plan, square_fence
 
 KML = "{http://www.opengis.net/kml/2.2}"
@@ -42,6 +43,18 @@ def test_path_collects_and_footprints_are_placemarks() -> None:
     assert [point[:2] for point in ring[:-1]] == [pytest.approx(p) for p in plan.footprints[0].ring]
     assert coordinates(marks["home"])[0][:2] == pytest.approx(plan.home)
     assert len(coordinates(marks["area"])) == 5
+
+
+def test_photos_are_where_they_are_taken() -> None:
+    """The places of each collect's photos are one placemark, at their heights."""
+    plan = with_photos(make_plan())
+    marks = placemarks(write_kml(plan))
+    for photos in plan.photos:
+        mark = marks[f"photos {photos.seq}: eye"]
+        found = [text.text or "" for text in mark.iter(f"{KML}coordinates")]
+        places = [tuple(float(value) for value in text.split(",")) for text in found]
+        assert places == [pytest.approx(place) for place in photos.places]
+        assert {text.text for text in mark.iter(f"{KML}altitudeMode")} == {"relativeToGround"}
 
 
 @pytest.mark.parametrize(

@@ -27,6 +27,7 @@ from mavlink.rules.table import (
     unanswered,
 )
 from mavlink.wire.items import Command
+from tests.mavlink.cameras import with_photos
 from tests.mavlink.plans import make_plan
 
 PLANE = Needs(22.4, 100.0, None, CameraPayload(25.0), frozenset({22, 16, 21, 189}), True, 500.0, 4000.0)
@@ -141,6 +142,60 @@ def test_ardupilots_outputs_follow_the_payload(
     """The output that switches the chosen payload is looked at, and only that."""
     found = judge_parameters("ardupilot", "fixed_wing", needs, values)
     assert [finding.name for finding in found] == ([] if wrong is None else [wrong])
+
+
+PHOTOS = replace(PLANE, payload=parse_payload("trigger:distance=25"), photo_s=1.1)
+VIDEO = replace(PLANE, payload=parse_payload("trigger:video"))
+BOTH = replace(PHOTOS, payload=parse_payload("relay:2+trigger:distance=25"))
+
+
+@pytest.mark.parametrize(
+    ("autopilot", "needs", "values", "wrong"),
+    [
+        ("ardupilot", PHOTOS, {"CAM1_TYPE": 0.0}, "CAM1_TYPE"),
+        ("ardupilot", PHOTOS, {"CAM1_TYPE": 1.0, "SERVO9_FUNCTION": 0.0}, "SERVO9_FUNCTION"),
+        ("ardupilot", PHOTOS, {"CAM1_TYPE": 2.0, "SERVO9_FUNCTION": 0.0}, None),
+        ("ardupilot", PHOTOS, {"CAM1_INTRVAL_MIN": 1.0}, None),
+        ("ardupilot", PHOTOS, {"CAM1_INTRVAL_MIN": 1.2}, "CAM1_INTRVAL_MIN"),
+        ("ardupilot", PHOTOS, {"CAM1_TRIGG_DIST": 20.0}, "CAM1_TRIGG_DIST"),
+        ("ardupilot", PHOTOS, {"CAM_AUTO_ONLY": 0.0}, "CAM_AUTO_ONLY"),
+        ("ardupilot", PHOTOS, {"CAM_MAX_ROLL": 0.0}, None),
+        ("ardupilot", PHOTOS, {"CAM_MAX_ROLL": 5.0}, "CAM_MAX_ROLL"),
+        ("ardupilot", VIDEO, {"CAM1_TYPE": 2.0}, "CAM1_TYPE"),
+        ("ardupilot", VIDEO, {"CAM1_TYPE": 6.0, "CAM_AUTO_ONLY": 0.0}, None),
+        ("ardupilot", BOTH, {"RELAY3_FUNCTION": 0.0}, "RELAY3_FUNCTION"),
+        ("ardupilot", BOTH, {"CAM1_TYPE": 0.0}, "CAM1_TYPE"),
+        ("px4", PHOTOS, {"TRIG_MODE": 1.0}, "TRIG_MODE"),
+        ("px4", VIDEO, {"TRIG_MODE": 0.0}, None),
+        ("px4", PHOTOS, {"TRIG_MIN_INTERVA": 1.0}, None),
+        ("px4", PHOTOS, {"TRIG_MIN_INTERVA": 1500.0}, "TRIG_MIN_INTERVA"),
+        ("px4", PHOTOS, {"TRIG_INTERFACE": 3.0, "PWM_AUX_FUNC1": 0.0}, None),
+        ("px4", PHOTOS, {"TRIG_INTERFACE": 4.0, "PWM_AUX_FUNC1": 0.0}, "TRIG_INTERFACE"),
+        ("px4", PHOTOS, {"TRIG_INTERFACE": 1.0, "PWM_AUX_FUNC1": 2000.0}, None),
+        ("px4", PHOTOS, {"CAM_CAP_FBACK": 1.0, "PWM_AUX_FUNC1": 2000.0}, "CAM_CAP_FBACK"),
+        ("px4", PHOTOS, {"CAM_CAP_FBACK": 1.0, "PWM_AUX_FUNC1": 2032.0}, None),
+    ],
+)
+def test_cameras_need_a_driver_an_output_and_time(
+    autopilot: Autopilot, needs: Needs, values: dict[str, float], wrong: str | None
+) -> None:
+    """Each by what the plan orders of the camera; all that is looked at is asked for."""
+    found = judge_parameters(autopilot, "fixed_wing", needs, values)
+    assert [finding.name for finding in found] == ([] if wrong is None else [wrong])
+    if wrong is not None:
+        assert set(values) <= set(names_to_read(autopilot, "fixed_wing", needs))
+        for finding in found:
+            if finding.advised is not None:
+                better = values | {wrong: finding.advised}
+                assert judge_parameters(autopilot, "fixed_wing", needs, better) == ()
+
+
+def test_the_shortest_time_between_photos_is_the_plans() -> None:
+    """By what is published of each pass."""
+    plan = with_photos(make_plan())
+    needs = needs_of(plan, encode(plan), parse_payload("trigger:distance=41"))
+    assert needs.photo_s == pytest.approx(min(photos.interval_s or 0.0 for photos in plan.photos))
+    assert needs_of(make_plan(), encode(make_plan()), RelayPayload()).photo_s is None
 
 
 @pytest.mark.parametrize(("function", "wrong"), [(302.0, False), (402.0, True), (301.0, True)])
