@@ -20,6 +20,7 @@ class Benchmark(StrEnum):
     BOUND = "bound"
     LINK = "link"
     TRANSIT = "transit"
+    SURVEY = "survey"
     KERNELS = "kernels"
     START = "start"
     ISOLATION = "isolation"

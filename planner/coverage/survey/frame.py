@@ -30,8 +30,8 @@ class Frames:
     half_m
         How far to either side of a lane all is seen.
     inset_m
-        How far inside a region's edge the outermost lane may run: as far as places between two lanes lie from
-        the nearer one; where lanes overlap by half or more, no farther than where the next one sees it.
+        How far inside a region's edge the outermost lane may run: a spacing at most, and no farther than it
+        sees the edge; where lanes overlap by half or more, than the next one sees it.
     photos_m
         Between photos at most.
     """
@@ -77,10 +77,8 @@ def frames(camera: CameraSensor, height_m: float, angles_rad: Floats) -> Frames:
         return np.minimum(*(_each(camera, figure, height_m, way_rad) for way_rad in ways))
 
     spacing_m, half_m = lesser(camera.lane_spacing_m), lesser(camera.half_width_m)
-    inset_m = np.minimum(spacing_m / 2.0, half_m)
-    if camera.side_overlap >= TWICE:
-        inset_m = np.minimum(inset_m, half_m - spacing_m)
-    return Frames(spacing_m, half_m, inset_m, lesser(camera.photo_spacing_m))
+    beside_m = half_m - spacing_m if camera.side_overlap >= TWICE else half_m
+    return Frames(spacing_m, half_m, np.minimum(spacing_m, beside_m), lesser(camera.photo_spacing_m))
 
 
 def runs(camera: CameraSensor, height_m: float, angles_rad: Floats) -> Runs:

@@ -30,10 +30,12 @@ def photographed(
     turned = shapely.transform(survey.wanted, lambda p: p @ np.array([[cos, -sin], [sin, cos]]))
     west_m, _, east_m, _ = turned.bounds
     places_m = lanes.lines[0, 0, :, 0, 0] @ np.array([-sin, cos])
-    low_m = np.stack([places_m - LINE_M, lanes.low_m[0, 0], lanes.seen_m[0][0, 0]])
-    high_m = np.stack([places_m + LINE_M, lanes.high_m[0, 0], lanes.seen_m[1][0, 0]])
+    # Of the neighbours' strips a lane sees all that it has to see of them.
+    low, high = lanes.low_m[0, 0], lanes.high_m[0, 0]
+    low_m = np.stack([places_m - LINE_M, low, np.append(low[:1], low[:-1])])
+    high_m = np.stack([places_m + LINE_M, high, np.append(high[1:], high[-1:])])
     west, east = np.full_like(low_m, west_m - 1.0), np.full_like(low_m, east_m + 1.0)
-    strips = shapely.box(west, low_m, east, np.maximum(high_m, low_m))
+    strips = shapely.box(west, low_m, east, high_m)
     parts, index = shapely.get_parts(shapely.intersection(turned, strips).ravel(), return_index=True)
     kept = ~shapely.is_empty(parts)
     x_m = shapely.bounds(parts[kept])[:, [0, 2]]
@@ -61,6 +63,10 @@ def _cut(line: Floats, spans_m: Floats, photos_m: float, least_gap_m: float) -> 
     begin_m, end_m = (float(end @ unit) for end in line)
     joined: list[list[float]] = []
     for first, last in sorted(spans_m.tolist()):
+        first, last = max(first, begin_m), min(last, end_m)
+        if last <= first:
+            # What lies beyond its ends its neighbours see.
+            continue
         short_m = max(photos_m - (last - first), 0.0) / 2.0
         first, last = first - short_m, last + short_m
         if joined and first - joined[-1][1] < least_gap_m:

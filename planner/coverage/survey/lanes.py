@@ -2,16 +2,15 @@
 
 In axes turned by the heading θ, x̂ ahead and ŷ to the left, a region spans w across. The outer lanes run e
 inside its edges, the others no more than a spacing d apart, n = ⌈(w − 2e) / d⌉ + 1; one does where w ≤ d.
-Each lane answers for the ground that is nearest to it: on its own line the first and last photos lie half
-an interval inside; what lies beside is in two of its photos, and a neighbour sees it, too. So places at
-the edges of a region are seen as those between lanes and photos are. What n lanes have to spare is taken from
-their distances or from e.
+On their own lines the first and the last photo lie half an interval inside; lanes go farther where ground
+between two would not be in two photos of the one and in view of the other. So places at the edges of a region
+are seen from two lanes and twice, as those between lanes and photos are. What n lanes have to spare is taken
+from their distances or from e.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,6 +21,7 @@ from shapely.geometry.base import BaseGeometry
 
 from planner.coverage.strips.classify import ROUNDING_M, hull_points, spans_at
 from planner.coverage.strips.kernels import strip_extents
+from planner.coverage.survey.ends_kernels import lane_ends
 from planner.coverage.survey.frame import Frames, Runs, frames, runs
 from planner.sensors.camera import TWICE, CameraSensor
 
@@ -96,15 +96,12 @@ class Lanes:
         Shape (M, K, N, 2, 2, 2): heading, offset, lane from right to left, state, start and end.
     low_m, high_m
         ŷ of the edges of the strip that each lane answers for, (M, K, N).
-    seen_m
-        The same of the strip that it sees besides.
     """
 
     headings_rad: Floats
     lines: Floats
     low_m: Floats
     high_m: Floats
-    seen_m: tuple[Floats, Floats]
 
 
 def lanes_at(survey: Survey, angles_rad: Floats, etas: Floats, count: int) -> Lanes:
@@ -120,23 +117,28 @@ def lanes_at(survey: Survey, angles_rad: Floats, etas: Floats, count: int) -> La
     edge = (len(angles_rad), len(etas), 1)
     low_m = np.concatenate([np.broadcast_to(spans.y_min_m[:, None, None], edge), between_m], axis=2)
     high_m = np.concatenate([between_m, np.broadcast_to(spans.y_max_m[:, None, None], edge)], axis=2)
-    seen_m = _seen_too(survey, laid, places_m, spans.y_min_m, spans.y_max_m)
+    cells_m = np.concatenate(
+        [np.broadcast_to(spans.y_min_m[:, None, None], edge), places_m,
+         np.broadcast_to(spans.y_max_m[:, None, None], edge)], axis=2,
+    )  # fmt: skip
     edges = edges_of(survey.ground)
-    extents = [
-        strip_extents(edges, angles_rad, low, high)
-        for low, high in ((places_m - LINE_M, places_m + LINE_M), (low_m, high_m), seen_m)
-    ]
+    line_m = strip_extents(edges, angles_rad, places_m - LINE_M, places_m + LINE_M)
+    paired = count > 1 and survey.camera.side_overlap >= TWICE
+    if paired:
+        beside_m = strip_extents(edges, angles_rad, cells_m[..., :-1], cells_m[..., 1:])
+    else:
+        beside_m = strip_extents(edges, angles_rad, low_m, high_m)
     states, headings = [], []
     for way in (1, -1):
         courses_rad = angles_rad if way == 1 else angles_rad + math.pi
-        x_m = _ends(extents, survey.runs(courses_rad), way)
+        x_m = _ends(line_m, beside_m, survey.runs(courses_rad), way, paired)
         x_m = _at_least(x_m, way, laid.photos_m[:, None, None])
         cos, sin = np.cos(angles_rad)[:, None, None, None], np.sin(angles_rad)[:, None, None, None]
         east_m = cos * x_m - sin * places_m[..., None]
         north_m = sin * x_m + cos * places_m[..., None]
         states.append(np.stack([east_m, north_m], axis=-1))
         headings.append(courses_rad)
-    return Lanes(np.stack(headings, axis=1), np.stack(states, axis=3), low_m, high_m, seen_m)
+    return Lanes(np.stack(headings, axis=1), np.stack(states, axis=3), low_m, high_m)
 
 
 def edges_of(ground: Polygon) -> Floats:
@@ -163,37 +165,38 @@ def places_across(laid: Frames, low_m: Floats, high_m: Floats, etas: Floats, cou
     return places_m
 
 
-def _seen_too(
-    survey: Survey, laid: Frames, places_m: Floats, low_m: Floats, high_m: Floats
-) -> tuple[Floats, Floats]:
-    """Edges of the strips that lanes see besides, (M, K, N) each: to the next lanes, or the region's edges.
+def _ends(line_m: Floats, beside_m: Floats, run: Runs, way: int, paired: bool) -> Floats:
+    """Where lanes begin and end, x̂ (…, 2), for extents (…, 2) of ground on their lines and beside them.
 
-    Every place lies in those of two lanes at least; all are empty where lanes overlap by less than half.
+    Parameters
+    ----------
+    paired
+        Whether what is beside lies between two lanes that both see it; else it is one lane's own.
     """
-    count = places_m.shape[2]
-    if count == 1 or survey.camera.side_overlap < TWICE:
-        return places_m, places_m
-    low = np.concatenate([np.empty_like(places_m[..., :1]), places_m[..., :-1]], axis=2)
-    high = np.concatenate([places_m[..., 1:], np.empty_like(places_m[..., :1])], axis=2)
-    low[..., :2], high[..., -2:] = low_m[:, None, None], high_m[:, None, None]
-    half_m = laid.half_m[:, None, None]
-    return np.maximum(low, places_m - half_m), np.minimum(high, places_m + half_m)
-
-
-def _ends(extents: Sequence[Floats], run: Runs, way: int) -> Floats:
-    """Where lanes begin and end, x̂ (…, 2), for extents (…, 2) of ground on, beside and about them."""
-    runs_m = (
-        (run.line_in_m, run.line_out_m),
-        (run.beside_in_m, run.beside_out_m),
-        (run.other_in_m, run.other_out_m),
-    )
-    first_m, last_m = [], []
-    for extent_m, (in_m, out_m) in zip(extents, runs_m, strict=True):
-        onward_m = way * extent_m[..., ::way]
-        first_m.append(onward_m[..., 0] - in_m[:, None, None])
-        last_m.append(onward_m[..., 1] + out_m[:, None, None])
-    x_m: Floats = way * np.stack([np.min(first_m, axis=0), np.max(last_m, axis=0)], axis=-1)
-    return x_m
+    shape, sides = line_m.shape[:3], []
+    for side, (line_out_m, beside_out_m, other_out_m) in enumerate(
+        (
+            (run.line_in_m, run.beside_in_m, run.other_in_m),
+            (run.line_out_m, run.beside_out_m, run.other_out_m),
+        )
+    ):
+        # Both ends of either state as the same question: how far something goes.
+        outward = 1.0 if (side == 1) == (way == 1) else -1.0
+        column = 1 if outward > 0.0 else 0
+        own_m = outward * line_m[..., column] + line_out_m[:, None, None]
+        there_m = outward * beside_m[..., column]
+        if paired:
+            rows = shape[0] * shape[1]
+            far_m = lane_ends(
+                own_m.reshape(rows, -1),
+                there_m.reshape(rows, -1),
+                np.repeat(-beside_out_m, shape[1]),
+                np.repeat(-other_out_m, shape[1]),
+            ).reshape(shape)
+        else:
+            far_m = np.maximum(own_m, there_m + beside_out_m[:, None, None])
+        sides.append(outward * far_m)
+    return np.stack(sides, axis=-1)
 
 
 def _at_least(x_m: Floats, way: int, least_m: Floats) -> Floats:

@@ -69,7 +69,7 @@ def test_every_place_is_in_two_photos_of_a_lane(
 @given(polygons((60.0, 200.0)), st.floats(0.0, math.pi), st.floats(0.0, 1.0))
 @settings(max_examples=12)
 def test_lanes_answer_for_what_is_nearest_and_see_beyond(area: Polygon, angle_rad: float, eta: float) -> None:
-    """Each place is in two photos of a lane half a spacing away at most; a second lane has it in one."""
+    """Each place is in two photos of a lane; a second lane has it in one."""
     survey = Survey(area, area, EYE, HEIGHT_M)
     angles_rad = np.array([angle_rad])
     count = int(survey.counts(angles_rad)[0])
@@ -87,7 +87,7 @@ def test_lanes_answer_for_what_is_nearest_and_see_beyond(area: Polygon, angle_ra
         along, across = (at - start) @ ahead, np.abs((at - start) @ left)
         beyond_m = np.maximum(np.maximum(-along, along - math.dist(start, end)), 0.0)
         # At the tip of a spike a last digit across is centimetres along.
-        near |= (across <= spacing_m / 2.0 + 1e-3) & (beyond_m <= 0.25 * length_m + 0.05)
+        near |= (across <= width_m / 2.0 + 1e-3) & (beyond_m <= 0.25 * length_m + 0.05)
         seeing += (across <= width_m / 2.0 + 1e-3) & (beyond_m <= 0.5 * length_m + 0.05)
         met = area.intersection(shapely.LineString([start - 500.0 * ahead, end + 500.0 * ahead]))
         if not met.is_empty:
@@ -110,8 +110,8 @@ def test_a_lane_more_only_where_the_edges_would_be_seen_from_one() -> None:
 def test_photos_are_not_taken_over_gaps() -> None:
     """A lane across the arms of a U is flown in one and photographed in two; a gap of few photos is not."""
     for gap_m, pieces in ((200.0, 2), (20.0, 1)):
-        arms = box(0, 0, 60, 36).union(box(60 + gap_m, 0, 120 + gap_m, 36))
-        area = arms.union(box(0, 36, 120 + gap_m, 60))
+        arms = box(0, 0, 60, 50).union(box(60 + gap_m, 0, 120 + gap_m, 50))
+        area = arms.union(box(0, 50, 120 + gap_m, 60))
         assert isinstance(area, Polygon)
         allowed = as_merged(area, (0.0, math.pi))
         survey = Survey(area, area, EYE, HEIGHT_M)

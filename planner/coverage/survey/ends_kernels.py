@@ -1,0 +1,43 @@
+"""Compiled choice of where lanes end: each place in two photos of one lane and in view of another."""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+
+@njit(cache=True)
+def lane_ends(line_m: Floats, cells_m: Floats, twice_m: Floats, once_m: Floats) -> Floats:
+    """How far lanes go at one end.
+
+    Parameters
+    ----------
+    line_m
+        As far as each goes for ground on its own line, (P, N), N ≥ 2; −inf where there is none.
+    cells_m
+        How far ground goes between lanes, (P, N + 1): beside the first one, between it and the next, so on to
+        beside the last. Ground beside the outer lanes is seen by these and by the next.
+    twice_m, once_m
+        How far ground may lie beyond a lane's end to be in two of its photos, and in one, (P,).
+
+    Returns
+    -------
+    ndarray
+        (P, N): of the two lanes that see a cell both have its ground in one photo, the longer in two.
+    """
+    ends_m = line_m.copy()
+    problems, lanes = line_m.shape
+    for p in range(problems):
+        for cell in range(lanes + 1):
+            one = min(max(cell - 1, 0), lanes - 2)
+            least_m = cells_m[p, cell] - once_m[p]
+            ends_m[p, one] = max(ends_m[p, one], least_m)
+            ends_m[p, one + 1] = max(ends_m[p, one + 1], least_m)
+        for cell in range(lanes + 1):
+            one = min(max(cell - 1, 0), lanes - 2)
+            longer = one if ends_m[p, one] >= ends_m[p, one + 1] else one + 1
+            ends_m[p, longer] = max(ends_m[p, longer], cells_m[p, cell] - twice_m[p])
+    return ends_m
