@@ -1,0 +1,74 @@
+"""The shortest tour over sweeps among obstacles."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planner.coverage.urban.area import UrbanArea
+from planner.coverage.urban.free import FreeSpace
+from planner.coverage.urban.reach_kernels import corner_lengths, join_lengths
+from planner.coverage.urban.tour_kernels import nearest_first, neighbours, shortest_tour
+from planner.coverage.urban.visibility import Ways, edges_of
+
+Floats = NDArray[np.float64]
+
+#: Places to which joins are exact, and neighbours that an end may be joined to.
+NEAR, NEIGHBOURS = 40, 12
+#: Shakes of a tour for each of its sweeps.
+SHAKES = 10
+
+
+@dataclass(frozen=True, slots=True)
+class Joins:
+    """What joins of sweeps are made among.
+
+    Parameters
+    ----------
+    urban, ways
+        The area, and ways through its free ground.
+    between
+        Ways between the corners of the ground, (N, N).
+    outlines, rises
+        Edges of obstacles and of the area, (E, 4), and the climb over each, inf where that is not allowed.
+    """
+
+    urban: UrbanArea
+    ways: Ways
+    between: Floats
+    outlines: Floats
+    rises: Floats
+
+    @classmethod
+    def among(cls, urban: UrbanArea, free: FreeSpace, ways: Ways) -> Joins:
+        """Joins through free ground, or over what may be climbed over straight up."""
+        edges = [edges_of(urban.area)]
+        rises = [np.full(len(edges[0]), np.inf)]
+        steep = urban.max_climb_rad >= math.pi / 2.0 - 1e-9
+        for cluster in free.clusters:
+            edges.append(edges_of(cluster.outline))
+            rise_m = cluster.top_m + urban.clearance_m - urban.height_m
+            allowed = steep and urban.may_climb_over(cluster.top_m)
+            rises.append(np.full(len(edges[-1]), rise_m if allowed else np.inf))
+        between = corner_lengths(ways.starts, ways.towards, ways.lengths)
+        return cls(urban, ways, between, np.vstack(edges), np.concatenate(rises))
+
+    def tour(self, lines: Floats, seed: int) -> Floats:
+        """Lines (N, 2, 2) in the order and direction of the shortest flight along them from start to end."""
+        ends = np.array([self.urban.end, self.urban.start], dtype=np.float64)
+        places = np.concatenate([lines.reshape(-1, 2), ends])
+        ways = self.ways
+        costs = join_lengths(ways.edges, ways.corners, self.between, self.outlines, self.rises, places, NEAR)
+        last = len(places) - 2
+        first = nearest_first(costs, last)
+        tour = shortest_tour(costs, neighbours(costs, NEIGHBOURS), first, SHAKES * len(lines), seed)
+        at = int(np.flatnonzero(tour == last + 1)[0])
+        if at % 2 == 0:
+            # found the other way round: the start follows the end
+            tour, at = tour[::-1], len(tour) - 1 - at
+        order = np.roll(tour, -at - 1)[:-2]
+        flown: Floats = places[order].reshape(-1, 2, 2)
+        return flown

@@ -1,0 +1,167 @@
+"""Compiled lengths of joins between many places among obstacles: straight, round corners, or over them.
+
+Arrays as in ``visibility_kernels``; ``outlines`` float64 (E, 4) are edges that a straight line may cross at
+a height, ``rises`` float64 (E,) what has to be climbed for each, inf where that is not allowed.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from planner.coverage.urban.visibility_kernels import crosses
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+#: Corners nearest to a place that are tried at first, and how many of those that it sees are used.
+TRIED_CORNERS, SEEN_CORNERS = 40, 16
+
+
+@njit(cache=True, nogil=True)
+def corner_lengths(starts: Ints, towards: Ints, lengths: Floats) -> Floats:
+    """Shortest ways between all corners, (N, N)."""
+    count = len(starts) - 1
+    out = np.full((count, count), np.inf)
+    done = np.empty(count, dtype=np.bool_)
+    for source in range(count):
+        best = out[source]
+        best[source] = 0.0
+        done[:] = False
+        for _ in range(count):
+            nearest, least = -1, np.inf
+            for i in range(count):
+                if not done[i] and best[i] < least:
+                    nearest, least = i, best[i]
+            if nearest < 0:
+                break
+            done[nearest] = True
+            for at in range(starts[nearest], starts[nearest + 1]):
+                j = towards[at]
+                if least + lengths[at] < best[j]:
+                    best[j] = least + lengths[at]
+    return out
+
+
+@njit(cache=True, nogil=True)
+def rise_over(outlines: Floats, rises: Floats, e0: float, n0: float, e1: float, n1: float) -> float:
+    """The greatest climb that a straight line over obstacles takes."""
+    west, east = min(e0, e1), max(e0, e1)
+    south, north = min(n0, n1), max(n0, n1)
+    de, dn = e1 - e0, n1 - n0
+    most = 0.0
+    for k in range(len(outlines)):
+        if rises[k] <= most:
+            continue
+        a, b, c, d = outlines[k, 0], outlines[k, 1], outlines[k, 2], outlines[k, 3]
+        if max(a, c) < west or min(a, c) > east or max(b, d) < south or min(b, d) > north:
+            continue
+        if (de * (b - n0) - dn * (a - e0)) * (de * (d - n0) - dn * (c - e0)) > 0.0:
+            continue
+        fe, fn = c - a, d - b
+        if (fe * (n0 - b) - fn * (e0 - a)) * (fe * (n1 - b) - fn * (e1 - a)) > 0.0:
+            continue
+        most = rises[k]
+        if most == np.inf:
+            break
+    return most
+
+
+@njit(cache=True, nogil=True)
+def _nearest(places: Floats, east: float, north: float, most: int) -> Ints:
+    """Up to so many places nearest to one, nearest first."""
+    count = min(most, len(places))
+    kept = np.empty(count, dtype=np.int64)
+    away = np.full(count, np.inf)
+    for i in range(len(places)):
+        square = (places[i, 0] - east) ** 2 + (places[i, 1] - north) ** 2
+        if count == 0 or square >= away[count - 1]:
+            continue
+        at = count - 1
+        while at > 0 and away[at - 1] > square:
+            away[at], kept[at] = away[at - 1], kept[at - 1]
+            at -= 1
+        away[at], kept[at] = square, i
+    return kept
+
+
+@njit(cache=True, nogil=True)
+def _by_corners(edges: Floats, corners: Floats, between: Floats, places: Floats) -> Floats:
+    """Lengths of ways between all places round the corners that both ends see nearest, (P, P)."""
+    count, bends = len(places), len(corners)
+    out = np.full((count, count), np.inf)
+    reach = np.full((count, bends), np.inf)
+    seen = np.empty((count, SEEN_CORNERS), dtype=np.int64)
+    found = np.zeros(count, dtype=np.int64)
+    for p in range(count):
+        e, n = places[p, 0], places[p, 1]
+        tried = 0
+        most = TRIED_CORNERS
+        while found[p] == 0 and tried < bends:
+            near = _nearest(corners, e, n, most)
+            for i in near[tried:]:
+                if found[p] == SEEN_CORNERS:
+                    break
+                if not crosses(edges, e, n, corners[i, 0], corners[i, 1]):
+                    seen[p, found[p]] = i
+                    found[p] += 1
+            tried = len(near)
+            most *= 4
+        for k in range(found[p]):
+            i = seen[p, k]
+            first = math.hypot(corners[i, 0] - e, corners[i, 1] - n)
+            for j in range(bends):
+                reach[p, j] = min(reach[p, j], first + between[i, j])
+    for p in range(count):
+        for k in range(found[p]):
+            i = seen[p, k]
+            first = math.hypot(corners[i, 0] - places[p, 0], corners[i, 1] - places[p, 1])
+            for q in range(p):
+                out[p, q] = min(out[p, q], first + reach[q, i])
+    return out
+
+
+@njit(cache=True, nogil=True)
+def join_lengths(
+    edges: Floats,
+    corners: Floats,
+    between: Floats,
+    outlines: Floats,
+    rises: Floats,
+    places: Floats,
+    near: int,
+) -> Floats:
+    """Lengths of joins between all places, (P, P): never too short, and hardly too long.
+
+    To so many of the nearest places straight lines are tried too, and lines over obstacles; to others they are
+    where no corner leads there.
+
+    ``between`` are the corners' ways, (N, N).
+    """
+    count = len(places)
+    out = _by_corners(edges, corners, between, places)
+    for p in range(count):
+        e, n = places[p, 0], places[p, 1]
+        close = _nearest(places, e, n, near + 1)
+        wanted = np.zeros(count, dtype=np.bool_)
+        wanted[close] = True
+        for q in range(count):
+            a, b = max(p, q), min(p, q)
+            if p == q or not (wanted[q] or (q < p and out[p, q] == np.inf)):
+                continue
+            away = math.hypot(places[q, 0] - e, places[q, 1] - n)
+            if out[a, b] <= away:
+                continue
+            if not crosses(edges, e, n, places[q, 0], places[q, 1]):
+                out[a, b] = away
+            elif len(outlines):
+                rise = rise_over(outlines, rises, e, n, places[q, 0], places[q, 1])
+                out[a, b] = min(out[a, b], away + 2.0 * rise)
+    for p in range(count):
+        out[p, p] = 0.0
+        for q in range(p):
+            out[q, p] = out[p, q]
+    return out
