@@ -47,11 +47,10 @@ class Joins:
         """Joins through free ground, or over what may be climbed over straight up."""
         edges = [edges_of(urban.area)]
         rises = [np.full(len(edges[0]), np.inf)]
-        steep = urban.max_climb_rad >= math.pi / 2.0 - 1e-9
         for cluster in free.clusters:
             edges.append(edges_of(cluster.outline))
             rise_m = cluster.top_m + urban.clearance_m - urban.height_m
-            allowed = steep and urban.may_climb_over(cluster.top_m)
+            allowed = urban.may_climb_over(cluster.top_m)
             rises.append(np.full(len(edges[-1]), rise_m if allowed else np.inf))
         between = corner_lengths(ways.starts, ways.towards, ways.lengths)
         return cls(urban, ways, between, np.vstack(edges), np.concatenate(rises))
@@ -61,7 +60,11 @@ class Joins:
         ends = np.array([self.urban.end, self.urban.start], dtype=np.float64)
         places = np.concatenate([lines.reshape(-1, 2), ends])
         ways = self.ways
-        costs = join_lengths(ways.edges, ways.corners, self.between, self.outlines, self.rises, places, NEAR)
+        upright = self.urban.max_climb_rad >= math.pi / 2.0 - 1e-9
+        steepest = math.inf if upright else math.tan(self.urban.max_climb_rad)
+        costs = join_lengths(
+            ways.edges, ways.corners, self.between, self.outlines, self.rises, steepest, places, NEAR
+        )
         last = len(places) - 2
         first = nearest_first(costs, last)
         tour = shortest_tour(costs, neighbours(costs, NEIGHBOURS), first, SHAKES * len(lines), seed)

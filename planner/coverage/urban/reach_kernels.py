@@ -47,27 +47,37 @@ def corner_lengths(starts: Ints, towards: Ints, lengths: Floats) -> Floats:
 
 
 @njit(cache=True, nogil=True)
-def rise_over(outlines: Floats, rises: Floats, e0: float, n0: float, e1: float, n1: float) -> float:
-    """The greatest climb that a straight line over obstacles takes."""
+def over_length(
+    outlines: Floats, rises: Floats, steepest: float, e0: float, n0: float, e1: float, n1: float
+) -> float:
+    """Length of a line over obstacles: up to the first, level, down from the last; inf where it is forbidden.
+
+    ``steepest`` is the greatest tangent of its climb.
+    """
     west, east = min(e0, e1), max(e0, e1)
     south, north = min(n0, n1), max(n0, n1)
     de, dn = e1 - e0, n1 - n0
-    most = 0.0
+    rise, first, last = 0.0, 1.0, 0.0
     for k in range(len(outlines)):
-        if rises[k] <= most:
-            continue
         a, b, c, d = outlines[k, 0], outlines[k, 1], outlines[k, 2], outlines[k, 3]
         if max(a, c) < west or min(a, c) > east or max(b, d) < south or min(b, d) > north:
             continue
         if (de * (b - n0) - dn * (a - e0)) * (de * (d - n0) - dn * (c - e0)) > 0.0:
             continue
         fe, fn = c - a, d - b
-        if (fe * (n0 - b) - fn * (e0 - a)) * (fe * (n1 - b) - fn * (e1 - a)) > 0.0:
+        begin, end = fe * (n0 - b) - fn * (e0 - a), fe * (n1 - b) - fn * (e1 - a)
+        if begin * end > 0.0:
             continue
-        most = rises[k]
-        if most == np.inf:
-            break
-    return most
+        if rises[k] == np.inf:
+            return np.inf
+        rise = max(rise, rises[k])
+        part = begin / (begin - end) if begin != end else 0.0
+        first, last = min(first, part), max(last, part)
+    length = math.hypot(de, dn)
+    up, down = first * length, (1.0 - last) * length
+    if rise > steepest * min(up, down):
+        return np.inf
+    return math.hypot(up, rise) + max(last - first, 0.0) * length + math.hypot(down, rise)
 
 
 @njit(cache=True, nogil=True)
@@ -131,15 +141,16 @@ def join_lengths(
     between: Floats,
     outlines: Floats,
     rises: Floats,
+    steepest: float,
     places: Floats,
     near: int,
 ) -> Floats:
     """Lengths of joins between all places, (P, P): never too short, and hardly too long.
 
-    To so many of the nearest places straight lines are tried too, and lines over obstacles; to others they are
+    To so many of the nearest places straight lines are tried too, and lines over obstacles; to others only
     where no corner leads there.
 
-    ``between`` are the corners' ways, (N, N).
+    ``between`` are the corners' ways, (N, N), ``steepest`` is the greatest tangent of a climb.
     """
     count = len(places)
     out = _by_corners(edges, corners, between, places)
@@ -158,8 +169,8 @@ def join_lengths(
             if not crosses(edges, e, n, places[q, 0], places[q, 1]):
                 out[a, b] = away
             elif len(outlines):
-                rise = rise_over(outlines, rises, e, n, places[q, 0], places[q, 1])
-                out[a, b] = min(out[a, b], away + 2.0 * rise)
+                over = over_length(outlines, rises, steepest, e, n, places[q, 0], places[q, 1])
+                out[a, b] = min(out[a, b], over)
     for p in range(count):
         out[p, p] = 0.0
         for q in range(p):
