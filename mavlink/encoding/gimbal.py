@@ -3,7 +3,8 @@
 Source: MAVLink ``common.xml`` (DO_GIMBAL_MANAGER_PITCHYAW, DO_GIMBAL_MANAGER_CONFIGURE, DO_MOUNT_CONTROL,
 GIMBAL_MANAGER_FLAGS, MAV_MOUNT_MODE). Pitch is positive up from the horizon, yaw positive to the right. The
 sensor's tilt counts from straight down, as a SAR's incidence does, towards the side the pass looks to: a tilt
-of t is a pitch of t - 90 with the yaw abeam.
+of t is a pitch of t - 90 with the yaw abeam. A camera is tilted forwards or backwards: its yaw is ahead or
+behind.
 """
 
 from __future__ import annotations
@@ -141,9 +142,17 @@ def parse_gimbal(text: str) -> Gimbal | None:
     )
 
 
-def pointing_at(gimbal: Gimbal, collect: Collect, autopilot: Autopilot) -> Pointing:
-    """Where the gimbal must point during a collect, in the numbers the autopilot keeps."""
-    side_deg = 0.0 if gimbal.tilt_deg == 0.0 else 90.0 if collect.look == "right" else -90.0
+def pointing_at(
+    gimbal: Gimbal, collect: Collect, autopilot: Autopilot, *, backwards: bool = False
+) -> Pointing:
+    """Where the gimbal must point during a collect, in the numbers the autopilot keeps.
+
+    ``backwards`` for a camera that is tilted against the direction of flight.
+    """
+    down = gimbal.tilt_deg == 0.0 or collect.look == "down"
+    side_deg = 0.0 if down else 90.0 if collect.look == "right" else -90.0
+    if backwards and collect.look == "down" and gimbal.tilt_deg > 0.0:
+        side_deg = 180.0
     pitch_deg, yaw_deg = gimbal.tilt_deg - 90.0, side_deg
     if gimbal.hold == "course":
         yaw_deg = _half_turn_deg(collect.heading_deg + side_deg)

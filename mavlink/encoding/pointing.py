@@ -65,7 +65,11 @@ def pointings_of(task: Task) -> Pointings:
         notes = turning_notes(gimbal, collects)
     except GimbalError as error:
         raise EncodeError(str(error)) from error
-    wanted = [pointing_at(gimbal, collect, dialect.autopilot) for collect in collects]
+    cameras = [task.plan.camera(collect.sensor) for collect in collects]
+    wanted = [
+        pointing_at(gimbal, collect, dialect.autopilot, backwards=camera is not None and camera.tilt_deg < 0)
+        for collect, camera in zip(collects, cameras, strict=True)
+    ]
     groups = _groups(gimbal, wanted, dialect)
     rest = neutral_item(gimbal, dialect.autopilot)
     for item in {rest, *(item for group in groups for item in group)}:
@@ -73,7 +77,8 @@ def pointings_of(task: Task) -> Pointings:
         result = dialect.answer(replace(item, seq=1))
         if result != MissionResult.ACCEPTED:
             raise EncodeError(f"{dialect.name} refuses the gimbal's command {item.command}: {result.name}")
-    return Pointings(groups, (rest,), (*_notes(gimbal, dialect), *notes))
+    looks = {collect.look for collect in collects}
+    return Pointings(groups, (rest,), (*_notes(gimbal, dialect, aside=looks != {"down"}), *notes))
 
 
 def _groups(
@@ -92,9 +97,10 @@ def _groups(
     return tuple(groups)
 
 
-def _notes(gimbal: Gimbal, dialect: Dialect) -> tuple[str, ...]:
+def _notes(gimbal: Gimbal, dialect: Dialect, *, aside: bool) -> tuple[str, ...]:
+    where = "to the side of each pass" if aside else "along each pass"
     notes = [
-        f"the gimbal holds the sensor {gimbal.tilt_deg:g}° from straight down, to the side of each pass"
+        f"the gimbal holds the sensor {gimbal.tilt_deg:g}° from straight down, {where}"
         if gimbal.tilt_deg
         else "the gimbal holds the sensor straight down"
     ]

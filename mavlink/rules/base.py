@@ -14,7 +14,7 @@ from mavlink.rules.heights import HeightNeeds, heights_of
 from mavlink.state.outputs import switched_by
 from mavlink.wire.geometry import distance_m
 from mavlink.wire.items import Command, Frame
-from planner.plan import Plan
+from planner.plan import Collect, Plan
 
 Values = Mapping[str, float]
 Part = TypeVar("Part")
@@ -93,8 +93,8 @@ class GimbalNeeds:
     pitch_deg
         Up from the horizon; the same at every pass.
     yaws_deg
-        To the right from the nose, one for each side looked to; in wind a yaw held abeam of the course is
-        off these by the crab.
+        To the right from the nose, one for each side looked to, 0 or 180 for cameras that look along their
+        passes; in wind a yaw held abeam of the course is off these by the crab.
     """
 
     protocol: Protocol
@@ -173,13 +173,19 @@ def _gimbal(plan: Plan, mission: Mission) -> GimbalNeeds | None:
         protocol = protocol_of(item)
         if protocol is None:
             continue
-        looks = {collect.look for collect in plan.collects_of(mission.vehicle)}
-        yaws_deg = tuple(90.0 if look == "right" else -90.0 for look in sorted(looks))
+        yaws_deg = tuple(sorted({_yaw_deg(plan, collect) for collect in plan.collects_of(mission.vehicle)}))
         device = round(item.z) if protocol == "manager" else 0
         if item.param1 == -90.0:
             yaws_deg = (0.0,)
         return GimbalNeeds(protocol, hold_of(item), device, item.param1, yaws_deg)
     return None
+
+
+def _yaw_deg(plan: Plan, collect: Collect) -> float:
+    if collect.look != "down":
+        return 90.0 if collect.look == "right" else -90.0
+    camera = plan.camera(collect.sensor)
+    return 180.0 if camera is not None and camera.tilt_deg < 0.0 else 0.0
 
 
 def _reach(mission: Mission) -> tuple[float, float]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +21,7 @@ from tests.app.conftest import stored
 from tests.app.test_problems import check_problem
 from tests.app.test_restart import VEHICLES, add, autopilot, free_port, held_plan, service, until
 from tests.app.test_vehicles import connected
+from tests.mavlink.cameras import with_photos
 from tests.mavlink.plans import make_plan
 
 RADAR = {"name": "sar", "type": "sar", "incidence_deg": 45.0}
@@ -122,3 +124,14 @@ def test_in_wind_the_yaw_is_held_as_planned(yaw: str, stabilised: bool, found: i
     assert rules(gimbal, sensor, {"speed_m_s": 8.0, "from_deg": 270.0}) == [("gimbal-yaw", "warning")] * found
     assert rules(gimbal, sensor, {"speed_m_s": 0.0}) == []
     assert rules(gimbal, sensor) == []
+
+
+def test_a_cameras_tilt_is_the_plans() -> None:
+    """Forwards or backwards, as many degrees from straight down."""
+    for planned_deg, said_deg, found in ((30.0, 30, []), (-30.0, 30, []), (0.0, 30, ["gimbal-tilt"])):
+        plan = with_photos(make_plan())
+        plan = replace(plan, cameras=(replace(plan.cameras[0], tilt_deg=planned_deg),))
+        mission = encode(plan, options=EncodeOptions(gimbal=parse_gimbal(f"manager:tilt={said_deg}")))
+        needs = needs_of(plan, mission, RelayPayload(0))
+        scenario = {"sensors": [{"name": "eye", "type": "camera"}]}
+        assert [each.rule for each in pointing_findings(plan, scenario, mission, needs)] == found

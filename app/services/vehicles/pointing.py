@@ -8,7 +8,7 @@ from typing import Any
 from mavlink.dialects.mission import Mission
 from mavlink.rules.table import Needs
 from planner.errors import Finding
-from planner.plan import Plan
+from planner.plan import Plan, PlanCamera
 
 #: ArduPilot keeps whole degrees, which may be half of one off.
 _TILT_WITHIN_DEG = 0.51
@@ -37,6 +37,8 @@ def _findings(plan: Plan, scenario: Mapping[str, Any], mission: Mission, needs: 
     windy = _speed_m_s(scenario.get("wind")) > 0.0
     for sensor in scenario.get("sensors") or ():
         name, incidence_deg = sensor.get("name"), sensor.get("incidence_deg")
+        if name in used and (camera := plan.camera(str(name))) is not None:
+            yield from _camera_findings(camera, tilt_deg)
         if name not in used or sensor.get("type") != "sar" or incidence_deg is None:
             continue
         if abs(incidence_deg - tilt_deg) > _TILT_WITHIN_DEG:
@@ -49,6 +51,18 @@ def _findings(plan: Plan, scenario: Mapping[str, Any], mission: Mission, needs: 
             )
         if windy and bool(sensor.get("stabilised", False)) != (gimbal.hold == "course"):
             yield _yaw_finding(str(name), follows_nose=gimbal.hold == "vehicle")
+
+
+def _camera_findings(camera: PlanCamera, tilt_deg: float) -> Iterator[Finding]:
+    planned_deg = abs(camera.tilt_deg)
+    if abs(planned_deg - tilt_deg) > _TILT_WITHIN_DEG:
+        yield Finding(
+            f"sensor {camera.name}",
+            "gimbal-tilt",
+            f"the plan has the camera {planned_deg:g}° from straight down, the gimbal would hold it at"
+            f" {tilt_deg:g}°",
+            f"write tilt={planned_deg:g}, or leave the gimbal out where the camera is bolted on",
+        )
 
 
 def _yaw_finding(name: str, *, follows_nose: bool) -> Finding:

@@ -12,14 +12,17 @@ from mavlink.dialects import Autopilot, VehicleType
 from mavlink.dialects.compare import differences
 from mavlink.encoding.encode import EncodeError, EncodeOptions, Mission, encode
 from mavlink.encoding.gimbal import Gimbal, Protocol
+from mavlink.encoding.trigger import payload_of
 from mavlink.formats.qgc_plan import read_plan, write_plan
 from mavlink.formats.waypoints import read_waypoints, write_waypoints
+from mavlink.rules.table import needs_of
 from mavlink.sim.autopilot import SimulatedAircraft
 from mavlink.sim.geodesy import Place
 from mavlink.sim.modes import Flavour
 from mavlink.sim.settings import SimSettings
 from mavlink.wire.items import Command, MissionItem, MissionType
 from planner.plan import Plan
+from tests.mavlink.cameras import with_photos
 from tests.mavlink.encoding.missions import KINDS, A, L, R, W, commands
 from tests.mavlink.plans import Leg, make_plan
 from tests.mavlink.sim.helpers import Station
@@ -170,3 +173,23 @@ def test_gimbals_an_autopilot_has_not_are_refused() -> None:
         encode(make_plan(LEGS), options=options)
     notes = encode(make_plan(LEGS, autopilot="px4"), options=options).notes
     assert any("whichever device is named" in note for note in notes)
+
+
+@pytest.mark.parametrize(("tilt_deg", "yaw_deg"), [(30.0, 0.0), (-30.0, 180.0)])
+@pytest.mark.parametrize("autopilot", ["ardupilot", "px4"])
+@pytest.mark.parametrize("protocol", ["manager", "mount"])
+def test_cameras_are_tilted_along_their_passes(
+    protocol: Protocol, autopilot: Autopilot, tilt_deg: float, yaw_deg: float
+) -> None:
+    """Forwards or backwards, as the plan has it, and never aside; the parameters are judged by that yaw."""
+    plan = with_photos(make_plan(autopilot=autopilot))
+    plan = replace(plan, cameras=(replace(plan.cameras[0], tilt_deg=tilt_deg),))
+    mission = encode(plan, options=EncodeOptions(gimbal=Gimbal(protocol, abs(tilt_deg))))
+    first = pointings(mission)[0]
+    assert first.param1 == -60.0
+    assert abs(first.param2 if first.command == P else first.param3) == yaw_deg
+    assert len(pointings(mission)) == 2, "once, and at rest"
+    assert any("along each pass" in note for note in mission.notes)
+    gimbal = needs_of(plan, mission, payload_of(plan, "uav-1", None)).gimbal
+    assert gimbal is not None
+    assert (gimbal.pitch_deg, gimbal.yaws_deg) == (-60.0, (yaw_deg,))
