@@ -26,6 +26,7 @@ class Benchmark(StrEnum):
     ISOLATION = "isolation"
     READS = "reads"
     URBAN = "urban"
+    VALIDATE = "validate"
 
 
 def _options(pairs: list[str]) -> dict[str, Any]:

@@ -10,6 +10,7 @@ from shapely import get_parts
 from shapely.geometry import LineString, Point, Polygon, box
 from shapely.geometry.base import BaseGeometry
 
+from planner.airspace import growth
 from planner.airspace.airspace import Airspace, Level
 from planner.airspace.values import NoFlyZone, Threat
 
@@ -61,10 +62,10 @@ class PolygonShape:
         return float(self.area.distance(shape))
 
     def grown(self, by_m: float) -> PolygonShape:
-        """The polygon with a margin round it, at most 0.01 % wider at its corners."""
+        """The polygon with a margin round it, at most 0.01 % wider at its corners; 1 % of many."""
         if by_m <= 0.0:
             return self
-        return PolygonShape(self.name, self.area.buffer(by_m * 1.0001, quad_segs=ROUND_SEGMENTS))
+        return PolygonShape(self.name, growth.grown(self.area, by_m * 1.0001, ROUND_SEGMENTS))
 
     def polygon(self) -> Polygon:
         """The polygon itself."""

@@ -12,6 +12,7 @@ from shapely.geometry.base import BaseGeometry
 
 from planner.airspace.airspace import Airspace, Level
 from planner.airspace.barriers import COLUMNS, polygon_rows, rows_of
+from planner.airspace.growth import grown
 from planner.airspace.prices import INSIDE_FACTOR, soft_prices
 from planner.airspace.shapes import DiscShape, hard_shapes
 from planner.airspace.terrain import Ground
@@ -96,7 +97,7 @@ def surroundings(airspace: Airspace, level: Level, model: FlightModel, objective
     )
     return Surroundings(
         area=area,
-        room=None if airspace.area is None else airspace.area.buffer(-radius_m),
+        room=None if airspace.area is None else grown(airspace.area, -radius_m),
         hard=_discs([shape for shape in hard if isinstance(shape, DiscShape)]),
         soft=soft,
         hard_polygons=polygons,
@@ -109,7 +110,7 @@ def surroundings(airspace: Airspace, level: Level, model: FlightModel, objective
         prices=priced[:, 3],
         yields=priced[:, 3] < INSIDE_FACTOR,
         barriers=polygon_rows(polygons),
-        cramped=shapely.union_all([polygon.buffer(radius_m) for polygon in polygons]) if polygons else None,
+        cramped=shapely.union_all([grown(polygon, radius_m) for polygon in polygons]) if polygons else None,
     )
 
 

@@ -16,6 +16,7 @@ import shapely
 from shapely.geometry import LineString, MultiPolygon, Polygon
 from shapely.geometry.base import BaseGeometry
 
+from planner.airspace.growth import grown
 from planner.wishes import Region
 
 #: 15 pixels of 5.4 m, section 5.1.
@@ -206,6 +207,12 @@ def _merge_group(parts: list[tuple[int, MergedRegion]], radius_m: float) -> list
     return merged
 
 
+def _is_convex(shape: BaseGeometry) -> bool:
+    """Whether closing adds nothing to it, roundings aside."""
+    hull = shape.convex_hull
+    return bool(hull.area - shape.area <= GRID_M * hull.length)
+
+
 def close_filter(area: BaseGeometry, radius_m: float) -> BaseGeometry:
     """Eq 15 on outlines: dilation, then erosion, by a disk.
 
@@ -214,13 +221,16 @@ def close_filter(area: BaseGeometry, radius_m: float) -> BaseGeometry:
     """
     if radius_m < _LEAST_RADIUS_M:
         return shapely.union_all([area], grid_size=GRID_M)
-    grown = area.buffer(radius_m, quad_segs=_QUADRANT_SEGMENTS)
+    wide = grown(area, radius_m, _QUADRANT_SEGMENTS)
     pieces: list[BaseGeometry] = []
     parts = polygons_of(area)
     tree = shapely.STRtree(parts)
-    for island in polygons_of(grown):
+    for island in polygons_of(wide):
         there = shapely.MultiPolygon([parts[k] for k in np.sort(tree.query(island, predicate="intersects"))])
         inside = shapely.intersection(there, island, grid_size=GRID_M)
+        if _is_convex(inside):
+            pieces.append(inside)
+            continue
         closed = island.buffer(-radius_m, quad_segs=_QUADRANT_SEGMENTS)
         kept = shapely.intersection(closed, inside.convex_hull, grid_size=GRID_M)
         pieces.append(shapely.union_all([kept, inside], grid_size=GRID_M))

@@ -8,6 +8,7 @@ import math
 from shapely.geometry import Point
 
 from planner.airspace.airspace import Level
+from planner.airspace.growth import grown
 from planner.airspace.shapes import banded_shapes
 from planner.geojson.fields import Findings
 from planner.route import Terminal
@@ -128,7 +129,7 @@ def _area(scenario: Scenario, findings: Findings) -> None:
                 "Move it inside, or enlarge the area.",
             )
     for aircraft in scenario.aircraft:
-        if area.buffer(-aircraft.min_turn_radius_m).is_empty:
+        if grown(area, -aircraft.min_turn_radius_m).is_empty:
             findings.error(
                 f"vehicle {aircraft.name}",
                 "turn-radius-exceeds-area",

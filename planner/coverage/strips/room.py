@@ -11,6 +11,7 @@ from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
 from planner.airspace.airspace import Airspace, Level
+from planner.airspace.growth import grown
 from planner.airspace.shapes import hard_shapes, soft_shapes
 from planner.airspace.zones import TRANSIT_MARGIN_M, inner_area
 from planner.coverage.lines import flown_straight, inside
@@ -117,9 +118,9 @@ class Room:
     def _circles_free(self, centres: Floats, taken: BaseGeometry, area: Polygon | None) -> NDArray[np.bool_]:
         free = np.ones(centres.shape[:-1], dtype=np.bool_)
         if not taken.is_empty:
-            free &= ~_holds(taken.buffer(self.turn_radius_m), centres)
+            free &= ~_holds(grown(taken, self.turn_radius_m), centres)
         if area is not None:
-            free &= _holds(area.buffer(-self.turn_radius_m - MARGIN_M), centres)
+            free &= _holds(grown(area, -self.turn_radius_m - MARGIN_M), centres)
         return free
 
 
