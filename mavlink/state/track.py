@@ -7,12 +7,13 @@ RELAY_STATUS (376), SYSTEM_TIME (2).
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final, Literal
 
 from mavlink.state.energy import Energy, EnergyMeter
+from mavlink.state.mount import MOUNT_MESSAGES, MountWatch
+from mavlink.state.mount import angles_deg as angles_of
 from mavlink.state.outputs import CameraOutput, PhotoOutput, RelayOutput, SensorOutput, ServoOutput
 from mavlink.state.photos import PhotoSource, PhotoTaken, photos_among
 from mavlink.state.telemetry import VehicleState, finite, is_sensor_switch
@@ -122,12 +123,19 @@ class TrackRecorder:
         What the payload in use switches; a sensor that reports itself is believed before it.
     clock
         The recording's clock where the messages come from one: seconds since 1970, None while not known.
+    in_gimbal
+        Whether a gimbal holds the sensor: where it tells where it points, that is the attitude of photos.
     """
 
     def __init__(
-        self, output: SensorOutput | None = None, clock: Callable[[], float | None] | None = None
+        self,
+        output: SensorOutput | None = None,
+        clock: Callable[[], float | None] | None = None,
+        in_gimbal: bool = False,
     ) -> None:
         self.output = output
+        self.in_gimbal = in_gimbal
+        self._mount = MountWatch()
         self._clock = clock
         self._began_s: float | None = None
         self._went_on_s: float | None = None
@@ -187,6 +195,8 @@ class TrackRecorder:
                 self._unix_minus_boot_s = message.integer("time_unix_usec") / 1e6 - _boot_s(message)
         elif message.name in ("SERVO_OUTPUT_RAW", "CAMERA_CAPTURE_STATUS"):
             self._switched(message, state)
+        elif message.name in MOUNT_MESSAGES:
+            self._mount.take(message, state)
         elif message.name == "ATTITUDE":
             self._attitude_heard, self._attitude_s = True, state.time_s
         else:
@@ -269,7 +279,7 @@ class TrackRecorder:
                 return
             index, lon, camera = message.integer("image_index"), message.integer("lon"), message.component_id
             relative_m, amsl_m = (message.number(name) / 1000.0 for name in ("relative_alt", "alt"))
-            angles_deg = _angles_deg(message.fields.get("q"))
+            angles_deg = angles_of(message.fields.get("q")) or (None, None, None)
             time_s = _boot_s(message)
         lat = message.integer("lat")
         image = (camera, index, lat, lon)
@@ -283,6 +293,11 @@ class TrackRecorder:
         else:
             place = (lon / 1e7, lat / 1e7)
         roll_deg, pitch_deg, yaw_deg = angles_deg
+        source: PhotoSource = "camera" if message.component_id in _CAMERAS else "autopilot"
+        mount = self._mount.at(state.time_s) if self.in_gimbal and source == "autopilot" else None
+        if mount is not None:
+            roll_deg, pitch_deg, yaw_deg = mount.roll_deg, mount.pitch_deg, mount.yaw_deg
+            source = "camera"
         self._events.append(
             SensorEvent(
                 time_s if time_s is not None else state.time_s or 0.0,
@@ -295,7 +310,7 @@ class TrackRecorder:
                 None if yaw_deg is None else yaw_deg % 360.0,
                 roll_deg,
                 pitch_deg,
-                "camera" if message.component_id in _CAMERAS else "autopilot",
+                source,
             )
         )
 
@@ -328,21 +343,6 @@ def unwrapped_s(told_s: float, near_s: float | None) -> float:
     if near_s is None:
         return told_s
     return told_s + round((near_s - told_s) / _WRAP_S) * _WRAP_S
-
-
-def _angles_deg(quaternion: object) -> tuple[float | None, float | None, float | None]:
-    """Roll, pitch and yaw of a quaternion (w, x, y, z); None for one that is none."""
-    if not isinstance(quaternion, tuple) or len(quaternion) != 4:
-        return None, None, None
-    w, x, y, z = quaternion
-    norm = math.sqrt(w * w + x * x + y * y + z * z)
-    if not (math.isfinite(norm) and norm > 0.5):
-        return None, None, None
-    w, x, y, z = (part / norm for part in (w, x, y, z))
-    roll = math.atan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y))
-    pitch = math.asin(max(-1.0, min(1.0, 2.0 * (w * y - z * x))))
-    yaw = math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
-    return math.degrees(roll), math.degrees(pitch), math.degrees(yaw)
 
 
 def _boot_s(message: Message) -> float:

@@ -12,6 +12,7 @@ from typing import Final, Self
 from mavlink.encoding.payload import Payload
 from mavlink.errors import NotConnectedError, TransferFailedError, VehicleNotFoundError
 from mavlink.links.link import Link, ReplayLink
+from mavlink.state.mount import ATTITUDE_HZ, GIMBAL_DEVICE_ATTITUDE_STATUS
 from mavlink.state.outputs import (
     INTERVALS_HZ,
     SensorOutput,
@@ -196,17 +197,21 @@ class VehicleClient(MissionTransfers, FlightCommands, SigningSetup):
         values |= await self._parameters_there(pulse_parameters(payload, autopilot, values))
         return output_of(payload, autopilot, values)
 
-    def start_recording(self, output: SensorOutput | None = None) -> TrackRecorder:
+    def start_recording(self, output: SensorOutput | None = None, in_gimbal: bool = False) -> TrackRecorder:
         """A recorder fed with everything the vehicle sends from now on.
 
         Parameters
         ----------
         output
             What switches the sensor, as ``sensor_output`` tells; the vehicle is asked to report it.
+        in_gimbal
+            Whether a gimbal holds the sensor; the vehicle is asked to report where it points.
         """
-        recorder = TrackRecorder(output, self._driver.recording_clock)
+        recorder = TrackRecorder(output, self._driver.recording_clock, in_gimbal)
         self._driver.record(recorder)
         self._report(output)
+        if in_gimbal:
+            self._watch({GIMBAL_DEVICE_ATTITUDE_STATUS: ATTITUDE_HZ})
         return recorder
 
     def show_sensor(self, output: SensorOutput | None) -> None:
@@ -215,9 +220,10 @@ class VehicleClient(MissionTransfers, FlightCommands, SigningSetup):
         self._report(output)
 
     def _report(self, output: SensorOutput | None) -> None:
-        if output is None:
-            return
-        wanted_hz = INTERVALS_HZ[type(output)]
+        if output is not None:
+            self._watch(INTERVALS_HZ[type(output)])
+
+    def _watch(self, wanted_hz: Mapping[int, float]) -> None:
         self._watched_hz |= wanted_hz
         if self.state.connected:
             self._ask_for(wanted_hz)

@@ -18,6 +18,7 @@ from mavlink.links.link import DirectLink, Link, ReplayLink
 from mavlink.state.events import EVENT_MESSAGES, EventOrder
 from mavlink.state.link_quality import LinkQuality
 from mavlink.state.modes import GROUND_STATION_TYPE, NO_AUTOPILOT
+from mavlink.state.mount import MOUNT_MESSAGES
 from mavlink.state.outputs import SensorOutput
 from mavlink.state.sensor import SensorWatch
 from mavlink.state.telemetry import VehicleState, updated
@@ -301,7 +302,8 @@ class Driver(Believing):
     def _take(self, message: Message) -> None:
         now_s = self._clock()
         if not self._identity.speaks(message, self.state):
-            if message.name in CAMERA_MESSAGES and message.system_id == self.state.system_id:
+            beside = message.name in CAMERA_MESSAGES or message.name in MOUNT_MESSAGES
+            if beside and message.system_id == self.state.system_id:
                 for recorder in self._recorders:
                     recorder.take(message, self.state)
                 self._change(self.sensor.watched(self.state, message, now_s))

@@ -14,6 +14,7 @@ import structlog
 from app.services.errors import StorageError
 from app.services.records import FlightEvent, FlightState, FlownEnergy, LinkEvent, SensorAction, TrackSample
 from app.services.store.flights import FlightStore
+from mavlink.encoding.gimbal import NO_GIMBAL
 from mavlink.state.outputs import SensorOutput
 from mavlink.state.telemetry import VehicleState
 from mavlink.state.track import SensorEvent, Track, TrackPoint, TrackRecorder
@@ -167,7 +168,7 @@ class FlightRecorder:
         if self._recorder is None or self._client is not client or self._plan != plan:
             self._stop_listening()
             self._client, self._plan = client, plan
-            self._recorder = client.start_recording(plan.output if plan else None)
+            self._recorder = _recording(client, plan)
         return self._recorder
 
     def _stop_listening(self) -> None:
@@ -177,7 +178,7 @@ class FlightRecorder:
 
     async def _change(self, client: VehicleClient, plan: HeldPlan) -> None:
         """End the flight under way and begin another; nothing is missed while the first is being stored."""
-        recorder = client.start_recording(plan.output)
+        recorder = _recording(client, plan)
         try:
             await self._end("ended")
         except BaseException:
@@ -263,6 +264,12 @@ class FlightRecorder:
             log.info(
                 "flight ended", vehicle=self._vehicle_name, flight_id=ending.flight_id, state=ending.state
             )
+
+
+def _recording(client: VehicleClient, plan: HeldPlan | None) -> TrackRecorder:
+    if plan is None:
+        return client.start_recording()
+    return client.start_recording(plan.output, plan.gimbal not in (None, NO_GIMBAL))
 
 
 def _moment(recorder: TrackRecorder | None, which: Literal[0, 1]) -> datetime | None:

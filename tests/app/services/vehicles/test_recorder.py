@@ -45,7 +45,7 @@ class Client(VehicleClient):
     def failure(self) -> str | None:
         return self.ended
 
-    def start_recording(self, output: object = None) -> TrackRecorder:
+    def start_recording(self, output: object = None, in_gimbal: bool = False) -> TrackRecorder:
         assert output is None or isinstance(output, RelayOutput)
         self.recorders.append(TrackRecorder(output))
         return self.recorders[-1]
