@@ -25,8 +25,11 @@ MULTIROTOR_BANK_DEG = 25.0
 VEHICLE_TYPES = ("fixed_wing", "multirotor", "vtol")
 AUTOPILOTS = ("ardupilot", "px4")
 
+#: Ways of coverage whose sweeps come in order.
+OWN_ORDER = ("majeed2019", "boustrophedon-cells", "coverage-alternatives")
+
 METHODS = {
-    "coverage": ("auto", "li2018"),
+    "coverage": ("auto", "li2018", *OWN_ORDER),
     "routing": ("auto", "joint", "li2018", "li2018-threat-aware"),
     "transit": ("auto", "ssas", "tangent"),
     "smoothing": ("auto", "fillet", "shortcut"),
@@ -199,6 +202,13 @@ def read_method(raw: Any, findings: Findings) -> Method:
     fields = Fields("method", _object("method", raw, findings), findings)
     chosen = {stage: fields.choice(stage, names, "auto") or "auto" for stage, names in METHODS.items()}
     fields.refuse_unknown()
+    if chosen["coverage"] in OWN_ORDER and chosen["routing"] != "auto":
+        findings.error(
+            "method",
+            "bad-value",
+            f"coverage {chosen['coverage']} has an order of its own, routing {chosen['routing']} another",
+            "Leave routing out.",
+        )
     return Method(**chosen)
 
 

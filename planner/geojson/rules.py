@@ -10,6 +10,7 @@ from shapely.geometry import Point
 from planner.airspace.airspace import Level
 from planner.airspace.growth import grown
 from planner.airspace.shapes import banded_shapes
+from planner.geojson.equipment import OWN_ORDER
 from planner.geojson.fields import Findings
 from planner.route import Terminal
 from planner.scenario import Scenario
@@ -87,6 +88,9 @@ def _by_paper(scenario: Scenario, findings: Findings) -> None:
     method = scenario.method
     if method.routing == "joint" or (method.routing, method.coverage) == ("auto", "auto"):
         return
+    if method.coverage in OWN_ORDER:
+        _by_sweeps(scenario, findings)
+        return
     for region in scenario.regions:
         if region.revisits > 1:
             findings.error(
@@ -103,6 +107,32 @@ def _by_paper(scenario: Scenario, findings: Findings) -> None:
                 "not-supported",
                 f"is seen by a {kind}, which the paper's routing and coverage do not plan",
                 "Leave method.routing and method.coverage at auto.",
+            )
+
+
+def _by_sweeps(scenario: Scenario, findings: Findings) -> None:
+    """Footprint sweeps see what is below, once, in directions of their own."""
+    name = scenario.method.coverage
+    for region in scenario.regions:
+        wishes = {
+            "approach_deg": region.approach_rad is not None,
+            "revisits": region.revisits > 1,
+        }
+        for wish in (wish for wish, asked in wishes.items() if asked):
+            findings.error(
+                region.name,
+                "not-supported",
+                f"has {wish}; coverage {name} sees a region once, in a direction of its own",
+                f"Leave {wish} out, or method.coverage at auto.",
+            )
+        if (kind := scenario.sensor_for(region).kind) != "camera" and "unknown-sensor" not in {
+            found.rule for found in findings.all()
+        }:
+            findings.error(
+                region.name,
+                "not-supported",
+                f"is seen by a {kind}; coverage {name} sweeps the ground below with a camera",
+                "See it with a camera, or leave method.coverage at auto.",
             )
 
 

@@ -11,6 +11,7 @@ from planner.bounds.allowance import Allowance
 from planner.bounds.ways import plan_bound_m
 from planner.coverage.strips.located import Located, located
 from planner.coverage.strips.room import Room
+from planner.coverage.urban.methods import SEQUENCES
 from planner.coverage.visible import Seeing
 from planner.errors import Finding, InfeasibleError
 from planner.metrics import used
@@ -30,6 +31,7 @@ from planner.tasks.methods import chosen_methods
 from planner.tasks.setting import Setting, seeing
 from planner.tasks.task import NOT_SEEN, Answer, Controls, Task
 from planner.tasks.transits import Transits
+from planner.tasks.urban import swept
 from planner.vehicle.limits import Use
 
 Passes = tuple[CollectPass, ...]
@@ -106,6 +108,8 @@ def bound_m(scenario: Scenario, plan: Plan, stop: Stop, allowance: Allowance) ->
 
 def _found(asked: Seeing, setting: Setting, methods: dict[str, str], seed: int, controls: Controls) -> Found:
     """Passes by the routing asked for."""
+    if methods["coverage"] in SEQUENCES:
+        return swept(asked, setting, methods["coverage"], seed, controls.progress, controls.stop)
     if methods["routing"] != "joint":
         aware = methods["routing"] == "li2018-threat-aware"
         choices = paper_choices(asked, controls.progress, controls.stop, threat_aware=aware)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from planner.coverage.urban.methods import SEQUENCES
 from planner.wishes import Method
 
 #: What ``auto`` stands for.
@@ -18,6 +19,10 @@ def chosen_methods(method: Method) -> dict[str, str]:
     """The algorithm of each stage, ``auto`` resolved."""
     asked = {name: getattr(method, name) for name in Method.__slots__}
     chosen = {name: AUTO[name] if value == "auto" else value for name, value in asked.items()}
+    if chosen["coverage"] in SEQUENCES:
+        # Footprint sweeps come in an order of their own.
+        chosen["routing"] = chosen["coverage"]
+        return chosen
     if method.routing == "auto" and method.coverage == "li2018":
         # Asking for the paper's neighbourhoods by name means the paper's choice among them.
         chosen["routing"] = "li2018"

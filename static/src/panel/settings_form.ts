@@ -8,7 +8,7 @@ import { sensorSections, sensorsKey } from "./sensor_form";
 import { terrainField } from "./terrain_field";
 
 const METHODS: Record<string, readonly string[]> = {
-  coverage: ["auto", "li2018"],
+  coverage: ["auto", "li2018", "majeed2019", "boustrophedon-cells", "coverage-alternatives"],
   routing: ["auto", "joint", "li2018", "li2018-threat-aware"],
   transit: ["auto", "ssas", "tangent"],
   smoothing: ["auto", "fillet", "shortcut"],

@@ -1,0 +1,171 @@
+"""Regions as areas among obstacles for cameras that look down, and the passes that methods by name give."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import shapely
+from shapely.geometry import Point, Polygon
+from shapely.geometry.base import BaseGeometry
+from shapely.ops import nearest_points
+
+from planner.airspace.airspace import Airspace, Level
+from planner.airspace.shapes import banded_shapes
+from planner.airspace.zones import TRANSIT_MARGIN_M
+from planner.coverage.merge import polygons_of
+from planner.coverage.urban.area import Building, Place, UrbanArea
+from planner.coverage.urban.free import enlarged, free_space
+from planner.coverage.urban.measures import Sweep
+from planner.coverage.urban.methods import SEQUENCES
+from planner.coverage.urban.waypoints import Joiner
+from planner.errors import InfeasibleError
+from planner.route import CollectPass
+from planner.sensors.base import Sensor
+from planner.sensors.camera import CameraSensor
+from planner.sensors.camera_view import seen_on_flat
+from planner.vehicle.model import FlightModel
+from planner.wishes import Region
+
+#: Courses at which the footprint is looked at: the narrowest counts.
+COURSES_RAD = np.radians(np.arange(0.0, 360.0, 10.0))
+#: Sweeps shorter than this are flown this long, by half of the difference at either end.
+LEAST_PASS_M = 1.0
+
+
+def camera_of(region: Region, sensor: Sensor, method: str) -> CameraSensor:
+    """The camera of a region.
+
+    Raises
+    ------
+    InfeasibleError
+        Where it is none.
+    """
+    if not isinstance(sensor, CameraSensor):
+        raise InfeasibleError(
+            "coverage",
+            region.name,
+            f"coverage {method} sweeps the ground below; {sensor.name} is no camera",
+            "see it with a camera, or leave method.coverage out",
+        )
+    return sensor
+
+
+def urban_passes(
+    region: Region,
+    camera: CameraSensor,
+    height_m: float,
+    airspace: Airspace,
+    level: Level,
+    model: FlightModel,
+    method: str,
+    seed: int,
+    here: Place,
+) -> tuple[CollectPass, ...]:
+    """Passes over a region, part by part, in the order and direction that a method gives.
+
+    Joins are the house's: the passes alone are of the method, with its order.
+
+    Raises
+    ------
+    InfeasibleError
+        Where obstacles leave no free ground in a part, or the overlaps leave no width.
+    """
+    found: list[CollectPass] = []
+    parts = sorted(polygons_of(region.area), key=lambda part: float(part.distance(Point(here))))
+    for part in parts:
+        sweeps = SEQUENCES[method](
+            *_posed(region, part, camera, height_m, airspace, level, model, here), seed
+        )
+        found += [_pass(region, camera, height_m, sweep) for sweep in sweeps]
+        here = found[-1].end
+    return tuple(found)
+
+
+def unseen_m2(region: Region, passes: tuple[CollectPass, ...]) -> float:
+    """How much of a region's ground no pass sees."""
+    seen = shapely.union_all([each.footprint for each in passes], grid_size=1e-6)
+    return float(shapely.difference(region.area, seen, grid_size=1e-6).area)
+
+
+def _posed(
+    region: Region,
+    part: Polygon,
+    camera: CameraSensor,
+    height_m: float,
+    airspace: Airspace,
+    level: Level,
+    model: FlightModel,
+    here: Place,
+) -> tuple[UrbanArea, Joiner]:
+    """The problem that methods are given.
+
+    D_safe is the clearance, the margin of transits and what a turn takes at the end of a sweep that runs up
+    to an obstacle: its radius and the straight flight before the next. What stands below the flight by the
+    clearance is no obstacle; of what is left no height matters, for transits are flown level.
+    """
+    width_m = min(camera.lane_spacing_m(height_m, float(course)) for course in COURSES_RAD)
+    if width_m <= 0.0:
+        raise InfeasibleError(
+            "overlap",
+            region.name,
+            f"from {height_m:.0f} m photos of {camera.name} leave no width between lanes",
+            "less side_overlap, a greater height or a wider lens",
+        )
+    runs_m = [
+        max(camera.run_in_m(height_m, float(course)), camera.run_out_m(height_m, float(course)))
+        for course in COURSES_RAD
+    ]
+    turn_m = model.turn_radius_m + model.settle_m
+    safe_m = airspace.clearance_m + TRANSIT_MARGIN_M + turn_m
+    area: BaseGeometry = part
+    if airspace.area is not None:
+        area = shapely.intersection(part, airspace.area.buffer(-TRANSIT_MARGIN_M - turn_m), grid_size=1e-6)
+    buildings = tuple(
+        Building(banded.shape.polygon(), math.inf)
+        for banded in banded_shapes(airspace, level.amsl_m - level.height_m)
+        if banded.hard and banded.counts(*level.counted_m)
+    )
+    blocked = shapely.union_all([enlarged(each.outline, safe_m) for each in buildings])
+    room = [
+        piece
+        for piece in shapely.get_parts(shapely.difference(area, blocked, grid_size=1e-6))
+        if isinstance(piece, Polygon) and not piece.is_empty
+    ]
+    if not room:
+        raise InfeasibleError(
+            "hard-zone",
+            region.name,
+            f"obstacles, each with {safe_m:.0f} m for clearance and turns, leave no free ground in it",
+            "fly higher, lower the clearance, or take an aircraft that turns tighter",
+            (part.centroid.x, part.centroid.y),
+        )
+    nearest = min(room, key=lambda piece: float(piece.distance(Point(here))))
+    start, _ = nearest_points(nearest, Point(here))
+    outlines = [piece for piece in shapely.get_parts(area) if isinstance(piece, Polygon)]
+    urban = UrbanArea(
+        max(outlines, key=lambda piece: piece.area),
+        buildings,
+        width_m,
+        2.0 * max(-max(runs_m), 0.0),
+        height_m,
+        math.inf,
+        safe_m,
+        (start.x, start.y),
+        (start.x, start.y),
+        span_m=0.0,
+        speed_m_s=model.airspeed_m_s,
+    )
+    return urban, Joiner.among(urban, free_space(urban))
+
+
+def _pass(region: Region, camera: CameraSensor, height_m: float, sweep: Sweep) -> CollectPass:
+    ends = np.array([sweep.start, sweep.end])
+    length_m = sweep.length_m
+    ahead = (ends[1] - ends[0]) / length_m
+    more_m = max(LEAST_PASS_M - length_m, 0.0) / 2.0
+    start, end = (tuple(place) for place in (ends + np.outer([-more_m, more_m], ahead)).tolist())
+    course_rad = math.atan2(ahead[1], ahead[0])
+    seen = seen_on_flat(camera, (start, end), height_m)
+    apart_m = camera.photo_spacing_m(height_m, course_rad)
+    return CollectPass((region.name,), camera.name, "down", start, end, 0.5, seen, apart_m)

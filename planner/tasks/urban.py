@@ -1,0 +1,69 @@
+"""Regions among obstacles by footprint sweeps, in the order of the method that was asked for by name."""
+
+from __future__ import annotations
+
+from shapely.geometry import Point
+
+from planner.coverage.urban.regions import camera_of, unseen_m2, urban_passes
+from planner.coverage.visible import Seeing
+from planner.errors import Finding, InfeasibleError
+from planner.progress import Progress, Stop, raise_if
+from planner.route import CollectPass
+from planner.tasks.setting import Setting
+from planner.tasks.task import NOT_SEEN
+
+#: More of a region than this part left unseen is told.
+LEFT_PART = 1e-5
+
+
+def swept(
+    asked: Seeing, setting: Setting, method: str, seed: int, progress: Progress, stop: Stop
+) -> tuple[tuple[CollectPass, ...], tuple[Finding, ...]]:
+    """Passes over all regions, the nearest first, and what is to be said of those not seen, or not whole.
+
+    Raises
+    ------
+    InfeasibleError
+        Where a required region cannot be swept, or none can.
+    """
+    here = setting.ends[0].position
+    passes: list[CollectPass] = []
+    findings: list[Finding] = []
+    refused: InfeasibleError | None = None
+    waiting = list(asked.regions)
+    while waiting:
+        raise_if(stop)
+        region = min(waiting, key=lambda each: float(each.area.distance(Point(here))))
+        waiting.remove(region)
+        level = asked.level.of(region)
+        try:
+            sensor, height_m = asked.suite.over(region.sensor, region.area, asked.airspace, level)
+            camera = camera_of(region, sensor, method)
+            where = (asked.airspace, level, asked.model)
+            own = urban_passes(region, camera, height_m, *where, method, seed, here)
+        except InfeasibleError as error:
+            if region.required:
+                raise
+            refused = error
+            rule = f"{NOT_SEEN}{error.constraint}"
+            findings.append(Finding(error.feature, rule, error.message, error.relaxation, "warning"))
+            continue
+        left_m2 = unseen_m2(region, own)
+        if left_m2 > LEFT_PART * region.area.area:
+            findings.append(_left(region.name, left_m2))
+        passes += own
+        here = own[-1].end
+        progress("routing", 1.0 - len(waiting) / len(asked.regions))
+    if not passes and refused is not None:
+        raise refused
+    return tuple(passes), tuple(findings)
+
+
+def _left(name: str, left_m2: float) -> Finding:
+    return Finding(
+        name,
+        "beside-obstacles",
+        f"{left_m2:.0f} m² of it lie too near obstacles to be seen from free ground at this height",
+        "Fly higher, cut what stands there out of it, or lower the clearance.",
+        "warning",
+    )
