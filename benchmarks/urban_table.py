@@ -21,10 +21,8 @@ def tables(rows: Iterable[dict[str, Any]]) -> str:
     maps: dict[str, dict[str, dict[str, Any]]] = {}
     for row in listed:
         maps.setdefault(row["map"], {})[row["method"]] = row
-    lines = [
-        f"| map | size, m | free | {' | '.join(f'{method}: length, m | turns | overlap, m | s' for method in methods)} |",
-        "| --- | --- | --- |" + " --- |" * (4 * len(methods)),
-    ]
+    heads = " | ".join(f"{method}: length, m | turns | overlap, m | s" for method in methods)
+    lines = [f"| map | size, m | free | {heads} |", "| --- | --- | --- |" + " --- |" * (4 * len(methods))]
     for name, found in maps.items():
         first = next(iter(found.values()))
         cells = [name, first["size_m"], f"{first['free']:.2f}"]
@@ -33,11 +31,8 @@ def tables(rows: Iterable[dict[str, Any]]) -> str:
             cells += [f"{row['length_m']:,.0f}", str(row["turns"]), f"{row['overlap_m']:,.0f}"]
             cells.append(f"{row['planning_s']:.2f}")
         lines.append(f"| {' | '.join(cells)} |")
-    lines += [
-        "",
-        f"| mean of | against | {' | '.join(MEASURES)} |",
-        "| --- | --- |" + " --- |" * len(MEASURES),
-    ]
+    lines += ["", f"| mean of | against | {' | '.join(MEASURES)} |"]
+    lines.append("| --- | --- |" + " --- |" * len(MEASURES))
     for method in methods:
         for other in methods:
             if method == other:

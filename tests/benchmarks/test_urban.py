@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from benchmarks.urban import COMPARED, run
+from benchmarks.urban_table import tables
 from planner.coverage.urban.methods import METHODS
 
 
@@ -13,6 +14,9 @@ def test_rows_tell_what_each_method_comes_to() -> None:
     """
     rows = list(run("shape-rectangle", COMPARED))
     assert [row["method"] for row in rows] == list(COMPARED)
+    assert f"| shape-rectangle | 600 x 500 | {rows[0]['free']:.2f} | {rows[0]['length_m']:,.0f} |" in tables(
+        rows
+    )
     for row in rows:
         assert row["coverage"] == 1.0
         assert row["length_m"] > row["sweep_m"]
