@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from pathlib import PurePosixPath
 
 from app.imports import esri, kml
@@ -59,14 +60,14 @@ def read_bundle(
         raise file_error("archive-too-large", f"the archive holds {len(inner)} archives", "unpack some")
     shapes = kml.read_documents(documents, notes) if documents else []
     for name, content in inner.items():
-        shapes += _named(name, lambda content=content: kml.read_kmz(content, notes))  # type: ignore[misc]
+        shapes += _named(name, partial(kml.read_kmz, content, notes))
     for stem, files in layers.items():
         shapes += _named(
             stem,
-            lambda files=files, stem=stem: esri.read_shapefile(files[".shp"], files, crs, notes, stem),  # type: ignore[misc]
+            partial(esri.read_shapefile, files[".shp"], files, crs, notes, stem),
         )
     for name, content in single.items():
-        shapes += _named(name, lambda name=name, content=content: read_one(content, name))  # type: ignore[misc]
+        shapes += _named(name, partial(read_one, content, name))
     if single or (layers and (documents or inner)):
         return "zip", shapes
     return ("shapefile" if layers else "kmz"), shapes

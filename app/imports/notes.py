@@ -12,7 +12,7 @@ from planner.errors import Finding
 _OF_ONE = frozenset(
     (
         *("kml-coordinates", "kml-polygon", "gpx-point", "geojson", "esri-json", "gml-geometry", "wkt"),
-        *("table-place", "circle", "rings-nested", "shapefile-kind"),
+        *("table-place", "circle", "rings-nested", "too-many-rings", "shapefile-kind"),
     )
 )
 

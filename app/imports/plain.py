@@ -7,6 +7,7 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
+from app.imports.bands import band_of
 from app.imports.crs import ToWgs84, mover, written_crs
 from app.imports.errors import file_error
 from app.imports.notes import Notes
@@ -62,6 +63,9 @@ def _of_feature(
     if isinstance(extent, dict) and "radius" in extent:
         # a circle of EUROCAE ED-318
         texts = {**texts, "radius_m": json.dumps(extent["radius"])}
+    layer = geometry.get("layer") if isinstance(geometry, dict) else None
+    if isinstance(layer, dict):
+        texts = {**texts, **band_of(layer, notes)}
     found: list[Shape] = []
     with notes.one_shape(name):
         found = [Shape(s.kind, s.parts, name, folders, texts) for s in drawn(geometry, name)]

@@ -17,6 +17,8 @@ Ring = tuple[LonLat, ...]
 
 #: Pairs of rings, one box in the other, that are looked at; rings side by side have none.
 MAX_PAIRS = 200_000
+#: Of one drawn thing.
+MAX_RINGS = 20_000
 
 
 def encloses(ring: Ring) -> bool:
@@ -33,8 +35,14 @@ def grouped(rings: Sequence[Ring]) -> tuple[Rings, ...]:
     Raises
     ------
     RegionFileError
-        Rule ``rings-nested``, where too many rings lie within each other.
+        Rule ``too-many-rings``, and ``rings-nested`` where too many of them lie within each other.
     """
+    if len(rings) > MAX_RINGS:
+        raise file_error(
+            "too-many-rings",
+            f"a shape has {len(rings)} rings, {MAX_RINGS} at most are read",
+            "export it as several shapes",
+        )
     if len(rings) < 2:
         return tuple((ring,) for ring in rings)
     whole = [index for index, ring in enumerate(rings) if encloses(ring)]
@@ -46,7 +54,8 @@ def grouped(rings: Sequence[Ring]) -> tuple[Rings, ...]:
             holes[int(parent[i])].append(rings[whole[i]])
     found = [(rings[whole[i]], *inner) for i, inner in holes.items()]
     # what encloses nothing is no hole; as a ring of its own it is found and told of
-    found += [(ring,) for index, ring in enumerate(rings) if index not in set(whole)]
+    enclosing = set(whole)
+    found += [(ring,) for index, ring in enumerate(rings) if index not in enclosing]
     return tuple(found)
 
 

@@ -6,6 +6,7 @@ import json
 from collections.abc import Mapping
 from typing import Any
 
+from app.imports.bands import band_of, finite, metres
 from app.imports.errors import file_error
 from app.imports.notes import Notes
 from app.imports.plain import drawn, name_of, texts_of
@@ -20,7 +21,7 @@ def is_zones(document: Mapping[str, Any]) -> bool:
 
 
 def shapes_of_zones(document: Mapping[str, Any], notes: Notes) -> list[Shape]:
-    """The zones, from the ground up: their heights are left out."""
+    """The zones; their heights where they count from the sea, else from the ground up."""
     title = document.get("title", document.get("name"))
     folders = (title,) if isinstance(title, str) and title else ()
     shapes: list[Shape] = []
@@ -35,16 +36,25 @@ def shapes_of_zones(document: Mapping[str, Any], notes: Notes) -> list[Shape]:
             if not isinstance(volumes, list):
                 raise file_error("geojson", f"{name or 'a zone'} has no geometry", "export it again")
             for volume in volumes:
-                shapes += _of_volume(volume, name, folders, texts)
+                shapes += _of_volume(volume, name, folders, texts, notes)
     return shapes
 
 
-def _of_volume(volume: Any, name: str, folders: tuple[str, ...], texts: Mapping[str, str]) -> list[Shape]:
+def _of_volume(
+    volume: Any, name: str, folders: tuple[str, ...], texts: Mapping[str, str], notes: Notes
+) -> list[Shape]:
     projection = volume.get("horizontalProjection") if isinstance(volume, dict) else None
     if not isinstance(projection, dict):
         raise file_error("geojson", f"{name or 'a zone'} has no horizontalProjection", "export it again")
+    texts = {**texts, **band_of(volume, notes)}
     if projection.get("type") == "Circle":
-        radius = {"radius_m": json.dumps(projection.get("radius"))}
+        radius = {"radius_m": json.dumps(_radius_m(projection.get("radius"), volume))}
         point = {"type": "Point", "coordinates": projection.get("center")}
         return [Shape(s.kind, s.parts, name, folders, {**texts, **radius}) for s in drawn(point, name)]
     return [Shape(s.kind, s.parts, name, folders, texts) for s in drawn(projection, name)]
+
+
+def _radius_m(radius: Any, volume: Mapping[str, Any]) -> Any:
+    """In metres where that is known; else as it is written, which is no shorter."""
+    number, unit_m = finite(radius), metres(volume)
+    return radius if number is None or unit_m is None else number * unit_m

@@ -11,7 +11,7 @@ import pytest
 from shapely.geometry import MultiPoint, Polygon, shape
 
 from app.imports import Imported, ImportOptions, RegionFileError, import_regions
-from app.imports.rings import grouped
+from app.imports.rings import MAX_RINGS, grouped
 from tests.app.imports.samples import (
     GPX,
     HOLE,
@@ -148,6 +148,9 @@ def test_rings_within_rings_have_an_end() -> None:
     with pytest.raises(RegionFileError) as caught:
         grouped(nested)
     assert caught.value.findings[0].rule == "rings-nested"
+    with pytest.raises(RegionFileError) as caught:
+        grouped([many[0]] * (MAX_RINGS + 1))
+    assert caught.value.findings[0].rule == "too-many-rings"
 
 
 def test_scribbles_and_deep_links_have_an_end() -> None:
