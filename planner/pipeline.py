@@ -113,6 +113,7 @@ def make_plan(
         metrics=replace(
             draft.metrics,
             coverage=verdict.coverage,
+            surveys=verdict.surveys,
             planning_time_s=dict(watch.seconds),
             left_out=answer.left_out,
         ),

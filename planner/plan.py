@@ -283,6 +283,30 @@ class LeftOut:
 
 
 @dataclass(frozen=True, slots=True)
+class Surveyed:
+    """What photos give of one region, as the judge measures it photo by photo.
+
+    Parameters
+    ----------
+    forward_overlap, side_overlap
+        Parts of a photo that the next one, and that of the next lane, see again: the least of any place.
+    photos_least, photos_mean
+        How many photos see a place.
+    gsd_m, niirs
+        The worst of any photo of a place of it; the means are those of the photos nearest to each place.
+    """
+
+    forward_overlap: float
+    side_overlap: float
+    photos_least: int
+    photos_mean: float
+    gsd_m: float | None = None
+    gsd_mean_m: float | None = None
+    niirs: float | None = None
+    niirs_mean: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class Metrics:
     """What the plan costs and gives.
 
@@ -291,7 +315,8 @@ class Metrics:
     ``energy_wh`` of all phases. ``route_length_m`` is the line over the ground from start to end, without
     turns flown for height; ``lower_bound_m`` what no mission phase over these regions is shorter than,
     threats left out, and ``gap`` by what part of its length this one is longer; None without a bound.
-    ``photos`` counts those of all cameras; None where there are none on board.
+    ``photos`` counts those of all cameras; None where there are none on board. ``surveys`` tells by region
+    what they give.
     """
 
     length_m: float
@@ -313,6 +338,7 @@ class Metrics:
     route_length_m: float | None = None
     left_out: tuple[LeftOut, ...] = ()
     photos: int | None = None
+    surveys: dict[str, Surveyed] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)

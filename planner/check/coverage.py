@@ -37,7 +37,7 @@ def covered(
         prints = [
             ground
             for collect, ground in seen_by
-            if ground.intersects(region.area) and _counts(scenario, region, collect)
+            if ground.intersects(region.area) and counts(scenario, region, collect)
         ]
         seen = seen_times(prints, region.revisits)
         # A millimetre of slack: coordinates are rounded to a hundredth of one.
@@ -95,7 +95,7 @@ def _resolves(resolution_m: float | None, asked_m: float | None) -> bool:
     return asked_m is None or (resolution_m is not None and resolution_m <= asked_m)
 
 
-def _counts(scenario: Scenario, region: Region, collect: Collect) -> bool:
+def counts(scenario: Scenario, region: Region, collect: Collect) -> bool:
     """Whether a collect sees with a sensor, a resolution, a height and a direction that the region allows."""
     sensor = next(s for s in scenario.sensors if s.name == collect.sensor)
     if not _same(sensor, scenario.sensor_for(region)):

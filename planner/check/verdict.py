@@ -27,9 +27,10 @@ from planner.check.kinematics import (
     turn_radius_m,
     turn_violations,
 )
+from planner.check.photo_quality import surveyed
 from planner.check.stretches import Measured
 from planner.check.times import line_s
-from planner.plan import Plan, Violation
+from planner.plan import Plan, Surveyed, Violation
 from planner.scenario import Scenario
 
 
@@ -49,6 +50,8 @@ class Verdict:
         Fraction of each region inside the footprints, as often as it is to be visited.
     unseen
         What is left of each region that is not covered whole, in the local frame.
+    surveys
+        What photos give of each region that a camera sees.
     """
 
     violations: tuple[Violation, ...]
@@ -56,6 +59,7 @@ class Verdict:
     min_turn_radius_m: float
     coverage: dict[str, float]
     unseen: dict[str, Polygon | MultiPolygon]
+    surveys: dict[str, Surveyed]
 
 
 def judge(scenario: Scenario, plan: Plan) -> Verdict:
@@ -100,6 +104,8 @@ def judge(scenario: Scenario, plan: Plan) -> Verdict:
         violations += followed_violations(scenario, plan, path)
     coverage, unseen, missed = covered(scenario, plan)
     violations += missed
+    surveys, short = surveyed(scenario, plan)
+    violations += short
     length_m = math.fsum(lengths_m)
     mission_m = math.fsum(
         phase.end_m - phase.start_m for path in plan.paths for phase in path.phases if phase.kind == "mission"
@@ -112,7 +118,7 @@ def judge(scenario: Scenario, plan: Plan) -> Verdict:
         if off_m > LENGTH_TOLERANCE * max(measured_m, 1.0):
             message = f"metrics say {said_m} m of {what}, the line measures {measured_m:.1f} m"
             violations.append(Violation("length", "metrics", message, off_m, "m"))
-    return Verdict(tuple(violations), length_m, tightest_m, coverage, unseen)
+    return Verdict(tuple(violations), length_m, tightest_m, coverage, unseen, surveys)
 
 
 def _grounds_m(scenario: Scenario, home_ground_m: float) -> tuple[float, float]:

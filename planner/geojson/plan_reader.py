@@ -21,6 +21,7 @@ from planner.plan import (
     PlanCamera,
     PlanVehicle,
     PlanWind,
+    Surveyed,
     Transit,
     Uncovered,
     Violation,
@@ -207,7 +208,9 @@ def _photos(p: Mapping[str, Any], places: Any) -> Photos:
 
 
 def _metrics(p: Mapping[str, Any]) -> Metrics:
-    return Metrics(**{**p, "left_out": tuple(LeftOut(**each) for each in p.get("left_out", ()))})
+    surveys = {name: Surveyed(**each) for name, each in p.get("surveys", {}).items()}
+    left_out = tuple(LeftOut(**each) for each in p.get("left_out", ()))
+    return Metrics(**{**p, "left_out": left_out, "surveys": surveys})
 
 
 def _uncovered(p: Mapping[str, Any], coordinates: Any) -> Uncovered:

@@ -1,0 +1,164 @@
+"""What photos really give of each region: overlaps, ground sampled distance, NIIRS; wishes not kept."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planner.check.camera_print import nose_off_rad, photo_corners
+from planner.check.coverage import counts
+from planner.check.photo_grid import Lane, Seen, grid_over, look
+from planner.check.places import lonlat
+from planner.plan import Collect, Photos, Plan, Surveyed, Violation
+from planner.scenario import Scenario
+from planner.sensors.camera import CameraSensor
+from planner.wishes import Region
+
+Floats = NDArray[np.float64]
+
+#: Overlaps are kept to this part of a photo, quality to this part of itself: what places are rounded by.
+OVERLAP_TOLERANCE, QUALITY_TOLERANCE = 0.002, 1e-4
+#: Photos may come this much sooner than the camera takes them: times are rounded.
+INTERVAL_TOLERANCE = 0.01
+
+
+def surveyed(scenario: Scenario, plan: Plan) -> tuple[dict[str, Surveyed], list[Violation]]:
+    """Each region that a camera sees, and what of it is not as asked for."""
+    photos = {(each.vehicle, each.seq): each for each in plan.photos}
+    found: dict[str, Surveyed] = {}
+    violations: list[Violation] = []
+    for region in scenario.regions:
+        sensor = scenario.sensor_for(region)
+        if not isinstance(sensor, CameraSensor):
+            continue
+        collects = [c for c in plan.collects if region.name in c.regions and counts(scenario, region, c)]
+        lanes = [
+            _lane(scenario, sensor, collect, photos.get((collect.vehicle, collect.seq)))
+            for collect in collects
+        ]
+        if not lanes:
+            continue
+        places_m = grid_over(region.area)
+        ground_m, flown_over_m = _ground(scenario, places_m)
+        lanes = [replace(lane, altitudes_m=lane.altitudes_m + flown_over_m) for lane in lanes]
+        seen = look(places_m, ground_m, lanes, sensor)
+        found[region.name] = _measured(seen, sensor)
+        violations += _violations(scenario, region, sensor, places_m, seen)
+    violations += _too_soon(scenario, plan)
+    return found, violations
+
+
+def _lane(scenario: Scenario, sensor: CameraSensor, collect: Collect, photos: Photos | None) -> Lane:
+    """The photos of a collect; between its ends a video."""
+    places = collect.line if photos is None else photos.places
+    places_m = scenario.frame.to_local([place[:2] for place in places])
+    aircraft = next(a for a in scenario.aircraft if a.name == collect.vehicle)
+    (east0, north0), (east1, north1) = places_m[0], places_m[-1]
+    course_rad = math.atan2(north1 - north0, east1 - east0)
+    off_rad = (
+        0.0 if aircraft.hovers else nose_off_rad(sensor, course_rad, aircraft.airspeed_m_s, scenario.wind)
+    )
+    altitudes_m = np.array([place[2] for place in places])
+    return Lane(places_m, altitudes_m, photo_corners(sensor, off_rad), photos is None)
+
+
+def _ground(scenario: Scenario, places_m: Floats) -> tuple[Floats, float]:
+    """Height of the ground at places, and what to add to the plan's altitudes to count over the same datum.
+
+    Ground whose height is unknown lies as low as nothing is seen of it.
+    """
+    if scenario.terrain is None:
+        return np.full(len(places_m), scenario.level.altitude_m - scenario.level.height_m), 0.0
+    ground_m = scenario.terrain.at(places_m)
+    return np.where(np.isnan(ground_m), np.inf, ground_m), scenario.level.amsl_m - scenario.level.altitude_m
+
+
+def _measured(seen: Seen, sensor: CameraSensor) -> Surveyed:
+    held = seen.photos > 0
+    if not held.any():
+        return Surveyed(0.0, 0.0, 0, 0.0)
+    worst_m, mean_m = float(np.nanmax(seen.worst_gsd_m)), float(np.nanmean(seen.gsd_m))
+    niirs = niirs_mean = None
+    if sensor.quality is not None:
+        quality = sensor.quality
+        niirs = quality.niirs(worst_m)
+        # Linear in the logarithm of the distance.
+        niirs_mean = quality.niirs(math.exp(float(np.nanmean(np.log(seen.gsd_m)))))
+    return Surveyed(
+        max(float(seen.forward.min()), 0.0),
+        max(float(seen.side.min()), 0.0),
+        int(seen.photos.min()),
+        float(seen.photos.mean()),
+        worst_m,
+        mean_m,
+        niirs,
+        niirs_mean,
+    )
+
+
+def _violations(
+    scenario: Scenario, region: Region, sensor: CameraSensor, places_m: Floats, seen: Seen
+) -> Iterator[Violation]:
+    def violation(constraint: str, message: str, amount: float, unit: str, at: int) -> Violation:
+        where = lonlat(scenario, places_m[at])
+        return Violation(constraint, region.name, message, amount, unit, where, hard=region.required)
+
+    unseen = np.flatnonzero(seen.photos == 0)
+    if len(unseen):
+        share = len(unseen) / len(places_m)
+        said = f"no photo sees {100.0 * share:.2f} % of {region.name}"
+        yield violation("photo-coverage", said, share * region.area.area, "m2", int(unseen[0]))
+    for word, asked, reached in (
+        ("forward", sensor.forward_overlap, seen.forward),
+        ("side", sensor.side_overlap, seen.side),
+    ):
+        worst = int(np.argmin(np.where(seen.photos > 0, reached, np.inf)))
+        short = asked - float(reached[worst])
+        if seen.photos[worst] > 0 and short > OVERLAP_TOLERANCE:
+            got = max(float(reached[worst]), 0.0)
+            said = f"the {word} overlap over {region.name} comes down to {100.0 * got:.1f} %, asked for are"
+            message = f"{said} {100.0 * asked:g} %"
+            yield violation("overlap", message, min(short, asked), "", worst)
+    if not (seen.photos > 0).any():
+        return
+    worst = int(np.nanargmax(seen.worst_gsd_m))
+    gsd_m = float(seen.worst_gsd_m[worst])
+    for wish, asked_m in (("gsd_m", region.gsd_m), ("min_resolution_m", region.min_resolution_m)):
+        if asked_m is not None and gsd_m > asked_m * (1.0 + QUALITY_TOLERANCE):
+            message = f"a pixel covers up to {100.0 * gsd_m:.2f} cm of {region.name}, {wish} is {asked_m:g}"
+            yield violation("quality", message, gsd_m - asked_m, "m", worst)
+    if region.min_niirs is not None and sensor.quality is not None:
+        niirs = sensor.quality.niirs(gsd_m)
+        if niirs < region.min_niirs - QUALITY_TOLERANCE:
+            message = f"NIIRS over {region.name} comes down to {niirs:.2f}, min_niirs is {region.min_niirs:g}"
+            yield violation("quality", message, region.min_niirs - niirs, "NIIRS", worst)
+
+
+def _too_soon(scenario: Scenario, plan: Plan) -> Iterator[Violation]:
+    """Photos that come sooner than the camera takes them, the worst of each camera."""
+    collects = {(each.vehicle, each.seq): each for each in plan.collects}
+    worst: dict[str, tuple[float, Collect]] = {}
+    for photos in plan.photos:
+        collect = collects[photos.vehicle, photos.seq]
+        if len(photos.places) > 1:
+            between_s = (collect.end_s - collect.start_s) / (len(photos.places) - 1)
+            if between_s < worst.get(photos.sensor, (math.inf, collect))[0]:
+                worst[photos.sensor] = (between_s, collect)
+    for name, (between_s, collect) in worst.items():
+        sensor = scenario.suite.named(name)
+        if not isinstance(sensor, CameraSensor) or sensor.trigger == "video":
+            continue
+        if between_s < sensor.min_interval_s * (1.0 - INTERVAL_TOLERANCE):
+            yield Violation(
+                "photo-interval",
+                name,
+                f"collect {collect.seq} has a photo every {between_s:.2f} s, {name} takes one every "
+                f"{sensor.min_interval_s:g} s at most",
+                sensor.min_interval_s - between_s,
+                "s",
+                collect.line[0][:2],
+            )

@@ -1,0 +1,171 @@
+"""The judge of photos, against photos projected one by one, and against plans that were spoiled."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from shapely import contains_xy
+from shapely.geometry import Polygon
+
+from planner.check import judge
+from planner.check.camera_print import photo_corners
+from planner.check.photo_grid import Lane, Seen, grid_over, look
+from planner.geojson import read_scenario
+from planner.pipeline import make_plan
+from planner.plan import LonLatAlt, Plan
+from planner.scenario import Scenario
+from planner.sensors.camera import CameraSensor
+from planner.sensors.optics import Optics
+from tests.planner.scenarios import feature, small, square
+
+OPTICS = Optics(0.02, 23.5e-3 / 6000, 6000, 4000)
+EYE = {"name": "eye", "type": "camera", "model": "Sony a6000 20 mm", "rer": 0.92, "snr": 50.0}
+
+
+def lane(course_rad: float, left_m: float, spacing_m: float, off_rad: float, camera: CameraSensor) -> Lane:
+    """Twelve photos about the origin from 100 m."""
+    ahead = np.array([math.cos(course_rad), math.sin(course_rad)])
+    along_m = spacing_m * (np.arange(12) - 5.5)
+    places_m = along_m[:, None] * ahead + left_m * np.array([-ahead[1], ahead[0]])
+    return Lane(places_m, np.full(12, 100.0), photo_corners(camera, off_rad))
+
+
+def outlines(lane: Lane, drop_m: float) -> list[Polygon]:
+    """Each photo's ground at one height, turned and put where it is taken."""
+    cos, sin = math.cos(lane.course_rad), math.sin(lane.course_rad)
+    shape = drop_m * lane.corners @ np.array([[cos, sin], [-sin, cos]])
+    return [Polygon(place + shape) for place in lane.places_m]
+
+
+@settings(max_examples=30, deadline=None)
+@given(
+    st.floats(0.0, 6.2),
+    st.floats(-0.6, 0.6),
+    st.floats(-0.4, 0.5),
+    st.floats(10.0, 40.0),
+    st.floats(-20.0, 20.0),
+)
+def test_places_are_seen_by_the_photos_whose_outlines_hold_them(
+    course_rad: float, off_rad: float, tilt_rad: float, spacing_m: float, ground_m: float
+) -> None:
+    """Counted photo by photo by shapely, at random places over and under the datum."""
+    camera = CameraSensor("eye", OPTICS, tilt_rad=tilt_rad)
+    lanes = [
+        lane(course_rad, 0.0, spacing_m, off_rad, camera),
+        lane(course_rad + math.pi, 30.0, 25.0, 0.0, camera),
+    ]
+    places_m = np.random.default_rng(1).uniform(-200.0, 200.0, (300, 2))
+    seen = look(places_m, np.full(300, ground_m), lanes, camera)
+    counted = np.zeros(300, dtype=int)
+    sure = np.ones(300, dtype=bool)
+    for each in lanes:
+        for outline in outlines(each, 100.0 - ground_m):
+            counted += contains_xy(outline, places_m)
+            edge = outline.exterior.buffer(1e-6)
+            sure &= ~contains_xy(edge, places_m)
+    assert (seen.photos == counted)[sure].all()
+    assert (np.isnan(seen.gsd_m) == (seen.photos == 0)).all()
+
+
+def two_lanes(apart_m: float, spacing_m: float, drop: Any = slice(None)) -> Seen:
+    """What two lanes over level ground give between them, there and back."""
+    camera = CameraSensor("eye", OPTICS)
+    there, back = (
+        lane(turn, side, spacing_m, 0.0, camera) for turn, side in ((0.3, 0.0), (0.3 + math.pi, -apart_m))
+    )
+    there = replace(there, places_m=there.places_m[drop], altitudes_m=there.altitudes_m[drop])
+    ahead = np.array([math.cos(0.3), math.sin(0.3)])
+    left = np.array([-ahead[1], ahead[0]])
+    along_m, across_m = np.meshgrid(np.arange(-40.0, 40.0), np.linspace(0.5, apart_m - 0.5, 30))
+    places_m = along_m.reshape(-1, 1) * ahead + across_m.reshape(-1, 1) * left
+    return look(places_m, np.zeros(len(places_m)), [there, back], camera)
+
+
+def test_between_lanes_overlaps_are_those_of_their_distances() -> None:
+    """By hand: 117.5 m across and 78.33 m along; 40 m between lanes, 20 m between photos."""
+    seen = two_lanes(40.0, 20.0)
+    assert seen.side == pytest.approx(1.0 - 40.0 / 117.5)
+    assert seen.forward == pytest.approx(1.0 - 20.0 * 3.0 / 235.0)
+    assert seen.worst_gsd_m == pytest.approx(100.0 * 23.5e-3 / 6000 / 0.02)
+
+
+def test_a_photo_left_out_halves_what_its_neighbours_share() -> None:
+    """Where it is missing the next is two intervals on."""
+    seen = two_lanes(40.0, 20.0, drop=[0, 1, 2, 3, 4, 6, 7, 8, 9, 10, 11])
+    assert seen.forward.min() == pytest.approx(1.0 - 40.0 * 3.0 / 235.0)
+
+
+def test_the_grid_holds_the_outline_and_no_place_outside() -> None:
+    """A metre apart over a small region."""
+    area = Polygon([(0.0, 0.0), (30.0, 5.0), (22.0, 28.0), (3.0, 14.0)])
+    places_m = grid_over(area)
+    assert contains_xy(area.buffer(1e-9), places_m).all()
+    assert len(places_m) == pytest.approx(area.area + area.length, rel=0.1)
+
+
+def planned(eye: dict[str, Any] | None = None, **wishes: Any) -> tuple[Scenario, Plan]:
+    """A region of 220 m from 100 m, and its plan."""
+    document = small(sensors=[EYE | {"min_interval_s": 0.5} | (eye or {})], altitude_m=100.0)
+    document["features"] = [each for each in document["features"] if each["id"] in ("area", "start")]
+    document["features"].append(feature("C", "roi", "Polygon", square(0.0, 0.0, 0.002), **wishes))
+    scenario = read_scenario(document)
+    return scenario, make_plan(scenario)
+
+
+def test_a_sound_plan_has_what_was_asked_for() -> None:
+    """Overlaps as asked, quality by equations 1 and 2."""
+    _, plan = planned(gsd_m=0.02)
+    survey = plan.metrics.surveys["C"]
+    assert plan.violations == ()
+    assert survey.forward_overlap >= 0.75 - 1e-6
+    assert survey.side_overlap >= 0.65 - 1e-6
+    gsd_m = 100.0 * 23.5e-3 / 6000 / 0.02
+    niirs = 10.25 - 3.32 * math.log10(gsd_m / 0.0254) + 1.559 * math.log10(0.92) - 0.344 / 50.0
+    assert (survey.gsd_m, survey.gsd_mean_m) == pytest.approx((gsd_m, gsd_m), abs=1e-9)
+    assert (survey.niirs, survey.niirs_mean) == pytest.approx((niirs, niirs), abs=1e-9)
+
+
+def _up(places: tuple[LonLatAlt, ...]) -> tuple[LonLatAlt, ...]:
+    return tuple((lon, lat, altitude_m + 40.0) for lon, lat, altitude_m in places)
+
+
+def spoiled(plan: Plan, how: str) -> Plan:
+    """The plan with its photos taken otherwise."""
+    if how == "every other":
+        return replace(plan, photos=tuple(replace(p, places=p.places[::2]) for p in plan.photos))
+    if how == "a lane missing":
+        return replace(plan, photos=plan.photos[1:], collects=plan.collects[1:])
+    if how == "higher":
+        return replace(plan, photos=tuple(replace(p, places=_up(p.places)) for p in plan.photos))
+    return replace(plan, photos=tuple(replace(p, places=p.places * 3) for p in plan.photos))
+
+
+@pytest.mark.parametrize(
+    ("how", "constraint", "said"),
+    [
+        ("every other", "overlap", "forward overlap"),
+        ("a lane missing", "overlap", "side overlap"),
+        ("higher", "quality", "gsd_m"),
+        ("sooner", "photo-interval", "every"),
+    ],
+)
+def test_a_plan_whose_photos_are_not_as_asked_is_found_out(how: str, constraint: str, said: str) -> None:
+    """In words, and by how much."""
+    scenario, plan = planned(gsd_m=0.02)
+    found = [v for v in judge(scenario, spoiled(plan, how)).violations if v.constraint == constraint]
+    assert found
+    assert said in found[0].message
+    assert found[0].amount > 0.0
+
+
+def test_ground_that_no_photo_sees_is_found_out() -> None:
+    """Half of each lane's photos left out."""
+    scenario, plan = planned()
+    half = tuple(replace(p, places=p.places[: len(p.places) // 2]) for p in plan.photos)
+    assert "photo-coverage" in {v.constraint for v in judge(scenario, replace(plan, photos=half)).violations}
