@@ -48,6 +48,7 @@ def read_aircraft(raw: Any, index: int, findings: Findings) -> Aircraft | None:
     kind: Any = fields.choice("type", VEHICLE_TYPES, "fixed_wing")
     autopilot: Any = fields.choice("autopilot", AUTOPILOTS, "ardupilot")
     airspeed_m_s = fields.number("airspeed_m_s", above=0.0, maximum=400.0)
+    slowest_m_s = fields.number("min_airspeed_m_s", None, above=0.0, maximum=airspeed_m_s or 400.0)
     radius_m = _turn_radius_m(fields, airspeed_m_s, kind)
     max_climb_deg = fields.number("max_climb_deg", 8.0, above=0.0, below=90.0)
     energy_wh = fields.number("energy_wh", None, above=0.0)
@@ -85,6 +86,7 @@ def read_aircraft(raw: Any, index: int, findings: Findings) -> Aircraft | None:
     return Aircraft(
         name, kind, autopilot, airspeed_m_s, radius_m, max_climb_deg, energy_wh, power_w, range_m, time_s,
         settle_m, base, reserve=reserve, finish=finish,
+        min_airspeed_m_s=slowest_m_s,
     )  # fmt: skip
 
 

@@ -21,6 +21,7 @@ from planner.geojson.home import home_amsl_m, kept_clear
 from planner.geojson.plausible import check_plausible
 from planner.geojson.relief import set_on_terrain
 from planner.geojson.rules import check_together
+from planner.geojson.shutter import at_camera_speed
 from planner.geojson.size import check_size
 from planner.geojson.slots import check_slots
 from planner.route import Terminal
@@ -214,6 +215,7 @@ def _read(document: Any, findings: Findings, terrains: Terrains | None) -> Scena
     scenario = replace(scenario, regions=_at_their_altitudes(scenario.regions, scenario.altitude_m))
     check_together(scenario, findings)
     if not findings.errors:
+        scenario = at_camera_speed(scenario, findings)
         check_slots(scenario, findings)
         check_plausible(scenario, findings)
     return replace(scenario, warnings=findings.warnings)

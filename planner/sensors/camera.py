@@ -50,6 +50,8 @@ class CameraSensor:
         Whether the camera is kept in line with the course; otherwise it turns with the aircraft's nose.
     drift, toward_rad
         Of the wind it is flown in: its speed by the airspeed, and where the air moves to.
+    airspeed_m_s
+        It is flown at; 0 where photos may follow each other as fast as they like.
     """
 
     name: str
@@ -69,6 +71,7 @@ class CameraSensor:
     stabilised: bool = False
     drift: float = 0.0
     toward_rad: float = 0.0
+    airspeed_m_s: float = 0.0
 
     @property
     def kind(self) -> str:
@@ -138,6 +141,15 @@ class CameraSensor:
         spacing_m = self.pattern(angle_rad).spacing * (height_m - self.relief_m)
         lost_m = 2.0 * (height_m + self.relief_m) * math.tan(self.pointing_margin_rad)
         return spacing_m - lost_m if self.steady_overlap else spacing_m
+
+    def least_spacing_m(self, angle_rad: float) -> float:
+        """How far it is flown over the ground, at least, from one photo to the next that it can take."""
+        if self.trigger == "video":
+            return 0.0
+        off_rad = angle_rad - self.toward_rad
+        across = self.drift * math.sin(off_rad)
+        over_ground = self.drift * math.cos(off_rad) + math.sqrt(max(1.0 - across * across, 0.0))
+        return self.min_interval_s * self.airspeed_m_s * over_ground
 
     def run_in_m(self, height_m: float, angle_rad: float) -> float:
         """How far before the ground on a lane's line the first photo is taken; negative: behind its start.

@@ -68,21 +68,6 @@ class Band:
             left += share * (knots[last + 1] - knots[last])
         return right, left
 
-    def shared(self, moved: float) -> float:
-        """The part of a photo's ground that one taken so much farther along sees again."""
-        knots = self.knots
-        lengths = [self.chord(knot) for knot in knots]
-        whole = again = 0.0
-        for k in range(len(knots) - 1):
-            width, a, b = knots[k + 1] - knots[k], lengths[k], lengths[k + 1]
-            whole += width * (a + b) / 2.0
-            low, high = sorted((a - moved, b - moved))
-            if low >= 0.0:
-                again += width * (low + high) / 2.0
-            elif high > 0.0:
-                again += width * high * high / (high - low) / 2.0
-        return again / whole
-
 
 def band(optics: Optics, tilt_rad: float, crab_rad: float) -> Band:
     """Of a camera tilted forward, its nose turned to the left of the course.
@@ -107,6 +92,20 @@ def band(optics: Optics, tilt_rad: float, crab_rad: float) -> Band:
             )
         )
     return Band(tuple(corners))
+
+
+def _shared(knots: tuple[float, ...], lengths: list[float], moved: float) -> float:
+    """The part of a photo's ground, chords of these lengths at knots, that one so much farther along sees."""
+    whole = again = 0.0
+    for k in range(len(knots) - 1):
+        width, a, b = knots[k + 1] - knots[k], lengths[k], lengths[k + 1]
+        whole += width * (a + b) / 2.0
+        low, high = (a - moved, b - moved) if a < b else (b - moved, a - moved)
+        if low >= 0.0:
+            again += width * (low + high) / 2.0
+        elif high > 0.0:
+            again += width * high * high / (high - low) / 2.0
+    return again / whole
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,12 +147,13 @@ def pattern(optics: Optics, tilt_rad: float, crab_rad: float, forward_overlap: f
     often, that is, as the overlap says: all of the image's width where nothing crabs, and less where it does.
     """
     seen = band(optics, tilt_rad, crab_rad)
-    low, high = 0.0, max(seen.chord(knot) for knot in seen.knots)
+    knots = seen.knots
+    lengths = [seen.chord(knot) for knot in knots]
+    low, high = 0.0, max(lengths)
     for _ in range(_HALVINGS):
         middle = (low + high) / 2.0
-        low, high = (middle, high) if seen.shared(middle) >= forward_overlap else (low, middle)
-    longest = max(seen.chord(knot) for knot in seen.knots)
-    edges = seen.strip(min(low / (1.0 - forward_overlap), longest))
+        low, high = (middle, high) if _shared(knots, lengths, middle) >= forward_overlap else (low, middle)
+    edges = seen.strip(min(low / (1.0 - forward_overlap), max(lengths)))
     assert edges is not None
     right, left = edges
     spans = [seen.span(at) for at in (right, left, *(k for k in seen.knots if right < k < left))]

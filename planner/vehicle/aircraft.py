@@ -47,6 +47,9 @@ class Aircraft:
         Steady wind it flies in, from any direction, slower than ``airspeed_m_s``.
     finish
         How its flight ends; ``auto`` is for ``planner.profile.finish`` to say.
+    min_airspeed_m_s
+        The slowest that it may be flown at where ``airspeed_m_s`` is too fast for a camera; None for wings
+        that fly at no other speed.
     """
 
     name: str
@@ -64,6 +67,7 @@ class Aircraft:
     wind_m_s: float = 0.0
     reserve: float = DEFAULT_RESERVE
     finish: FinishWish = "auto"
+    min_airspeed_m_s: float | None = None
 
     @property
     def hovers(self) -> bool:

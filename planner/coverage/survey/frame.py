@@ -15,6 +15,8 @@ Floats = NDArray[np.float64]
 
 #: Lanes are longer by this at either end than they have to be.
 SPARE_M = 0.01
+#: Lengths equal but for rounding take the same photos.
+ROUNDING_M = 1e-6
 #: A length that a height and a heading give.
 Figure = Callable[[float, float], float]
 
@@ -32,19 +34,21 @@ class Frames:
     inset_m
         How far inside a region's edge the outermost lane may run: a spacing at most, and no farther than it
         sees the edge; where lanes overlap by half or more, than the next one sees it.
-    photos_m
-        Between photos at most.
+    photos_m, least_m
+        Between photos at most, and at least for the camera to take them.
     """
 
     spacing_m: Floats
     half_m: Floats
     inset_m: Floats
     photos_m: Floats
+    least_m: Floats
 
     @property
     def good(self) -> NDArray[np.bool_]:
-        """At which headings lanes keep the overlaps."""
-        return np.asarray((self.spacing_m > 0.0) & (self.photos_m > 0.0), dtype=np.bool_)
+        """At which headings lanes keep the overlaps, and the camera the time."""
+        kept = (self.spacing_m > 0.0) & (self.photos_m > 0.0) & (self.least_m <= self.photos_m)
+        return np.asarray(kept, dtype=np.bool_)
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,7 +82,9 @@ def frames(camera: CameraSensor, height_m: float, angles_rad: Floats) -> Frames:
 
     spacing_m, half_m = lesser(camera.lane_spacing_m), lesser(camera.half_width_m)
     beside_m = half_m - spacing_m if camera.side_overlap >= TWICE else half_m
-    return Frames(spacing_m, half_m, np.minimum(spacing_m, beside_m), lesser(camera.photo_spacing_m))
+    least_m = -lesser(lambda _, angle_rad: -camera.least_spacing_m(angle_rad))
+    photos_m = lesser(camera.photo_spacing_m)
+    return Frames(spacing_m, half_m, np.minimum(spacing_m, beside_m), photos_m, least_m)
 
 
 def runs(camera: CameraSensor, height_m: float, angles_rad: Floats) -> Runs:
@@ -94,6 +100,12 @@ def runs(camera: CameraSensor, height_m: float, angles_rad: Floats) -> Runs:
         photos_m = each(camera.photo_spacing_m)
         beside = (seen[0] + photos_m, seen[1] + photos_m)
     return Runs(*(run_m + SPARE_M for run_m in (*line, *beside, *seen)))
+
+
+def lengthened_m(length_m: Floats, photos_m: Floats, least_m: Floats) -> Floats:
+    """By how much lanes are to be longer for photos at equal distances, neither too wide nor too close."""
+    gaps = np.maximum(np.ceil((length_m - ROUNDING_M) / photos_m), 1.0)
+    return np.asarray(np.maximum(gaps * least_m - length_m, 0.0), dtype=np.float64)
 
 
 def _each(camera: CameraSensor, figure: Figure, height_m: float, angles_rad: Floats) -> Floats:

@@ -8,6 +8,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from planner.coverage.survey.frame import lengthened_m
 from planner.coverage.survey.lanes import LINE_M, STATES, Lanes, Survey
 
 Floats = NDArray[np.float64]
@@ -40,7 +41,8 @@ def photographed(
     kept = ~shapely.is_empty(parts)
     x_m = shapely.bounds(parts[kept])[:, [0, 2]]
     kind, lane = np.divmod(index[kept], len(places_m))
-    photos_m = float(survey.frames(lanes.headings_rad[0, :1]).photos_m[0])
+    laid = survey.frames(lanes.headings_rad[0, :1])
+    photos_m, least_m = float(laid.photos_m[0]), float(laid.least_m[0])
     runs_m = []
     for course_rad in lanes.headings_rad[0]:
         run = survey.runs(np.array([course_rad]))
@@ -53,11 +55,11 @@ def photographed(
         own, (in_m, out_m) = lane == at, runs_m[state]
         along_m = np.sort(way * x_m[own], axis=1)
         spans_m = np.column_stack([along_m[:, 0] - in_m[kind[own]], along_m[:, 1] + out_m[kind[own]]])
-        found.append(_cut(lanes.lines[0, 0, at, state], spans_m, photos_m, least_gap_m))
+        found.append(_cut(lanes.lines[0, 0, at, state], spans_m, photos_m, least_m, least_gap_m))
     return found
 
 
-def _cut(line: Floats, spans_m: Floats, photos_m: float, least_gap_m: float) -> list[Floats]:
+def _cut(line: Floats, spans_m: Floats, photos_m: float, least_m: float, least_gap_m: float) -> list[Floats]:
     """The parts of a line within spans along it, from its own beginning to its own end."""
     unit = (line[1] - line[0]) / np.hypot(*(line[1] - line[0]))
     begin_m, end_m = (float(end @ unit) for end in line)
@@ -76,4 +78,14 @@ def _cut(line: Floats, spans_m: Floats, photos_m: float, least_gap_m: float) -> 
     if not joined:
         return [line]
     joined[0][0], joined[-1][1] = begin_m, end_m
+    for k, piece in enumerate(joined[:-1]):
+        # Into the gap: the line's own ends stay.
+        piece[1] += _longer_m(piece, photos_m, least_m)
+        if k == len(joined) - 2:
+            joined[-1][0] -= _longer_m(joined[-1], photos_m, least_m)
     return [line[0] + (np.array(piece)[:, None] - begin_m) * unit for piece in joined]
+
+
+def _longer_m(piece: list[float], photos_m: float, least_m: float) -> float:
+    length_m, photos, least = (np.array([value]) for value in (piece[1] - piece[0], photos_m, least_m))
+    return float(lengthened_m(length_m, photos, least)[0])

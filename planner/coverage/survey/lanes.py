@@ -22,7 +22,7 @@ from shapely.geometry.base import BaseGeometry
 from planner.coverage.strips.classify import ROUNDING_M, hull_points, spans_at
 from planner.coverage.strips.kernels import strip_extents
 from planner.coverage.survey.ends_kernels import lane_ends
-from planner.coverage.survey.frame import Frames, Runs, frames, runs
+from planner.coverage.survey.frame import Frames, Runs, frames, lengthened_m, runs
 from planner.sensors.camera import TWICE, CameraSensor
 
 Floats = NDArray[np.float64]
@@ -133,6 +133,9 @@ def lanes_at(survey: Survey, angles_rad: Floats, etas: Floats, count: int) -> La
         courses_rad = angles_rad if way == 1 else angles_rad + math.pi
         x_m = _ends(line_m, beside_m, survey.runs(courses_rad), way, paired)
         x_m = _at_least(x_m, way, laid.photos_m[:, None, None])
+        photos_m, least_m = laid.photos_m[:, None, None], laid.least_m[:, None, None]
+        length_m = way * (x_m[..., 1] - x_m[..., 0])
+        x_m = _at_least(x_m, way, length_m + lengthened_m(length_m, photos_m, least_m))
         cos, sin = np.cos(angles_rad)[:, None, None, None], np.sin(angles_rad)[:, None, None, None]
         east_m = cos * x_m - sin * places_m[..., None]
         north_m = sin * x_m + cos * places_m[..., None]

@@ -265,6 +265,10 @@ PROOFS: dict[tuple[str, str], tuple[Document, Document]] = {
     ("vehicle", "cruise_power_w"): (small(), vehicle(cruise_power_w=200.0)),
     ("vehicle", "max_range_m"): (small(), vehicle(max_range_m=1000.0)),
     ("vehicle", "max_flight_time_s"): (small(), vehicle(max_flight_time_s=100.0)),
+    ("vehicle", "min_airspeed_m_s"): (
+        camera(forward_overlap=0.95),
+        camera(vehicle(small(altitude_m=300.0), min_airspeed_m_s=8.0), forward_overlap=0.95),
+    ),
     ("vehicle", "settle_m"): (small(), vehicle(settle_m=300.0)),
     ("vehicle", "finish"): (small(), vehicle(finish="land")),
     ("vehicle", "base"): (based(), based(base="B0")),

@@ -71,7 +71,7 @@ def test_terrain_is_covered_over_its_highest_ground() -> None:
 
 def test_overlaps_that_margins_eat_are_refused_with_what_would_help() -> None:
     """From 20 m a margin of 30 m to either side leaves nothing."""
-    eye = {**EYE, "position_margin_m": 30.0}
+    eye = {**EYE, "position_margin_m": 30.0, "min_interval_s": 0.0}
     found = findings(small(sensors=[eye], altitude_m=20.0))
     assert {(f.feature, f.rule) for f in found if f.severity == "error"} == {
         ("A", "not-seen-overlap"), ("B", "not-seen-overlap"),

@@ -1,0 +1,92 @@
+"""Photos no faster than the camera takes them: slower flights, or refusals with what would work."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import pytest
+
+from planner.errors import Finding, ScenarioError
+from planner.geojson import read_scenario
+from planner.pipeline import make_plan
+from tests.planner.scenarios import small
+
+Document = dict[str, Any]
+
+
+def document(interval_s: float, vehicle: Document | None = None, **members: Any) -> Document:
+    """From 100 m, one photo every 19.58 m: at 20 m/s one every 0.979 s."""
+    eye = {"name": "eye", "type": "camera", "model": "Sony a6000 20 mm", "min_interval_s": interval_s}
+    made = small(sensors=[eye], altitude_m=100.0, **members)
+    made["vehicles"][0] |= vehicle or {}
+    return made
+
+
+def refused(made: Document) -> list[Finding]:
+    with pytest.raises(ScenarioError) as error:
+        read_scenario(made)
+    return [finding for finding in error.value.findings if finding.severity == "error"]
+
+
+def test_what_the_camera_keeps_is_flown_as_asked() -> None:
+    """At 0.97 s nothing changes; at 0.98 s wings of one speed are refused."""
+    assert read_scenario(document(0.97)).aircraft[0].airspeed_m_s == 20.0
+    found = refused(document(0.99))
+    assert {(f.feature, f.rule) for f in found} == {("A", "interval-too-short"), ("B", "interval-too-short")}
+
+
+@pytest.mark.parametrize("vehicle", [{"type": "multirotor"}, {"min_airspeed_m_s": 5.0}])
+def test_what_can_flies_slower_and_says_so(vehicle: Document) -> None:
+    """At 2 s: 9.79 m/s, by hand; and every photo of the plan has its time."""
+    scenario = read_scenario(document(2.0, vehicle))
+    assert scenario.aircraft[0].airspeed_m_s == pytest.approx(19.5833 / 2.0, abs=0.011)
+    assert "speed-lowered" in {w.rule for w in scenario.warnings}
+    plan = make_plan(scenario)
+    assert "photo-interval" not in {v.constraint for v in plan.violations}
+    assert "overlap" not in {v.constraint for v in plan.violations}
+    assert plan.vehicles[0].airspeed_m_s == scenario.aircraft[0].airspeed_m_s
+
+
+def test_a_video_needs_no_time() -> None:
+    """Nor does a camera whose shortest interval is not known."""
+    video = document(5.0)
+    video["sensors"][0]["trigger"] = "video"
+    assert read_scenario(video).aircraft[0].airspeed_m_s == 20.0
+    assert read_scenario(document(0.0)).aircraft[0].airspeed_m_s == 20.0
+
+
+def test_across_a_wind_there_is_time_where_along_it_there_is_none() -> None:
+    """20 m/s in 12 m/s: 16 m/s across, 32 m/s with it. Lanes that may only lie along it are refused."""
+    windy = document(1.0, wind={"speed_m_s": 12.0, "from_deg": 270.0})
+    windy["sensors"][0]["forward_overlap"] = 0.65
+    windy["features"] = [each for each in windy["features"] if each["id"] != "B"]
+    plan = make_plan(read_scenario(windy))
+    assert "photo-interval" not in {v.constraint for v in plan.violations}
+    windy["features"][0]["properties"]["approach_deg"] = [90.0, 270.0]
+    assert {f.rule for f in refused(windy)} == {"interval-too-short"}
+
+
+@pytest.mark.parametrize(
+    ("interval_s", "wind_m_s", "overlap"), [(1.05, 0.0, 0.75), (6.0, 0.0, 0.3), (2.5, 9.0, 0.6)]
+)
+def test_each_value_that_a_refusal_names_works(interval_s: float, wind_m_s: float, overlap: float) -> None:
+    """A lower overlap, a greater height, a lower speed: each by itself."""
+    made = document(interval_s, wind={"speed_m_s": wind_m_s, "from_deg": 40.0})
+    made["sensors"][0]["forward_overlap"] = overlap
+    fix = next(finding.fix for finding in refused(made))
+    lower = re.findall(r"forward_overlap to ([\d.]+)", fix)
+    higher = re.findall(r"from ([\d.]+) m", fix)
+    slower = re.findall(r"at ([\d.]+) m/s", fix)
+    assert higher
+    assert slower
+    for values, change in (
+        (lower, lambda d, v: d["sensors"][0].update(forward_overlap=v)),
+        (higher, lambda d, v: d.update(altitude_m=v)),
+        (slower, lambda d, v: d["vehicles"][0].update(min_airspeed_m_s=v)),
+    ):
+        for value in values:
+            helped = document(interval_s, wind={"speed_m_s": wind_m_s, "from_deg": 40.0})
+            helped["sensors"][0]["forward_overlap"] = overlap
+            change(helped, float(value))
+            read_scenario(helped)
