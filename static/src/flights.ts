@@ -1,6 +1,6 @@
 /** What was flown: the list of flights, and the ground really seen by one of them. */
 import type { Feature, FeatureCollection, LineString } from "geojson";
-import { apiUrl, get, list, post } from "./api";
+import { apiUrl, get, list, post, sendFile } from "./api";
 import { watched } from "./fleet";
 import { attempt, news } from "./notices";
 import { open } from "./plans";
@@ -12,6 +12,8 @@ export interface Flown {
   flight: Flight;
   seen: SeenCollection;
   track: Feature<LineString>[];
+  /** As the camera reported them. */
+  photos: Feature[];
 }
 
 export const flights = new Signal<Flight[]>([]);
@@ -24,14 +26,14 @@ export async function refreshFlights(): Promise<void> {
 /** Bring what a flight saw, and where it went, onto the map. */
 export async function showFlight(flight: Flight): Promise<void> {
   const path = `/flights/${encodeURIComponent(flight.id)}`;
-  const [seen, track] = await Promise.all([get<SeenCollection>(`${path}/coverage.geojson`), get<FeatureCollection<LineString>>(`${path}/track.geojson`)]);
-  const lines = track.features.filter((feature) => feature.properties?.["role"] !== "photo");
+  const [seen, track] = await Promise.all([get<SeenCollection>(`${path}/coverage.geojson`), get<FeatureCollection>(`${path}/track.geojson`)]);
+  const lines = track.features.filter((feature): feature is Feature<LineString> => feature.geometry.type === "LineString");
   const pieces = lines.map((feature) => ({
     type: "Feature" as const,
     geometry: feature.geometry,
     properties: { sensor_on: feature.properties?.["role"] === "sensor_on" },
   }));
-  flown.set({ flight, seen, track: pieces });
+  flown.set({ flight, seen, track: pieces, photos: track.features.filter((feature) => feature.properties?.["role"] === "photo") });
 }
 
 export const flightUrl = (id: string, file: string): string => apiUrl(`/flights/${encodeURIComponent(id)}/${file}`);
@@ -39,6 +41,22 @@ export const flightUrl = (id: string, file: string): string => apiUrl(`/flights/
 /** What all flights of the same plan saw together stands in for what this one saw. */
 export async function showSortie(now: Flown): Promise<void> {
   flown.set({ ...now, seen: await get<SeenCollection>(`/plans/${encodeURIComponent(now.seen.plan)}/coverage`) });
+}
+
+/** What a log gave to a flight's record. */
+export interface Filled {
+  points: number;
+  photos: number;
+  filled: { start_s: number; end_s: number | null }[];
+  left: { start_s: number; end_s: number | null; why: string }[];
+}
+
+/** Fill silences of a flight's record from a log of the vehicle's own, or another recording; then show it anew. */
+export async function fillFrom(flight: Flight, file: File): Promise<Filled> {
+  const filled = await sendFile<Filled>(`/flights/${encodeURIComponent(flight.id)}/log?${new URLSearchParams({ name: file.name })}`, file);
+  await refreshFlights();
+  await showFlight(flights.value.find(({ id }) => id === flight.id) ?? flight);
+  return filled;
 }
 
 /** Have the service plan what a flight did not see. */

@@ -7,7 +7,7 @@ import { keeping } from "./keeping";
 import { open, running } from "./plans";
 import { scenarios } from "./scenario";
 import { countAt } from "./survey/overlap";
-import { overlap, shots } from "./survey/view";
+import { overlap, shots, takenShots } from "./survey/view";
 
 export interface Hook {
   /** Features drawn on the screen now, by layer. */
@@ -30,8 +30,9 @@ export interface Hook {
   kept(): { id: string | null; state: string };
   /** The watched vehicle: where it is, whether it flies, how many places its live track has. */
   vehicle(): { lon_deg: number | null; lat_deg: number | null; armed: boolean; sensor_on: boolean; flight: string | null; track: number } | null;
-  /** Photos of the plan on the map, and how many of them see a place: null while that is not counted. */
+  /** Photos of the plan on the map, those a flight took, and how many planned ones see a place: null while that is not counted. */
   photos(): number;
+  taken(): number;
   seenBy(lon_deg: number, lat_deg: number): number | null;
   /** The flight whose seen ground is on the map. */
   flown(): string | null;
@@ -76,6 +77,7 @@ export function installHook(map: MapLibreMap): void {
       return { lon_deg, lat_deg, armed, sensor_on: sensor_on === true, flight: vehicle.flight_id, track: track.points.length };
     },
     photos: () => shots.value.length,
+    taken: () => takenShots.value.length,
     seenBy: (lon_deg, lat_deg) => (overlap.value ? countAt(overlap.value, [lon_deg, lat_deg]) : null),
     flown: () => flown.value?.flight.id ?? null,
   };

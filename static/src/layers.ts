@@ -4,7 +4,7 @@ import { FONT, repaint } from "./map";
 import { CLASSES } from "./survey/overlap";
 import { onThemeChange, palette, type Palette } from "./theme";
 
-export const SOURCES = ["scenario", "plan", "compared", "held", "waypoints", "photos", "cursor", "seen", "track"] as const;
+export const SOURCES = ["scenario", "plan", "compared", "held", "waypoints", "photos", "taken", "cursor", "seen", "track"] as const;
 
 export interface Group {
   id: string;
@@ -13,7 +13,7 @@ export interface Group {
   colour: keyof Palette;
   layers: string[];
   /** Listed only while something of it can be on the map. */
-  of?: "photos";
+  of?: "photos" | "taken";
   /** What its colours stand for. */
   classes?: readonly { label: string; colour: string }[];
 }
@@ -41,9 +41,12 @@ export const GROUPS: Group[] = [
   { id: "waypoints", label: "Mission items: number, height", swatch: "dot", colour: "path", layers: ["waypoint", "waypoint-label"] },
   { id: "fence", label: "Fence of a mission file", swatch: "dashed", colour: "noFly", layers: ["fence_out-fill", "fence_out-line", "fence_in-line"] },
   { id: "rally", label: "Rally point", swatch: "dot", colour: "terminal", layers: ["rally"] },
+  { id: "taken", of: "taken", label: "Photo taken, its ground from near", swatch: "dot", colour: "trackOn", layers: ["taken-place", "taken-print"] },
   { id: "track", label: "Flown track", swatch: "line", colour: "track", layers: ["track-off"] },
   { id: "trackOn", label: "Flown, sensor on", swatch: "thick", colour: "trackOn", layers: ["track-on"] },
   { id: "seen", label: "Ground really seen", swatch: "area", colour: "seen", layers: ["seen-fill", "seen-line"] },
+  { id: "unseen", label: "Not seen in flight", swatch: "area", colour: "uncovered", layers: ["unseen-fill", "unseen-line"] },
+  { id: "assumed", of: "taken", label: "Assumed: no photo reported", swatch: "dashed", colour: "seen", layers: ["assumed-line"] },
   { id: "unknown", label: "Not recorded: seen or not", swatch: "dashed", colour: "area", layers: ["unknown-fill", "unknown-line"] },
   { id: "not_counted", label: "Sensor on, not counted", swatch: "dashed", colour: "uncovered", layers: ["not_counted-line"] },
 ];
@@ -79,6 +82,8 @@ function layers(c: Palette): LayerSpecification[] {
     ...shape("importance", "scenario", kindIs("importance"), c.importance, 0.12, 1, [1, 2]),
     ...shape("seen", "seen", roleIs("seen"), c.seen, 0.22, 1.2),
     ...shape("unknown", "seen", roleIs("unknown"), c.area, 0.3, 1.2, [2, 2]),
+    ...shape("assumed", "seen", roleIs("assumed"), c.seen, 0, 1.2, [1, 2]),
+    ...shape("unseen", "seen", roleIs("unseen"), c.uncovered, 0.35, 1.5),
     // Lanes of a camera overlap by more than half: their ground is told by how many photos see it.
     { id: "footprint-fill", type: "fill", source: "plan", filter: ["all", roleIs("footprint"), ["!=", ["get", "of_photos"], true]] as unknown as FilterSpecification, paint: { "fill-color": c.footprint, "fill-opacity": 0.16 } },
     { id: "footprint-line", type: "line", source: "plan", filter: roleIs("footprint"), paint: { "line-color": c.footprint, "line-width": ["case", ["==", ["get", "of_photos"], true], 0.4, 0.8] } },
@@ -156,6 +161,11 @@ function layers(c: Palette): LayerSpecification[] {
       id: "track-on", type: "line", source: "track", filter: ["get", "sensor_on"],
       layout: { "line-join": "round", "line-cap": "round" },
       paint: { "line-color": c.trackOn, "line-width": 5 },
+    },
+    { id: "taken-print", type: "line", source: "taken", filter: kindOf("print"), minzoom: 16, paint: { "line-color": c.trackOn, "line-width": 0.6, "line-opacity": 0.5 } },
+    {
+      id: "taken-place", type: "circle", source: "taken", filter: kindOf("place"), minzoom: 13,
+      paint: { "circle-radius": ["interpolate", ["linear"], ["zoom"], 13, 1, 16, 3], "circle-color": c.trackOn, "circle-stroke-color": c.halo, "circle-stroke-width": 0.8 },
     },
     ...shape("not_counted", "seen", roleIs("not_counted"), c.uncovered, 0, 4, [1, 1]),
     {

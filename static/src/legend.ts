@@ -1,6 +1,7 @@
 /** The legend over the map: what each sign means, and a tick to hide it. */
 import type { Map as MapLibreMap } from "maplibre-gl";
 import { byId, fill, h } from "./dom";
+import { flown } from "./flights";
 import { GROUPS, showGroup, type Group } from "./layers";
 import { open } from "./plans";
 import { hasPhotos } from "./survey/shots";
@@ -18,14 +19,14 @@ function key(classes: NonNullable<Group["classes"]>): HTMLElement {
 }
 
 export function buildLegend(map: MapLibreMap): void {
-  let photos = false;
+  const there = { photos: false, taken: false };
   const details = h("details", { open: innerWidth > NARROW_PX });
   const draw = (): void => {
     const colours = palette();
     fill(
       details,
       h("summary", {}, "Legend"),
-      ...GROUPS.filter((group) => group.of !== "photos" || photos).flatMap((group) => [
+      ...GROUPS.filter(({ of }) => of === undefined || there[of]).flatMap((group) => [
         h(
           "label",
           {},
@@ -48,10 +49,12 @@ export function buildLegend(map: MapLibreMap): void {
   };
   draw();
   onThemeChange(draw);
-  open.watch((shown) => {
-    if (hasPhotos(shown) === photos) return;
-    photos = !photos;
+  const note = (of: keyof typeof there, now: boolean): void => {
+    if (there[of] === now) return;
+    there[of] = now;
     draw();
-  });
+  };
+  open.watch((shown) => note("photos", hasPhotos(shown)));
+  flown.watch((now) => note("taken", (now?.photos.length ?? 0) > 0 || (now?.seen.photos?.assumed ?? 0) > 0));
   byId("legend").append(details);
 }

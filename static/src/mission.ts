@@ -12,8 +12,10 @@ const COMMANDS: Record<number, string> = {
   16: "waypoint", 17: "circle, without end", 18: "turns", 19: "circle, for a time", 20: "return to launch", 21: "land",
   22: "take off", 31: "circle to height", 82: "spline", 84: "VTOL take off", 85: "VTOL land", 93: "wait", 112: "wait", 115: "yaw",
   177: "jump", 178: "speed", 181: "sensor (relay)", 183: "sensor (servo)", 187: "sensor (actuator)", 189: "landing begins",
-  203: "camera", 205: "gimbal", 206: "camera, by distance", 1000: "gimbal", 2000: "camera starts", 2001: "camera stops",
+  203: "one photo", 205: "gimbal", 206: "photos", 1000: "gimbal", 2000: "photos begin", 2001: "photos end", 2500: "video begins", 2501: "video ends",
 };
+const BY_DISTANCE = 206;
+const BY_TIME = 2000;
 /** MAV_FRAME, both ways to write each. */
 const OVER: Record<number, string> = { 0: "above sea", 5: "above sea", 3: "over home", 6: "over home", 10: "over ground", 11: "over ground" };
 
@@ -38,6 +40,14 @@ interface QgcItem {
   params?: (number | null)[];
 }
 
+/** What an item does; of those that take photos, how many and how far apart. */
+function whatOf(command: number, params: (number | null)[]): string {
+  const [first, second, third] = params.map((value) => value ?? 0);
+  if (command === BY_DISTANCE) return first ? `photos every ${first.toFixed(1)} m` : "photos end";
+  if (command === BY_TIME) return `${third ? `${third} ` : ""}${third === 1 ? "photo" : "photos"}${second && third !== 1 ? ` every ${second.toFixed(1)} s` : ""}`;
+  return COMMANDS[command] ?? `command ${command}`;
+}
+
 /** The items of a QGroundControl plan. */
 export function itemsOf(document: unknown): MissionItem[] {
   const mission = (document as { mission?: { items?: QgcItem[]; firmwareType?: number; plannedHomePosition?: number[] } } | null)?.mission;
@@ -56,7 +66,7 @@ export function itemsOf(document: unknown): MissionItem[] {
     return {
       seq: (item.doJumpId ?? index + 1) - 1 + first,
       command,
-      what: COMMANDS[command] ?? `command ${command}`,
+      what: whatOf(command, item.params ?? []),
       at,
       height_m: placed && typeof height === "number" ? height : null,
       over: OVER[item.frame ?? 0] ?? "",

@@ -291,6 +291,27 @@ export interface Flight {
   points: number;
 }
 
+/** Of a camera's flight; shares are parts of a photo, or of the region. */
+export interface SeenPhotos {
+  taken: number;
+  counted: number;
+  not_counted: Record<string, number>;
+  /** Where an autopilot reports none: as many as planned along the line flown. */
+  assumed: number;
+  passes: { seq: number; planned: number; taken: number; missing: number }[];
+  regions: {
+    roi: string;
+    gsd_limit_m: number | null;
+    gsd_worst_m: number | null;
+    gsd_mean_m: number | null;
+    overlap_photos: number;
+    overlap_fraction: number | null;
+    planned_overlap_fraction: number | null;
+    forward_overlap: { least: number | null; mean: number | null };
+    side_overlap: { least: number | null; mean: number | null };
+  }[];
+}
+
 export interface SeenCollection extends FeatureCollection<Geometry, Record<string, unknown>> {
   /** Null where several flights are judged together. */
   flight: string | null;
@@ -303,6 +324,7 @@ export interface SeenCollection extends FeatureCollection<Geometry, Record<strin
   energy: { flight: string; planned_wh: number | null; drawn_wh: number | null; complete: boolean | null }[];
   planned_coverage: Record<string, number>;
   seen_fraction: number;
+  photos?: SeenPhotos | null;
   regions: { roi: string; seen: boolean }[];
   collects: { seq: number; roi: string; cross_track_p95_m: number; cross_track_max_m: number; sensor_on_m: number }[];
 }

@@ -1,12 +1,13 @@
 /** Flights: which there were, and the ground really seen by one of them. */
 import { ask } from "../dialog";
 import { button, fill, h, section } from "../dom";
-import { flights, flightUrl, flown, refly, refreshFlights, showFlight, showSortie, type Flown } from "../flights";
+import { fillFrom, flights, flightUrl, flown, refly, refreshFlights, showFlight, showSortie, type Filled, type Flown } from "../flights";
 import { wouldBeLost } from "../leaving";
-import { attempt } from "../notices";
+import { attempt, news } from "../notices";
 import { open, openPlan } from "../plans";
+import { flownPhotos } from "./flown_photos";
 import { moreOf } from "./more";
-import type { SeenCollection } from "../types";
+import type { Flight, SeenCollection } from "../types";
 import { number, percent, percentDown } from "../units";
 
 /** Silences of the record, what counts for nothing, and what the batteries gave, in a line each. */
@@ -21,6 +22,30 @@ function doubts(seen: SeenCollection): (HTMLElement | null)[] {
     whys.length > 0 ? h("p", { class: "warning", id: "not-counted" }, `Sensor on, not counted, over ${number(length_m, 0, "m")}: ${whys.join("; ")}.`) : null,
     drawn.length > 0 ? h("p", { class: "quiet", id: "energy" }, `Drawn from the battery: ${number(drawn.reduce((a, b) => a + b, 0), 1, "Wh")}${planned === null ? "" : `, planned ${number(planned, 1, "Wh")}`}`) : null,
   ];
+}
+
+/** A log that the vehicle kept aboard, or another recording: what it tells of silences joins the record. */
+function logField(flight: Flight): HTMLElement {
+  const said = h("p", { role: "status" });
+  const input = h("input", { type: "file", id: "log-file", accept: ".bin,.ulg,.tlog", class: "sr-only", tabindex: "-1", "aria-label": "Onboard log to add" });
+  input.addEventListener("change", () => {
+    const file = input.files?.[0];
+    input.value = "";
+    if (!file) return;
+    fill(said, `${file.name} is being read …`);
+    void attempt(`${file.name} was not added`, () => fillFrom(flight, file)).then((found) => {
+      fill(said);
+      if (found) news(`${file.name}: ${filledWords(found)}`);
+    });
+  });
+  const add = button("Add an onboard log …", () => input.click(), { id: "add-log", title: "The vehicle's own log (.bin, .ulg) or another recording of its link (.tlog): fills what was not recorded" });
+  return h("div", {}, h("div", { class: "row" }, add, input), said);
+}
+
+function filledWords({ filled, left, points, photos }: Filled): string {
+  if (filled.length === 0 && points === 0 && photos === 0) return left.length === 0 ? "nothing was missing that it tells of." : `it fills nothing: ${left.map(({ why }) => why).join("; ")}.`;
+  const stays = left.length === 0 ? "" : ` ${left.length} stay: ${[...new Set(left.map(({ why }) => why))].join("; ")}.`;
+  return `${filled.length} ${filled.length === 1 ? "gap" : "gaps"} filled with ${points} places${photos > 0 ? ` and ${photos} photos` : ""}.${stays}`;
 }
 
 function flownTable(now: Flown, planned: () => void): HTMLElement {
@@ -55,6 +80,7 @@ function flownTable(now: Flown, planned: () => void): HTMLElement {
         ),
       ),
     ),
+    flownPhotos(seen.photos),
     ...doubts(seen),
     seen.flight === null ? null : button("All flights of this plan", () => void attempt("What all flights saw cannot be shown", () => showSortie(now)), { id: "sortie", class: "link" }),
     h(
@@ -65,7 +91,9 @@ function flownTable(now: Flown, planned: () => void): HTMLElement {
       h("a", { href: flightUrl(flight.id, "track.gpx"), download: `${flight.vehicle_name}.gpx` }, "Track (GPX)"),
       h("a", { href: flightUrl(flight.id, "track.geojson"), download: `${flight.vehicle_name}-track.geojson` }, "Track (GeoJSON)"),
       h("a", { href: flightUrl(flight.id, "coverage.geojson"), download: `${flight.vehicle_name}-coverage.geojson` }, "Coverage (GeoJSON)"),
+      ...(seen.photos ? [["overlap.tif", "Overlap (GeoTIFF)"], ["gsd.tif", "Pixel sizes (GeoTIFF)"]].map(([file, label]) => h("a", { href: flightUrl(flight.id, file as string), download: `${flight.vehicle_name}-${file}` }, label as string)) : []),
     ),
+    logField(flight),
     h("p", { class: "quiet" }, `Furthest from the line while the sensor was on: ${number(Math.max(0, ...seen.collects.map((c) => c.cross_track_max_m)), 1, "m")}`),
   );
 }

@@ -6,7 +6,7 @@ import { isShown } from "../legend";
 import type { Position } from "../types";
 import { number } from "../units";
 import { countAt } from "./overlap";
-import { overlap, shots } from "./view";
+import { overlap, shots, takenOverlap, takenShots } from "./view";
 
 const NEAR_PX = 6;
 
@@ -34,14 +34,17 @@ export function showReadout(map: MapLibreMap): void {
     map.setFilter("photo-print-one", onePhoto(number));
   };
   const tell = (point: { x: number; y: number }): void => {
-    if (shots.value.length === 0) return say("");
+    if (shots.value.length === 0 && takenShots.value.length === 0) return say("");
     const around: [[number, number], [number, number]] = [[point.x - NEAR_PX, point.y - NEAR_PX], [point.x + NEAR_PX, point.y + NEAR_PX]];
     const photo = map.queryRenderedFeatures(around, { layers: ["photo-place"] })[0];
     outline(Number(photo?.properties["number"] ?? 0));
     if (photo) return say(photoWords(photo.properties));
-    if (overlap.value === null || !isShown("overlap")) return say("");
-    const count = countAt(overlap.value, map.unproject([point.x, point.y]).toArray() as Position);
-    say(count === 0 ? "" : `${count} ${count === 1 ? "photo sees" : "photos see"} this place`);
+    if (!isShown("overlap")) return say("");
+    const place = map.unproject([point.x, point.y]).toArray() as Position;
+    const planned = overlap.value ? countAt(overlap.value, place) : 0;
+    if (takenOverlap.value === null) return say(planned === 0 ? "" : `${planned} ${planned === 1 ? "photo sees" : "photos see"} this place`);
+    const taken = countAt(takenOverlap.value, place);
+    say(planned === 0 && taken === 0 ? "" : `${taken} ${taken === 1 ? "photo" : "photos"} taken of this place, ${planned} planned`);
   };
   let waiting = false;
   map.on("mousemove", ({ point }) => {

@@ -1,9 +1,12 @@
 /** What of a camera survey is drawn: places of photos, the ground each sees, how often each place is seen. */
 import type { Map as MapLibreMap } from "maplibre-gl";
 import type { Feature } from "geojson";
+import { flown } from "../flights";
 import { setData } from "../map";
 import { open } from "../plans";
 import { Signal } from "../signal";
+import type { PlanCamera } from "../types";
+import { flownShots, type FlownShot } from "./flown_shots";
 import { cornersOf, overlapOf, pictureOf, type Overlap } from "./overlap";
 import { needProfile, profile } from "./profile";
 import { gsd_m, hasPhotos, printOf, shotsOf, type Shot } from "./shots";
@@ -57,6 +60,40 @@ function drawOverlap(map: MapLibreMap, found: Overlap | null, visible: boolean):
   map.addLayer({ id: OVERLAP_LAYER, type: "raster", source: OVERLAP_SOURCE, layout: { visibility: visible ? "visible" : "none" }, paint: { "raster-opacity": 0.5, "raster-resampling": "nearest", "raster-fade-duration": 0 } }, UNDER);
 }
 
+/** Photos that were taken, and how often they saw each place; of the flight that is shown. */
+export const takenShots = new Signal<FlownShot[]>([]);
+export const takenOverlap = new Signal<Overlap | null>(null);
+
+/** The camera of a plan that takes photos; null where there are several, or none. */
+function onlyCamera(): PlanCamera | null {
+  const photographing = (open.value?.plan.cameras ?? []).filter(({ trigger }) => trigger !== "video");
+  return photographing.length === 1 ? (photographing[0] ?? null) : null;
+}
+
+function showTaken(map: MapLibreMap, visible: () => boolean): void {
+  const draw = (): void => {
+    const ofThisPlan = flown.value !== null && flown.value.flight.plan_id === open.value?.record.id;
+    // Over a raster nobody here knows the ground below: the service counts, and gives it as a file.
+    const camera = ofThisPlan && profile.value?.ground === "flat" ? onlyCamera() : null;
+    const all = flownShots(flown.value?.photos ?? [], camera);
+    const found = overlapOf(all.flatMap(({ ring }) => (ring ? [ring] : [])));
+    setData(
+      map,
+      "taken",
+      all.flatMap(({ number, at, height_m, ring }): Feature[] => [
+        { type: "Feature", properties: { kind: "place", number, height_m }, geometry: { type: "Point", coordinates: at.slice(0, 2) } },
+        ...(ring ? [{ type: "Feature" as const, properties: { kind: "print", number }, geometry: { type: "Polygon" as const, coordinates: [[...ring, ring[0] as [number, number]]] } }] : []),
+      ]),
+    );
+    takenShots.set(all);
+    takenOverlap.set(found);
+    drawOverlap(map, found ?? overlap.value, visible());
+    if (ofThisPlan && all.length > 0 && profile.value === null) void needProfile();
+  };
+  flown.watch(draw);
+  profile.watch(() => flown.value && draw());
+}
+
 /** Draw what belongs to the plan on the map, whenever that or what is known of the ground changes. */
 export function showSurvey(map: MapLibreMap, visible: () => boolean): void {
   let drawn: unknown = null;
@@ -72,11 +109,12 @@ export function showSurvey(map: MapLibreMap, visible: () => boolean): void {
     const photos = key?.features.find(({ properties }) => properties["role"] === "photos");
     scaleLayers(map, all, Number(photos?.properties["interval_m"] ?? 1));
     setData(map, "photos", features(all, rings));
-    drawOverlap(map, found, visible());
+    drawOverlap(map, takenOverlap.value ?? found, visible());
     shots.set(all);
     overlap.set(found);
     if (key && profile.value === null) void needProfile();
   };
   open.watch(draw);
   profile.watch(draw);
+  showTaken(map, visible);
 }
