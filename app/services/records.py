@@ -23,6 +23,7 @@ FlightState = Literal["flying", "ended", "interrupted"]
 class TrackSample:
     """One recorded place of a flight; ``time_s`` is the vehicle's time since boot.
 
+    ``mount_…``: of the gimbal that holds the sensor, yaw from true north; None where it told nothing.
     ``from_log``: the vehicle's own log told of it afterwards, where the link had not.
     """
 
@@ -38,6 +39,9 @@ class TrackSample:
     sensor_on: bool
     pitch_deg: float | None = None
     from_log: bool = False
+    mount_roll_deg: float | None = None
+    mount_pitch_deg: float | None = None
+    mount_yaw_deg: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

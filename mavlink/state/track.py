@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import Final, Literal
 
 from mavlink.state.energy import Energy, EnergyMeter
-from mavlink.state.mount import MOUNT_MESSAGES, MountWatch
+from mavlink.state.mount import MOUNT_MESSAGES, MountAttitude, MountWatch
 from mavlink.state.mount import angles_deg as angles_of
 from mavlink.state.outputs import CameraOutput, PhotoOutput, RelayOutput, SensorOutput, ServoOutput
 from mavlink.state.photos import PhotoSource, PhotoTaken, photos_among
@@ -47,7 +47,10 @@ _SOURCES: Final[dict[type, EventSource]] = {
 
 @dataclass(frozen=True, slots=True)
 class TrackPoint:
-    """Where the aircraft was; ``time_s`` is the vehicle's time since boot, angles as in VehicleState."""
+    """Where the aircraft was; ``time_s`` is the vehicle's time since boot, angles as in VehicleState.
+
+    ``mount`` is where the gimbal pointed that holds the sensor; None without one.
+    """
 
     time_s: float
     lon_deg: float
@@ -61,6 +64,7 @@ class TrackPoint:
     ground_speed_m_s: float | None = None
     sensor_on: bool | None = None
     mission_current: int | None = None
+    mount: MountAttitude | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -245,6 +249,7 @@ class TrackRecorder:
                 state.ground_speed_m_s,
                 self._output_on if state.sensor_on is None else state.sensor_on,
                 state.mission_current,
+                self._mount.at(time_s) if self.in_gimbal else None,
             )
         )
         if len(self._points) > _MOST_POINTS:

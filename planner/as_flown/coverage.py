@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,7 @@ from shapely.geometry.base import BaseGeometry
 from planner.airspace.airspace import Airspace
 from planner.as_flown import ground, spot, unknown
 from planner.as_flown.limits import MAX_BANK_RAD, MAX_PITCH_RAD
+from planner.as_flown.mount import in_gimbal, turned
 from planner.as_flown.passes import FlownPass, PlannedPass, Reason, flown_pass, matched, runs
 from planner.as_flown.photo_judge import PhotoCoverage, PhotoJudge
 from planner.as_flown.track import Gap, Line, Record, TrackSample, gaps_of
@@ -162,6 +163,7 @@ class _Judge:
         passes = tuple(p for p in self._passes if vehicle is None or p.collect.vehicle == vehicle)
         in_pass = matched(line, passes)
         self.cameras.take(record, line, in_pass, passes)
+        line = turned(line, in_pass, passes, self._asked.suite)
         by_photos = np.array([*(self.cameras.sees(p.collect.sensor) for p in passes), False], dtype=bool)
         if by_photos[:-1].all():
             by_photos[:] = True
@@ -228,6 +230,9 @@ class _Judge:
         for row in np.unique(in_pass[rows]).tolist():
             here = in_pass[rows] == row
             heights_m[here] = passes[row].height_m(places[here], self._home_m)
+        if in_gimbal(line)[rows].all():
+            # Where it points was told: it need not be taken to be abeam of the course.
+            sensor = replace(sensor, stabilised=False)
         stretch = ground.Stretch(
             sensor.whole().in_wind(model.drift, model.wind.toward_rad),
             "left" if collect.look == "left" else "right",

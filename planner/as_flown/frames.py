@@ -9,6 +9,7 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
+from planner.as_flown.mount import in_gimbal
 from planner.as_flown.passes import PlannedPass, courses
 from planner.as_flown.photo import Photo
 from planner.as_flown.track import LONGEST_STEP_S, Line, Record
@@ -76,7 +77,7 @@ def frames_of(record: Record, line: Line, in_pass: NDArray[np.int64], frame: Loc
         np.where(own, told[:, 0], between[:, 0]),
         np.where(own, told[:, 1], between[:, 1]),
         np.where(own, yaw_rad, between[:, 2]),
-        own & np.array([photo.attitude_of == "camera" for photo in photos], dtype=bool),
+        np.where(own, [photo.attitude_of == "camera" for photo in photos], flown.hung(rows)).astype(bool),
         flown.course(rows, near),
         np.where(known, in_pass[near] if len(in_pass) else -1, -1) if count else np.zeros(0, dtype=np.int64),
         np.array([math.nan if photo.index is None else float(photo.index) for photo in photos]),
@@ -104,23 +105,28 @@ def frames_on(
         return np.asarray(np.interp(at_m, along_m, values[rows]))
 
     time_s = between(line.time_s)
-    angles = flown.angles(*flown.at(time_s))
+    at, share = flown.at(time_s)
+    angles = flown.angles(at, share)
     places = np.stack([between(line.places[:, k]) for k in (0, 1)], axis=1)
     course = flown.course_of[rows]
     near = np.clip(np.searchsorted(along_m, at_m), 0, max(len(rows) - 1, 0))
     return Frames(
         time_s, places, between(line.height_m), angles[:, 0], angles[:, 1], angles[:, 2],
-        np.zeros(len(at_m), dtype=bool), course[near] if len(rows) else np.zeros(0),
+        flown.hung(at), course[near] if len(rows) else np.zeros(0),
         np.full(len(at_m), row, dtype=np.int64), np.full(len(at_m), np.nan),
     )  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
 class _Flown:
-    """The track's attitude as it was recorded, (M, 3), and its course, clockwise from the frame's north."""
+    """The track's attitude as it was recorded, (M, 3), and its course, clockwise from the frame's north.
+
+    Where a gimbal told its own, (M,), it is that.
+    """
 
     line: Line
     attitude: Floats
+    of_gimbal: NDArray[np.bool_]
     course_of: Floats
 
     @classmethod
@@ -128,10 +134,12 @@ class _Flown:
         samples = record.samples
         rows = [(s.roll_deg, _nan(s.pitch_deg), _nan(s.heading_deg)) for s in samples]
         attitude = np.radians(np.array(rows, dtype=np.float64).reshape(-1, 3))
+        told = in_gimbal(line)
+        attitude[told] = line.mount_rad[told]
         attitude[:, 2] += _north_rad(line.places, frame)
         course = courses(line)
         course_rad = np.where((course != 0.0).any(axis=1), np.arctan2(course[:, 0], course[:, 1]), np.nan)
-        return cls(line, attitude, course_rad)
+        return cls(line, attitude, told, course_rad)
 
     def at(self, time_s: Floats) -> tuple[NDArray[np.int64], Floats]:
         """The sample before each moment, −1 where none is near enough, and how far on to the next it is."""
@@ -157,9 +165,18 @@ class _Flown:
         first = self.attitude[rows]
         second = self.attitude[np.minimum(rows + 1, len(self.attitude) - 1)]
         step = np.mod(second - first + math.pi, math.tau) - math.pi
+        # Between an airframe's attitude and a gimbal's there is nothing.
+        after = np.minimum(rows + 1, len(self.attitude) - 1)
+        step[self.of_gimbal[rows] != self.of_gimbal[after]] = 0.0
         found = np.where(share[:, None] > 0.0, first + share[:, None] * step, first)
         found[rows < 0] = np.nan
         return found
+
+    def hung(self, rows: NDArray[np.int64]) -> NDArray[np.bool_]:
+        """Whether the attitude at moments is a gimbal's."""
+        if not len(self.of_gimbal):
+            return np.zeros(len(rows), dtype=bool)
+        return np.asarray((rows >= 0) & self.of_gimbal[rows])
 
     def course(self, rows: NDArray[np.int64], near: NDArray[np.int64]) -> Floats:
         """Of the track at moments."""

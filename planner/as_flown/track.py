@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Self
@@ -20,6 +21,7 @@ Floats = NDArray[np.float64]
 LONGEST_STEP_S, LONGEST_STEPS, LONGEST_AT_ALL_S = 2.0, 3.0, 5.0
 #: Two places that no aircraft of this many times the speed reaches from each other are not of one line.
 JUMP_SPEEDS, JUMP_M = 3.0, 50.0
+NO_MOUNT = (math.nan, math.nan, math.nan)
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,7 +30,8 @@ class TrackSample:
 
     ``height_m`` is over the ground, on terrain over home; ``roll_deg`` is positive with the right wing down,
     ``pitch_deg`` with the nose up; ``heading_deg`` is where the nose points, clockwise from true north, None
-    where unknown. Without a roll (NaN) nothing is seen; without a pitch it counts as level.
+    where unknown. Without a roll (NaN) nothing is seen; without a pitch it counts as level. ``mount_deg`` are
+    roll, pitch up from the horizon and yaw from true north of what a gimbal holds; None where none told.
     """
 
     time_s: float
@@ -39,6 +42,7 @@ class TrackSample:
     sensor_on: bool
     heading_deg: float | None = None
     pitch_deg: float | None = None
+    mount_deg: tuple[float, float, float] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,7 +91,8 @@ class Record:
 class Line:
     """A record in a local frame, one row a sample; rows of one ``piece`` follow each other without a gap.
 
-    ``pitch_rad`` counts from the attitude that the aircraft cruises with.
+    ``pitch_rad`` counts from the attitude that the aircraft cruises with; ``mount_rad`` (N, 3) are a gimbal's
+    roll, pitch and yaw, NaN where untold.
     """
 
     time_s: Floats
@@ -98,6 +103,7 @@ class Line:
     heading_rad: Floats
     sensor_on: NDArray[np.bool_]
     piece: NDArray[np.int64]
+    mount_rad: Floats
 
     @classmethod
     def of(cls, record: Record, frame: LocalFrame, speed_m_s: float, levelled: bool = False) -> Self:
@@ -118,6 +124,7 @@ class Line:
             np.radians([np.nan if s.heading_deg is None else s.heading_deg for s in samples]),
             on,
             np.concatenate([[0], np.cumsum(broken)]) if len(samples) else np.zeros(0, dtype=np.int64),
+            np.radians(np.array([s.mount_deg or NO_MOUNT for s in samples]).reshape(-1, 3)),
         )
 
     def pieces(self) -> NDArray[np.bool_]:

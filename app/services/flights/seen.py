@@ -95,9 +95,17 @@ def _places(samples: Sequence[TrackSample]) -> tuple[Place, ...]:
             sensor_on=sample.sensor_on,
             heading_deg=sample.heading_deg,
             pitch_deg=sample.pitch_deg,
+            mount_deg=_mount_deg(sample),
         )
         for sample in samples
     )
+
+
+def _mount_deg(sample: TrackSample) -> tuple[float, float, float] | None:
+    roll_deg, pitch_deg, yaw_deg = sample.mount_roll_deg, sample.mount_pitch_deg, sample.mount_yaw_deg
+    if roll_deg is None or pitch_deg is None or yaw_deg is None:
+        return None
+    return roll_deg, pitch_deg, yaw_deg
 
 
 def judged(sortie: Sortie, scenario: Scenario, plan: Plan) -> FlownCoverage:

@@ -241,6 +241,9 @@ class FlightStore:
                         sensor_on=row.sensor_on,
                         pitch_deg=row.pitch_deg,
                         from_log=bool(row.from_log),
+                        mount_roll_deg=row.mount_roll_deg,
+                        mount_pitch_deg=row.mount_pitch_deg,
+                        mount_yaw_deg=row.mount_yaw_deg,
                     )
                     for row in rows
                 ]

@@ -175,6 +175,9 @@ class TrackPointRow(Base):
     sensor_on: Mapped[bool] = mapped_column(Boolean)
     pitch_deg: Mapped[float | None] = mapped_column(Float)
     from_log: Mapped[bool | None] = mapped_column(Boolean)
+    mount_roll_deg: Mapped[float | None] = mapped_column(Float)
+    mount_pitch_deg: Mapped[float | None] = mapped_column(Float)
+    mount_yaw_deg: Mapped[float | None] = mapped_column(Float)
 
 
 class FlightEventRow(Base):

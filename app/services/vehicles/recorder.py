@@ -351,4 +351,7 @@ def _sample(point: TrackPoint, switches: list[tuple[float, bool]]) -> TrackSampl
         mission_seq=point.mission_current,
         sensor_on=sensor_on,
         pitch_deg=point.pitch_deg,
+        mount_roll_deg=None if point.mount is None else point.mount.roll_deg,
+        mount_pitch_deg=None if point.mount is None else point.mount.pitch_deg,
+        mount_yaw_deg=None if point.mount is None else point.mount.yaw_deg,
     )
