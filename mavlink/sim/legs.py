@@ -106,7 +106,10 @@ class LegFollower:
         self._reach_m = [self._corner_reach_m(vertex) for vertex in range(len(self._vertices))]
         self._corner_m_s = [self._corner_speed_m_s(vertex) for vertex in range(len(self._vertices))]
         for leg in range(len(self._directions) - 1, 0, -1):
-            length_m = self._directions[leg][2] - self._reach_m[leg] - self._reach_m[leg + 1]
+            whole_m = self._directions[leg][2]
+            # Two corners may take up all of a short leg: what they leave is no distance to stop in, and none
+            # is stood still at.
+            length_m = max(whole_m - self._reach_m[leg] - self._reach_m[leg + 1], whole_m / 2.0)
             end_m_s = self._corner_m_s[leg + 1] if agility.reached_abeam else 0.0
             self._corner_m_s[leg] = min(self._corner_m_s[leg], self._most_m_s(length_m, end_m_s))
         self._leg = 0

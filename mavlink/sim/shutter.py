@@ -12,6 +12,7 @@ Source: MAVLink ``common.xml`` (CAMERA_FEEDBACK, CAMERA_IMAGE_CAPTURED, CAMERA_T
 from __future__ import annotations
 
 import math
+import random
 
 from mavlink.sim.dynamics import AircraftState
 from mavlink.sim.faults import Fault
@@ -20,8 +21,8 @@ from mavlink.sim.modes import Flavour
 from mavlink.sim.settings import SimSettings
 from mavlink.wire.messages import Message
 
-#: PX4's camera trigger sleeps so long between two looks.
-_PX4_LOOK_S = 0.05
+#: PX4's camera trigger sleeps 50 ms between two looks, never quite evenly.
+_PX4_LOOKS_S = (0.03, 0.07)
 #: Every so many photos the faults ``photos_lost`` and ``feedback_lost`` strike.
 _LOST_EVERY = 7
 _SOON = 1e-9
@@ -54,7 +55,8 @@ class Shutter:
         self._pending = False
         self._last_place: Place | None = None
         self._last_s = -math.inf
-        self._looked_s = self._due_s = -math.inf
+        self._look_s = self._due_s = -math.inf
+        self._chance = random.Random(settings.seed)
 
     @property
     def interval_s(self) -> float:
@@ -93,9 +95,9 @@ class Shutter:
         if self._spacing_m <= 0.0:
             return []
         if self._settings.autopilot is Flavour.PX4:
-            if state.time_s - self._looked_s < _PX4_LOOK_S - _SOON:
+            if state.time_s < self._look_s - _SOON:
                 return []
-            self._looked_s = state.time_s
+            self._look_s = state.time_s + self._chance.uniform(*_PX4_LOOKS_S)
         assert self._last_place is not None
         if distance_m(self._last_place, state.place) < self._spacing_m:
             return []

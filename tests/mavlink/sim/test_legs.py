@@ -15,7 +15,7 @@ from tests.mavlink.sim.helpers import HOME, east_north_m, place_at
 
 RADIUS_M = 2.0
 LEGS = st.lists(
-    st.tuples(st.floats(0.0, 2.0 * math.pi), st.floats(4.0, 150.0), st.floats(-15.0, 15.0)),
+    st.tuples(st.floats(0.0, 2.0 * math.pi), st.floats(0.5, 150.0), st.floats(-15.0, 15.0)),
     min_size=1,
     max_size=6,
 )
