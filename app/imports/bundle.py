@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from pathlib import PurePosixPath
 
@@ -27,7 +28,13 @@ ReadOne = Callable[[bytes, str], list[Shape]]
 
 
 def read_bundle(
-    data: bytes, crs: str | None, notes: Notes, read_one: ReadOne, form: str | None = None
+    data: bytes,
+    crs: str | None,
+    notes: Notes,
+    read_one: ReadOne,
+    form: str | None = None,
+    *,
+    nested: bool = False,
 ) -> tuple[str, list[Shape]]:
     """The shapes of every region file in an archive, and what kind of archive it is.
 
@@ -37,6 +44,8 @@ def read_bundle(
         Reads the content of a file of another format; the second argument is its name.
     form
         ``kmz`` or ``shapefile`` where such a one is expected; None for any.
+    nested
+        Whether it lies in another; archives in one that does are not opened.
 
     Raises
     ------
@@ -47,20 +56,22 @@ def read_bundle(
     documents = {name: content for name, content in members.items() if _ending(name) in _DOCUMENTS}
     layers = _layers(members)
     inner = {name: content for name, content in members.items() if _ending(name) == ".kmz"}
+    packed = {} if nested else {name: content for name, content in members.items() if _ending(name) == ".zip"}
     single = {name: content for name, content in members.items() if _ending(name) in SINGLE}
     if form == "kmz" and not documents and not inner:
         raise file_error("no-kml", "the archive holds no .kml file", "pack a doc.kml")
-    if (form == "shapefile" and not layers) or not (documents or layers or inner or single):
+    if (form == "shapefile" and not layers) or not (documents or layers or inner or packed or single):
         raise file_error(
             "no-shapefile",
             "the archive holds no .shp file and no other of regions",
             "pack .shp, .prj and .dbf",
         )
-    if len(inner) > _MAX_INNER:
-        raise file_error("archive-too-large", f"the archive holds {len(inner)} archives", "unpack some")
+    archives = len(inner) + len(packed)
+    if archives > _MAX_INNER:
+        raise file_error("archive-too-large", f"the archive holds {archives} archives", "unpack some")
     shapes = kml.read_documents(documents, notes) if documents else []
     for name, content in inner.items():
-        shapes += _named(name, partial(kml.read_kmz, content, notes))
+        shapes += _below(name, _named(name, partial(kml.read_kmz, content, notes)))
     for stem, files in layers.items():
         shapes += _named(
             stem,
@@ -68,14 +79,27 @@ def read_bundle(
         )
     for name, content in single.items():
         shapes += _named(name, partial(read_one, content, name))
-    if single or (layers and (documents or inner)):
+    for name, content in packed.items():
+        shapes += _below(name, _named(name, partial(_of_archive, content, crs, notes, read_one)))
+    if single or packed or (layers and (documents or inner)):
         return "zip", shapes
     return ("shapefile" if layers else "kmz"), shapes
 
 
+def _below(name: str, shapes: list[Shape]) -> list[Shape]:
+    """The shapes of an archive in an archive, its path their folders."""
+    path = PurePosixPath(name)
+    return [replace(shape, folders=(*path.parent.parts, path.stem, *shape.folders)) for shape in shapes]
+
+
+def _of_archive(content: bytes, crs: str | None, notes: Notes, read_one: ReadOne) -> list[Shape]:
+    """The shapes of an archive in an archive."""
+    return read_bundle(content, crs, notes, read_one, nested=True)[1]
+
+
 def _members(data: bytes) -> dict[str, bytes]:
     """The files that are somebody's, by path; the path's words in whatever code page."""
-    found = unpack(data, (*_DOCUMENTS, ".kmz", *_SHAPEFILES, *SINGLE))
+    found = unpack(data, (*_DOCUMENTS, ".kmz", ".zip", *_SHAPEFILES, *SINGLE))
     mine: dict[str, bytes] = {}
     for name, content in found.items():
         path = PurePosixPath(_readable(name).replace("\\", "/"))

@@ -8,6 +8,8 @@ from collections.abc import Callable
 from functools import lru_cache
 
 from pyproj import CRS
+from pyproj.database import query_crs_info
+from pyproj.enums import PJType
 from pyproj.exceptions import CRSError, ProjError
 from pyproj.transformer import TransformerGroup
 from shapely import segmentize
@@ -28,6 +30,7 @@ _WRITTEN = re.compile(
     r"(?:[0-9.]*[:/])?|https?://www\.opengis\.net/gml/srs/epsg\.xml#)?(?P<code>CRS84H?|[0-9]{2,6})",
     re.IGNORECASE,
 )
+_WKT = ("PROJCS[", "GEOGCS[", "PROJCRS[", "GEOGCRS[", "GEODCRS[", "BOUNDCRS[", "COMPD_CS[", "COMPOUNDCRS[")
 #: Numbers beyond are Esri's.
 _LAST_EPSG = 32_767
 
@@ -50,7 +53,7 @@ def named_crs(name: str) -> CRS:
 
 @lru_cache(maxsize=64)
 def written_crs(name: str) -> CRS:
-    """The reference system that a file names: a code, a URN or an address of OGC, or WGS 84 by name.
+    """The reference system that a file names: a code, a URN or an address of OGC, its name, or its WKT.
 
     Raises
     ------
@@ -71,7 +74,19 @@ def written_crs(name: str) -> CRS:
         if authority == "EPSG" and code.isdigit() and int(code) > _LAST_EPSG:
             return named_crs(f"ESRI:{code}")
         return named_crs(f"{authority}:{code}")
-    return named_crs(text)
+    if text.upper().startswith(_WKT):
+        return crs_of_prj(text)
+    return _of_name(text) or named_crs(text)
+
+
+def _of_name(text: str) -> CRS | None:
+    """The system that PROJ's list has by this name, ``WGS 84 / UTM zone 32N``; None where it has not one."""
+    kinds = [PJType.PROJECTED_CRS, PJType.GEOGRAPHIC_2D_CRS]
+    plain = text.casefold()
+    found = [
+        info for info in query_crs_info(auth_name="EPSG", pj_types=kinds) if info.name.casefold() == plain
+    ]
+    return CRS.from_epsg(int(found[0].code)) if len(found) == 1 else None
 
 
 @lru_cache(maxsize=64)

@@ -75,7 +75,7 @@ def read_documents(documents: Mapping[str, bytes], notes: Notes) -> list[Shape]:
     """The shapes of documents that lie together.
 
     ``doc.kml`` first, or else the first; a document that another links to stands where the link does; those
-    that nothing links to follow, their paths their folders.
+    that nothing links to follow. Their paths are their folders, but for the name ``doc``.
     """
     archive = _Archive(documents)
     # what an aircraft of DJI flies is made of the template beside it
@@ -87,7 +87,8 @@ def read_documents(documents: Mapping[str, bytes], notes: Notes) -> list[Shape]:
             notes.append(f"{name} is the route made of the others and is left out")
         elif name not in archive.read:
             path = PurePosixPath(name)
-            folders = () if name == main else (*path.parent.parts, path.stem)
+            stem = () if name == main and path.stem.lower() == "doc" else (path.stem,)
+            folders = (*path.parent.parts, *stem)
             archive.at = name
             archive.read.add(name)
             shapes += _read(documents[name], folders, archive, notes)

@@ -100,13 +100,21 @@ def _mover(holder: Mapping[str, Any], crs: str | None, notes: Notes) -> ToWgs84 
     if member is None:
         return None
     inner = member.get("properties") if isinstance(member, dict) else None
-    if isinstance(inner, dict) and (name := inner.get("name", inner.get("code"))) is not None:
+    if isinstance(inner, dict) and (name := _named(inner)) is not None:
         return mover(written_crs(str(name)), notes)
     if isinstance(member, str):
         return mover(written_crs(member), notes)
     raise file_error(
         "crs", f"the member crs is {str(member)[:60]}", "give crs with the import, e.g. EPSG:32611"
     )
+
+
+def _named(properties: Mapping[str, Any]) -> Any:
+    """What the properties of a ``crs`` call it; of a link, the code that its address ends in."""
+    linked = re.search(r"/ref/(epsg|esri)/(\d+)", str(properties.get("href", "")))
+    if linked is not None:
+        return f"{linked[1].upper()}:{linked[2]}"
+    return properties.get("name", properties.get("code"))
 
 
 def drawn(geometry: Any, name: str, depth: int = 0) -> list[Shape]:

@@ -23,11 +23,12 @@ _FORBID = (
     r"|danger\w*|hazard\w*|warning (?:area|zone)\w*|alert area\w*|firing (?:area|range|zone)\w*|live fire"
     r"|military (?:area|zone|airspace)\w*|controlled (?:airspace|zone|area)\w*|control (?:zone|area)\w*"
     r"|req authori[sz]ation|authori[sz]ation required|permission required|denied"
-    r"|closed airspace|not allowed|not permitted|unsafe",
+    r"|closed (?:airspace|area|zone)\w*|not allowed|not permitted|unsafe|excl|blocked|out of limits?",
     # abbreviations of air traffic
-    r"nfz\w*|ctr|mctr|ctz|atz|frz|tfrs?|koz|adiz|nofly\w*|ed r|ed p|ed d",
+    r"nfz\w*|ctr|mctr|ctz|atz|frz|rpz|tfrs?|koz|adiz|nofly\w*|ed r|ed p|ed d",
     # German
-    r"\w*verbot\w*|flugbeschrank\w*|luftsperr\w*|\w*sperrgebiet\w*|sperr\w*|\w*gefahr\w*|kontrollzone\w*"
+    r"\w*verbot\w*|\w*verbuet\w*|kein\w* (?:uber)?fl[iu]\w*"
+    r"|flugbeschrank\w*|luftsperr\w*|\w*sperrgebiet\w*|sperr\w*|\w*gefahr\w*|kontrollzone\w*"
     r"|nicht (?:uber)?flieg\w*|ausschluss\w*|meid\w*",
     # French
     r"interdi\w*|reglement\w*|danger\w*|survol interdit|zones? (?:p|r|d)\b|eviter|evitement"
@@ -37,17 +38,20 @@ _FORBID = (
     r"|restrit\w*|restric\w*|peligr\w*|perig\w*|vedad\w*|no vol\w*|no sobrevol\w*|evitar\w*|interzis\w*"
     r"|interzic\w*",
     # Dutch, Scandinavian, Finnish
-    r"verboden|vliegverbod\w*|beperk\w*|gevaar\w*|forbud\w*|forbudt|forbjud\w*|flygforbud\w*|flyveforbud\w*"
+    r"verboden|verbode|vl[iu]e?gverbod\w*|bannsv\w*|flugbann\w*|beperk\w*|gevaar\w*|forbud\w*|forbudt|forbjud\w*|flygforbud\w*|flyveforbud\w*"
     r"|flyforbud\w*|restrik\w*|farlig\w*|fareomrad\w*|kielle\w*|kielto\w*|lentokiel\w*|rajoit\w*|vaara\w*",
     # Polish, Czech, Slovak, Slovene, Croatian, Hungarian, Turkish, Baltic
     r"zakaz\w*|zabron\w*|ogranicz\w*|niebezp\w*|omezen\w*|obmedzen\w*|nebezp\w*|zabran\w*|omejit\w*"
     r"|prepoved\w*"
-    r"|ogranicen\w*|opasn\w*|tilos\w*|tiltott\w*|korlatoz\w*|veszely\w*|yasak\w*|kisitl\w*|tehlike\w*"
-    r"|draudz\w*|ribojim\w*|aizlieg\w*|ierobezo\w*|keelat\w*|piirang\w*|ohtlik\w*",
-    # Indonesian, Malay, Vietnamese
-    r"larang\w*|terlarang\w*|dilarang\w*|cam bay|vung cam|han che|nguy hiem",
+    r"|ogranicen\w*|opasn\w*|zabranj\w*|tilos\w*|tilalom\w*|tilalm\w*|tiltott\w*|korlatoz\w*|veszely\w*|yasak\w*|kisitl\w*|tehlike\w*"
+    r"|draudz\w*|ribojim\w*|aizlieg\w*|ierobezo\w*|keelat\w*|\w*keelu\w*|qadagan\w*|taqiqla\w*"
+    r"|ndaluar\w*|ndalohet|ndalim\w*|piirang\w*|ohtlik\w*",
+    # Indonesian, Malay, Vietnamese, Filipino, Swahili, Basque, Irish, Welsh, Maltese
+    r"larang\w*|terlarang\w*|dilarang\w*|cam bay|(?:vung|khu vuc|khu) cam|han che|nguy hiem|bawal\w*"
+    r"|marufuku|hairuhusiwi|debeka\w*|toirmisc\w*|cosctha|dim hedfan|gwahardd\w*|projbit\w*",
     # Russian, Ukrainian, Bulgarian, Serbian, Greek
-    r"запрет\w*|запрещ\w*|ограничен\w*|опасн\w*|бесполет\w*|заборон\w*|обмежен\w*|небезпеч\w*|забран\w*"
+    r"запрет\w*|запрещ\w*|ограничен\w*|опасн\w*|бесполет\w*|заборон\w*|обмежен\w*|небезпеч\w*|забран\w*|забрањ\w*"
+    r"|тыиым\w*|хориот\w*|хориг\w*"
     r"|απαγορ\w*|περιορισ\w*|επικινδυν\w*",
 )  # fmt: skip
 #: Of languages that put no blanks between words, or put endings before them: anywhere.
@@ -56,7 +60,10 @@ _FORBID_ANYWHERE = (
     "限高", "管制", "管控", "危险", "危險", "净空", "淨空",
     "飛行禁止", "制限", "規制", "立入禁止", "비행금지", "금지", "제한", "위험", "관제권", "통제",
     "ممنوع", "محظور", "حظر", "خطر", "مقيد", "ממנוע", "אסור", "מסוכן", "מוגבל", "ห้าม", "จำกัด", "อันตราย",
-    "निषिद्ध", "प्रतिबंध", "वर्जित", "খতরা", "নিষিদ্ধ", "தடை",
+    "निषिद्ध", "निषेध", "प्रतिबंध", "वर्जित", "मनाही", "बंदी", "খতরা", "নিষিদ্ধ", "নিষেধ", "தடை",
+    "నిషేధ", "నిషిద్ధ", "ನಿಷೇಧ", "ನಿಷಿದ್ಧ", "നിരോധ", "નિષેધ", "પ્રતિબંધ", "ਮਨਾਹੀ", "ਵਰਜਿਤ", "තහනම්",
+    "ຫ້າມ", "ហាម", "တားမြစ်", "የተከለከለ", "ክልክል", "نو فلائی", "نوفلائی", "قدغن", "აკრძალ",
+    "სახიფათო", "արգել", "վտանգ",
 )  # fmt: skip
 _NEGATION = r"(?:no|non|not|without|free of|keine?|ohne|nicht|sans|sin|sem|senza|bez|без)"
 _NEGATED = re.compile(

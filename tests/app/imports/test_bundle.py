@@ -16,6 +16,7 @@ from tests.app.imports.samples import (
     GPX,
     HOLE,
     RING,
+    archive_of,
     folder,
     kml,
     line,
@@ -165,3 +166,28 @@ def test_scribbles_and_deep_links_have_an_end() -> None:
     with pytest.raises(RegionFileError) as caught:
         import_regions(packed(chain))
     assert caught.value.findings[0].rule == "kml-links"
+
+
+@pytest.mark.parametrize("place", ["NFZ.{}", "no fly/a.{}", "a/No Fly Zones/b.{}"])
+def test_paths_forbid_in_every_kind_of_archive(place: str) -> None:
+    """What forbids in the name of a document, a layer or an archive, or of a folder about it, forbids."""
+    document = kml(placemark("a", polygon(RING)))
+    for ending, content in (
+        ("kml", document),
+        ("kmz", packed({"doc.kml": document})),
+        ("zip", packed({"doc.kml": document})),
+        ("zip", archive_of(SHAPES)),
+        ("geojson", GEOJSON),
+    ):
+        found = import_regions(packed({place.format(ending): content}))
+        assert [account.role for account in found.shapes] == ["no_fly"], ending
+    layer = {place.format(ending[1:]): content for ending, content in SHAPES.items()}
+    assert [account.role for account in import_regions(packed(layer)).shapes] == ["no_fly"]
+
+
+def test_archives_in_archives_are_opened_once() -> None:
+    """One in another is read; one in that is not."""
+    inner = packed({"doc.kml": kml(placemark("a", polygon(RING)))})
+    assert names_of(import_regions(packed({"a.zip": inner}))) == ["a"]
+    with pytest.raises(RegionFileError):
+        import_regions(packed({"b.zip": packed({"a.zip": inner})}))

@@ -348,7 +348,15 @@ def test_placemarks_of_a_schema_are_placemarks() -> None:
 
 
 @pytest.mark.parametrize(
-    "name", ["urn:ogc:def:crs:EPSG::32632", "EPSG:32632", "http://www.opengis.net/def/crs/EPSG/0/32632"]
+    "name",
+    [
+        "urn:ogc:def:crs:EPSG::32632",
+        "EPSG:32632",
+        "http://www.opengis.net/def/crs/EPSG/0/32632",
+        "WGS 84 / UTM zone 32N",
+        CRS.from_epsg(32632).to_wkt(),
+        "link",
+    ],
 )
 def test_reference_systems_of_geojson_are_followed(name: str) -> None:
     """The member crs of a collection, a feature or a geometry moves it, --crs goes before it."""
@@ -356,6 +364,8 @@ def test_reference_systems_of_geojson_are_followed(name: str) -> None:
     back = Transformer.from_crs("EPSG:32632", "EPSG:4326", always_xy=True)
     wanted = Polygon([back.transform(*place) for place in ring])
     crs = {"type": "name", "properties": {"name": name}}
+    if name == "link":
+        crs = {"type": "link", "properties": {"href": "https://spatialreference.org/ref/epsg/32632/proj4/"}}
     geometry: dict[str, Any] = {"type": "Polygon", "coordinates": [ring]}
     feature: dict[str, Any] = {"type": "Feature", "properties": {}, "geometry": geometry}
     collection: dict[str, Any] = {"type": "FeatureCollection", "features": [feature]}

@@ -37,7 +37,10 @@ FORBIDDING = (
     "vietato", "verboden gebied", "förbjudet", "lentokielto", "strefa zakazana", "zakázaný prostor",
     "nebezpečná oblast", "tiltott", "yasak bölge", "запретная зона", "опасная зона", "заборонено",
     "απαγορευμένη", "禁飞区", "限飞区域", "飛行禁止区域", "비행금지구역", "منطقة محظورة", "אסור לטיסה",
-    "ห้ามบิน", "cấm bay",
+    "ห้ามบิน", "cấm bay", "khu vực cấm", "उड़ान निषेध क्षेत्र", "repülési tilalom", "bannsvæði",
+    "lennukeeluala", "eremu debekatua", "bawal lumipad", "نو فلائی زون", "აკრძალული ზონა", "արգելված գոտի",
+    "ұшуға тыйым", "нисэх хориотой", "verbode gebied", "zonë e ndaluar", "забрањена зона",
+    "Fluchverbuetszon", "kein Überflug", "RPZ", "closed area", "ຫ້າມບິນ", "ហាមហោះ", "የተከለከለ",
 )  # fmt: skip
 HARMLESS = (
     "field 3",
