@@ -24,7 +24,12 @@ MAX_ARC_EDGE_RAD = 0.08
 
 
 def flown_path(
-    flight: Flight, model: FlightModel, lonlats: ToLonLats, edge_m: float, heading_deg: float | None
+    flight: Flight,
+    model: FlightModel,
+    energy_wh: float | None,
+    lonlats: ToLonLats,
+    edge_m: float,
+    heading_deg: float | None,
 ) -> FlownPath:
     """The whole line of one aircraft.
 
@@ -44,7 +49,7 @@ def flown_path(
         segments=_segments(flight, lonlats),
         length_m=flight.length_m,
         duration_s=flight.duration_s,
-        energy_wh=model.energy_wh(flight.duration_s),
+        energy_wh=energy_wh,
         min_turn_radius_m=min(radii) if radii else None,
         phases=tuple(Phase(*phase) for phase in flight.phases()),
         take_off_heading_deg=heading_deg if model.aircraft.type != "multirotor" else None,

@@ -13,6 +13,7 @@ from planner.airspace.threats import curve_risk
 from planner.airspace.values import Threat
 from planner.dubins.path import MIN_TURN_RAD, Path
 from planner.plan import Metrics
+from planner.profile.energy import flight_wh
 from planner.profile.flight import Flight
 from planner.profile.lines import cut
 from planner.route import CollectPass
@@ -61,7 +62,7 @@ def measure(
         risk_radar=radar,
         turns=turns(path),
         duration_s=end_s - start_s,
-        energy_wh=model.energy_wh(flight.duration_s),
+        energy_wh=flight_wh(flight, model, level.amsl_m - level.altitude_m),
         coverage={},
         planning_time_s={},
         flight_length_m=flight.length_m,
@@ -95,9 +96,10 @@ def risks_along(points: Floats, over_home_m: Floats, threats: Sequence[Threat]) 
     return missile, radar
 
 
-def used(flight: Flight, model: FlightModel) -> Use:
+def used(flight: Flight, model: FlightModel, level: Level) -> Use:
     """What of its range, time and energy an aircraft uses for a flight, all phases together."""
-    return Use(flight.length_m, flight.duration_s, model.energy_wh(flight.duration_s))
+    energy_wh = flight_wh(flight, model, level.amsl_m - level.altitude_m)
+    return Use(flight.length_m, flight.duration_s, energy_wh)
 
 
 def turns(path: Path) -> int:

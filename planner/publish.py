@@ -316,7 +316,7 @@ def assemble(
     cameras = plan_cameras(suite)
     flight, begin = composed.flight, composed.flight.path.start
     heading_deg = chart.frame.true_heading_deg(*begin.position, begin.angle_rad)
-    path = flown_path(flight, model, chart.lonlats, chart.straight_edge_m, heading_deg)
+    path = flown_path(flight, model, metrics.energy_wh, chart.lonlats, chart.straight_edge_m, heading_deg)
     home, end = chart.lonlats([terminal.position for terminal in ends])
     return Plan(
         name=name,

@@ -55,10 +55,9 @@ def duration_violations(path: FlownPath, time_s: float, *, hovers: bool) -> Iter
 
 
 def limit_violations(
-    aircraft: Aircraft, path: FlownPath, length_m: float, time_s: float
+    aircraft: Aircraft, path: FlownPath, length_m: float, time_s: float, energy_wh: float | None
 ) -> Iterator[Violation]:
     """Range, flight time and energy, where the path needs more than the aircraft has."""
-    energy_wh = None if aircraft.cruise_power_w is None else aircraft.cruise_power_w * time_s / 3600.0
     for constraint, used, limit, unit in (
         ("range", length_m, aircraft.max_range_m, "m"),
         ("flight-time", time_s, aircraft.max_flight_time_s, "s"),

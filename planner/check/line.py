@@ -43,7 +43,8 @@ def judge_line(
             key = (violation.constraint, violation.feature)
             if key not in found or violation.amount > found[key].amount:
                 found[key] = violation
-    return (*found.values(), *limit_violations(aircraft, path, path.length_m, path.duration_s))
+    flown = (path.length_m, path.duration_s, path.energy_wh)
+    return (*found.values(), *limit_violations(aircraft, path, *flown))
 
 
 def _along(path: FlownPath, line: tuple[LonLatAlt, ...]) -> FlownPath:

@@ -23,7 +23,14 @@ SPOT_M = 0.01
 
 
 def line_s(line_m: Floats, altitudes_m: Floats, aircraft: Aircraft, wind: Wind, datum_amsl_m: float) -> float:
-    """Time to fly a line.
+    """Time to fly a line; see ``edges_s``."""
+    return float(edges_s(line_m, altitudes_m, aircraft, wind, datum_amsl_m).sum())
+
+
+def edges_s(
+    line_m: Floats, altitudes_m: Floats, aircraft: Aircraft, wind: Wind, datum_amsl_m: float
+) -> Floats:
+    """Time to fly each edge of a line, (N - 1,); infinite where the wind is not slower than the aircraft.
 
     Parameters
     ----------
@@ -34,14 +41,15 @@ def line_s(line_m: Floats, altitudes_m: Floats, aircraft: Aircraft, wind: Wind, 
     over_m = np.hypot(*np.diff(line_m, axis=0).T)
     rises_m = np.diff(altitudes_m)
     spot = over_m <= SPOT_M
-    hover_s = _spot_s(rises_m, spot, manners)
     if wind.speed_m_s >= aircraft.airspeed_m_s:
-        return math.inf
-    if aircraft.hovers:
-        return hover_s + _rotor_s(
-            line_m[np.concatenate([[True], ~spot])], rises_m[~spot], aircraft, wind, manners
-        )
+        return np.full(len(over_m), math.inf)
+    found = _spot_s(rises_m, spot, manners)
     flown = ~spot
+    if aircraft.hovers:
+        found[flown] = _rotor_s(
+            line_m[np.concatenate([[True], flown])], rises_m[flown], aircraft, wind, manners
+        )
+        return found
     middles_m = datum_amsl_m + 0.5 * (altitudes_m[1:] + altitudes_m[:-1])[flown]
     # ICAO standard atmosphere: density falls with the 4.2559th power of temperature.
     density = ((288.15 - 0.0065 * np.clip(middles_m, -1_000.0, 11_000.0)) / 288.15) ** 4.25588
@@ -51,17 +59,21 @@ def line_s(line_m: Floats, altitudes_m: Floats, aircraft: Aircraft, wind: Wind, 
     along_m_s = wind.speed_m_s * (np.diff(line_m, axis=0)[flown] @ toward) / over_m[flown]
     # The velocity over the ground less the wind is as long as the airspeed: v² - 2 v w + W² = V².
     ground_m_s = along_m_s + np.sqrt(along_m_s**2 + air_m_s**2 - wind.speed_m_s**2)
-    return hover_s + float((over_m[flown] / ground_m_s).sum())
+    found[flown] = over_m[flown] / ground_m_s
+    return found
 
 
-def _spot_s(rises_m: Floats, spot: NDArray[np.bool_], manners: Manners) -> float:
-    """Climbs on the spot, those that follow each other as one; the last metres down at landing speed."""
-    total_s, k = 0.0, 0
+def _spot_s(rises_m: Floats, spot: NDArray[np.bool_], manners: Manners) -> Floats:
+    """Climbs on the spot, those that follow each other as one; the last metres down at landing speed.
+
+    Each edge has its share by height, those over the ground none.
+    """
+    found, k = np.zeros(len(rises_m)), 0
     while k < len(rises_m):
         if not spot[k]:
             k += 1
             continue
-        height_m = 0.0
+        height_m, first = 0.0, k
         while k < len(rises_m) and spot[k]:
             height_m += float(rises_m[k])
             k += 1
@@ -69,9 +81,11 @@ def _spot_s(rises_m: Floats, spot: NDArray[np.bool_], manners: Manners) -> float
             continue
         slow_m = min(manners.land_below_m, -height_m) if height_m < 0.0 else 0.0
         rate = manners.climb_m_s if height_m > 0.0 else manners.sink_m_s
-        total_s += slow_m / manners.land_m_s if slow_m > 0.0 else 0.0
+        total_s = slow_m / manners.land_m_s if slow_m > 0.0 else 0.0
         total_s += _rest_to_rest_s(abs(height_m) - slow_m, rate, manners.vertical_accel_m_s2)
-    return total_s
+        shares = np.abs(rises_m[first:k])
+        found[first:k] = total_s * shares / shares.sum()
+    return found
 
 
 def _rest_to_rest_s(distance_m: float, speed_m_s: float, accel_m_s2: float) -> float:
@@ -89,12 +103,12 @@ def _against_m_s(edges: Floats, over_m: Floats, airspeed_m_s: float, wind: Wind,
     return np.asarray(np.minimum(left_m_s, airspeed_m_s), dtype=np.float64)
 
 
-def _rotor_s(line_m: Floats, rises_m: Floats, aircraft: Aircraft, wind: Wind, manners: Manners) -> float:
-    """Over the ground, from rest to rest."""
+def _rotor_s(line_m: Floats, rises_m: Floats, aircraft: Aircraft, wind: Wind, manners: Manners) -> Floats:
+    """Of edges over the ground, from rest to rest."""
     edges = np.diff(line_m, axis=0)
     over_m = np.hypot(edges[:, 0], edges[:, 1])
     if len(over_m) == 0:
-        return 0.0
+        return over_m
     lengths_m = np.hypot(over_m, rises_m)
     rate = np.where(rises_m > 0.0, manners.climb_m_s, manners.sink_m_s)
     with np.errstate(divide="ignore"):
@@ -119,4 +133,4 @@ def _rotor_s(line_m: Floats, rises_m: Floats, aircraft: Aircraft, wind: Wind, ma
     peaks = np.maximum(peaks, np.maximum(corners[:-1], corners[1:]))
     speeding_m = (2.0 * peaks**2 - corners[:-1] ** 2 - corners[1:] ** 2) / (2.0 * manners.accel_m_s2)
     changing_s = (2.0 * peaks - corners[:-1] - corners[1:]) / manners.accel_m_s2
-    return float((changing_s + np.maximum(lengths_m - speeding_m, 0.0) / peaks).sum())
+    return np.asarray(changing_s + np.maximum(lengths_m - speeding_m, 0.0) / peaks)

@@ -12,6 +12,7 @@ from shapely.geometry import MultiPolygon, Polygon
 from planner.check.clearance import clearance_violations, place_violations
 from planner.check.continuity import collect_violations, terminal_violations
 from planner.check.coverage import covered
+from planner.check.energy import line_wh
 from planner.check.followed import followed_violations
 from planner.check.heights import (
     altitude_violations,
@@ -97,7 +98,10 @@ def judge(scenario: Scenario, plan: Plan) -> Verdict:
             scenario, path, line_m, aircraft.ground_turn_radius_m, circling, returning
         )
         violations += duration_violations(path, time_s, hovers=hovers)
-        violations += limit_violations(aircraft, path, lengths_m[-1], time_s)
+        # What hovers takes as long as its autopilot's corners make it: no less than its path says.
+        whole_s = max(time_s, path.duration_s) if hovers else time_s
+        energy_wh = line_wh(line_m, altitudes_m, aircraft, scenario.wind, datum_amsl_m, whole_s)
+        violations += limit_violations(aircraft, path, lengths_m[-1], whole_s, energy_wh)
         over_ground_m = partial(np.interp, xp=reached_m, fp=over_m)
         measured = Measured(line_m)
         violations += collect_violations(scenario, plan, path, measured, over_ground_m, aircraft.settle_m)

@@ -8,6 +8,7 @@ from typing import Any
 from planner.airspace.values import Wind
 from planner.angles import angle_from_heading
 from planner.geojson.fields import Fields, Findings
+from planner.geojson.power import read_power
 from planner.sensors.base import Sensor
 from planner.sensors.registry import KINDS
 from planner.vehicle.aircraft import (
@@ -52,7 +53,7 @@ def read_aircraft(raw: Any, index: int, findings: Findings) -> Aircraft | None:
     radius_m = _turn_radius_m(fields, airspeed_m_s, kind)
     max_climb_deg = fields.number("max_climb_deg", 8.0, above=0.0, below=90.0)
     energy_wh = fields.number("energy_wh", None, above=0.0)
-    power_w = fields.number("cruise_power_w", None, above=0.0)
+    power = read_power(fields, findings, kind)
     reserve = fields.number("reserve", DEFAULT_RESERVE, minimum=0.0, below=1.0)
     range_m = fields.number("max_range_m", None, above=0.0)
     time_s = fields.number("max_flight_time_s", None, above=0.0)
@@ -63,11 +64,11 @@ def read_aircraft(raw: Any, index: int, findings: Findings) -> Aircraft | None:
     finish: Any = fields.choice("finish", ("auto", "land", "return", "loiter"), "auto")
     if "reserve" in fields and energy_wh is None:
         fields.wrong("reserve", "is a part of energy_wh, which is missing", "Add energy_wh or remove it.")
-    if energy_wh is not None and power_w is None:
+    if energy_wh is not None and power is None and not {"power", "cruise_power_w"} & set(raw):
         fields.wrong(
             "energy_wh",
             "has no power model",
-            "Add cruise_power_w, or leave energy_wh out.",
+            "Add power, or cruise_power_w for a constant one; or leave energy_wh out.",
             rule="no-power-model",
         )
     fields.refuse_unknown()
@@ -84,7 +85,7 @@ def read_aircraft(raw: Any, index: int, findings: Findings) -> Aircraft | None:
         )
         return None
     return Aircraft(
-        name, kind, autopilot, airspeed_m_s, radius_m, max_climb_deg, energy_wh, power_w, range_m, time_s,
+        name, kind, autopilot, airspeed_m_s, radius_m, max_climb_deg, energy_wh, power, range_m, time_s,
         settle_m, base, reserve=reserve, finish=finish,
         min_airspeed_m_s=slowest_m_s,
     )  # fmt: skip

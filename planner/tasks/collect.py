@@ -71,7 +71,7 @@ def collect(scenario: Scenario, controls: Controls) -> Answer:
             )
         with controls.stage("transit"):
             composed, legs, notes = transits.through(found[0], part_of(progress, 0.5, 0.9), controls.stop)
-        return _Flight(*found, composed, legs, notes, used(composed.flight, setting.model))
+        return _Flight(*found, composed, legs, notes, used(composed.flight, setting.model, setting.level))
 
     flight, left = within_limits(
         fly(frozenset(), controls.progress),

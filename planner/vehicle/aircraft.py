@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass, replace
 from typing import Literal
 
-STANDARD_GRAVITY_M_S2 = 9.80665
+from planner.vehicle.energy import STANDARD_GRAVITY_M_S2, PowerModel
 
 VehicleType = Literal["fixed_wing", "multirotor", "vtol"]
 Autopilot = Literal["ardupilot", "px4"]
@@ -35,8 +35,8 @@ class Aircraft:
         What one flight has; None where not limited.
     reserve
         Share of the energy that is kept.
-    cruise_power_w
-        Electrical power in cruise: the simplest power model; None where unknown.
+    power
+        What flight takes of the battery; None where unknown.
     settle_m
         Straight flight wanted before each collect, over the ground in ``wind_m_s``.
     max_climb_deg
@@ -59,7 +59,7 @@ class Aircraft:
     min_turn_radius_m: float
     max_climb_deg: float = 8.0
     energy_wh: float | None = None
-    cruise_power_w: float | None = None
+    power: PowerModel | None = None
     max_range_m: float | None = None
     max_flight_time_s: float | None = None
     settle_m: float = 0.0

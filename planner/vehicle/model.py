@@ -99,11 +99,6 @@ class FlightModel:
         """Time to fly a line."""
         return duration_s(line, self.airspeed_m_s, self.wind)
 
-    def energy_wh(self, duration_s: float) -> float | None:
-        """Energy for a time in cruise; None without a power model."""
-        power_w = self.aircraft.cruise_power_w
-        return None if power_w is None else power_w * duration_s / 3600.0
-
     def air_factor(self, course_rad: ArrayLike) -> Array:
         """Metres through the air for one over the ground, on the courses given."""
         return still_air_factor(course_rad, self.airspeed_m_s, self.wind)

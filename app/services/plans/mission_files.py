@@ -27,12 +27,12 @@ from mavlink.formats import FormatError
 from mavlink.formats.reading import decoded
 from mavlink.wire.items import MissionItem
 from planner.check import judge_line, tight_turns
+from planner.check.energy import line_wh
 from planner.errors import Finding
 from planner.geojson import scenario_hash, write_plan
 from planner.metrics import SAMPLE_M, Floats, risks_along
 from planner.plan import FlownPath, LonLat, Metrics, Plan, PlanVehicle, Violation
 from planner.scenario import Scenario
-from planner.vehicle.aircraft import Aircraft
 from planner.version import __version__
 
 #: Places are rounded to 1e-7 degrees: a turn may be so much tighter than its aircraft flies.
@@ -151,7 +151,15 @@ def _plan(
         aircraft.max_climb_deg,
         flown.finish if flown.finish == "land" else "loiter",
     )
-    path = FlownPath(aircraft.name, flown.line, (), long_m, duration_s, None, None)
+    energy_wh = line_wh(
+        scenario.frame.to_local([place[:2] for place in flown.line]),
+        np.array([place[2] for place in flown.line]),
+        aircraft,
+        scenario.wind,
+        scenario.home_amsl_m or 0.0,
+        duration_s,
+    )
+    path = FlownPath(aircraft.name, flown.line, (), long_m, duration_s, energy_wh, None)
     top_m = max((place[2] for place in flown.line), default=0.0)
     plan = Plan(
         name=choice.name,
@@ -166,7 +174,7 @@ def _plan(
         footprints=(),
         uncovered=(),
         fence=scene.fence,
-        metrics=_metrics(scenario, aircraft, flown, path),
+        metrics=_metrics(scenario, flown, path),
         violations=(),
         methods={},
         scenario_hash=scenario_hash(document),
@@ -177,10 +185,9 @@ def _plan(
     return replace(plan, violations=tuple(_violations(scenario, plan, path, flown, scene)))
 
 
-def _metrics(scenario: Scenario, aircraft: Aircraft, flown: Trace, path: FlownPath) -> Metrics:
+def _metrics(scenario: Scenario, flown: Trace, path: FlownPath) -> Metrics:
     """Of the whole line; nothing is collected by one that nobody planned to see anything."""
     missile, radar = risks_along(*_sampled(scenario, flown), scenario.threats)
-    power_w = aircraft.cruise_power_w
     return Metrics(
         length_m=path.length_m,
         collection_length_m=0.0,
@@ -190,7 +197,7 @@ def _metrics(scenario: Scenario, aircraft: Aircraft, flown: Trace, path: FlownPa
         risk_radar=radar,
         turns=len(flown.turns),
         duration_s=path.duration_s,
-        energy_wh=None if power_w is None else power_w * path.duration_s / 3600.0,
+        energy_wh=path.energy_wh,
         coverage={},
         flight_length_m=path.length_m,
         flight_duration_s=path.duration_s,

@@ -26,7 +26,8 @@ from planner.geojson import read_scenario
 from planner.plan import Fence, LonLat, ZoneCircle, ZonePolygon
 from planner.route import Terminal
 from planner.scenario import Scenario
-from planner.vehicle.aircraft import STANDARD_GRAVITY_M_S2, Aircraft, VehicleType
+from planner.vehicle.aircraft import Aircraft, VehicleType
+from planner.vehicle.energy import STANDARD_GRAVITY_M_S2
 
 #: Rasters by name; None for one that is not there.
 Terrains = Callable[[str], Terrain | None]

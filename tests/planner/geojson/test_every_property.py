@@ -202,6 +202,37 @@ def member(name: str, given: Any) -> Document:
     return small(**{name: given})
 
 
+#: Of each power model a value for each of its properties that is not the one it has in ``powered``.
+POWERS: dict[str, dict[str, Any]] = {
+    "constant": {"model": "rotary", "power_w": 250.0},
+    "drag_polar": {
+        "mass_kg": 4.0, "wing_area_m2": 0.7, "aspect_ratio": 9.0, "cd0": 0.05, "oswald": 0.9,
+        "efficiency": 0.5, "avionics_w": 12.0, "hover_w": 700.0,
+    },
+    "multirotor": {
+        "disc_area_m2": 0.3, "figure_of_merit": 0.7, "drag_area_m2": 0.02,
+    },
+    "rotors": {"rotors": 6, "rotor_diameter_m": 0.3},
+    "table": {"table": [[0.0, 300.0], [20.0, 500.0]]},
+}  # fmt: skip
+OF_POWER: dict[str, dict[str, Any]] = {
+    "constant": {"model": "constant", "power_w": 200.0},
+    "drag_polar": {
+        "model": "drag_polar", "mass_kg": 3.0, "wing_area_m2": 0.5, "aspect_ratio": 8.0, "cd0": 0.03,
+        "hover_w": 600.0,
+    },
+    "multirotor": {"model": "multirotor", "mass_kg": 2.0, "disc_area_m2": 0.2},
+    "rotors": {"model": "multirotor", "mass_kg": 2.0, "rotors": 4, "rotor_diameter_m": 0.25},
+    "table": {"model": "multirotor", "table": [[0.0, 300.0], [20.0, 400.0]]},
+}  # fmt: skip
+
+
+def powered(case: str, **properties: Any) -> Document:
+    """The small scenario flown by what one of the power models is for."""
+    kind = {"constant": "fixed_wing", "drag_polar": "vtol"}.get(case, "multirotor")
+    return vehicle(type=kind, power={**OF_POWER[case], **properties})
+
+
 CROSSED = feature("T", "threat", "Point", [0.016, 0.006], model="missile", radius_m=900.0)
 WIND = {"speed_m_s": 8.0, "from_deg": 200.0}
 EXTRA = {
@@ -263,6 +294,12 @@ PROOFS: dict[tuple[str, str], tuple[Document, Document]] = {
         vehicle(cruise_power_w=200.0, energy_wh=50.0, reserve=0.9),
     ),
     ("vehicle", "cruise_power_w"): (small(), vehicle(cruise_power_w=200.0)),
+    ("vehicle", "power"): (small(), vehicle(power={"model": "constant", "power_w": 200.0})),
+    **{
+        ("power", name): (powered(model), powered(model, **{name: value}))
+        for model, changes in POWERS.items()
+        for name, value in changes.items()
+    },
     ("vehicle", "max_range_m"): (small(), vehicle(max_range_m=1000.0)),
     ("vehicle", "max_flight_time_s"): (small(), vehicle(max_flight_time_s=100.0)),
     ("vehicle", "min_airspeed_m_s"): (
