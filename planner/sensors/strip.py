@@ -71,9 +71,9 @@ def strip_on(sensor: SarSensor, height_m: float, courses_rad: ArrayLike, look: L
     outs_m = np.stack(
         [np.broadcast_to(near_m, turning_m.shape), np.broadcast_to(far_m, turning_m.shape), turning_m]
     )
-    leads = lead_m(squints_rad, yaw, outs_m, drops_m).reshape(-1, len(courses))
+    leads = lead_m(squints_rad, yaw, outs_m, drops_m)
     half_m = aperture_m(sensor, low_m, yaw) / 2.0 + sensor.position_margin_m
-    return Strip(near_m, far_m - near_m, half_m + leads.max(axis=0), half_m - leads.min(axis=0))
+    return Strip(near_m, far_m - near_m, half_m + leads.max(axis=(0, 1)), half_m - leads.min(axis=(0, 1)))
 
 
 def swaths_m(sensor: SarSensor, height_m: float, courses_rad: ArrayLike) -> Floats:

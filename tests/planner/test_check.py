@@ -17,6 +17,7 @@ from planner.geojson import read_scenario
 from planner.pipeline import make_plan
 from planner.plan import Plan
 from planner.scenario import Scenario
+from planner.vehicle.energy import ConstantPower
 from tests.planner.scenarios import case, small
 
 GEOD = Geod(ellps="WGS84")
@@ -166,7 +167,7 @@ def test_limits_of_the_aircraft_are_judged() -> None:
         max_range_m=20_000.0,
         max_flight_time_s=900.0,
         energy_wh=50.0,
-        cruise_power_w=300.0,
+        power=ConstantPower(300.0),
     )
     found = constraints(replace(scenario, aircraft=(poor,)), plan)
     assert {"range", "flight-time", "energy"} <= found

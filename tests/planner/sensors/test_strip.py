@@ -231,3 +231,10 @@ def test_sensors_take_on_the_wind() -> None:
     crab = crab_rad(course, scenario.aircraft[0].airspeed_m_s, scenario.wind)
     assert sensor.yaw_rad(course, "right") == pytest.approx(crab)
     assert sensor.yaw_rad(course, "left") == pytest.approx(-crab)
+
+
+@pytest.mark.parametrize("drift", [0.0, 0.3])
+def test_no_course_has_no_strip(drift: float) -> None:
+    """Of no courses there are no strips, in wind and in still air."""
+    sensor = read_scenario(small()).sensors[0].in_wind(drift, 0.4)
+    assert len(strip_on(sensor, HEIGHT_M, np.empty(0), "right").swath_m) == 0
