@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from itertools import pairwise
 
@@ -141,8 +140,11 @@ def phase_violations(path: FlownPath) -> Iterator[Violation]:
 
 def between(line_m: Floats, heights_m: Floats, low_m: float, high_m: float) -> MultiLineString:
     """What of a line lies between two heights, both included."""
-    if low_m == -math.inf and high_m == math.inf:
+    lowest_m, highest_m = float(np.min(heights_m)), float(np.max(heights_m))
+    if low_m <= lowest_m and highest_m <= high_m:
         return MultiLineString([line_m])
+    if highest_m < low_m or high_m < lowest_m:
+        return MultiLineString()
     parts: list[Floats] = []
     run: list[Floats] = []
     for (a, b), (h0, h1) in zip(pairwise(line_m), pairwise(heights_m), strict=True):

@@ -154,6 +154,7 @@ def _posed(
         (start.x, start.y),
         (start.x, start.y),
         span_m=0.0,
+        turn_radius_m=model.turn_radius_m,
         speed_m_s=model.airspeed_m_s,
     )
     return urban, Joiner.among(urban, free_space(urban))
