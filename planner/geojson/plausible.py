@@ -9,6 +9,7 @@ from shapely.geometry import Point
 
 from planner.geojson.fields import Findings
 from planner.scenario import Scenario
+from planner.sensors.camera import CameraSensor
 
 #: From this part of the airspeed on a wind decides the flight.
 NEAR_AIRSPEED = 0.6
@@ -61,14 +62,17 @@ def _times(scenario: Scenario, ground_speed_m_s: float, findings: Findings) -> N
     level, suite, airspace = scenario.level, scenario.suite, scenario.airspace
     for region in scenario.regions:
         # Where terrain leaves a sensor no height, that is found elsewhere.
-        swath_m = suite.of(region).swath_m(level.of(region).height_m) if airspace.terrain is None else 0.0
+        sensor = suite.of(region)
+        swath_m = sensor.swath_m(level.of(region).height_m) if airspace.terrain is None else 0.0
+        if isinstance(sensor, CameraSensor):
+            swath_m *= 1.0 - sensor.side_overlap
         way_m += region.revisits * region.area.area / swath_m if swath_m > 0.0 else 0.0
     if way_m / ground_speed_m_s > LONG_S:
         findings.warning(
             "scenario",
             "flight-long",
             f"takes {_hours(way_m / ground_speed_m_s)} of flight at least: {way_m / 1000.0:.0f} km",
-            "Check altitude_m and the beam, which give the swath; or cut the regions.",
+            "Check altitude_m and what gives the swath, a beam or a camera's overlap; or cut the regions.",
         )
 
 

@@ -67,6 +67,18 @@ def test_hours_of_flight_are_told() -> None:
     assert hours == pytest.approx(55_000.0**2 / swath_m / 20.0 / 3600.0, rel=0.05)
 
 
+def test_lanes_of_photos_are_counted_by_their_overlap() -> None:
+    """A camera's lanes lie as far apart as its side overlap leaves of the strip: so many more hours."""
+    wide = feature("A", "roi", "Polygon", square(0.0, 0.0, 0.05))
+    camera = {"name": "eye", "type": "camera", "model": "Sony RX1R II", "side_overlap": 0.6}
+    document = open_() | {"altitude_m": 120.0, "sensors": [camera]}
+    document["features"][0] = wide
+    (found,) = told(document, "flight-long")
+    hours = float(found.split(" h of flight")[0].split()[-1])
+    lane_m = 0.4 * 120.0 * 35.9 / 35.0
+    assert hours == pytest.approx(5_560.0**2 / lane_m / 20.0 / 3600.0, rel=0.15)
+
+
 def test_a_place_with_its_axes_exchanged_is_told() -> None:
     """Where latitude and longitude are so alike that nothing is out of range or too far."""
     document = open_()
