@@ -21,6 +21,7 @@ class Benchmark(StrEnum):
     LINK = "link"
     TRANSIT = "transit"
     SURVEY = "survey"
+    QUALITY = "quality"
     KERNELS = "kernels"
     START = "start"
     ISOLATION = "isolation"

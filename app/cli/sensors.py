@@ -1,13 +1,17 @@
-"""``swathplan sensors``: the cameras known, and what each sees from a height."""
+"""``swathplan sensors``: the cameras and radars known, and what each camera sees from a height."""
 
 from __future__ import annotations
 
+import math
 from typing import Annotated, Any
 
 import typer
 
 from app.cli.output import CommandError, Exit, Json, Output, emit, emit_json
+from app.cli.quality_picture import picture
 from planner.sensors.cameras import CAMERAS, Camera, find_camera
+from planner.sensors.quality import Giqe4
+from planner.sensors.radars import RADARS, Radar
 
 
 def register(cli: typer.Typer) -> None:
@@ -35,6 +39,14 @@ def row(camera: Camera, height_m: float, gsd_m: float | None) -> dict[str, Any]:
     }
 
 
+def _radar_line(radar: Radar) -> str:
+    resolves = "" if radar.resolution_m is None else f"{radar.resolution_m:g} m"
+    beam = f"{radar.elevation_beamwidth_deg:g}° × {radar.azimuth_beamwidth_deg:g}°"
+    return (
+        f"{radar.name:30} {radar.mode:13} {radar.incidence_deg:>8g}° {beam:>20} {resolves:>9}  {radar.source}"
+    )
+
+
 def sensors(
     name: Annotated[str | None, typer.Argument(help="One camera alone, by its name.")] = None,
     height_m: Annotated[float, typer.Option("--height", min=1.0, help="Metres over the ground.")] = 100.0,
@@ -42,15 +54,33 @@ def sensors(
         float | None,
         typer.Option("--gsd", min=1e-4, help="Metres a pixel is to cover: tells the height for it."),
     ] = None,
+    tilt_deg: Annotated[
+        float, typer.Option("--tilt", min=-70.0, max=70.0, help="Degrees tilted forward, for the picture.")
+    ] = 0.0,
+    rer: Annotated[float, typer.Option(min=0.01, help="Relative edge response, for the picture.")] = 0.9,
+    snr: Annotated[float, typer.Option(min=0.1, help="Signal to noise ratio, for the picture.")] = 50.0,
+    drawn: Annotated[
+        bool, typer.Option("--picture", help="Draw one camera's quality over its footprint, as SVG.")
+    ] = False,
     as_json: Json = False,
     output: Output = "-",
 ) -> None:
-    """List cameras by the figures their makers publish, and the ground a pixel and an image cover."""
+    """List cameras by published figures, with the ground a pixel and an image cover, and radars."""
     try:
         chosen = list(CAMERAS.values()) if name is None else [find_camera(name)]
     except KeyError as error:
         raise CommandError(str(error.args[0]), Exit.BAD_INPUT) from None
     rows = [row(camera, height_m, gsd_m) for camera in chosen]
+    if drawn:
+        if name is None:
+            raise CommandError("--picture is of one camera: give its name", Exit.BAD_INPUT)
+        quality = Giqe4(chosen[0].spectrum, rer, snr)
+        shape = (chosen[0].optics, math.radians(tilt_deg), rows[0]["height_m"])
+        try:
+            emit(picture(chosen[0].name, *shape, quality), output)
+        except ValueError as error:
+            raise CommandError(f"{error}: give a smaller --tilt", Exit.BAD_INPUT) from None
+        return
     if as_json:
         emit_json(rows if name is None else rows[0], output)
         return
@@ -65,4 +95,9 @@ def sensors(
         )
     if name is not None:
         lines.append(f"source: {rows[0]['source']}")
+    else:
+        lines.append(
+            f"\n{'radar':30} {'mode':13} {'incidence':>9} {'beam, up and along':>20} {'resolves':>9}"
+        )
+        lines += [_radar_line(radar) for radar in RADARS.values()]
     emit("\n".join(lines) + "\n", output)

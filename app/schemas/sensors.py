@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from typing import Literal, Self
 
 from pydantic import BaseModel, Field
 
 from planner.sensors.cameras import Camera, Kind
 from planner.sensors.quality import Spectrum
+from planner.sensors.radars import Radar
 
 
 class SensorOut(BaseModel):
@@ -41,7 +43,28 @@ class SensorOut(BaseModel):
         )
 
 
+class RadarOut(BaseModel):
+    """One radar by published figures: what a scenario's entry of `sensors` may begin with."""
+
+    name: str
+    type: Literal["sar"] = "sar"
+    mode: str
+    look: str
+    incidence_deg: float
+    elevation_beamwidth_deg: float
+    azimuth_beamwidth_deg: float
+    resolution_m: float | None = Field(description="null: not published.")
+    wavelength_m: float | None
+    source: str = Field(description="Where the figures are published.")
+
+    @classmethod
+    def of(cls, radar: Radar) -> Self:
+        """The answer for a radar."""
+        return cls(**asdict(radar))
+
+
 class SensorList(BaseModel):
-    """The camera database."""
+    """Cameras, and radars."""
 
     sensors: list[SensorOut]
+    radars: list[RadarOut]

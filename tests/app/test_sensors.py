@@ -34,5 +34,18 @@ async def test_they_are_found_by_words(client: httpx.AsyncClient) -> None:
     assert {camera["name"] for camera in found} == {"Sony a7R III 35 mm", "Sony a7R IV 35 mm"}
     thermal = (await client.get("/api/v1/sensors", params={"search": "thermal"})).json()["sensors"]
     assert {camera["spectrum"] for camera in thermal} == {"infrared"}
-    assert (await client.get("/api/v1/sensors", params={"search": "no such"})).json() == {"sensors": []}
+    assert (await client.get("/api/v1/sensors", params={"search": "no such"})).json() == {
+        "sensors": [],
+        "radars": [],
+    }
     check_problem(await client.get("/api/v1/sensors", params={"search": "x" * 101}), 422)
+
+
+async def test_radars_are_listed_beside_them(client: httpx.AsyncClient) -> None:
+    """Found by words, too, each with its source."""
+    found = (await client.get("/api/v1/sensors", params={"search": "sar spotlight"})).json()
+    assert found["sensors"] == []
+    assert [(radar["name"], radar["resolution_m"]) for radar in found["radars"]] == [
+        ("GA-ASI Lynx spot", 0.1)
+    ]
+    assert found["radars"][0]["source"]

@@ -17,7 +17,8 @@ from planner.sensors.worth import worth_of
 from tests.planner.scenarios import feature, small, square
 
 EYE = {
-    "name": "eye", "type": "camera", "model": "Sony a6000 20 mm", "rer": 0.92, "snr": 50.0, "min_interval_s": 0.5,
+    "name": "eye", "type": "camera", "model": "Sony a6000 20 mm", "rer": 0.92, "snr": 50.0,
+    "min_interval_s": 0.5,
 }  # fmt: skip
 GEOD = Geod(ellps="WGS84")
 
