@@ -12,9 +12,11 @@ from app.services.documents import read_object
 from app.services.errors import NotFoundError, RefusedError
 from mavlink.dialects import DialectFinding, VehicleType
 from mavlink.dialects.mission import Mission
+from mavlink.dialects.versions import version_findings
 from mavlink.encoding.encode import EncodeError, EncodeOptions, encode
 from mavlink.encoding.gimbal import GimbalError, parse_gimbal
 from mavlink.encoding.payload import PayloadError, parse_payload
+from mavlink.rules.firmware import version_of
 from mavlink.wire.items import MissionType
 from planner.errors import Finding
 from planner.plan import Plan
@@ -147,8 +149,10 @@ def _vehicle_of(plan: Plan, name: str | None) -> str:
     return name
 
 
-def mission_findings(mission: Mission, kinds: Sequence[MissionType]) -> tuple[Finding, ...]:
-    """What the autopilot would refuse, lose or fly otherwise than meant."""
+def mission_findings(
+    mission: Mission, kinds: Sequence[MissionType], firmware: str | None = None
+) -> tuple[Finding, ...]:
+    """What the autopilot, of a firmware's version, would refuse, lose or fly otherwise than meant."""
     return tuple(
         Finding(
             feature=f"{PART_NAMES[kind]}" if found.seq is None else f"{PART_NAMES[kind]} item {found.seq}",
@@ -158,7 +162,10 @@ def mission_findings(mission: Mission, kinds: Sequence[MissionType]) -> tuple[Fi
             severity=found.severity,
         )
         for kind in kinds
-        for found in map(partial(_of_a_file, mission), mission.dialect.check(mission.items_of(kind)))
+        for found in (
+            *map(partial(_of_a_file, mission), mission.dialect.check(mission.items_of(kind))),
+            *version_findings(mission.items_of(kind), mission.autopilot, version_of(firmware)),
+        )
     ) + (_places_lost(mission) if MissionType.MISSION in kinds else ())
 
 

@@ -114,7 +114,7 @@ def preflight(
     checks = (
         _plan(plan),
         _vehicle(mission, state),
-        _dialect(mission),
+        _dialect(mission, state.firmware),
         _held("mission", mission, observed),
         _fence(mission, observed),
         _parameters(found, observed),
@@ -158,8 +158,8 @@ def _vehicle(mission: Mission, state: VehicleState) -> Check:
     return Check("vehicle", "warning" if state.firmware else "ok", f"{detail}; {note}")
 
 
-def _dialect(mission: Mission) -> Check:
-    found: tuple[Finding, ...] = mission_findings(mission, list(PARTS.values()))
+def _dialect(mission: Mission, firmware: str | None) -> Check:
+    found: tuple[Finding, ...] = mission_findings(mission, list(PARTS.values()), firmware)
     worst = next((f for f in found if f.severity == "error"), found[0] if found else None)
     if worst is None:
         return Check("dialect", "ok", f"{mission.dialect.name} takes every item as it is meant")

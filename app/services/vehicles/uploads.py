@@ -179,7 +179,7 @@ def judge_upload(
         message = f"the vehicle is still starting ({state.mode or 'boot'}) and stores nothing yet"
         finding = Finding("vehicle", "vehicle-booting", message, "send it again in some seconds")
         raise UnsafeError(f"not uploaded: {message}; no override helps, send it again", (finding,))
-    found = mission_findings(mission, [PARTS[name] for name in parts])
+    found = mission_findings(mission, [PARTS[name] for name in parts], state.firmware)
     errors = tuple(finding for finding in found if finding.severity == "error")
     if errors:
         raise RefusedError(f"the autopilot would not hold this mission: {errors[0].message}", errors)
