@@ -295,7 +295,7 @@ class _Judge:
 
     def _photos(self) -> PhotoCoverage | None:
         """What cameras saw, held against what is wished, or else planned, of each region."""
-        if not self._plan.cameras:
+        if not self.cameras.any:
             return None
         limits_m = {
             region.name: wished_gsd_m(region, self._asked.suite.of(region), self._plan, self._passes)

@@ -19,6 +19,7 @@ from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
 from planner.airspace.terrain import Ground
+from planner.as_flown.cameras import asked_photos, cameras_of
 from planner.as_flown.frames import Frames, frames_of, frames_on
 from planner.as_flown.limits import FLATTEST_RAD, GSD_PART, MAX_TURNED_RAD
 from planner.as_flown.passes import PlannedPass, runs
@@ -133,13 +134,18 @@ class PhotoJudge:
         self._plan, self._suite, self._frame = plan, suite, frame
         self._ground, self._home_m = ground, home_m
         self._level_m = home_m if ground is not None else 0.0
-        self._cameras = {camera.name: camera for camera in plan.cameras}
+        self._cameras = {camera.name: camera for camera in plan.cameras or cameras_of(plan, suite)}
         self._passes = {planned.key: planned for planned in passes if planned.collect.sensor in self._cameras}
         self._photos = {(each.vehicle, each.seq): each for each in plan.photos}
         self._heaps: dict[str, _Heap] = {name: _Heap() for name in self._cameras}
         self._taken: dict[tuple[str, int], list[Taken]] = {key: [] for key in self._passes}
         self._why: Counter[str] = Counter()
         self._count = self._counted = self._assumed = 0
+
+    @property
+    def any(self) -> bool:
+        """Whether there are cameras."""
+        return bool(self._cameras)
 
     def sees(self, sensor: str) -> bool:
         """Whether a sensor is a camera."""
@@ -156,10 +162,12 @@ class PhotoJudge:
             The pass of each place of the line, by its row in ``passes``; −1 for none.
         """
         mine = {row: planned for row, planned in enumerate(passes) if planned.key in self._passes}
-        if not mine:
+        if not mine and self._passes:
             return
         frames = frames_of(record, line, in_pass, self._frame)
         self._count += len(frames.time_s)
+        if not mine and len(self._cameras) == 1:
+            self._add(next(iter(self._cameras.values())), frames, {})
         for name, camera in self._cameras.items():
             here = {row: planned for row, planned in mine.items() if planned.collect.sensor == name}
             if not here:
@@ -261,6 +269,11 @@ class PhotoJudge:
             for planned in self._passes.values()
             if planned.collect.sensor == camera.name
         ]
+        places = [shots.place for shots in self._heaps[camera.name].shots if len(shots.place)]
+        if not heights_m and places:
+            over_m = np.concatenate(places)
+            below_m = 0.0 if self._ground is None else self._ground.at(over_m[:, :2])
+            heights_m = [max(float(np.nanmedian(over_m[:, 2] - below_m)), 1.0)]
         return 2.0 * min(half_tangents(camera)) * min(heights_m, default=1.0)
 
     def _height_m(self, planned: PlannedPass) -> float:
@@ -348,12 +361,6 @@ class PhotoJudge:
             Reached() if video else Reached.of(forward),
             Reached.of(side_overlaps(mine, taken, region.area)),
         )  # fmt: skip
-
-
-def asked_photos(camera: PlanCamera) -> int:
-    """How many photos see a place at least where both overlaps are kept; of a video, how many lanes."""
-    forward = 1 if camera.trigger == "video" else math.floor(1.0 / (1.0 - camera.forward_overlap) + 1e-9)
-    return forward * math.floor(1.0 / (1.0 - camera.side_overlap) + 1e-9)
 
 
 def _share(part: BaseGeometry, whole: BaseGeometry) -> float:

@@ -21,6 +21,8 @@ Floats = NDArray[np.float64]
 LONGEST_STEP_S, LONGEST_STEPS, LONGEST_AT_ALL_S = 2.0, 3.0, 5.0
 #: Two places that no aircraft of this many times the speed reaches from each other are not of one line.
 JUMP_SPEEDS, JUMP_M = 3.0, 50.0
+#: Where the aircraft is not known, no place is too far from another.
+ANY_SPEED_M_S = 1e6
 NO_MOUNT = (math.nan, math.nan, math.nan)
 
 
@@ -154,3 +156,12 @@ def gaps_of(samples: Sequence[TrackSample], line: Line) -> tuple[Gap, ...]:
         there = ((before.lon_deg, before.lat_deg), (after.lon_deg, after.lat_deg))
         found.append(Gap(before.time_s, after.time_s, lasted_s if lasted_s >= 0.0 else None, there))
     return tuple(found)
+
+
+def silences(record: Record) -> tuple[Gap, ...]:
+    """The gaps of a record by itself, whatever was flown: places further apart in time than it is dense."""
+    if not record.samples:
+        return () if record.gap_after is None else (record.gap_after,)
+    first = record.samples[0]
+    line = Line.of(record, LocalFrame(first.lon_deg, first.lat_deg), ANY_SPEED_M_S)
+    return gaps_of(record.samples, line) + (() if record.gap_after is None else (record.gap_after,))

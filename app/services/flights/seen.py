@@ -7,7 +7,7 @@ together, and where nobody recorded between two of them it is not known what was
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from datetime import datetime, timedelta
 from functools import partial
@@ -39,7 +39,7 @@ from app.services.terrain.rasters import stored_terrain
 from planner.airspace.terrain import Terrains
 from planner.as_flown.coverage import FlownCoverage
 from planner.as_flown.passes import REASONS
-from planner.as_flown.track import Gap, Record
+from planner.as_flown.track import Gap, Record, silences
 from planner.as_flown.track import TrackSample as Place
 from planner.geojson import read_scenario
 from planner.geojson.geometry import written
@@ -165,7 +165,10 @@ def coverage_of(sortie: Sortie) -> dict[str, Any]:
     ``gaps`` of the record, each with its time; ``not_counted`` with what was flown with the sensor on for
     nothing, and why; ``energy`` planned and drawn; ``flights``.
     """
-    scenario, plan = _asked(sortie, read_object(sortie.scenario_text)), plan_of(sortie.plan_text)
+    document = read_object(sortie.scenario_text)
+    if names_no_region(sortie.plan_text, document):
+        return record_of_file(sortie)
+    scenario, plan = _asked(sortie, document), plan_of(sortie.plan_text)
     result = judged(sortie, scenario, plan)
     recorded = [
         Recorded(f.record.plan_vehicle, f.samples, f.photos, spacing_of(f.record.payload))
@@ -190,32 +193,16 @@ def coverage_of(sortie: Sortie) -> dict[str, Any]:
         samples = sortie.flights[one["record"]].samples[first : last + 1]
         line = {"type": "LineString", "coordinates": line_of(samples)}
         features.append(feature(line, role="not_counted", **one))
-    first_flight = sortie.flights[0].record
-    alone = len(sortie.flights) == 1
-    return {
-        "type": "FeatureCollection",
-        "flight": first_flight.id if alone else None,
-        "flights": [flight.record.id for flight in sortie.flights],
-        "plan": sortie.plan_id,
+    return _told(sortie, plan) | {
         "coverage": result.fraction,
         "unknown_coverage": result.unknown_fraction,
         "planned_coverage": plan.metrics.coverage,
         "collects": [asdict(collect) for collect in result.passes],
         "triggers": [asdict(t) for t in _triggers(scenario, plan, recorded, result)],
         "photos": photos_json(scenario, result),
-        "phases": [
-            asdict(phase)
-            for flight in sortie.flights[:1]
-            if alone
-            for path in plan.paths
-            if path.vehicle == flight.record.plan_vehicle or len(plan.paths) == 1
-            for phase in flown_phases(path, flight.samples)
-        ],
-        "seen_fraction": SEEN_FRACTION,
         "regions": regions_json(scenario, plan, result),
-        "gaps": _gaps(sortie, result),
+        "gaps": _gaps(sortie, result.gaps),
         "not_counted": [one for one, _ in left],
-        "energy": [_energy(flight, plan) for flight in sortie.flights],
         "features": features,
     }
 
@@ -236,13 +223,57 @@ def asked_of(sortie: Sortie) -> tuple[Scenario, Plan]:
 
 
 def _asked(sortie: Sortie, document: dict[str, Any]) -> Scenario:
-    """What was to be seen; raises ConflictError for a mission file, which was planned to see nothing."""
-    if MEMBER in read_object(sortie.plan_text):
-        raise ConflictError("the flight followed a mission file, which has no passes: nothing was to be seen")
+    """What was to be seen; raises ConflictError for a mission file that names no regions."""
+    if names_no_region(sortie.plan_text, document):
+        raise ConflictError("the flight followed a mission file without regions: nothing was to be seen")
     return read_scenario(document, sortie.terrain)
 
 
-def _gaps(sortie: Sortie, result: FlownCoverage) -> list[dict[str, Any]]:
+def names_no_region(plan_text: str, scenario: Mapping[str, Any]) -> bool:
+    """Whether a flight followed a mission file that no scenario with regions goes with."""
+    roles = {feature["properties"].get("role") for feature in scenario["features"]}
+    return MEMBER in read_object(plan_text) and "roi" not in roles
+
+
+def record_of_file(sortie: Sortie) -> dict[str, Any]:
+    """As ``coverage_of``, where nothing was to be seen: gaps of the record, phases and energy."""
+    plan = plan_of(sortie.plan_text)
+    return _told(sortie, plan) | {
+        "coverage": {},
+        "unknown_coverage": {},
+        "planned_coverage": {},
+        "collects": [],
+        "triggers": [],
+        "photos": None,
+        "regions": [],
+        "gaps": _gaps(sortie, [silences(record) for record in records_of(sortie)]),
+        "not_counted": [],
+        "features": [],
+    }
+
+
+def _told(sortie: Sortie, plan: Plan) -> dict[str, Any]:
+    """What does not depend on regions."""
+    alone = len(sortie.flights) == 1
+    return {
+        "type": "FeatureCollection",
+        "flight": sortie.flights[0].record.id if alone else None,
+        "flights": [flight.record.id for flight in sortie.flights],
+        "plan": sortie.plan_id,
+        "phases": [
+            asdict(phase)
+            for flight in sortie.flights[:1]
+            if alone
+            for path in plan.paths
+            if path.vehicle == flight.record.plan_vehicle or len(plan.paths) == 1
+            for phase in flown_phases(path, flight.samples)
+        ],
+        "seen_fraction": SEEN_FRACTION,
+        "energy": [_energy(flight, plan) for flight in sortie.flights],
+    }
+
+
+def _gaps(sortie: Sortie, gaps_of: Sequence[Sequence[Gap]]) -> list[dict[str, Any]]:
     return [
         {
             "flight": flight.record.id,
@@ -256,7 +287,7 @@ def _gaps(sortie: Sortie, result: FlownCoverage) -> list[dict[str, Any]]:
             "from": list(gap.places[0]),
             "to": None if gap.places[1] is None else list(gap.places[1]),
         }
-        for flight, gaps_ in zip(sortie.flights, result.gaps, strict=True)
+        for flight, gaps_ in zip(sortie.flights, gaps_of, strict=True)
         for gap in gaps_
     ]
 

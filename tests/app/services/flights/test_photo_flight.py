@@ -67,10 +67,13 @@ class Flown:
     plan_id: str
     plan: Plan
 
-    async def flight(self, lost: bool = False, photos: bool = True) -> str:
-        """The place of a flight along the plan's lanes; of each five photos may be lost."""
+    async def flight(self, lost: bool = False, photos: bool = True, plan_id: str | None = None) -> str:
+        """The place of a flight along the plan's lanes; of each five photos may be lost.
+
+        ``plan_id`` is another plan that it is said to have followed.
+        """
         store = FlightStore(self.house.database)
-        flight_id = await store.begin("vehicle", "uav", self.plan_id, self.plan.vehicles[0].name)
+        flight_id = await store.begin("vehicle", "uav", plan_id or self.plan_id, self.plan.vehicles[0].name)
         samples, events = recorded(self.plan, lost, photos)
         await store.add(flight_id, samples)
         await store.add_events(flight_id, events)
@@ -158,3 +161,27 @@ async def test_regions_without_photos_have_no_raster(flown: Flown) -> None:
     answer = await flown.client.get(f"{at}/overlap.tif", params={"roi": "nowhere"})
     check_problem(answer, 409)
     assert "nowhere" in answer.text
+
+
+async def test_photos_of_a_mission_file_are_judged_where_a_scenario_names_regions(flown: Flown) -> None:
+    """Of a camera of the scenario, on a mission that another program made: all is seen, nothing planned."""
+    kept = (await flown.client.post("/api/v1/scenarios", json=asked())).json()
+    content = (await flown.client.get(f"/api/v1/plans/{flown.plan_id}/mission.waypoints")).content
+    query = {"scenario_id": kept["id"]}
+    filed = (await flown.client.post("/api/v1/plans/import", content=content, params=query)).json()
+    told = (await flown.client.get(f"{await flown.flight(plan_id=filed['id'])}/coverage.geojson")).json()
+    assert told["coverage"]["A"] > 0.999
+    assert told["photos"]["taken"] == told["photos"]["counted"] > 0
+    assert told["photos"]["passes"] == []
+
+
+async def test_a_flight_of_a_mission_file_alone_has_its_record(flown: Flown) -> None:
+    """Gaps, phases and energy, and a report that says that nothing was to be seen; nothing to fly again."""
+    content = (await flown.client.get(f"/api/v1/plans/{flown.plan_id}/mission.waypoints")).content
+    filed = (await flown.client.post("/api/v1/plans/import", content=content)).json()
+    at = await flown.flight(plan_id=filed["id"])
+    told = (await flown.client.get(f"{at}/coverage.geojson")).json()
+    assert told["regions"] == told["features"] == []
+    assert len(told["gaps"]) == len(flown.plan.collects) - 1
+    assert "nothing was to be seen" in (await flown.client.get(f"{at}/report.html")).text
+    check_problem(await flown.client.post(f"{at}/refly"), 409)
