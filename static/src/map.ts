@@ -18,6 +18,7 @@ const RASTER_KEY = "swathplan.raster";
 const NOTHING: FeatureCollection = { type: "FeatureCollection", features: [] };
 const FIT_PADDING_PX = 60;
 const LEGEND_PX = 215;
+const NARROW_PX = 640;
 
 function baseLayers(colours: Palette): LayerSpecification[] {
   return [
@@ -60,6 +61,12 @@ export function fit(map: MapLibreMap, bounds: Bounds | null): void {
   const right = document.querySelector("#legend details[open]") ? LEGEND_PX : FIT_PADDING_PX;
   const padding = { top: FIT_PADDING_PX, bottom: FIT_PADDING_PX, left: FIT_PADDING_PX, right };
   map.fitBounds(bounds, { padding, maxZoom: 16, duration: 0 });
+}
+
+function closeAttribution(container: HTMLElement): void {
+  const box = container.querySelector(".maplibregl-ctrl-attrib");
+  box?.classList.remove("maplibregl-compact-show");
+  box?.removeAttribute("open");
 }
 
 async function showWorld(map: MapLibreMap): Promise<void> {
@@ -107,6 +114,8 @@ export async function createMap(container: HTMLElement): Promise<MapLibreMap> {
   map.addControl(new NavigationControl({ showCompass: false }), "top-right");
   map.addControl(new ScaleControl({ unit: "metric" }), "bottom-left");
   await new Promise<void>((resolve) => map.once("load", () => resolve()));
+  // On a small screen it covers a line of the map: the button opens it.
+  if (container.clientWidth < NARROW_PX) closeAttribution(container);
   const drawGrid = (): void => {
     const view = map.getBounds();
     setData(map, "grid", graticule([view.getWest(), view.getSouth(), view.getEast(), view.getNorth()]));

@@ -12,6 +12,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined, Template, sel
 
 from app.services.records import FlightRecord, PlanRecord
 from app.services.reports.report_map import draw_map
+from app.services.reports.report_photos import camera_figures, region_qualities
 
 TEMPLATES = Path(__file__).resolve().parents[2] / "templates"
 
@@ -20,6 +21,13 @@ def _number(value: float | None, decimals: int = 1) -> str:
     if value is None or not math.isfinite(value):
         return "–"
     return f"{value:,.{decimals}f}".replace(",", "\u202f")
+
+
+def _ground(value_m: float | None) -> str:
+    """A length on the ground, in centimetres where it is short."""
+    if value_m is None:
+        return "–"
+    return f"{100.0 * value_m:.2f} cm" if value_m < 1.0 else f"{value_m:.2f} m"
 
 
 def _clock(seconds: float | None) -> str:
@@ -39,7 +47,7 @@ def _template(name: str) -> Template:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters |= {"number": _number, "clock": _clock}
+    environment.filters |= {"number": _number, "clock": _clock, "ground": _ground}
     return environment.get_template(name)
 
 
@@ -61,6 +69,9 @@ def write_report(record: PlanRecord, plan_text: str, scenario_text: str) -> str:
         paths=by_role.get("path", []),
         footprints={(f["vehicle"], f["seq"]): f for f in by_role.get("footprint", [])},
         uncovered=by_role.get("uncovered", []),
+        cameras=camera_figures(plan, by_role),
+        qualities=region_qualities(by_role),
+        photos={(p["vehicle"], p["seq"]): p for p in by_role.get("photos", [])},
     )
 
 

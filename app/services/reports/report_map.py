@@ -49,7 +49,7 @@ def draw_map(scenario: dict[str, Any], plan: dict[str, Any]) -> Picture | None:
     shapes = [shape for feature in features for shape in _shapes(feature, put)]
     order = (
         "area", "footprint", "unknown", "roi", "threat", "no_fly", "obstacle", "path", "not_counted",
-        "collect", "start", "end",
+        "collect", "photos", "start", "end",
     )  # fmt: skip
     shapes = [shape for shape in shapes if shape.kind in order]
     shapes.sort(key=lambda shape: order.index(shape.kind))
@@ -76,6 +76,8 @@ def _shapes(feature: dict[str, Any], put: Any) -> Iterator[Shape]:
             ((x, y),) = put([coordinates])
             yield Shape(kind, x=x, y=y, radius=float(properties.get("radius_m", 0.0)), label=label)
         case "LineString":
+            yield Shape(kind, _line(coordinates, put), label=label)
+        case "MultiPoint":
             yield Shape(kind, _line(coordinates, put), label=label)
         case "MultiLineString":
             for line in coordinates:
