@@ -31,7 +31,7 @@ from planner.tasks.methods import chosen_methods
 from planner.tasks.setting import Setting, seeing
 from planner.tasks.task import NOT_SEEN, Answer, Controls, Task
 from planner.tasks.transits import Transits
-from planner.tasks.urban import swept
+from planner.tasks.urban import cut_by_obstacles, filled_by_obstacles, leaves_ground, swept
 from planner.vehicle.limits import Use
 
 Passes = tuple[CollectPass, ...]
@@ -116,7 +116,34 @@ def _found(asked: Seeing, setting: Setting, methods: dict[str, str], seed: int, 
         return _greedy(choices, asked, setting, seed, controls.progress, controls.stop)
     by_paper = methods["coverage"] == "li2018"
     sight = Sight.of(asked.regions, setting.suite, setting.airspace, setting.level)
-    return _joint(asked, setting, seed, None if by_paper else sight, controls)
+    if by_paper or not cut_by_obstacles(asked):
+        return _joint(asked, setting, seed, None if by_paper else sight, controls)
+    return _among_obstacles(asked, setting, seed, sight, controls)
+
+
+def _among_obstacles(
+    asked: Seeing, setting: Setting, seed: int, sight: Sight | None, controls: Controls
+) -> Found:
+    """Sweeps round what cuts the regions; where they leave ground unseen, lanes if those leave none.
+
+    Raises
+    ------
+    InfeasibleError
+        Where there are neither.
+    """
+    try:
+        found = swept(asked, setting, "auto", seed, controls.progress, controls.stop)
+    except InfeasibleError:
+        if filled_by_obstacles(asked):
+            raise
+        return _joint(asked, setting, seed, sight, controls)
+    if not leaves_ground(found[1]):
+        return found
+    try:
+        lanes = _joint(asked, setting, seed, sight, controls)
+    except InfeasibleError:
+        return found
+    return found if lanes[1] else lanes
 
 
 def _joint(asked: Seeing, setting: Setting, seed: int, sight: Sight | None, controls: Controls) -> Found:

@@ -3,17 +3,25 @@
 from __future__ import annotations
 
 from shapely.geometry import Point
+from shapely.geometry.base import BaseGeometry
 
-from planner.coverage.urban.regions import camera_of, unseen_m2, urban_passes
+from planner.airspace.zones import TRANSIT_MARGIN_M
+from planner.coverage.urban.regions import camera_of, open_ground, unseen_m2, urban_passes
 from planner.coverage.visible import Seeing
 from planner.errors import Finding, InfeasibleError
 from planner.progress import Progress, Stop, raise_if
 from planner.route import CollectPass
+from planner.sensors.camera import CameraSensor
 from planner.tasks.setting import Setting
 from planner.tasks.task import NOT_SEEN
+from planner.wishes import Region
 
 #: More of a region than this part left unseen is told.
 LEFT_PART = 1e-5
+#: Less ground than this is none.
+LEAST_M2 = 1.0
+#: The rule by which it is.
+BESIDE = "beside-obstacles"
 
 
 def swept(
@@ -59,10 +67,34 @@ def swept(
     return tuple(passes), tuple(findings)
 
 
+def cut_by_obstacles(asked: Seeing) -> bool:
+    """Whether all regions may be swept by cameras from any direction, and obstacles cut one of them."""
+    if any(each.approach_rad is not None or each.revisits > 1 for each in asked.regions):
+        return False
+    if not all(isinstance(asked.suite.of(each), CameraSensor) for each in asked.regions):
+        return False
+    return any(_open_ground(asked, each).area < each.area.area - LEAST_M2 for each in asked.regions)
+
+
+def filled_by_obstacles(asked: Seeing) -> bool:
+    """Whether obstacles leave no ground of a required region to fly over, turns left aside."""
+    return any(each.required and _open_ground(asked, each).area < LEAST_M2 for each in asked.regions)
+
+
+def _open_ground(asked: Seeing, region: Region) -> BaseGeometry:
+    margin_m = asked.airspace.clearance_m + TRANSIT_MARGIN_M
+    return open_ground(region, asked.airspace, asked.level.of(region), margin_m)
+
+
+def leaves_ground(findings: tuple[Finding, ...]) -> bool:
+    """Whether findings of sweeps tell of ground or regions not seen."""
+    return any(found.rule == BESIDE or found.rule.startswith(NOT_SEEN) for found in findings)
+
+
 def _left(name: str, left_m2: float) -> Finding:
     return Finding(
         name,
-        "beside-obstacles",
+        BESIDE,
         f"{left_m2:.0f} m² of it lie too near obstacles to be seen from free ground at this height",
         "Fly higher, cut what stands there out of it, or lower the clearance.",
         "warning",

@@ -27,7 +27,7 @@ MANNERS = ((0.0, 0.0), (0.0, 0.5), (1.0, 0.75), (2.0, 0.25))
 #: Where the lowest of level sweeps lies, in widths over the lowest ground, and as parts of what is to spare.
 LEVELS, SPARED = (0.25, 0.0, -0.25), (0.0, 0.5, 1.0)
 #: Layouts that a tour is found for: as many as have so many sweeps in all, at least one.
-MOST_LAYOUTS, SWEEPS_IN_ALL = 6, 800
+MOST_LAYOUTS, SWEEPS_IN_ALL = 2, 600
 #: Layouts that cost this close are one.
 SAME_M = 1e-6
 #: Sweeps are laid over what is left unseen so often, then it is looked at piece by piece; less is nothing.
@@ -71,20 +71,31 @@ class Auto:
         InfeasibleError
             Where obstacles leave no free ground, or sweeps cannot be joined.
         """
-        free = free_space(urban)
-        joiner = Joiner.among(urban, free)
-        joins = Joins.among(urban, free, joiner.ways)
-        flights: list[tuple[float, Flown]] = []
-        sweeps = 0
-        for layout in layouts(urban, free)[:MOST_LAYOUTS]:
-            sweeps += len(layout.lines)
-            if flights and sweeps > SWEEPS_IN_ALL:
-                break
-            lines = joins.tour(mended(layout, urban, free), self.seed)
-            flight = joiner.graph(tuple(Sweep((a, b), (c, d)) for (a, b), (c, d) in lines.tolist())).flown()
+        joiner = Joiner.among(urban, free_space(urban))
+        flights = []
+        for _, sweeps in self._tours(urban, joiner):
+            flight = joiner.graph(sweeps).flown()
             turns = corners(flight.line) if flight.turns is None else flight.turns
             flights.append((line_m(flight.line) + turn_m(urban) * turns, flight))
         return min(flights, key=lambda found: found[0])[1]
+
+    def sequence(self, urban: UrbanArea, joiner: Joiner) -> tuple[Sweep, ...]:
+        """Sweeps through an area's free ground in the order and direction flown, joined by nobody yet."""
+        return min(self._tours(urban, joiner), key=lambda found: found[0])[1]
+
+    def _tours(self, urban: UrbanArea, joiner: Joiner) -> list[tuple[float, tuple[Sweep, ...]]]:
+        """Costs of some tours, about, and their sweeps."""
+        joins = Joins.among(urban, joiner.free, joiner.ways)
+        found: list[tuple[float, tuple[Sweep, ...]]] = []
+        count = 0
+        for layout in layouts(urban, joiner.free)[:MOST_LAYOUTS]:
+            count += len(layout.lines)
+            if found and count > SWEEPS_IN_ALL:
+                break
+            length_m, lines = joins.tour(mended(layout, urban, joiner.free), self.seed)
+            sweeps = tuple(Sweep((a, b), (c, d)) for (a, b), (c, d) in lines.tolist())
+            found.append((length_m + CORNERS * turn_m(urban) * len(sweeps), sweeps))
+        return found
 
 
 def layouts(urban: UrbanArea, free: FreeSpace) -> list[Layout]:

@@ -11,15 +11,17 @@ from numpy.typing import NDArray
 from planner.coverage.urban.area import UrbanArea
 from planner.coverage.urban.free import FreeSpace
 from planner.coverage.urban.reach_kernels import corner_lengths, join_lengths
-from planner.coverage.urban.tour_kernels import nearest_first, neighbours, shortest_tour
+from planner.coverage.urban.tour_kernels import nearest_first, neighbours, shortest_tour, tour_cost
 from planner.coverage.urban.visibility import Ways, edges_of
 
 Floats = NDArray[np.float64]
 
 #: Places to which joins are exact, and neighbours that an end may be joined to.
 NEAR, NEIGHBOURS = 40, 12
+#: How far what nothing leads to is, in extents of all.
+FAR = 10.0
 #: Shakes of a tour for each of its sweeps.
-SHAKES = 10
+SHAKES = 5
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,8 +57,11 @@ class Joins:
         between = corner_lengths(ways.starts, ways.towards, ways.lengths)
         return cls(urban, ways, between, np.vstack(edges), np.concatenate(rises))
 
-    def tour(self, lines: Floats, seed: int) -> Floats:
-        """Lines (N, 2, 2) in the order and direction of the shortest flight along them from start to end."""
+    def tour(self, lines: Floats, seed: int) -> tuple[float, Floats]:
+        """The shortest flight along lines, (N, 2, 2), from start to end: its length, and them as flown.
+
+        Lines that nothing leads to come as if they were far.
+        """
         ends = np.array([self.urban.end, self.urban.start], dtype=np.float64)
         places = np.concatenate([lines.reshape(-1, 2), ends])
         ways = self.ways
@@ -65,6 +70,8 @@ class Joins:
         costs = join_lengths(
             ways.edges, ways.corners, self.between, self.outlines, self.rises, steepest, places, NEAR
         )
+        far_m = FAR * float(np.ptp(places, axis=0).sum()) + 1.0
+        costs = np.where(np.isfinite(costs), costs, far_m)
         last = len(places) - 2
         first = nearest_first(costs, last)
         tour = shortest_tour(costs, neighbours(costs, NEIGHBOURS), first, SHAKES * len(lines), seed)
@@ -74,4 +81,5 @@ class Joins:
             tour, at = tour[::-1], len(tour) - 1 - at
         order = np.roll(tour, -at - 1)[:-2]
         flown: Floats = places[order].reshape(-1, 2, 2)
-        return flown
+        length_m = float(np.hypot(*(lines[:, 1] - lines[:, 0]).T).sum()) + tour_cost(costs, tour)
+        return length_m, flown

@@ -26,9 +26,10 @@ METHODS: Mapping[str, Callable[[UrbanArea], Flown]] = MappingProxyType(
 #: Sweeps in the order and direction flown: of an area with its free ground, and a seed.
 Sequence = Callable[[UrbanArea, Joiner, int], tuple[Sweep, ...]]
 
-#: What ``method.coverage`` may ask for.
+#: What ``method.coverage`` may ask for; ``auto`` takes its own where obstacles cut a region.
 SEQUENCES: Mapping[str, Sequence] = MappingProxyType(
     {
+        "auto": lambda urban, joiner, seed: Auto(seed).sequence(urban, joiner),
         "majeed2019": lambda urban, joiner, seed: Majeed2019(seed=seed).sequence(urban, joiner.free),
         "boustrophedon-cells": lambda urban, joiner, _: BoustrophedonCells().sequence(urban, joiner.free),
         "coverage-alternatives": lambda urban, joiner, _: CoverageAlternatives().sequence(

@@ -82,6 +82,17 @@ def urban_passes(
     return tuple(found)
 
 
+def open_ground(region: Region, airspace: Airspace, level: Level, margin_m: float) -> BaseGeometry:
+    """What of a region keeps a margin from all that may not be entered at a level, holes among it or not."""
+    blocked = [
+        banded.shape.polygon().buffer(margin_m)
+        for banded in banded_shapes(airspace, level.amsl_m - level.height_m)
+        if banded.hard and banded.counts(*level.counted_m)
+    ]
+    ground: BaseGeometry = shapely.difference(region.area, shapely.union_all(blocked), grid_size=1e-6)
+    return ground
+
+
 def unseen_m2(region: Region, passes: tuple[CollectPass, ...]) -> float:
     """How much of a region's ground no pass sees."""
     seen = shapely.union_all([each.footprint for each in passes], grid_size=1e-6)

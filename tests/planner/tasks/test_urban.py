@@ -81,6 +81,27 @@ def test_beside_walls_all_is_seen_and_overlaps_are_judged() -> None:
     assert [violation.constraint for violation in plan.violations] == ["overlap"]
 
 
+def test_auto_flies_round_what_cuts_a_region() -> None:
+    """Without a method's name, and shorter than by any."""
+    plans = {name: make_plan(read_scenario(city(name))) for name in ("auto", *METHODS)}
+    ours = plans["auto"]
+    assert ours.violations == ()
+    assert ours.metrics.coverage == {"district": 1.0}
+    assert ours.metrics.length_m < 0.96 * min(plans[name].metrics.length_m for name in METHODS)
+
+
+def test_a_region_filled_by_an_obstacle_is_refused() -> None:
+    """An obstacle higher than the flight, over all of it: with the height that would pass over it."""
+    document = city("auto")
+    document["features"].append(
+        feature("tower", "obstacle", "Polygon", block(-5, -5, 510, 370), height_m=90.0)
+    )
+    with pytest.raises(InfeasibleError, match="fly higher") as caught:
+        make_plan(read_scenario(document))
+    assert caught.value.constraint == "hard-zone"
+    assert caught.value.feature == "district"
+
+
 def test_the_same_seed_gives_the_same_plan() -> None:
     """Ants are seeded by the scenario."""
     plans = []

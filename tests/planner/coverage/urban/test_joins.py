@@ -44,4 +44,7 @@ def test_lines_are_flown_from_the_start_to_the_end() -> None:
     free = free_space(town)
     joins = Joins.among(town, free, Ways.through(free.ground))
     lanes = np.array([[[300.0, 200.0], [20.0, 200.0]], [[20.0, 100.0], [300.0, 100.0]]])
-    assert joins.tour(lanes, 0).tolist() == [[[20.0, 100.0], [300.0, 100.0]], [[300.0, 200.0], [20.0, 200.0]]]
+    length_m, flown = joins.tour(lanes, 0)
+    assert flown.tolist() == [[[20.0, 100.0], [300.0, 100.0]], [[300.0, 200.0], [20.0, 200.0]]]
+    straight_m = np.hypot(15.0, 95.0) + 280.0 + 100.0 + 280.0 + np.hypot(15.0, 90.0)
+    assert length_m == pytest.approx(straight_m)
