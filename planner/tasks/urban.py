@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from shapely.geometry import Point
 from shapely.geometry.base import BaseGeometry
 
@@ -68,12 +70,13 @@ def swept(
 
 
 def cut_by_obstacles(asked: Seeing) -> bool:
-    """Whether all regions may be swept by cameras from any direction, and obstacles cut one of them."""
+    """Whether all regions may be swept by cameras from any direction, and obstacles cut or stand in one."""
     if any(each.approach_rad is not None or each.revisits > 1 for each in asked.regions):
         return False
     if not all(isinstance(asked.suite.of(each), CameraSensor) for each in asked.regions):
         return False
-    return any(_open_ground(asked, each).area < each.area.area - LEAST_M2 for each in asked.regions)
+    hulls = [replace(each, area=each.area.convex_hull) for each in asked.regions]
+    return any(_open_ground(asked, each).area < each.area.area - LEAST_M2 for each in hulls)
 
 
 def filled_by_obstacles(asked: Seeing) -> bool:
