@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from shapely.geometry import Point
 from shapely.geometry.base import BaseGeometry
 
@@ -75,18 +73,20 @@ def cut_by_obstacles(asked: Seeing) -> bool:
         return False
     if not all(isinstance(asked.suite.of(each), CameraSensor) for each in asked.regions):
         return False
-    hulls = [replace(each, area=each.area.convex_hull) for each in asked.regions]
-    return any(_open_ground(asked, each).area < each.area.area - LEAST_M2 for each in hulls)
+    hulls = [(each, each.area.convex_hull) for each in asked.regions]
+    return any(_open_ground(asked, each, hull).area < hull.area - LEAST_M2 for each, hull in hulls)
 
 
 def filled_by_obstacles(asked: Seeing) -> bool:
     """Whether obstacles leave no ground of a required region to fly over, turns left aside."""
-    return any(each.required and _open_ground(asked, each).area < LEAST_M2 for each in asked.regions)
+    return any(
+        each.required and _open_ground(asked, each, each.area).area < LEAST_M2 for each in asked.regions
+    )
 
 
-def _open_ground(asked: Seeing, region: Region) -> BaseGeometry:
+def _open_ground(asked: Seeing, region: Region, area: BaseGeometry) -> BaseGeometry:
     margin_m = asked.airspace.clearance_m + TRANSIT_MARGIN_M
-    return open_ground(region, asked.airspace, asked.level.of(region), margin_m)
+    return open_ground(area, asked.airspace, asked.level.of(region), margin_m)
 
 
 def leaves_ground(findings: tuple[Finding, ...]) -> bool:

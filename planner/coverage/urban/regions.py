@@ -82,14 +82,14 @@ def urban_passes(
     return tuple(found)
 
 
-def open_ground(region: Region, airspace: Airspace, level: Level, margin_m: float) -> BaseGeometry:
-    """What of a region keeps a margin from all that may not be entered at a level, holes among it or not."""
+def open_ground(area: BaseGeometry, airspace: Airspace, level: Level, margin_m: float) -> BaseGeometry:
+    """What of an area keeps a margin from all that may not be entered at a level."""
     blocked = [
         banded.shape.polygon().buffer(margin_m)
         for banded in banded_shapes(airspace, level.amsl_m - level.height_m)
         if banded.hard and banded.counts(*level.counted_m)
     ]
-    ground: BaseGeometry = shapely.difference(region.area, shapely.union_all(blocked), grid_size=1e-6)
+    ground: BaseGeometry = shapely.difference(area, shapely.union_all(blocked), grid_size=1e-6)
     return ground
 
 
