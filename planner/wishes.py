@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal
 
 from shapely.geometry import LineString, MultiPolygon, Polygon
+
+#: How a camera sees a region.
+Pattern = Literal["auto", "lanes", "crosshatch", "orbit", "spiral", "look"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -16,7 +20,7 @@ class Region:
     seen, on separate occasions; ``axis`` the line a corridor follows; ``altitude_m`` is that of its passes
     over the scenario's datum, None for the route's. ``over_ground_m`` is the height of passes that follow the
     ground, None for level ones. ``min_resolution_m``, ``gsd_m`` and ``min_niirs`` ask for quality: the worst
-    inside it.
+    inside it; ``pattern`` is how a camera is to see it.
     """
 
     name: str
@@ -32,6 +36,7 @@ class Region:
     over_ground_m: float | None = None
     gsd_m: float | None = None
     min_niirs: float | None = None
+    pattern: Pattern = "auto"
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,13 +17,16 @@ from shapely.geometry import LineString, MultiPolygon, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from planner.airspace.growth import grown
-from planner.wishes import Region
+from planner.wishes import Pattern, Region
 
 #: 15 pixels of 5.4 m, section 5.1.
 PAPER_RADIUS_M = 81.0
 
 #: A smaller disk bridges nothing that matters and is lost in the rounding of coordinates.
 _LEAST_RADIUS_M = 0.001
+
+#: Patterns that are one region's own.
+ALONE: tuple[Pattern, ...] = ("crosshatch", "orbit", "spiral", "look")
 
 #: Overlays snap to this grid: GEOS 3.14 takes polygons that agree but for 1e-13 m as lying apart.
 GRID_M = 1e-9
@@ -61,6 +64,8 @@ class MergedRegion:
         pieces of what was asked for.
     altitude_m, over_ground_m
         Of its passes, see ``Region``.
+    pattern
+        See ``Region``.
     """
 
     names: tuple[str, ...]
@@ -75,6 +80,7 @@ class MergedRegion:
     axes: tuple[LineString | None, ...] = ()
     altitude_m: float | None = None
     over_ground_m: float | None = None
+    pattern: Pattern = "auto"
 
     @property
     def axis(self) -> LineString | None:
@@ -137,6 +143,7 @@ def split_region(region: Region) -> tuple[MergedRegion, ...]:
             (region.axis,),
             region.altitude_m,
             region.over_ground_m,
+            region.pattern,
         )
         for part in polygons_of(region.area)
     )
@@ -149,8 +156,9 @@ def merge_regions(
 
     Dilation and erosion by a disk are shapely's buffers by +r and −r. Parts further apart than the filter
     bridges stay apart, also parts of one MultiPolygon: each becomes a region of its own under the same name.
-    Regions merge only where they ask for the same sensor, approach directions, altitude and number of visits,
-    and are both required or both not: otherwise one would lose what it asked for.
+    Regions merge only where they ask for the same sensor, approach directions, altitude, pattern and number
+    of visits, and are both required or both not: otherwise one would lose what it asked for. Those of a
+    pattern of their own stay alone.
 
     Parameters
     ----------
@@ -173,7 +181,7 @@ def merge_regions(
             limits = frozenset(round(math.degrees(angle) % 360.0, 6) % 360.0 for angle in region.approach_rad)
         key = (
             region.sensor or default_sensor, limits, region.required, region.revisits, region.altitude_m,
-            region.over_ground_m,
+            region.over_ground_m, region.pattern, region.name if region.pattern in ALONE else None,
         )  # fmt: skip
         groups[key].extend((index, part) for part in split_region(region))
     merged = [found for group in groups.values() for found in _merge_group(group, radius_m)]

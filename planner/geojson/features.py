@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, get_args
 
 import shapely
 from shapely.geometry import LineString, MultiPolygon, Point, Polygon
@@ -17,7 +17,7 @@ from planner.geojson.fields import Fields, Findings, is_finite
 from planner.geojson.forbidding import forbidding_areas
 from planner.geojson.outlines import EXACT_M, MANY, few_cornered
 from planner.route import Terminal
-from planner.wishes import Region
+from planner.wishes import Pattern, Region
 
 #: A point target without a radius still has to be inside a footprint, as a disc this large.
 POINT_TARGET_RADIUS_M = 1.0
@@ -142,6 +142,7 @@ def read_region(raw: RawFeature, frame: LocalFrame, findings: Findings) -> Regio
     min_niirs = fields.number("min_niirs", None, minimum=0.0, maximum=HIGHEST_NIIRS)
     altitude_m = fields.number("altitude_m", None, minimum=LOWEST_M, maximum=HIGHEST_M)
     headings = _headings(fields)
+    pattern: Any = fields.choice("pattern", get_args(Pattern), "auto")
     fields.refuse_unknown()
     if area is None or priority is None:
         return None
@@ -151,7 +152,7 @@ def read_region(raw: RawFeature, frame: LocalFrame, findings: Findings) -> Regio
         approach = tuple(frame.angle_rad(centre.x, centre.y, heading) for heading in headings)
     return Region(
         raw.name, area, priority, required, sensor, min_resolution_m, approach, revisits, axis, altitude_m,
-        gsd_m=gsd_m, min_niirs=min_niirs,
+        gsd_m=gsd_m, min_niirs=min_niirs, pattern=pattern or "auto",
     )  # fmt: skip
 
 

@@ -26,6 +26,7 @@ def check_together(scenario: Scenario, findings: Findings) -> None:
     _names(scenario, findings)
     _swaths(scenario, findings)
     _by_paper(scenario, findings)
+    _patterns(scenario, findings)
     _area(scenario, findings)
     _terminals(scenario, findings)
 
@@ -117,6 +118,7 @@ def _by_sweeps(scenario: Scenario, findings: Findings) -> None:
         wishes = {
             "approach_deg": region.approach_rad is not None,
             "revisits": region.revisits > 1,
+            "pattern": region.pattern != "auto",
         }
         for wish in (wish for wish, asked in wishes.items() if asked):
             findings.error(
@@ -133,6 +135,21 @@ def _by_sweeps(scenario: Scenario, findings: Findings) -> None:
                 "not-supported",
                 f"is seen by a {kind}; coverage {name} sweeps the ground below with a camera",
                 "See it with a camera, or leave method.coverage at auto.",
+            )
+
+
+def _patterns(scenario: Scenario, findings: Findings) -> None:
+    """Patterns are those of photos."""
+    if "unknown-sensor" in {found.rule for found in findings.all()}:
+        return
+    for region in scenario.regions:
+        kind = scenario.sensor_for(region).kind
+        if region.pattern not in ("auto", "lanes") and kind != "camera":
+            findings.error(
+                region.name,
+                "pattern-of-cameras",
+                f"has the pattern {region.pattern}, which is one of photos, and is seen by a {kind}",
+                "Name a camera as its sensor, or leave pattern out.",
             )
 
 

@@ -13,9 +13,10 @@ from shapely.geometry import Polygon
 from planner.airspace.surroundings import Surroundings
 from planner.coverage.merge import MergedRegion
 from planner.coverage.sharing import Apart
-from planner.coverage.survey.check import check_camera
+from planner.coverage.survey.check import check_camera, check_pattern
+from planner.coverage.survey.figure_target import FIGURES, FigureTarget, figure_target
 from planner.coverage.survey.lanes import Survey
-from planner.coverage.survey.pieces import Pieces, divided, visits
+from planner.coverage.survey.pieces import Pieces, crossed, divided, visits
 from planner.coverage.survey.targets import LaneTarget, refusal
 from planner.coverage.ways import Division
 from planner.progress import Stop, never
@@ -33,6 +34,7 @@ class Surveys:
     def check(self, region: Region, sensor: CameraSensor, height_m: float) -> None:
         """Refuse a height from which overlaps cannot be kept."""
         check_camera(region.name, sensor, height_m)
+        check_pattern(region, sensor)
 
     def check_seen(
         self,
@@ -45,7 +47,7 @@ class Surveys:
         wide: bool,
     ) -> None:
         """Refuse the same; whether lanes have room is seen when they are laid."""
-        check_camera(region.name, sensor, height_m)
+        self.check(region, sensor, height_m)
 
     def fewest_passes(self, region: Region, sensor: CameraSensor, height_m: float) -> tuple[int, float]:
         """How many lanes a region takes at least, and the widest distance between them."""
@@ -67,9 +69,15 @@ class Surveys:
         wide: bool,
         division: Division,
         enough: Stop,
-    ) -> tuple[LaneTarget, ...]:
-        """The stops that see a region: its pieces, each as often as it is to be visited."""
+    ) -> tuple[LaneTarget | FigureTarget, ...]:
+        """The stops that see a region: its pieces, or figures, each as often as it is to be visited."""
+        if region.pattern in FIGURES:
+            parts = (figure_target(part, sensor, height_m, around) for part in region.split())
+            return tuple(target for target in parts for _ in range(region.revisits))
         trial = Pieces(sensor, height_m, around)
+        if region.pattern == "crosshatch":
+            sets = crossed(region, trial)
+            return tuple(trial.target(each) for each in sets for _ in range(region.revisits))
         pieces = divided(region, trial, whole=division == "whole" or not wide, enough=enough)
         if not math.isfinite(trial.cost_m(pieces)):
             raise refusal(region, around)
@@ -78,7 +86,10 @@ class Surveys:
     def can_be_flown(
         self, region: MergedRegion, sensor: CameraSensor, height_m: float, around: Surroundings, *, wide: bool
     ) -> bool:
-        """Whether lanes over some division of it may be flown."""
+        """Whether lanes over some division of it, or a figure, may be flown."""
+        if region.pattern in FIGURES:
+            parts = (figure_target(part, sensor, height_m, around) for part in region.split())
+            return all(part.can_be_flown() for part in parts)
         trial = Pieces(sensor, height_m, around)
         pieces = divided(region, trial, whole=True, enough=never)
         return math.isfinite(trial.cost_m(pieces))

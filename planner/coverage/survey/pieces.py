@@ -17,7 +17,7 @@ from planner.coverage import decompose
 from planner.coverage.estimate import Ends, least_tour_m
 from planner.coverage.merge import GRID_M, MergedRegion, polygons_of
 from planner.coverage.survey.lanes import Survey
-from planner.coverage.survey.options import LaneOptions
+from planner.coverage.survey.options import LaneOptions, allowed
 from planner.coverage.survey.targets import LaneTarget
 from planner.errors import InfeasibleError
 from planner.progress import Stop
@@ -31,8 +31,6 @@ STEP_RAD, ETAS, TELLING = math.radians(30.0), np.array([0.5]), 6
 OPTIONS_COMPARED = 24
 #: A division has to save this much of the estimated cost, and beyond this many pieces there is no further.
 LEAST_SAVING, MOST_PIECES = 0.01, 6
-#: Corridors with more legs than this are cut at all their bends untried.
-MOST_LEGS_TRIED = 12
 
 
 @dataclass(slots=True)
@@ -92,26 +90,26 @@ def wanted(piece: MergedRegion) -> BaseGeometry:
 def divided(region: MergedRegion, trial: Pieces, *, whole: bool, enough: Stop) -> tuple[MergedRegion, ...]:
     """The region whole, in the parts that were merged, or cut further: as costs least.
 
-    A corridor is cut at its bends, other shapes at reflex corners and beside holes, one cut after the other
-    as long as that saves and until it is enough.
+    A corridor is cut at its bends, for lanes along it, where these can be flown; other shapes at reflex
+    corners and beside holes, one cut after the other as long as that saves and until it is enough.
 
     Parameters
     ----------
     whole
         Not cut, where it can be seen so.
     """
+    apart = tuple(_apart(region))
+    along = tuple(itertools.chain.from_iterable(_legs(part) for part in apart))
+    if any(leg is not part for leg, part in zip(along, apart, strict=False)):
+        cost_m = trial.cost_m(along)
+        if math.isfinite(cost_m):
+            return along
     best: tuple[MergedRegion, ...] = (region,)
     cost_m = trial.cost_m(best)
     if whole and math.isfinite(cost_m):
         return best
-    apart = tuple(_apart(region))
-    along = tuple(itertools.chain.from_iterable(_legs(part) for part in apart))
-    for start in dict.fromkeys((apart, along)):
-        start_m = trial.cost_m(start)
-        if start_m < cost_m:
-            best, cost_m = start, start_m
-    if best is along and along is not apart:
-        return best
+    if (apart_m := trial.cost_m(apart)) < cost_m:
+        best, cost_m = apart, apart_m
     while len(best) < MOST_PIECES and not (math.isfinite(cost_m) and enough()):
         trials = [
             (*best[:k], *(trial.cut(part.piece(piece)) for piece in cut), *best[k + 1 :])
@@ -125,6 +123,49 @@ def divided(region: MergedRegion, trial: Pieces, *, whole: bool, enough: Stop) -
         cost_m = min(costs)
         best = trials[costs.index(cost_m)]
     return best
+
+
+def crossed(region: MergedRegion, trial: Pieces) -> tuple[MergedRegion, ...]:
+    """Each part twice: its lanes at a heading, and at one across it; at the pair that costs least.
+
+    Raises
+    ------
+    InfeasibleError
+        ``"approach"``: of the headings allowed none is across another; what lanes are refused for.
+    """
+    return tuple(itertools.chain.from_iterable(_crossed(part, trial) for part in _apart(region)))
+
+
+def _crossed(part: MergedRegion, trial: Pieces) -> Iterator[MergedRegion]:
+    found = trial.target(part).coarse(STEP_RAD, ETAS)
+    angles_rad = np.unique(found.angles_rad)
+    pairs = [(angle, angle + math.pi / 2.0) for angle in angles_rad.tolist()]
+    if part.approach_rad is not None:
+        pairs = [pair for pair in pairs if allowed(_half_circle(part.approach_rad), np.array(pair)).all()]
+    costs_m = [sum(_at_m(part, angle, trial) for angle in pair) for pair in pairs]
+    if not costs_m or not math.isfinite(min(costs_m)):
+        raise InfeasibleError(
+            "approach",
+            part.label,
+            "of the headings that may be flown none lies across another, as a cross-hatch asks for",
+            "allow one at a right angle to another, or take the pattern lanes",
+            part.centroid,
+        )
+    for angle in pairs[costs_m.index(min(costs_m))]:
+        both = np.array([angle, angle + math.pi])
+        kept = tuple(both[allowed(part.approach_rad, both)].tolist())
+        yield replace(part, approach_rad=kept)
+
+
+def _half_circle(angles_rad: Sequence[float]) -> tuple[float, ...]:
+    """Headings and their opposites."""
+    return (*angles_rad, *(angle + math.pi for angle in angles_rad))
+
+
+def _at_m(part: MergedRegion, angle_rad: float, trial: Pieces) -> float:
+    """What lanes at a heading cost at least; inf where there are none."""
+    options = trial.target(part).options(np.array([angle_rad]), ETAS)
+    return math.inf if options is None else float(options.inner_m.min())
 
 
 def visits(piece: MergedRegion, trial: Pieces) -> Iterator[MergedRegion]:
@@ -147,10 +188,25 @@ def _apart(region: MergedRegion) -> Sequence[MergedRegion]:
 
 
 def _legs(region: MergedRegion) -> Sequence[MergedRegion]:
-    """A corridor cut at each bend of its axis; itself where it is none."""
-    axis: LineString | None = region.axis
-    legs = None if axis is None else decompose.legs(region.originals[0], axis)
-    return (region,) if legs is None else [region.piece(leg) for leg in legs]
+    """A corridor cut at each bend of its axis, to be flown along it; itself where it is none."""
+    axis = region.axis
+    if axis is None or region.approach_rad is not None:
+        return (region,)
+    legs = decompose.legs(region.originals[0], axis)
+    if legs is None:
+        return (_along(region, axis),)
+    return [_along(region.piece(leg), axis) for leg in legs]
+
+
+def _along(leg: MergedRegion, axis: LineString) -> MergedRegion:
+    """A leg to be flown along the axis within it, to and fro."""
+    inside = [part for part in shapely.get_parts(leg.area.intersection(axis)) if part.length > 0.0]
+    own = max(inside, key=lambda part: float(part.length), default=axis)
+    # Legs reach a little over their cuts, round the bend.
+    reach_m = min(2.0 * decompose.OVERLAP_M, own.length / 4.0)
+    begin, end = own.interpolate(reach_m), own.interpolate(own.length - reach_m)
+    angle_rad = math.atan2(end.y - begin.y, end.x - begin.x)
+    return replace(leg, approach_rad=(angle_rad, angle_rad + math.pi))
 
 
 def _outline(piece: MergedRegion) -> Polygon:

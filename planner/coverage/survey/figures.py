@@ -1,0 +1,183 @@
+"""Figures flown round a place: rings of chords, a spiral of them, looks from all round; lines in order.
+
+Chords of a ring touch a circle; those of one ring and the next are parallel in each of n sectors, a lane
+spacing apart, so that photos overlap there as between lanes. Where an aircraft need not settle they leave
+room at the corners for an arc of its turn radius, r·tan(π / n), which n keeps within a photo's interval.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+from shapely.geometry import Polygon
+
+from planner.coverage.survey.frame import frames, runs
+from planner.sensors.camera import CameraSensor
+
+Floats = NDArray[np.float64]
+
+#: Sectors of rings and spirals, and looks from all round.
+FEWEST_SECTORS, MOST_SECTORS, LOOKS = 6, 36, 8
+#: The innermost ring sees the middle with this part of a photo's half width to spare.
+INNERMOST = 0.9
+
+
+class Figure(Protocol):
+    """Lines in flight order, turned by an angle."""
+
+    @property
+    def period_rad(self) -> float:
+        """Turned by this it is the same."""
+
+    def lines(self, angle_rad: float, left: bool) -> Floats:
+        """Its lines (N, 2, 2), flown to the left round the middle or to the right."""
+
+
+@dataclass(frozen=True, slots=True)
+class Chords:
+    """Chords round a middle, outermost first.
+
+    Parameters
+    ----------
+    apothems_m
+        Distances of the chords from the middle, in flight order.
+    sectors
+        Chords to a full turn.
+    corner_m, least_m
+        Left out at either end of a chord where at least so much of it is left.
+    """
+
+    middle: tuple[float, float]
+    apothems_m: Floats
+    sectors: int
+    corner_m: float
+    least_m: float
+
+    @property
+    def period_rad(self) -> float:
+        """A sector."""
+        return math.tau / self.sectors
+
+    def lines(self, angle_rad: float, left: bool) -> Floats:
+        """See ``Figure``."""
+        turn_rad = self.period_rad
+        before_m = np.concatenate([self.apothems_m[:1], self.apothems_m[:-1]])
+        after_m = np.concatenate([self.apothems_m[1:], self.apothems_m[-1:]])
+        # Where a chord meets the next: two lines a and b from the middle, a sector apart.
+        begin_m = -(before_m - self.apothems_m * math.cos(turn_rad)) / math.sin(turn_rad)
+        end_m = (after_m - self.apothems_m * math.cos(turn_rad)) / math.sin(turn_rad)
+        corner_m = np.where(end_m - begin_m >= 2.0 * self.corner_m + self.least_m, self.corner_m, 0.0)
+        begin_m, end_m = begin_m + corner_m, end_m - corner_m
+        toward_rad = angle_rad + turn_rad * np.arange(len(self.apothems_m))
+        out = np.stack([np.cos(toward_rad), np.sin(toward_rad)], axis=1)
+        ahead = np.stack([-out[:, 1], out[:, 0]], axis=1)
+        foot = np.array(self.middle) + self.apothems_m[:, None] * out
+        lines = np.stack([foot + begin_m[:, None] * ahead, foot + end_m[:, None] * ahead], axis=1)
+        return lines if left else lines[::-1, ::-1].copy()
+
+
+@dataclass(frozen=True, slots=True)
+class Looks:
+    """Photos of ground ahead from so many directions, evenly round.
+
+    Parameters
+    ----------
+    ground
+        To be in the frame, in all of it where it is no longer than that.
+    count
+        Directions.
+    """
+
+    ground: Polygon
+    camera: CameraSensor
+    height_m: float
+    count: int
+
+    @property
+    def period_rad(self) -> float:
+        """From one direction to the next."""
+        return math.tau / self.count
+
+    def lines(self, angle_rad: float, left: bool) -> Floats:
+        """See ``Figure``."""
+        step_rad = self.period_rad if left else -self.period_rad
+        return np.array([self._line(angle_rad + k * step_rad) for k in range(self.count)])
+
+    def holds(self, angle_rad: float) -> bool:
+        """Whether the ground is no wider than what a photo sees from a direction."""
+        across_m = np.ptp(shapely.get_coordinates(self.ground) @ (-math.sin(angle_rad), math.cos(angle_rad)))
+        return bool(across_m <= 2.0 * self.camera.half_width_m(self.height_m, angle_rad))
+
+    def _line(self, angle_rad: float) -> Floats:
+        ahead = np.array([math.cos(angle_rad), math.sin(angle_rad)])
+        left = np.array([-ahead[1], ahead[0]])
+        corners = shapely.get_coordinates(self.ground)
+        along_m, across_m = corners @ ahead, corners @ left
+        run = runs(self.camera, self.height_m, np.array([angle_rad]))
+        first_m = float(along_m.min() - run.other_in_m[0])
+        last_m = float(along_m.max() + run.other_out_m[0])
+        short_m = self.camera.photo_spacing_m(self.height_m, angle_rad)
+        if last_m - first_m < short_m:
+            # All of it is in every photo between the two; the middle of these is the best place.
+            middle_m = (first_m + last_m) / 2.0
+            first_m, last_m = middle_m - short_m / 2.0, middle_m + short_m / 2.0
+        y_m = float(across_m.min() + across_m.max()) / 2.0
+        return np.array([first_m * ahead + y_m * left, last_m * ahead + y_m * left])
+
+
+def rings(ground: Polygon, camera: CameraSensor, height_m: float, radius_m: float, settle_m: float) -> Chords:
+    """Rings that see a disc round the ground, the innermost its middle."""
+    found = _Round.of(ground, camera, height_m, radius_m, settle_m)
+    apothems_m: Floats = found.inner_m + found.spacing_m * np.arange(found.count * 1.0)[::-1]
+    return found.chords(np.repeat(apothems_m, found.sectors))
+
+
+def spiral(
+    ground: Polygon, camera: CameraSensor, height_m: float, radius_m: float, settle_m: float
+) -> Chords:
+    """A spiral that sees a disc round the ground: its first turn the edge, its last one the middle."""
+    found = _Round.of(ground, camera, height_m, radius_m, settle_m)
+    steps: Floats = np.arange(found.count * found.sectors + 1.0)[::-1]
+    return found.chords(found.inner_m + found.spacing_m / found.sectors * steps)
+
+
+@dataclass(frozen=True, slots=True)
+class _Round:
+    """Rings round a ground: their middle, the innermost's apothem, how many so far apart, their corners."""
+
+    middle: tuple[float, float]
+    inner_m: float
+    count: int
+    spacing_m: float
+    sectors: int
+    corner_m: float
+    photos_m: float
+
+    @classmethod
+    def of(
+        cls, ground: Polygon, camera: CameraSensor, height_m: float, radius_m: float, settle_m: float
+    ) -> _Round:
+        middle = shapely.minimum_bounding_circle(ground).centroid
+        reach_m = float(shapely.minimum_bounding_radius(ground))
+        laid = frames(camera, height_m, np.radians(np.arange(0.0, 180.0, 5.0)))
+        spacing_m, half_m, photos_m = (
+            float(each.min()) for each in (laid.spacing_m, laid.half_m, laid.photos_m)
+        )
+        sectors = math.ceil(math.pi / math.atan(photos_m / (2.0 * radius_m)))
+        sectors = min(max(sectors, FEWEST_SECTORS), MOST_SECTORS)
+        # Rings no smaller than the turns, as far as the middle is still seen from them.
+        inner_m = min(max(radius_m, half_m / 2.0), INNERMOST * half_m)
+        outer_m = reach_m - float(laid.inset_m.min())
+        count = max(math.ceil((outer_m - inner_m) / spacing_m - 1e-9), 0) + 1
+        # Behind a corner there is no room to settle.
+        corner_m = radius_m * math.tan(math.pi / sectors) if settle_m == 0.0 else 0.0
+        return cls((middle.x, middle.y), inner_m, count, spacing_m, sectors, corner_m, photos_m)
+
+    def chords(self, apothems_m: Floats) -> Chords:
+        """Chords so far from the middle."""
+        return Chords(self.middle, apothems_m, self.sectors, self.corner_m, self.photos_m)
