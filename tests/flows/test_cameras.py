@@ -6,6 +6,7 @@ Skipped unless ``SWATHPLAN_ARDUPLANE``, ``SWATHPLAN_ARDUCOPTER``, or ``SWATHPLAN
 
 from __future__ import annotations
 
+import asyncio
 import logging
 import math
 import os
@@ -19,6 +20,7 @@ import numpy as np
 import pytest
 
 from mavlink.encoding.encode import EncodeOptions, encode
+from mavlink.encoding.trigger import payload_of
 from mavlink.state.photos import PhotoTaken
 from mavlink.station.client import VehicleClient
 from planner.airspace.terrain import Terrain
@@ -234,3 +236,74 @@ async def test_px4_takes_the_photos_planned(tmp_path: Path, airframe: str) -> No
     ):
         flight = await px4.fly(client)
     judged("PX4, wing" if airframe == px4.AEROPLANE else "PX4, multirotor", plan, flight)
+
+
+async def returning(client: VehicleClient, plan: Plan) -> tuple[int, int, int]:
+    """A return ordered in a pass: photos before it, in 15 s behind it, and 15 s behind the order to stop."""
+    recorder = client.start_recording()
+
+    def taken() -> int:
+        return len(recorder.track().photos)
+
+    async def later(seconds: float) -> None:
+        begun_s = client.state.time_s or 0.0
+        await client.wait_for(lambda state: (state.time_s or 0.0) >= begun_s + seconds, 120.0)
+
+    async with asyncio.timeout(240.0):
+        while taken() < 10:
+            await asyncio.sleep(0.05)
+    assert (await client.return_to_launch()).accepted
+    await client.wait_for(lambda state: "RTL" in state.mode, 30.0)
+    before = taken()
+    await later(15.0)
+    behind = taken() - before
+    payload = payload_of(plan, "uav-1", None)
+    assert (await client.switch_off(payload)).accepted
+    await later(1.0)
+    stopped = taken()
+    await later(15.0)
+    client.stop_recording(recorder)
+    return before, behind, taken() - stopped
+
+
+@pytest.mark.ardupilot
+@pytest.mark.skipif(not arduplane.BINARY, reason="SWATHPLAN_ARDUPLANE names no simulator")
+async def test_arduplane_goes_on_with_photos_on_its_return_until_it_is_told(tmp_path: Path) -> None:
+    """Whoever brings it back in a pass has to switch the camera off; one order does."""
+    plan = survey(
+        type="fixed_wing", autopilot="ardupilot", airspeed_m_s=20.0, min_turn_radius_m=100.0, settle_m=150.0
+    )
+    heading_deg = plan.paths[0].take_off_heading_deg
+    assert heading_deg is not None
+    own = {**arduplane.PARAMETERS, **ARDUPILOT}
+    async with (
+        arduplane.aeroplane(tmp_path, plan.home, 8.0, own, heading_deg=heading_deg) as client,
+        ready(client, plan, arduplane.HOME_ALTITUDE_M),
+    ):
+        await arduplane.arm(client)
+        assert (await client.start_mission()).accepted
+        before, behind, stopped = await returning(client, plan)
+    log.info("ArduPlane: %d photos, %d behind the return, %d behind the order", before, behind, stopped)
+    assert behind > 5
+    assert stopped == 0
+
+
+@pytest.mark.px4
+@pytest.mark.skipif(
+    not (px4.BINARY and px4.ROMFS), reason="SWATHPLAN_PX4 and SWATHPLAN_PX4_ROMFS name no simulator"
+)
+async def test_px4_ends_its_photos_with_the_mission(tmp_path: Path) -> None:
+    """It stops its trigger where it leaves the mission; the order to stop is taken all the same."""
+    plan = survey(autopilot="px4", type="multirotor", airspeed_m_s=8.0)
+    async with (
+        px4.simulated(tmp_path, plan.home, 6.0, PX4, px4.MULTIROTOR) as client,
+        ready(client, plan, px4.HOME_ALTITUDE_M),
+    ):
+        for _ in range(120):
+            if (await client.start_mission()).accepted:
+                break
+            await asyncio.sleep(0.5)
+        before, behind, stopped = await returning(client, plan)
+    log.info("PX4: %d photos, %d behind the return, %d behind the order", before, behind, stopped)
+    assert behind <= 1
+    assert stopped == 0
