@@ -17,7 +17,7 @@ Parts, each with rows of its own:
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -32,16 +32,16 @@ from planner.sensors.quality import Giqe4
 PARTS = ("gsd", "niirs", "view", "photos")
 
 
-def run(part: str = "", seed: int = 1, surveys: int = 4) -> Iterator[dict[str, Any]]:
-    """All parts, or one."""
-    parts = {
+def run(parts: Sequence[str] = PARTS, seed: int = 1, surveys: int = 4) -> Iterator[dict[str, Any]]:
+    """Rows of the parts asked for."""
+    asked: dict[str, Callable[[], Iterator[dict[str, Any]]]] = {
         "gsd": _gsd,
         "niirs": _niirs,
         "view": lambda: _view(seed),
         "photos": lambda: _photos(seed, surveys),
     }
-    for name in PARTS if not part else (part,):
-        yield from parts[name]()
+    for part in (parts,) if isinstance(parts, str) else parts:
+        yield from asked[part]()
 
 
 def _gsd() -> Iterator[dict[str, Any]]:

@@ -17,6 +17,7 @@ from planner.geojson.fields import Findings
 from planner.scenario import Scenario
 from planner.sensors.camera import CameraSensor
 from planner.vehicle.aircraft import Aircraft
+from planner.vehicle.atmosphere import true_over_equivalent
 from planner.vehicle.model import FlightModel
 from planner.wishes import Region
 
@@ -40,12 +41,8 @@ class _Shooting:
     def short(self, aircraft: Aircraft, scenario: Scenario) -> tuple[float, float]:
         """The way that the camera needs between photos, by what its overlap leaves; on which course least."""
         model = FlightModel.of(aircraft, scenario.wind)
-        camera = replace(
-            self.camera,
-            drift=model.drift,
-            toward_rad=scenario.wind.toward_rad,
-            airspeed_m_s=aircraft.airspeed_m_s,
-        )
+        camera = _flown(self.camera, aircraft, scenario)
+        camera = camera.in_wind(model.drift, scenario.wind.toward_rad)
         return min((self._worse(camera, course_rad), course_rad) for course_rad in self._courses())
 
     def _courses(self) -> Sequence[float]:
@@ -93,10 +90,16 @@ def at_camera_speed(scenario: Scenario, findings: Findings) -> Scenario:
         )
         aircraft = slower
     sensors = tuple(
-        replace(sensor, airspeed_m_s=aircraft.airspeed_m_s) if isinstance(sensor, CameraSensor) else sensor
+        _flown(sensor, aircraft, scenario) if isinstance(sensor, CameraSensor) else sensor
         for sensor in scenario.sensors
     )
     return replace(scenario, aircraft=(aircraft, *scenario.aircraft[1:]), sensors=sensors)
+
+
+def _flown(camera: CameraSensor, aircraft: Aircraft, scenario: Scenario) -> CameraSensor:
+    """A camera on an aircraft, at the highest level flown: what hovers flies at a speed over the ground."""
+    thin = 1.0 if aircraft.hovers else true_over_equivalent(scenario.level.amsl_m)
+    return replace(camera, airspeed_m_s=aircraft.airspeed_m_s, thin=thin)
 
 
 def _shootings(scenario: Scenario) -> list[_Shooting]:
@@ -156,7 +159,7 @@ def _refuse(each: _Shooting, aircraft: Aircraft, scenario: Scenario, findings: F
             each.region.name, "interval-too-short", f"{told}no overlap is left", "Lower the margins."
         )
         return
-    higher_m = math.ceil(over * (each.height_m - camera.relief_m) + camera.relief_m)
+    higher_m = _higher_m(each, over, aircraft, scenario)
     fixes = []
     overlap = _overlap(each, aircraft, scenario)
     if overlap is not None:
@@ -174,6 +177,17 @@ def _refuse(each: _Shooting, aircraft: Aircraft, scenario: Scenario, findings: F
         f"{told}it would take one every {camera.min_interval_s / over:.2f} s",
         f"{fix[0].upper()}{fix[1:]}.",
     )
+
+
+def _higher_m(each: _Shooting, over: float, aircraft: Aircraft, scenario: Scenario) -> int:
+    """The height over the mean ground that leaves the time, in the thinner air there."""
+    relief_m, amsl_m = each.camera.relief_m, scenario.level.amsl_m
+    height_m = over * (each.height_m - relief_m) + relief_m
+    for _ in range(4):
+        up_m = amsl_m + height_m - each.height_m
+        thinner = 1.0 if aircraft.hovers else true_over_equivalent(up_m) / true_over_equivalent(amsl_m)
+        height_m = over * thinner * (each.height_m - relief_m) + relief_m
+    return math.ceil(height_m)
 
 
 def _overlap(each: _Shooting, aircraft: Aircraft, scenario: Scenario) -> float | None:

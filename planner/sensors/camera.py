@@ -52,6 +52,8 @@ class CameraSensor:
         Of the wind it is flown in: its speed by the airspeed, and where the air moves to.
     airspeed_m_s
         It is flown at; 0 where photos may follow each other as fast as they like.
+    thin
+        True airspeed by that one: more than 1 for wings in thin air.
     """
 
     name: str
@@ -72,6 +74,7 @@ class CameraSensor:
     drift: float = 0.0
     toward_rad: float = 0.0
     airspeed_m_s: float = 0.0
+    thin: float = 1.0
 
     @property
     def kind(self) -> str:
@@ -148,7 +151,7 @@ class CameraSensor:
             return 0.0
         off_rad = angle_rad - self.toward_rad
         across = self.drift * math.sin(off_rad)
-        over_ground = self.drift * math.cos(off_rad) + math.sqrt(max(1.0 - across * across, 0.0))
+        over_ground = self.drift * math.cos(off_rad) + math.sqrt(max(self.thin**2 - across**2, 0.0))
         return self.min_interval_s * self.airspeed_m_s * over_ground
 
     def run_in_m(self, height_m: float, angle_rad: float) -> float:

@@ -8,7 +8,10 @@ import subprocess
 import sys
 from pathlib import Path
 
+from app.cli.planning import with_terrain
 from planner.geojson import read_plan
+from planner.pipeline import make_plan
+from planner.validate import read_valid
 
 ROOT = Path(__file__).parents[2]
 EXAMPLES = ROOT / "examples"
@@ -45,3 +48,31 @@ def test_curl_journey_flies_and_sees(service: str, tmp_path: Path) -> None:
     seen = json.loads(done.stdout.rsplit("seen: ", 1)[1].replace("'", '"'))
     assert set(seen) == {"R1", "R2", "R3", "R4", "R5", "R6"}
     assert min(seen.values()) > 0.99
+
+
+def test_field_survey_follows_its_wish_over_terrain() -> None:
+    """Planned over its raster: all seen, no pixel coarser than asked, overlaps kept, every photo in time."""
+    document, terrain = with_terrain(
+        json.loads((EXAMPLES / "field-survey.geojson").read_text()), str(EXAMPLES / "field-survey.tif")
+    )
+    plan = make_plan(read_valid(document, {terrain.name: terrain}))
+    survey = plan.metrics.surveys["vineyard"]
+    assert plan.violations == ()
+    assert plan.metrics.coverage == {"vineyard": 1.0}
+    assert survey.gsd_m is not None
+    assert survey.gsd_m <= 0.025
+    assert min(survey.forward_overlap - 0.8, survey.side_overlap - 0.7) >= -0.002
+
+
+def test_inspection_has_the_quality_that_it_requires() -> None:
+    """Each region from its own height, between the lowest and the highest allowed."""
+    document = json.loads((EXAMPLES / "inspection.geojson").read_text())
+    plan = make_plan(read_valid(document))
+    assert plan.violations == ()
+    for name, least in (("panels", 8.8), ("substation", 9.0)):
+        niirs = plan.metrics.surveys[name].niirs
+        assert niirs is not None
+        assert least <= niirs <= least + 0.01
+    assert (
+        30.0 <= min(c.line[0][2] for c in plan.collects) < max(c.line[0][2] for c in plan.collects) <= 120.0
+    )
