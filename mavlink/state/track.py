@@ -27,6 +27,8 @@ _MOST_POINTS: Final = 200_000
 _WRAP_S: Final = 2**32 / 1e6
 # An attitude is that of a place when it is no older: it comes several times a second.
 _ATTITUDE_S: Final = 2.0
+# A relay or servo last said to be on so long ago counts as off: unasked it is told every two seconds.
+_OUTPUT_S: Final = 5.0
 # A camera's clock that says less or more than this beside the vehicle's is another clock.
 _SAME_CLOCK_S: Final = 5.0
 
@@ -147,6 +149,7 @@ class TrackRecorder:
         self._events: list[SensorEvent] = []
         self._sensor_on: bool | None = None
         self._output_on: bool | None = None
+        self._output_s: float | None = None
         self._relays_on: int | None = None
         self._unix_minus_boot_s: float | None = None
         self._keep_every = 1
@@ -213,6 +216,7 @@ class TrackRecorder:
         if output is None or on is None:
             return
         before, self._output_on = self._output_on, on
+        self._output_s = state.time_s
         if on == bool(before):
             return
         if message.name == "SERVO_OUTPUT_RAW":
@@ -247,7 +251,7 @@ class TrackRecorder:
                 state.roll_deg if level else None,
                 state.pitch_deg if level else None,
                 state.ground_speed_m_s,
-                self._output_on if state.sensor_on is None else state.sensor_on,
+                self._shown(time_s) if state.sensor_on is None else state.sensor_on,
                 state.mission_current,
                 self._mount.at(time_s) if self.in_gimbal else None,
             )
@@ -256,12 +260,23 @@ class TrackRecorder:
             del self._points[1::2]
             self._keep_every *= 2
 
+    def _shown(self, time_s: float) -> bool | None:
+        """What the output says now: that it is on only for a while, unless it goes on saying so.
+
+        Cameras tell of their captures when these begin and end.
+        """
+        if not self._output_on or not isinstance(self.output, (RelayOutput, ServoOutput)):
+            return self._output_on
+        self._output_s = time_s if self._output_s is None else self._output_s
+        return abs(time_s - self._output_s) <= _OUTPUT_S
+
     def _relays(self, message: Message, state: VehicleState) -> None:
         present, on = message.integer("present"), message.integer("on")
         before = on if self._relays_on is None else self._relays_on
         self._relays_on = on
         if isinstance(self.output, RelayOutput):
             self._output_on = self.output.reads(message)
+            self._output_s = state.time_s
         for number in range(16):
             bit = 1 << number
             if present & bit and (before ^ on) & bit:

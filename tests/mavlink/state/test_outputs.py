@@ -281,3 +281,25 @@ def test_videos_show_on_px4() -> None:
         message = received("CAMERA_CAPTURE_STATUS", image_status=interval, video_status=video)
         assert output.reads(message) is on
     assert output_of(payload, "ardupilot") is None
+
+
+@pytest.mark.parametrize(
+    ("output", "on", "off"),
+    [
+        (
+            RelayOutput(0),
+            received("RELAY_STATUS", on=1, present=1),
+            received("RELAY_STATUS", on=0, present=1),
+        ),
+        (ServoOutput(0, 9, 1900.0, 1100.0), pulses(1.0, servo9_raw=1900), pulses(1.0, servo9_raw=1100)),
+    ],
+)
+def test_an_output_that_is_silent_is_not_on_for_ever(output: SensorOutput, on: Message, off: Message) -> None:
+    """Places that come long after it was last told count for nothing; told again, it is on again."""
+
+    def shown(*messages: Message) -> list[bool | None]:
+        return [point.sensor_on for point in recorded(output, *messages).points]
+
+    assert shown(at(1000), on, at(2000), at(5500), at(6500), at(60_000)) == [None, True, True, False, False]
+    assert shown(on, at(1000), at(5500), at(6500), on, at(7000)) == [True, True, False, True]
+    assert shown(at(1000), off, at(2000), at(60_000)) == [None, False, False]
