@@ -6,10 +6,11 @@ Plain ASGI, since a streaming answer must pass through untouched.
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import re
 import time
 import uuid
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from fnmatch import fnmatchcase
 from typing import Final
 from urllib.parse import SplitResult, urlsplit
@@ -43,16 +44,27 @@ _METHODS: Final = frozenset({"GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "O
 #: A body over the cap is read to its end, and dropped, up to this many times the cap: a client that is
 #: still sending does not look for an answer.
 DRAIN_FACTOR = 20
+#: Bodies over the common cap that are held at once; more are told to come again, after so long.
+MOST_LARGE, RETRY_AFTER_S = 3, 5
 
 
 async def _answer(
-    scope: Scope, send: Send, status: int, kind: str, title: str, detail: str, entries: list[dict[str, str]]
+    scope: Scope,
+    send: Send,
+    status: int,
+    kind: str,
+    title: str,
+    detail: str,
+    entries: list[dict[str, str]],
+    retry_after_s: int | None = None,
 ) -> None:
     body = problem_body(scope["path"], status, kind, title, detail, list(entries))
     headers = [
         (b"content-type", MEDIA_TYPE.encode()),
         (b"content-length", str(len(body)).encode()),
     ]
+    if retry_after_s is not None:
+        headers.append((b"retry-after", str(retry_after_s).encode()))
     await send({"type": "http.response.start", "status": status, "headers": headers})
     await send({"type": "http.response.body", "body": body})
 
@@ -178,32 +190,44 @@ def _place(parts: SplitResult | None) -> tuple[str | None, int | None] | None:
 class BodyCap:
     """Reads each body up to a cap before the application sees it; more is a 422.
 
-    ``larger``: caps of their own of some paths, with ``*`` for a part of one.
+    ``larger``: caps of their own of some paths, with ``*`` for a part of one. Of the bodies that are over the
+    common cap there are few at once, since each is held whole; one more is a 429.
     """
 
     def __init__(self, app: ASGIApp, max_bytes: int, larger: Mapping[str, int] | None = None) -> None:
         self._app = app
         self._max_bytes = max_bytes
         self._larger = larger or {}
+        self._held = 0
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Serve one request."""
         if scope["type"] != "http" or scope["method"] in ("GET", "HEAD", "OPTIONS"):
             await _answered(self._app, scope, receive, send)
             return
+        with contextlib.ExitStack() as holding:
+            await self._serve(scope, receive, send, holding)
+
+    async def _serve(self, scope: Scope, receive: Receive, send: Send, holding: contextlib.ExitStack) -> None:
         path = scope["path"]
         larger = [most for pattern, most in self._larger.items() if fnmatchcase(path, pattern)]
         max_bytes = max(larger, default=self._max_bytes)
         chunks: list[bytes] = []
         size = 0
-        more = True
+        more, is_held, has_room = True, False, True
         while more and size <= max_bytes * DRAIN_FACTOR:
             message = await receive()
             if message["type"] == "http.disconnect":
                 return
             chunk = message.get("body", b"")
             size += len(chunk)
-            if size <= max_bytes:
+            if size > self._max_bytes and not is_held:
+                is_held, has_room = True, self._held < MOST_LARGE
+                if has_room:
+                    holding.enter_context(self._one_more())
+                else:
+                    chunks.clear()
+            if size <= max_bytes and has_room:
                 chunks.append(chunk)
             more = message.get("more_body", False)
         if size > max_bytes:
@@ -212,7 +236,14 @@ class BodyCap:
             entry = {"feature": "body", "rule": "body-too-large", "message": detail, "fix": fix}
             await _answer(scope, send, 422, "refused", "The input is refused", detail, [entry])
             return
+        if not has_room:
+            detail = f"{MOST_LARGE} large files are being taken in already; send them one after the other"
+            entry = {"feature": "body", "rule": "large-bodies", "message": detail, "fix": "send it again"}
+            title = "No room for more work now"
+            await _answer(scope, send, 429, "overloaded", title, detail, [entry], RETRY_AFTER_S)
+            return
         body: bytes | None = b"".join(chunks)
+        chunks.clear()
 
         async def replay() -> Message:
             nonlocal body
@@ -222,6 +253,14 @@ class BodyCap:
             return await receive()
 
         await _answered(self._app, scope, replay, send)
+
+    @contextlib.contextmanager
+    def _one_more(self) -> Iterator[None]:
+        self._held += 1
+        try:
+            yield
+        finally:
+            self._held -= 1
 
 
 async def _answered(app: ASGIApp, scope: Scope, receive: Receive, send: Send) -> None:

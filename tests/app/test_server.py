@@ -5,15 +5,16 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import socket
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, MutableMapping
 from contextlib import asynccontextmanager
+from typing import Any
 
 import httpx
 import pytest
 import uvicorn
 from starlette.types import ASGIApp, Receive, Scope, Send
 
-from app.middleware import BodyCap, RequestLog
+from app.middleware import MOST_LARGE, BodyCap, RequestLog
 from app.server import listen
 from app.services.presence import LEFT
 from tests.app.test_problems import check_problem
@@ -100,3 +101,46 @@ async def test_that_the_client_has_left_is_known_to_what_works_for_it(method: st
             await asyncio.gather(asking, return_exceptions=True)
         async with asyncio.timeout(10):
             await told.wait()
+
+
+async def test_large_bodies_are_few_at_once() -> None:
+    """While as many are held as may be, one more is told to come again; small ones pass."""
+    taken: list[int] = []
+
+    async def app(scope: Scope, receive: Receive, send: Send) -> None:
+        taken.append(len((await receive())["body"]))
+        await send({"type": "http.response.start", "status": 200, "headers": []})
+        await send({"type": "http.response.body", "body": b""})
+
+    cap = BodyCap(app, max_bytes=100, larger={"/large": 10_000})
+    finish = asyncio.Event()
+
+    async def post(size: int, *, held: bool = False) -> dict[bytes, Any]:
+        parts = [b"x" * size, b"y"]
+
+        async def receive() -> dict[str, Any]:
+            if len(parts) == 1 and held:
+                await finish.wait()
+            if not parts:
+                await asyncio.sleep(3600)
+            return {"type": "http.request", "body": parts.pop(0), "more_body": bool(parts)}
+
+        answer: dict[bytes, Any] = {}
+
+        async def send(message: MutableMapping[str, Any]) -> None:
+            if message["type"] == "http.response.start":
+                answer.update([(b"status", message["status"]), *message["headers"]])
+
+        await cap({"type": "http", "method": "POST", "path": "/large", "headers": []}, receive, send)
+        return answer
+
+    holding = [asyncio.create_task(post(200, held=True)) for _ in range(MOST_LARGE)]
+    await asyncio.sleep(0)
+    refused = await post(200)
+    assert refused[b"status"] == 429
+    assert int(refused[b"retry-after"]) > 0
+    assert (await post(50))[b"status"] == 200
+    finish.set()
+    assert [(await task)[b"status"] for task in holding] == [200] * MOST_LARGE
+    assert (await post(200))[b"status"] == 200
+    assert taken == [51, *[201] * MOST_LARGE, 201]
