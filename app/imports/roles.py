@@ -9,6 +9,7 @@ from typing import Literal
 from shapely import Polygon, contains_xy, prepare, union_all
 from shapely.geometry.base import BaseGeometry
 
+from app.imports.buildings import standing
 from app.imports.options import NONE, ROLES, Choices, ImportOptions, RoleChoice
 from app.imports.rings import encloses
 from app.imports.shapes import Shape
@@ -110,7 +111,7 @@ def _told(shape: Shape, options: ImportOptions) -> Verdict | None:
     forbidden = _forbidden(texts, shape)
     if own:
         return _by_own_role(own, shape, forbidden if forbidden is not None and forbidden[2] else None)
-    said = _said(texts, shape)
+    said = _built(shape, options) or _said(texts, shape)
     if forbidden is not None:
         where, word, plainly = forbidden
         why = f"{where} says {word!r}"
@@ -139,6 +140,16 @@ def _told(shape: Shape, options: ImportOptions) -> Verdict | None:
         if either := says_either(text):
             return Verdict("no_fly", f"{where} says {either!r}, which can mean either side", "open")
     return None
+
+
+def _built(shape: Shape, options: ImportOptions) -> Verdict | None:
+    """What a building is: an obstacle, or where its height is not known a zone at every height."""
+    building = standing(shape)
+    if building is None or (shape.kind != "polygon" and not _closable(shape, "obstacle")):
+        return None
+    if building.height_m is None and options.height_m is None:
+        return Verdict("no_fly", f"{building.why}, and its height is not known: it forbids at every height")
+    return Verdict("obstacle", building.why)
 
 
 def _by_prose(shape: Shape, said: Verdict | None, why: str) -> Verdict | None:

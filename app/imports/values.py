@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from app.imports.buildings import heights, tags_of
 from app.imports.options import ImportOptions
 from app.imports.shapes import Shape
 from planner.errors import Finding
@@ -46,6 +47,8 @@ def add_values(
                 found.append(Finding(name, "not-a-number", f"{key} is {text[:40]!r}", "write a number"))
             elif _takes(role, shape.kind, key):
                 properties[key] = value
+    if role == "obstacle":
+        _add_heights(properties, shape)
     needed = _NEEDS.get((role, shape.kind))
     given = getattr(options, needed, None) if needed else None
     if needed and needed not in properties:
@@ -59,6 +62,16 @@ def add_values(
     if role == "threat":
         found += _add_model(properties, name, shape, notes)
     return found
+
+
+def _add_heights(properties: dict[str, Any], shape: Shape) -> None:
+    """Top and base by the tags of maps, where the contract's names do not give them."""
+    height_m, base_m = heights(tags_of(shape.properties))
+    if height_m is None or "height_m" in properties:
+        return
+    properties["height_m"] = height_m
+    if base_m > 0.0:
+        properties.setdefault("base_m", base_m)
 
 
 def _takes(role: str, kind: str, key: str) -> bool:
