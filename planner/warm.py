@@ -9,6 +9,7 @@ import numpy as np
 from numba.core.dispatcher import Dispatcher
 
 from planner.airspace.terrain import Terrain
+from planner.coverage.urban.methods import SEQUENCES
 from planner.geojson import read_scenario
 from planner.pipeline import make_plan, with_bound
 
@@ -129,9 +130,39 @@ def warm_up() -> None:
     # Beyond nine passes the order is searched and bounded otherwise.
     many = read_scenario(_many())
     with_bound(many, make_plan(many))
+    make_plan(read_scenario(_city("auto", building=False)))
+    for coverage in SEQUENCES:
+        make_plan(read_scenario(_city(coverage)))
     # The scenario lies at 0° N 0° E.
     plain = Terrain("plain", np.zeros((21, 21), dtype=np.float32), (0.1, 0.0, -1.0, 0.0, -0.1, 1.0))
     make_plan(read_scenario(_SCENARIO | {"terrain": "plain"}, {"plain": plain}))
+
+
+def _city(method: str, *, building: bool = True) -> dict[str, Any]:
+    """A camera over a block, with a building in it or without."""
+    rings = {"roi": (0.0, 0.003), "obstacle": (0.001, 0.0006), "area": (-0.01, 0.03)}
+    features = [feature for feature in _SCENARIO["features"] if feature["properties"]["role"] == "start"]
+    for role, (low, size) in rings.items():
+        if role == "obstacle" and not building:
+            continue
+        high = low + size
+        ring = [[low, low], [high, low], [high, high], [low, high], [low, low]]
+        features.append(
+            {
+                "type": "Feature",
+                "id": f"city-{role}",
+                "properties": {"role": role} | ({"height_m": 90.0} if role == "obstacle" else {}),
+                "geometry": {"type": "Polygon", "coordinates": [ring]},
+            }
+        )
+    start = {**features[0], "geometry": {"type": "Point", "coordinates": [-0.001, -0.001]}}
+    return _SCENARIO | {
+        "features": [start, *features[1:]],
+        "vehicles": [{"name": "q", "type": "multirotor", "airspeed_m_s": 8.0, "min_turn_radius_m": 4.0}],
+        "sensors": [{"name": "eye", "type": "camera", "model": "Sony a6000 20 mm"}],
+        "altitude_m": 60.0,
+        "method": {"coverage": method},
+    }
 
 
 def _many() -> dict[str, Any]:
