@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
-from planner.plan import LonLatAlt, Photos, PlanCamera
+from planner.plan import LonLatAlt, Metrics, Photos, PlanCamera
 from planner.profile.heights import Heights
 from planner.route import CollectPass
 from planner.sensors.camera import CameraSensor
@@ -74,3 +76,17 @@ def photos_of(
         interval_s = interval_m / float(model.ground_speed_m_s(collect.angle_rad))
     listed = tuple((float(lon), float(lat), float(alt)) for lon, lat, alt in places)
     return Photos(model.name, seq, collect.sensor, listed, interval_m, interval_s)
+
+
+def with_photos(metrics: Metrics, photos: Sequence[Photos], suite: Suite) -> Metrics:
+    """With how many there are and what they take to be stored; as it is without a camera on board."""
+    stored_mb = {
+        sensor.name: sensor.stored_mb for sensor in suite.sensors if isinstance(sensor, CameraSensor)
+    }
+    if not stored_mb:
+        return metrics
+    return replace(
+        metrics,
+        photos=sum(len(each.places) for each in photos),
+        photos_mb=math.fsum(len(each.places) * stored_mb[each.sensor] for each in photos),
+    )

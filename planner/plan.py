@@ -315,8 +315,8 @@ class Metrics:
     ``energy_wh`` of all phases. ``route_length_m`` is the line over the ground from start to end, without
     turns flown for height; ``lower_bound_m`` what no mission phase over these regions is shorter than,
     threats left out, and ``gap`` by what part of its length this one is longer; None without a bound.
-    ``photos`` counts those of all cameras; None where there are none on board. ``surveys`` tells by region
-    what they give.
+    ``photos`` counts those of all cameras, ``photos_mb`` is about what they take to be stored; None where
+    there are none on board. ``surveys`` tells by region what they give.
     """
 
     length_m: float
@@ -338,6 +338,7 @@ class Metrics:
     route_length_m: float | None = None
     left_out: tuple[LeftOut, ...] = ()
     photos: int | None = None
+    photos_mb: float | None = None
     surveys: dict[str, Surveyed] = field(default_factory=dict)
 
 

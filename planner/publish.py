@@ -20,7 +20,7 @@ from planner.angles import heading_from_angle
 from planner.flown import flown_path, line_between
 from planner.frames import LocalFrame
 from planner.metrics import risks
-from planner.photos import photos_of, plan_cameras
+from planner.photos import photos_of, plan_cameras, with_photos
 from planner.plan import (
     Collect,
     Fence,
@@ -313,7 +313,6 @@ def assemble(
     collects, transits, footprints, photos = collects_and_transits(
         chart, model, airspace, suite, composed, legs, passes
     )
-    cameras = plan_cameras(suite)
     flight, begin = composed.flight, composed.flight.path.start
     heading_deg = chart.frame.true_heading_deg(*begin.position, begin.angle_rad)
     path = flown_path(flight, model, metrics.energy_wh, chart.lonlats, chart.straight_edge_m, heading_deg)
@@ -331,7 +330,7 @@ def assemble(
         footprints=footprints,
         uncovered=(),
         fence=fence(chart, airspace, LineString(flight.path.sample(10.0)[:, :2])),
-        metrics=replace(metrics, photos=sum(len(p.places) for p in photos) if cameras else None),
+        metrics=with_photos(metrics, photos, suite),
         violations=(),
         methods=methods,
         scenario_hash=scenario_hash,
@@ -339,6 +338,6 @@ def assemble(
         seed=seed,
         warnings=warnings,
         photos=photos,
-        cameras=cameras,
+        cameras=plan_cameras(suite),
         wind=PlanWind(model.wind.speed_m_s, heading_from_angle(model.wind.toward_rad + math.pi)),
     )

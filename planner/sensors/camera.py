@@ -19,6 +19,9 @@ from planner.sensors.quality import Giqe4, Spectrum
 #: Photos, and lanes, that overlap by this much or more see every place twice.
 TWICE = 0.5
 
+#: Of a fine JPEG, about.
+BYTES_A_PIXEL = 0.4
+
 
 @dataclass(frozen=True, slots=True)
 class CameraSensor:
@@ -52,6 +55,8 @@ class CameraSensor:
         Of the wind it is flown in: its speed by the airspeed, and where the air moves to.
     airspeed_m_s
         It is flown at; 0 where photos may follow each other as fast as they like.
+    photo_mb
+        What a photo takes of its store, megabytes; None where unknown.
     thin
         True airspeed by that one: more than 1 for wings in thin air.
     """
@@ -75,6 +80,7 @@ class CameraSensor:
     toward_rad: float = 0.0
     airspeed_m_s: float = 0.0
     thin: float = 1.0
+    photo_mb: float | None = None
 
     @property
     def kind(self) -> str:
@@ -144,6 +150,13 @@ class CameraSensor:
         spacing_m = self.pattern(angle_rad).spacing * (height_m - self.relief_m)
         lost_m = 2.0 * (height_m + self.relief_m) * math.tan(self.pointing_margin_rad)
         return spacing_m - lost_m if self.steady_overlap else spacing_m
+
+    @property
+    def stored_mb(self) -> float:
+        """What a photo takes of its store, megabytes: as given, else about that of a fine JPEG."""
+        if self.photo_mb is not None:
+            return self.photo_mb
+        return self.optics.columns * self.optics.rows * BYTES_A_PIXEL / 1e6
 
     def least_spacing_m(self, angle_rad: float) -> float:
         """How far it is flown over the ground, at least, from one photo to the next that it can take."""

@@ -51,6 +51,14 @@ def test_photos_lie_evenly_from_first_to_last_and_keep_the_overlap() -> None:
     assert [len(each.places) for each in again.photos] == [len(each.places) for each in plan.photos]
 
 
+@pytest.mark.parametrize(("given", "each_mb"), [({}, 9.6), ({"photo_mb": 25.0}, 25.0)])
+def test_what_photos_take_to_be_stored_is_told(given: dict[str, float], each_mb: float) -> None:
+    """0.4 bytes a pixel of 24 million where nothing is given."""
+    metrics = plan_of(given).metrics
+    assert metrics.photos
+    assert metrics.photos_mb == pytest.approx(each_mb * metrics.photos)
+
+
 def test_timed_photos_say_their_time_and_a_video_has_none() -> None:
     """At 20 m/s in still air, the distance by the speed."""
     for photos in plan_of({"trigger": "time"}).photos:

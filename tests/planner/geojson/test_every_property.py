@@ -348,6 +348,7 @@ PROOFS: dict[tuple[str, str], tuple[Document, Document]] = {
     ("sensor", "rer"): (camera(), camera(rer=0.95)),
     ("sensor", "snr"): (camera(), camera(snr=10.0)),
     ("sensor", "noise_gain"): (camera(), camera(noise_gain=5.4)),
+    ("sensor", "photo_mb"): (camera(), camera(photo_mb=25.0)),
     ("sensor", "overshoot"): (camera(), camera(overshoot=0.2)),
     ("wind", "speed_m_s"): (member("wind", WIND), member("wind", WIND | {"speed_m_s": 4.0})),
     ("wind", "from_deg"): (member("wind", WIND), member("wind", WIND | {"from_deg": 20.0})),

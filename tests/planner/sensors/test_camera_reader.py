@@ -52,7 +52,7 @@ def test_a_model_brings_lens_chip_interval_and_spectrum() -> None:
     assert (camera.forward_overlap, camera.side_overlap, camera.tilt_rad) == (0.75, 0.65, 0.0)
     assert (camera.trigger, camera.spectrum, camera.quality) == ("distance", "visible", None)
     assert read({**MODEL, "model": "DJI Mavic 3 Thermal"}).spectrum == "infrared"
-    assert read({**MODEL, "min_interval_s": 3.0}).min_interval_s == 3.0
+    assert read({**MODEL, "min_interval_s": 2.5}).min_interval_s == 2.5
 
 
 def test_figures_and_terms_of_quality_are_read() -> None:
