@@ -10,7 +10,7 @@ from typing import Annotated
 
 import typer
 
-from app.cli.keyring import signing_here
+from app.cli.keyring import signing_here, signing_in
 from app.cli.missions import Timeout, run_async
 from app.cli.output import CommandError, Exit, Json, emit_json, say
 
@@ -40,6 +40,14 @@ def signing(
         str | None,
         typer.Option("-o", help="With new: file to write, which must not be there.", metavar="FILE"),
     ] = None,
+    in_use: Annotated[
+        Path | None,
+        typer.Option(
+            help="With set-up: file with the key that the vehicle signs with by now; the next is handed over"
+            " signed with it.",
+            metavar="FILE",
+        ),
+    ] = None,
     timeout_s: Timeout = 10.0,
     as_json: Json = False,
 ) -> None:
@@ -47,7 +55,7 @@ def signing(
 
     Keys are read from the file in SWATHPLAN_SIGNING_KEYS and from SWATHPLAN_SIGNING_KEY, and never printed.
     The first one goes to the vehicle unsigned: over a link that nobody else hears, best by USB. Vehicles take
-    keys while they are disarmed. Another key is handed over by the service, which has the one in use.
+    keys while they are disarmed. To replace a key, name the file that has the one in use: --in-use.
     """
     if action is Action.NEW:
         if output is None:
@@ -57,7 +65,11 @@ def signing(
     else:
         if to is None:
             raise CommandError(f"{action.value} needs --to URL", Exit.BAD_INPUT)
-        run_async(_change(action, to, name, timeout_s))
+        if in_use is not None and action is Action.REMOVE:
+            raise CommandError(
+                "--in-use goes with set-up: remove is signed with the key given", Exit.BAD_INPUT
+            )
+        run_async(_change(action, to, name, timeout_s, in_use))
         say("The vehicle signs with the key." if action is Action.SET_UP else "The vehicle signs no more.")
     if as_json:
         emit_json({"action": action.value, "file": output, "done": True})
@@ -73,7 +85,7 @@ def _write(path: Path, name: str) -> None:
         raise CommandError(f"{path}: {error.strerror}") from error
 
 
-async def _change(action: Action, url: str, name: str, timeout_s: float) -> None:
+async def _change(action: Action, url: str, name: str, timeout_s: float, in_use: Path | None) -> None:
     from app.services.vehicles.connection import connected
 
     ours = signing_here(url, name)
@@ -81,6 +93,11 @@ async def _change(action: Action, url: str, name: str, timeout_s: float) -> None
         message = "no key is given: set SWATHPLAN_SIGNING_KEYS or SWATHPLAN_SIGNING_KEY"
         raise CommandError(message, Exit.BAD_INPUT)
     known = ours if action is Action.REMOVE else None
+    if in_use is not None:
+        known = signing_in(in_use, name)
+        if known is None:
+            message = f"{in_use} has no key of {name or 'all vehicles (*)'}: it is to have the one in use"
+            raise CommandError(message, Exit.BAD_INPUT)
     async with connected(url, None, timeout_s, known) as client:
         if action is Action.REMOVE:
             await client.stop_signing()

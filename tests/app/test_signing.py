@@ -149,7 +149,10 @@ def test_times_are_kept(tmp_path: Path) -> None:
 async def test_a_key_is_made_and_handed_over_from_the_command_line(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A new file that only its owner reads; the vehicle takes it; without it a download says why not."""
+    """A new file that only its owner reads; the vehicle takes it, and the next one signed with it.
+
+    Without a key of its own a download says why not.
+    """
     file, port = tmp_path / "keys.txt", free_port()
     runner = CliRunner()
 
@@ -171,6 +174,23 @@ async def test_a_key_is_made_and_handed_over_from_the_command_line(
         assert said[0] == 0, said
         held = await run("download", "--from", url, "-o", str(tmp_path / "held.plan"))
         assert held[0] == 0, held
+        new = tmp_path / "new.txt"
+        assert (await run("signing", "new", "-o", str(new)))[0] == 0
+        monkeypatch.setenv("SWATHPLAN_SIGNING_KEYS", str(new))
+        wrong = await run("signing", "set-up", "--to", url, "--in-use", str(new), "--timeout-s", "2")
+        assert wrong[0] != 0, "that is not the key in use"
+        replaced = await run("signing", "set-up", "--to", url, "--in-use", str(file))
+        assert replaced[0] == 0, replaced
+        held = await run("download", "--from", url, "-o", str(tmp_path / "held.plan"))
+        assert held[0] == 0, held
+        assert new.read_text().split("=")[1].strip() not in wrong[1] + replaced[1] + held[1]
+        for action, named, words in (
+            ("remove", str(file), "goes with set-up"),
+            ("set-up", str(tmp_path / "none"), "cannot be read"),
+        ):
+            refused = await run("signing", action, "--to", url, "--in-use", named)
+            assert refused[0] != 0
+            assert words in refused[1]
         monkeypatch.delenv("SWATHPLAN_SIGNING_KEYS")
         monkeypatch.setenv("SWATHPLAN_SIGNING_KEY", OTHER.hex())
         failed = await run("download", "--from", url, "-o", str(tmp_path / "no.plan"), "--timeout-s", "3")
