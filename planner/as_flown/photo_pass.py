@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 from numpy.typing import NDArray
-from shapely.geometry import LineString, Polygon
+from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
 from planner.as_flown.passes import PlannedPass
@@ -20,9 +20,9 @@ Floats = NDArray[np.float64]
 #: Further apart than this times the interval: a photo is missing between two.
 MISSING_PART = 1.5
 #: Lanes next to each other run within this of parallel; so many to either side are looked at.
-PARALLEL_RAD, NEIGHBOURS = math.radians(10.0), 3
+PARALLEL_RAD, NEIGHBOURS = math.radians(10.0), 2
 #: Of each pass side overlaps are measured at so many photos at most.
-MOST_MEASURED = 200
+MOST_MEASURED = 60
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,15 +148,15 @@ def side_overlaps(
         for side, (rear, front) in ((-1, (0, 3)), (1, (1, 2))):
             lanes = [other for other, off_m in beside if off_m * side > 0.0][:NEIGHBOURS]
             shape = shapely.union_all([strips[other] for other in lanes])
-            for k in _some(len(photos.along_m)):
-                corners = photos.corners[k]
-                if np.isnan(corners).any():
-                    continue
-                near = (corners[rear] + corners[front]) / 2.0
-                far = (corners[1 - rear] + corners[5 - front]) / 2.0
-                if shapely.contains_xy(area, near[0], near[1]):
-                    across = LineString([near, far])
-                    found.append(float(across.intersection(shape).length / max(across.length, 1e-9)))
+            corners = photos.corners[_some(len(photos.along_m))]
+            near = (corners[:, rear] + corners[:, front]) / 2.0
+            far = (corners[:, 1 - rear] + corners[:, 5 - front]) / 2.0
+            needed = ~np.isnan(corners).any(axis=(1, 2)) & shapely.contains_xy(area, near[:, 0], near[:, 1])
+            if not needed.any():
+                continue
+            across = shapely.linestrings(np.stack([near, far], axis=1)[needed])
+            shared = shapely.length(shapely.intersection(across, shape))
+            found += [float(part) for part in shared / np.maximum(shapely.length(across), 1e-9)]
     return found
 
 

@@ -51,6 +51,7 @@ def unknown_parts(
         Over the ground, the most it flies.
     """
     found = []
+    told = [(line, courses(line)) for line in lines if len(line.places) > 1]
     for planned in passes:
         count = max(2, math.ceil(planned.length_m / STEP_M) + 1)
         at_m = np.linspace(0.0, planned.length_m, count)
@@ -60,8 +61,8 @@ def unknown_parts(
             open_ |= _within_reach(places, gap, frame, speed_m_s)
         if not open_.any():
             continue
-        for line in lines:
-            open_ &= ~_recorded(planned, line, at_m)
+        for line, course in told:
+            open_ &= ~_recorded(planned, line, course, at_m)
         turns = np.flatnonzero(np.diff(np.concatenate([[0], open_.astype(np.int8), [0]])))
         half_m = (at_m[1] - at_m[0]) / 2.0
         for a, b in zip(turns[::2].tolist(), turns[1::2].tolist(), strict=True):
@@ -83,12 +84,9 @@ def _within_reach(places: Floats, gap: Gap, frame: LocalFrame, speed_m_s: float)
     return found
 
 
-def _recorded(planned: PlannedPass, line: Line, at_m: Floats) -> NDArray[np.bool_]:
+def _recorded(planned: PlannedPass, line: Line, course: Floats, at_m: Floats) -> NDArray[np.bool_]:
     """Which places of a pass a record tells of: flown beside, in its direction, the sensor on or off."""
     found = np.zeros(len(at_m), dtype=bool)
-    if len(line.places) < 2:
-        return found
-    course = courses(line)
     near = (planned.across_m(line.places) <= planned.beside_m) & (course @ planned.ahead >= ALONG_COSINE)
     steps = np.flatnonzero(line.pieces() & near[1:] & near[:-1])
     along_m = planned.along_m(line.places)

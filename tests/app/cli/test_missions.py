@@ -11,6 +11,7 @@ from app.routers.bodies import EXAMPLE
 from mavlink.formats import qgc_plan, waypoints
 from mavlink.wire import items
 from tests.app.cli.conftest import Command
+from tests.planner.as_flown.test_photos import asked
 
 
 def test_export_writes_what_readers_read(swathplan: Command, plan_file: Path) -> None:
@@ -116,6 +117,17 @@ def test_demo_flies_a_multirotor_where_the_plan_has_one(
     assert told["read_back_equal"]
     assert told["cross_track_max_m"] < 1.5
     assert min(told["seen"].values()) > 0.9999
+
+
+def test_demo_counts_the_photos_of_a_camera(swathplan: Command, tmp_path: Path) -> None:
+    """As many as were planned, and all of the region seen in them."""
+    scenario = tmp_path / "survey.geojson"
+    scenario.write_text(json.dumps(asked()))
+    ended = swathplan("demo", str(scenario), "--speedup", "500", "--margins", "autopilot", "--json")
+    assert ended.code == 0, ended.err
+    told = json.loads(ended.out)
+    assert told["photos_taken"] == told["photos_counted"] == told["photos_planned"] > 0
+    assert told["seen"]["A"] > 0.999
 
 
 def test_demo_says_why_it_flies_no_vtol(swathplan: Command, scenario_file: Path) -> None:
