@@ -1,5 +1,5 @@
 /** The service's database of cameras, asked for once; and what a camera sees from a height. */
-import { connection, list } from "./api";
+import { connection, get } from "./api";
 import { attempt } from "./notices";
 import { Signal } from "./signal";
 import type { Member } from "./types";
@@ -7,7 +7,7 @@ import type { Member } from "./types";
 export interface KnownCamera {
   name: string;
   kind: string;
-  type: string;
+  type: "camera";
   spectrum?: "visible" | "infrared";
   focal_length_m: number;
   pixel_pitch_m: number;
@@ -17,15 +17,24 @@ export interface KnownCamera {
   source: string;
 }
 
+/** A radar by published figures: what an entry of a scenario's sensors may begin with. */
+export interface KnownRadar extends Member {
+  name: string;
+  type: "sar";
+  source: string;
+}
+
 /** Empty until they were read. */
 export const cameras = new Signal<KnownCamera[]>([]);
+export const radars = new Signal<KnownRadar[]>([]);
 
 export function keepCameras(): void {
   connection.watch((state) => {
     if (state !== "up" || cameras.value.length > 0) return;
     void attempt("The camera database was not read; cameras can be given by their figures", async () => {
-      const found = await list<KnownCamera>("/sensors", "sensors");
-      cameras.set(found.filter(({ type }) => type === "camera"));
+      const found = await get<{ sensors: KnownCamera[]; radars: KnownRadar[] }>("/sensors");
+      radars.set(found.radars);
+      cameras.set(found.sensors);
     });
   });
 }

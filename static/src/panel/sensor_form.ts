@@ -1,5 +1,5 @@
 /** The sensors on board: a radar or a camera each, the camera from the service's database or by its figures. */
-import { cameras, heightFor_m, known, opticsOf, seenFrom } from "../cameras";
+import { cameras, heightFor_m, known, opticsOf, radars, seenFrom } from "../cameras";
 import { button, fill, h, section } from "../dom";
 import { news } from "../notices";
 import { emptyScenario, scenarios } from "../scenario";
@@ -72,8 +72,35 @@ function typeField(index: number): Field {
   return choiceField({ id: `sensors-${index}-type`, label: "What it is", choices: KINDS, get: () => get<string>() ?? "sar", set: (value) => turnInto(index, value as Kind) });
 }
 
+/** What of a database's radar is no figure of it. */
+const NO_FIGURES = new Set(["name", "type", "source"]);
+const figuresOf = (radar: Member): [string, unknown][] => Object.entries(radar).filter(([property, value]) => !NO_FIGURES.has(property) && value !== null);
+
+/** The radar whose figures the sensor has, all of them. */
+const likeWhich = (sensor: Member | undefined): string => radars.value.find((radar) => figuresOf(radar).every(([property, value]) => (sensor?.[property] ?? (property === "mode" ? "stripmap" : undefined)) === value))?.name ?? "";
+
+/** Figures of a radar of the database, to begin with; all of them can be changed. */
+function presetField(index: number): Field {
+  const select = h("select", { id: `sensors-${index}-preset` });
+  select.addEventListener("change", () => {
+    const chosen = radars.value.find(({ name: called }) => called === select.value);
+    if (!chosen) return;
+    scenarios.change((draft) => {
+      const before = draft.sensors?.[index];
+      if (draft.sensors && before) draft.sensors[index] = { name: before["name"], type: "sar", ...Object.fromEntries(figuresOf(chosen)) };
+    });
+  });
+  const sync = (): void => {
+    if (select.options.length !== radars.value.length + 1) fill(select, h("option", { value: "" }, "its own"), ...radars.value.map(({ name: called }) => h("option", { value: called }, called)));
+    select.value = likeWhich(sensorAt(index));
+  };
+  radars.watch(sync);
+  return { element: h("div", { class: "field wide" }, h("label", { for: select.id }, "Published figures of"), select), sync };
+}
+
 function radar(index: number): Field[] {
   return [
+    presetField(index),
     choice("sensors", index, "look", "Looks", ["right", "left", "both"]),
     choice("sensors", index, "mode", "Mode", ["stripmap", "spotlight", ["scansar", "ScanSAR"]]),
     number("sensors", index, "incidence_deg", "Incidence", "°", { max: 90, required: true }),

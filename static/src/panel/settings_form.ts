@@ -2,7 +2,7 @@
 import { h, section } from "../dom";
 import { scenarios } from "../scenario";
 import type { Member, Scenario } from "../types";
-import { choiceField, numberField, type Field } from "./fields";
+import { choiceField, numberField, tickField, type Field } from "./fields";
 import { choice, member, name, nested, number, top } from "./members";
 import { sensorSections, sensorsKey } from "./sensor_form";
 import { terrainField } from "./terrain_field";
@@ -43,6 +43,7 @@ function finish(index: number): Field {
 
 function mission(): Field[] {
   const altitude = top("altitude_m");
+  const following = top("terrain_following");
   const lowest = top("min_height_m");
   const highest = top("max_height_m");
   const reference = top("altitude_reference");
@@ -58,6 +59,7 @@ function mission(): Field[] {
     numberField({ id: "s-min_height_m", label: "Least height", unit: "m", min: 0, placeholder: "10", hint: "Over the ground; heights chosen by the quality wanted are not lower. Over terrain the clearance where left empty", get: () => lowest.get<number>(), set: lowest.set }),
     numberField({ id: "s-max_height_m", label: "Greatest height", unit: "m", min: 0, placeholder: "the altitude", hint: "Over the ground; heights chosen by the quality wanted are not greater", get: () => highest.get<number>(), set: highest.set }),
     terrainField(),
+    tickField({ id: "s-terrain_following", label: "Follow the ground", hint: "Passes of cameras keep their height over the raster's ground", get: () => following.get<boolean>() ?? false, set: (value) => following.set(value ? true : undefined) }),
     numberField({ id: "s-clearance_m", label: "Clearance", unit: "m", min: 0, placeholder: "the autopilot's", hint: "Kept from zones, hard threats, obstacles and terrain", get: () => clearance.get<number>(), set: clearance.set }),
     ...wind(),
     numberField({ id: "s-seed", label: "Seed", min: 0, placeholder: "0", get: () => seed.get<number>(), set: seed.set }),

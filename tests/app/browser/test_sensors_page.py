@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 from playwright.sync_api import Page, expect
 
+from planner.sensors.radars import RADARS
 from tests.app.browser.helpers import ask, await_hook, open_scenario
 
 pytestmark = pytest.mark.browser
@@ -91,9 +92,14 @@ def test_without_a_name_its_figures_are_asked_for(camera: Page) -> None:
 
 
 def test_a_second_sensor_is_a_radar(camera: Page) -> None:
-    """With both on board a region is asked which of them sees it; one can be taken off again."""
+    """It begins with published figures; a region is asked which of both sees it; it can be taken off."""
     camera.get_by_role("button", name="Add a radar").click()
     assert [s["type"] for s in ask(camera, "scenario()")["sensors"]] == ["camera", "sar"]
+    camera.select_option("#sensors-1-preset", "NASA UAVSAR")
+    radar = ask(camera, "scenario()")["sensors"][1]
+    assert radar["incidence_deg"] == RADARS["NASA UAVSAR"].incidence_deg
+    assert radar["name"] == "sar"
+    expect(camera.locator("#sensors-1-preset")).to_have_value("NASA UAVSAR")
     camera.select_option("#f-sensor", "sar")
     camera.get_by_role("button", name="Remove sensor 2").click()
     scenario = ask(camera, "scenario()")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import os
 import random
 import re
 from pathlib import Path
@@ -73,6 +74,12 @@ def plan(page: Page, service: Service, tmp_path_factory: pytest.TempPathFactory)
     page.click("#plan-start")
     await_hook(page, "plan() !== null", 60.0)
     await_hook(page, "seenBy(8.503, 47.401) !== null", 30.0)
+    if target := os.environ.get("SWATHPLAN_SCREENSHOT"):
+        page.set_viewport_size({"width": 1400, "height": 980})
+        page.locator("#legend summary").click()
+        page.locator("#profile").scroll_into_view_if_needed()
+        page.evaluate("window.swathplan.look(8.5045, 47.4015, 15.9)")
+        page.screenshot(path=target)
     made: dict[str, Any] = service.get(f"/api/v1/plans/{ask(page, 'plan()')['id']}/plan.geojson").json()
     return made
 
