@@ -30,6 +30,12 @@ Gimbal = Annotated[
     str | None,
     typer.Option(help="What points the sensor, degrees from straight down: manager:tilt=45, mount:tilt=45 …"),
 ]
+ChordError = Annotated[
+    float | None,
+    typer.Option(
+        min=0.1, max=100.0, help="Largest distance between an arc and the lines between its points; else 2 m."
+    ),
+]
 Timeout = Annotated[float, typer.Option(min=0.1, help="How long to wait for the vehicle's heartbeat.")]
 Url = Annotated[
     str, typer.Option(help="udpin:host:port, udpout:host:port, tcp:host:port, serial:device:baud or sim:")
@@ -59,6 +65,20 @@ class AutopilotChoice(StrEnum):
 
     ARDUPILOT = "ardupilot"
     PX4 = "px4"
+
+
+class ArcsChoice(StrEnum):
+    """How arcs are said."""
+
+    AUTO = "auto"
+    POINTS = "points"
+    LOITER = "loiter"
+
+
+ArcsOption = Annotated[
+    ArcsChoice | None,
+    typer.Option("--arcs", help="Arcs as points along them, or as loiter turns (ArduPlane); else auto."),
+]
 
 
 class TypeChoice(StrEnum):
@@ -103,6 +123,8 @@ def export(
     ] = None,
     payload: Payload = None,
     gimbal: Gimbal = None,
+    arcs: ArcsOption = None,
+    chord_error_m: ChordError = None,
     as_json: Json = False,
 ) -> None:
     """Write a plan's mission for other programs.
@@ -114,7 +136,14 @@ def export(
     from app.services.plans.missions import MissionChoice, exported
 
     found = given(plan, FileChoice(), None, None)
-    choice = MissionChoice(vehicle, autopilot.value if autopilot else None, payload, gimbal)
+    choice = MissionChoice(
+        vehicle,
+        autopilot.value if autopilot else None,
+        payload,
+        gimbal,
+        arcs=arcs.value if arcs else None,
+        chord_error_m=chord_error_m,
+    )
 
     async def write() -> bytes:
         return exported(found.text, choice, form.value)
@@ -161,6 +190,8 @@ def upload(
     ] = None,
     payload: Payload = None,
     gimbal: Gimbal = None,
+    arcs: ArcsOption = None,
+    chord_error_m: ChordError = None,
     timeout_s: Timeout = 10.0,
     as_json: Json = False,
 ) -> None:
@@ -177,7 +208,9 @@ def upload(
     asked = FileChoice(plan, None, kind, vehicle, airspeed_m_s, min_turn_radius_m)
     found = given(plan, asked, scenario, terrain)
     names = list(dict.fromkeys(choice.value for choice in part or [PartChoice.MISSION]))
-    choice = MissionChoice(vehicle, None, payload, gimbal)
+    choice = MissionChoice(
+        vehicle, None, payload, gimbal, arcs=arcs.value if arcs else None, chord_error_m=chord_error_m
+    )
     stale = None if scenario is None or found.is_mission else _staleness(found.text, scenario)
     report = run_async(_upload(found.text, to, names, choice, override, timeout_s, stale))
     if as_json:

@@ -10,9 +10,11 @@ from app.deps import DeskDep, PlanningDep
 from app.problems import responses
 from app.routers.streams import page_answer
 from app.schemas.plans import ProfileOut
+from app.schemas.preflight import ARCS_IS, CHORD_ERROR_IS
 from app.services.plans.missions import AutopilotName, MissionChoice, exported
 from app.services.plans.profile import profile_of
 from app.services.reports.report import write_report
+from mavlink.encoding.options import Arcs
 
 router = APIRouter(prefix="/api/v1/plans/{plan_id}", tags=["artefacts"])
 
@@ -76,6 +78,8 @@ GimbalQuery = Annotated[
         max_length=200,
     ),
 ]
+ArcsQuery = Annotated[Arcs | None, Query(description=ARCS_IS)]
+ChordErrorQuery = Annotated[float | None, Query(ge=0.1, le=100.0, description=CHORD_ERROR_IS)]
 
 
 def _mission_route(form: str, name: str, media_type: str, summary: str, kind: str = "string") -> None:
@@ -94,10 +98,12 @@ def _mission_route(form: str, name: str, media_type: str, summary: str, kind: st
         autopilot: AutopilotQuery = None,
         payload: PayloadQuery = None,
         gimbal: GimbalQuery = None,
+        arcs: ArcsQuery = None,
+        chord_error_m: ChordErrorQuery = None,
     ) -> Response:
         """The mission of one vehicle, as a file to save."""
         text = await planning.plan_text(plan_id)
-        choice = MissionChoice(vehicle, autopilot, payload, gimbal)
+        choice = MissionChoice(vehicle, autopilot, payload, gimbal, arcs=arcs, chord_error_m=chord_error_m)
         body = await desk.run("plan", exported, text, choice, form)
         return Response(
             body,

@@ -142,7 +142,14 @@ async def upload(
     `reason` says why. `outcome` tells what the vehicle said: `accepted`, `refused`, or `unknown` when it
     vanished meanwhile; `held` and `differences` tell what it holds.
     """
-    choice = MissionChoice(body.vehicle, None, body.payload, body.gimbal)
+    choice = MissionChoice(
+        body.vehicle,
+        None,
+        body.payload,
+        body.gimbal,
+        arcs=body.arcs,
+        chord_error_m=body.chord_error_m,
+    )
     report = await transfers.upload(
         fleet.get(vehicle_id), body.plan_id, body.parts, choice, body.reason if body.override else None
     )
@@ -180,7 +187,14 @@ async def preflight(vehicle_id: str, body: PreflightIn, fleet: FleetDep, checks:
 
     The vehicle is read, never changed. It is `ready` when no check has failed.
     """
-    choice = MissionChoice(body.vehicle, None, body.payload, body.gimbal)
+    choice = MissionChoice(
+        body.vehicle,
+        None,
+        body.payload,
+        body.gimbal,
+        arcs=body.arcs,
+        chord_error_m=body.chord_error_m,
+    )
     return PreflightOut.of(await checks.preflight(fleet.get(vehicle_id), body.plan_id, choice))
 
 

@@ -8,11 +8,12 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import BaseModel, Field, field_validator, model_validator
 
 from app.schemas.base import FindingOut, Strict
-from app.schemas.preflight import GIMBAL_IS, PreflightOut
+from app.schemas.preflight import ARCS_IS, CHORD_ERROR_IS, GIMBAL_IS, PreflightOut
 from app.services.plans.work import finding_json
 from app.services.vehicles.replaced import Replaced
 from app.services.vehicles.uploads import UploadReport
 from app.services.vehicles.vehicle import Vehicle
+from mavlink.encoding.options import Arcs
 
 Part = Literal["mission", "fence", "rally"]
 
@@ -31,6 +32,8 @@ class MissionIn(Strict):
         description="How the sensor is switched, e.g. relay:0; left out, a plan's cameras by their triggers.",
     )
     gimbal: str | None = Field(default=None, max_length=200, description=GIMBAL_IS)
+    arcs: Arcs | None = Field(default=None, description=ARCS_IS)
+    chord_error_m: float | None = Field(default=None, ge=0.1, le=100.0, description=CHORD_ERROR_IS)
     override: bool = Field(
         default=False,
         description="Upload although a hard constraint is broken, or the plan is stale; needs a reason.",

@@ -11,12 +11,15 @@ from pydantic import BaseModel, Field
 from app.schemas.base import Strict
 from app.services.vehicles.inspection import ParameterReport
 from app.services.vehicles.preflight import Preflight
+from mavlink.encoding.options import Arcs
 from mavlink.rules.table import ParameterFinding
 
 GIMBAL_IS = (
     "What points the sensor to the side of each pass, tilt in degrees from straight down: manager:tilt=45, "
     "manager:tilt=45,yaw=course,device=1, mount:tilt=45; none, or null, where it is bolted on."
 )
+ARCS_IS = "How arcs are said: points along them, loiter turns (ArduPlane alone), or auto; null: auto."
+CHORD_ERROR_IS = "Largest distance between an arc and the lines between its points; null: 2 m."
 
 
 class CheckOut(BaseModel):
@@ -73,6 +76,8 @@ class PreflightIn(Strict):
         description="How the sensor is switched, e.g. relay:0; left out, a plan's cameras by their triggers.",
     )
     gimbal: str | None = Field(default=None, max_length=200, description=GIMBAL_IS)
+    arcs: Arcs | None = Field(default=None, description=ARCS_IS)
+    chord_error_m: float | None = Field(default=None, ge=0.1, le=100.0, description=CHORD_ERROR_IS)
 
 
 class ParameterOut(BaseModel):

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from typing import Any, Literal
 
+from mavlink.encoding.options import Arcs
 from mavlink.state.energy import EnergySource
 from mavlink.state.photos import PhotoSource
 from mavlink.station.forward.address import ForwardAddress
@@ -208,6 +209,8 @@ class HeldMission:
     plan_vehicle: str
     payload: str | None
     gimbal: str | None = None
+    arcs: Arcs | None = None
+    chord_error_m: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

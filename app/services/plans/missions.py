@@ -10,11 +10,13 @@ from typing import Literal
 
 from app.services.documents import read_object
 from app.services.errors import NotFoundError, RefusedError
+from app.services.records import HeldMission
 from mavlink.dialects import DialectFinding, VehicleType
 from mavlink.dialects.mission import Mission
 from mavlink.dialects.versions import version_findings
 from mavlink.encoding.encode import EncodeError, EncodeOptions, encode
 from mavlink.encoding.gimbal import GimbalError, parse_gimbal
+from mavlink.encoding.options import Arcs
 from mavlink.encoding.payload import PayloadError, parse_payload
 from mavlink.rules.firmware import version_of
 from mavlink.wire.items import MissionType
@@ -48,6 +50,10 @@ class MissionChoice:
         What points the sensor, e.g. ``manager:tilt=45``; None, or ``none``, where it is bolted on.
     vehicle_type
         Of the vehicle that is there, for a mission file that does not say for whom it is.
+    arcs
+        How arcs are said: ``points``, ``loiter``, or ``auto``; None for that.
+    chord_error_m
+        Largest distance between an arc and the lines between its points; None for the encoder's own.
     """
 
     vehicle: str | None = None
@@ -55,6 +61,24 @@ class MissionChoice:
     payload: str | None = None
     gimbal: str | None = None
     vehicle_type: VehicleType | None = None
+    arcs: Arcs | None = None
+    chord_error_m: float | None = None
+
+    def held(self, plan_id: str, plan_vehicle: str) -> HeldMission:
+        """What a vehicle of a plan holds, once it holds what is chosen."""
+        return HeldMission(plan_id, plan_vehicle, self.payload, self.gimbal, self.arcs, self.chord_error_m)
+
+    @classmethod
+    def of_held(cls, held: HeldMission) -> MissionChoice:
+        """What was chosen for a mission that is held."""
+        return cls(
+            held.plan_vehicle or None,
+            None,
+            held.payload,
+            held.gimbal,
+            arcs=held.arcs,
+            chord_error_m=held.chord_error_m,
+        )
 
 
 def encode_plan(plan: Plan, choice: MissionChoice) -> Mission:
@@ -72,6 +96,10 @@ def encode_plan(plan: Plan, choice: MissionChoice) -> Mission:
         options = EncodeOptions(gimbal=None if choice.gimbal is None else parse_gimbal(choice.gimbal))
         if choice.payload is not None:
             options = replace(options, payload=parse_payload(choice.payload))
+        if choice.arcs is not None:
+            options = replace(options, arcs=choice.arcs)
+        if choice.chord_error_m is not None:
+            options = replace(options, chord_error_m=choice.chord_error_m)
         return encode(plan, vehicle=vehicle, autopilot=choice.autopilot, options=options)
     except PayloadError as error:
         fix = "write e.g. relay:0, servo:9:1900:1100, aux:1, camera:distance=25 or trigger:time"

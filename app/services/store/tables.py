@@ -94,6 +94,8 @@ class VehicleRow(Base):
     held_plan_vehicle: Mapped[str | None] = mapped_column(String(200))
     held_payload: Mapped[str | None] = mapped_column(String(200))
     held_gimbal: Mapped[str | None] = mapped_column(String(200))
+    held_arcs: Mapped[str | None] = mapped_column(String(10))
+    held_chord_error_m: Mapped[float | None] = mapped_column(Float)
     last_plan_id: Mapped[str | None] = mapped_column(String(36))
     last_list_id: Mapped[int | None] = mapped_column(Integer)
     forward: Mapped[list[dict[str, Any]] | None] = mapped_column(JSON)

@@ -40,6 +40,8 @@ class UploadStore:
                 "plan_vehicle": meant.plan_vehicle,
                 "payload": meant.payload,
                 "gimbal": meant.gimbal,
+                "arcs": meant.arcs,
+                "chord_error_m": meant.chord_error_m,
             },
             started_at=now(),
         )
@@ -70,6 +72,8 @@ class UploadStore:
                         row.detail.get("plan_vehicle") or "",
                         row.detail.get("payload"),
                         row.detail.get("gimbal"),
+                        row.detail.get("arcs"),
+                        row.detail.get("chord_error_m"),
                     ),
                     row.override_reason,
                 )

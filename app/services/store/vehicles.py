@@ -2,20 +2,28 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, cast
 
 from sqlalchemy import delete, select, update
 
 from app.services.records import HeldMission, SentMission, VehicleRecord
 from app.services.store.database import Database
 from app.services.store.tables import VehicleRow
+from mavlink.encoding.options import Arcs
 from mavlink.station.forward.address import ForwardAddress
 
 
 def _record(row: VehicleRow) -> VehicleRecord:
     held = None
     if row.held_plan_id is not None and row.held_plan_vehicle is not None:
-        held = HeldMission(row.held_plan_id, row.held_plan_vehicle, row.held_payload, row.held_gimbal)
+        held = HeldMission(
+            row.held_plan_id,
+            row.held_plan_vehicle,
+            row.held_payload,
+            row.held_gimbal,
+            cast("Arcs | None", row.held_arcs),
+            row.held_chord_error_m,
+        )
     sent = None if row.last_plan_id is None else SentMission(row.last_plan_id, row.last_list_id)
     forward = tuple(ForwardAddress(entry["url"], entry["write"]) for entry in row.forward or ())
     return VehicleRecord(row.id, row.name, row.url, row.created_at, held, sent, forward, row.system_id or 0)
@@ -57,6 +65,8 @@ class VehicleStore:
             "held_plan_vehicle": held.plan_vehicle if held else None,
             "held_payload": held.payload if held else None,
             "held_gimbal": held.gimbal if held else None,
+            "held_arcs": held.arcs if held else None,
+            "held_chord_error_m": held.chord_error_m if held else None,
         }
         async with self._database.writing() as session:
             await session.execute(update(VehicleRow).where(VehicleRow.id == vehicle_id).values(**values))

@@ -59,13 +59,13 @@ class Checks:
 
 
 def _as_sent(vehicle: Vehicle, plan_id: str, mission: Mission, choice: MissionChoice) -> bool:
-    """Whether a mission asked about is the one last sent, payload, gimbal and all."""
+    """Whether a mission asked about is the one last sent, payload, gimbal, arcs and all."""
     sent = vehicle.upload
     return (
         sent is not None
         and vehicle.sent is not None
         and vehicle.sent.plan_id == sent.plan_id == plan_id
-        and (sent.plan_vehicle, sent.payload, sent.gimbal) == (mission.vehicle, choice.payload, choice.gimbal)
+        and sent.choice.held(plan_id, sent.plan_vehicle) == choice.held(plan_id, mission.vehicle)
         and "mission" in sent.parts
     )
 

@@ -61,7 +61,7 @@ class LeftUploads:
         """
         left = self._left[vehicle.id]
         meant = left.meant
-        choice = MissionChoice(meant.plan_vehicle or None, None, meant.payload, meant.gimbal)
+        choice = MissionChoice.of_held(meant)
         try:
             plan_text = await self._plans.plan_text(meant.plan_id)
             scenario_text = await self._plans.scenario_text(meant.plan_id)
@@ -71,7 +71,7 @@ class LeftUploads:
             return None
         parts = cast(Sequence[PartName], left.parts)
         report = new_report(left.number, meant.plan_id, brief.mission, parts, left.override_reason, ())
-        report.payload, report.gimbal = meant.payload, meant.gimbal
+        report.choice = choice
         for part in report.parts.values():
             part.outcome, part.reason = "unknown", _ENDED
         await read_back(vehicle.client, report)

@@ -111,7 +111,7 @@ class Transfers:
             if flying and "mission" in parts and report.parts["mission"].outcome in ("accepted", "different"):
                 with contextlib.suppress(mavlink_errors.MavlinkError):
                     report.replaced = await replaced(
-                        vehicle.client, brief.mission, brief.plan, report.plan_vehicle, report.payload
+                        vehicle.client, brief.mission, brief.plan, report.plan_vehicle, report.choice.payload
                     )
             if report.outcome == "accepted":
                 report.preflight = await _preflight_behind(vehicle, brief, report)
@@ -163,7 +163,7 @@ class Transfers:
         report = vehicle.upload
         assert report is not None
         mission = report.parts.get("mission")
-        held = HeldMission(report.plan_id, report.plan_vehicle, report.payload, report.gimbal)
+        held = report.choice.held(report.plan_id, report.plan_vehicle)
         if mission is not None:
             if mission.verified:
                 meant = report.mission.items_of(PARTS["mission"])
@@ -201,7 +201,7 @@ class Transfers:
             if report is None or "mission" in report.parts:
                 return None if report is None else report.parts["mission"].verified
         try:
-            choice = for_vehicle(vehicle, MissionChoice(held.plan_vehicle, None, held.payload, held.gimbal))
+            choice = for_vehicle(vehicle, MissionChoice.of_held(held))
             plan_text = await self._plans.plan_text(held.plan_id)
             scenario_text = await self._plans.scenario_text(held.plan_id)
             brief = await self._plans.worked(brief_of, plan_text, scenario_text, choice)
@@ -297,9 +297,10 @@ class Transfers:
         findings: tuple[Finding, ...],
         choice: MissionChoice,
     ) -> UploadReport:
-        meant = HeldMission(plan_id, mission.vehicle, choice.payload, choice.gimbal)
+        meant = choice.held(plan_id, mission.vehicle)
         what: dict[str, Any] = {"plan_id": plan_id, "parts": list(parts), "plan_vehicle": mission.vehicle}
         what |= {"payload": choice.payload, "gimbal": choice.gimbal}
+        what |= {"arcs": choice.arcs, "chord_error_m": choice.chord_error_m}
         entries = [await self._audit.begin("upload", vehicle.id, vehicle.name, what)]
         try:
             if override is not None:
@@ -316,7 +317,7 @@ class Transfers:
                 "upload overrides", vehicle=vehicle.name, plan_id=plan_id, reason=override, rules=rules
             )
         report = new_report(number, plan_id, mission, parts, override, findings)
-        report.payload, report.gimbal, report.entries = choice.payload, choice.gimbal, tuple(entries)
+        report.choice, report.entries = choice, tuple(entries)
         vehicle.upload = report
         return report
 

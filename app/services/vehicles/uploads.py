@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any, Final, Literal
 
 from app.services.errors import RefusedError, UnsafeError
-from app.services.plans.missions import PARTS, PartName, mission_findings
+from app.services.plans.missions import PARTS, MissionChoice, PartName, mission_findings
 from app.services.plans.work import finding_json
 from app.services.vehicles.audit import Entry
 from app.services.vehicles.items import difference_json, item_json
@@ -93,8 +93,7 @@ class UploadReport:
     parts: dict[PartName, PartResult] = field(default_factory=dict)
     preflight: Preflight | None = None
     replaced: Replaced | None = None
-    payload: str | None = None
-    gimbal: str | None = None
+    choice: MissionChoice = field(default_factory=MissionChoice)
     entries: tuple[Entry, ...] = ()
 
     @property
