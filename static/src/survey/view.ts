@@ -1,6 +1,7 @@
 /** What of a camera survey is drawn: places of photos, the ground each sees, how often each place is seen. */
 import type { Map as MapLibreMap } from "maplibre-gl";
 import type { Feature } from "geojson";
+import { nearTo } from "../antimeridian";
 import { flown } from "../flights";
 import { setData } from "../map";
 import { open } from "../plans";
@@ -24,14 +25,23 @@ const ROUND_THE_WORLD_M = 40_075_016.686;
 /** From these sizes on the screen on they are drawn. */
 const PRINT_PX = 90;
 const PLACE_PX = 6;
+/** So much of the view beside it is drawn as well. */
+const BESIDE = 0.5;
 
 /** The zoom from which a length has so many pixels. */
 function zoomFor(length_m: number, lat_deg: number, pixels: number): number {
   return Math.max(0, Math.min(22, Math.log2((pixels * ROUND_THE_WORLD_M * Math.cos((lat_deg * Math.PI) / 180)) / (TILE_PX * length_m))));
 }
 
-function features(all: Shot[], rings: (ReturnType<typeof printOf>)[]): Feature[] {
+/** Photos whose place is in the view or near it, with the ground of each. */
+function features(map: MapLibreMap, all: Shot[], rings: (ReturnType<typeof printOf>)[]): Feature[] {
+  const view = map.getBounds();
+  const [west, south, east, north] = [view.getWest(), view.getSouth(), view.getEast(), view.getNorth()];
+  const [wide, high] = [(east - west) * BESIDE, (north - south) * BESIDE];
+  const middle = (west + east) / 2;
   return all.flatMap((shot, index): Feature[] => {
+    const [lon, lat] = [nearTo(shot.at[0] as number, middle), shot.at[1] as number];
+    if (lon < west - wide || lon > east + wide || lat < south - high || lat > north + high) return [];
     const properties = { number: shot.number, seq: shot.seq, sensor: shot.camera.name, height_m: shot.height_m, gsd_m: shot.height_m === null ? null : gsd_m(shot.camera, shot.height_m) };
     const ring = rings[index];
     return [
@@ -41,14 +51,17 @@ function features(all: Shot[], rings: (ReturnType<typeof printOf>)[]): Feature[]
   });
 }
 
-function scaleLayers(map: MapLibreMap, all: Shot[], spacing_m: number): void {
+/** From which zoom on photos are drawn at all. */
+function scaleLayers(map: MapLibreMap, all: Shot[], spacing_m: number): number {
   const [shot] = all;
-  if (!shot) return;
+  if (!shot) return Infinity;
   const lat = shot.at[1] as number;
   const { camera, height_m } = shot;
   const wide_m = ((camera.columns * camera.pixel_pitch_m) / camera.focal_length_m) * (height_m ?? 1);
-  map.setLayerZoomRange("photo-place", zoomFor(spacing_m, lat, PLACE_PX), 24);
-  map.setLayerZoomRange("photo-print", zoomFor(wide_m, lat, PRINT_PX), 24);
+  const [places, prints] = [zoomFor(spacing_m, lat, PLACE_PX), zoomFor(wide_m, lat, PRINT_PX)];
+  map.setLayerZoomRange("photo-place", places, 24);
+  map.setLayerZoomRange("photo-print", prints, 24);
+  return Math.min(places, prints);
 }
 
 /** The picture takes the place of the one before it; it lies under regions and lines. */
@@ -97,6 +110,8 @@ function showTaken(map: MapLibreMap, visible: () => boolean): void {
 /** Draw what belongs to the plan on the map, whenever that or what is known of the ground changes. */
 export function showSurvey(map: MapLibreMap, visible: () => boolean): void {
   let drawn: unknown = null;
+  let inView = (): void => undefined;
+  map.on("moveend", () => inView());
   const draw = (): void => {
     const shown = open.value;
     const key = shown && hasPhotos(shown) ? shown.plan : null;
@@ -107,8 +122,15 @@ export function showSurvey(map: MapLibreMap, visible: () => boolean): void {
     const rings = all.map(printOf);
     const found = overlapOf(rings.filter((ring) => ring !== null));
     const photos = key?.features.find(({ properties }) => properties["role"] === "photos");
-    scaleLayers(map, all, Number(photos?.properties["interval_m"] ?? 1));
-    setData(map, "photos", features(all, rings));
+    const from = scaleLayers(map, all, Number(photos?.properties["interval_m"] ?? 1));
+    let empty = false;
+    // Of tens of thousands only those are handed to the map that can be seen.
+    inView = () => {
+      const near = map.getZoom() >= from ? features(map, all, rings) : [];
+      if (near.length > 0 || !empty) setData(map, "photos", near);
+      empty = near.length === 0;
+    };
+    inView();
     drawOverlap(map, takenOverlap.value ?? found, visible());
     shots.set(all);
     overlap.set(found);
