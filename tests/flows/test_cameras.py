@@ -12,6 +12,7 @@ import math
 import os
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -23,6 +24,7 @@ from mavlink.encoding.encode import EncodeOptions, encode
 from mavlink.encoding.trigger import payload_of
 from mavlink.state.photos import PhotoTaken
 from mavlink.station.client import VehicleClient
+from mavlink.wire.items import Command, MissionType
 from planner.airspace.terrain import Terrain
 from planner.frames import LocalFrame
 from planner.geojson import read_scenario
@@ -238,8 +240,8 @@ async def test_px4_takes_the_photos_planned(tmp_path: Path, airframe: str) -> No
     judged("PX4, wing" if airframe == px4.AEROPLANE else "PX4, multirotor", plan, flight)
 
 
-async def returning(client: VehicleClient, plan: Plan) -> tuple[int, int, int]:
-    """A return ordered in a pass: photos before it, in 15 s behind it, and 15 s behind the order to stop."""
+async def broken_off(client: VehicleClient, plan: Plan, how: str) -> tuple[int, int, int]:
+    """A pass broken off: photos before it, in 15 s behind it, and in 15 s behind the order to stop."""
     recorder = client.start_recording()
 
     def taken() -> int:
@@ -252,8 +254,14 @@ async def returning(client: VehicleClient, plan: Plan) -> tuple[int, int, int]:
     async with asyncio.timeout(240.0):
         while taken() < 10:
             await asyncio.sleep(0.05)
-    assert (await client.return_to_launch()).accepted
-    await client.wait_for(lambda state: "RTL" in state.mode, 30.0)
+    if how == "return":
+        assert (await client.return_to_launch()).accepted
+        await client.wait_for(lambda state: "RTL" in state.mode, 30.0)
+    else:
+        # Without its passes: nothing of it switches the camera.
+        items = [item for item in encode(plan).mission if item.command != Command.DO_SET_CAM_TRIGG_DIST]
+        numbered = tuple(replace(item, seq=seq) for seq, item in enumerate(items))
+        assert (await client.upload(numbered, MissionType.MISSION)).kind == "accepted"
     before = taken()
     await later(15.0)
     behind = taken() - before
@@ -268,8 +276,9 @@ async def returning(client: VehicleClient, plan: Plan) -> tuple[int, int, int]:
 
 @pytest.mark.ardupilot
 @pytest.mark.skipif(not arduplane.BINARY, reason="SWATHPLAN_ARDUPLANE names no simulator")
-async def test_arduplane_goes_on_with_photos_on_its_return_until_it_is_told(tmp_path: Path) -> None:
-    """Whoever brings it back in a pass has to switch the camera off; one order does."""
+@pytest.mark.parametrize("how", ["return", "replaced"])
+async def test_arduplane_goes_on_with_photos_until_it_is_told(tmp_path: Path, how: str) -> None:
+    """Whoever breaks a pass off by a return or another mission has to stop the camera; one order does."""
     plan = survey(
         type="fixed_wing", autopilot="ardupilot", airspeed_m_s=20.0, min_turn_radius_m=100.0, settle_m=150.0
     )
@@ -282,8 +291,8 @@ async def test_arduplane_goes_on_with_photos_on_its_return_until_it_is_told(tmp_
     ):
         await arduplane.arm(client)
         assert (await client.start_mission()).accepted
-        before, behind, stopped = await returning(client, plan)
-    log.info("ArduPlane: %d photos, %d behind the return, %d behind the order", before, behind, stopped)
+        before, behind, stopped = await broken_off(client, plan, how)
+    log.info("ArduPlane, %s: %d photos, then %d, %d behind the order", how, before, behind, stopped)
     assert behind > 5
     assert stopped == 0
 
@@ -292,7 +301,8 @@ async def test_arduplane_goes_on_with_photos_on_its_return_until_it_is_told(tmp_
 @pytest.mark.skipif(
     not (px4.BINARY and px4.ROMFS), reason="SWATHPLAN_PX4 and SWATHPLAN_PX4_ROMFS name no simulator"
 )
-async def test_px4_ends_its_photos_with_the_mission(tmp_path: Path) -> None:
+@pytest.mark.parametrize("how", ["return", "replaced"])
+async def test_px4_ends_its_photos_with_the_mission(tmp_path: Path, how: str) -> None:
     """It stops its trigger where it leaves the mission; the order to stop is taken all the same."""
     plan = survey(autopilot="px4", type="multirotor", airspeed_m_s=8.0)
     async with (
@@ -303,7 +313,7 @@ async def test_px4_ends_its_photos_with_the_mission(tmp_path: Path) -> None:
             if (await client.start_mission()).accepted:
                 break
             await asyncio.sleep(0.5)
-        before, behind, stopped = await returning(client, plan)
-    log.info("PX4: %d photos, %d behind the return, %d behind the order", before, behind, stopped)
+        before, behind, stopped = await broken_off(client, plan, how)
+    log.info("PX4, %s: %d photos, then %d, %d behind the order", how, before, behind, stopped)
     assert behind <= 1
     assert stopped == 0
