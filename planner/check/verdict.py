@@ -14,6 +14,7 @@ from planner.check.continuity import collect_violations, terminal_violations
 from planner.check.coverage import covered
 from planner.check.energy import line_wh
 from planner.check.followed import followed_violations
+from planner.check.footprint_quality import footprint_violations
 from planner.check.heights import (
     altitude_violations,
     ground_violations,
@@ -110,6 +111,7 @@ def judge(scenario: Scenario, plan: Plan) -> Verdict:
     violations += missed
     surveys, short = surveyed(scenario, plan)
     violations += short
+    violations += footprint_violations(scenario, plan)
     length_m = math.fsum(lengths_m)
     mission_m = math.fsum(
         phase.end_m - phase.start_m for path in plan.paths for phase in path.phases if phase.kind == "mission"

@@ -169,3 +169,16 @@ def test_ground_that_no_photo_sees_is_found_out() -> None:
     scenario, plan = planned()
     half = tuple(replace(p, places=p.places[: len(p.places) // 2]) for p in plan.photos)
     assert "photo-coverage" in {v.constraint for v in judge(scenario, replace(plan, photos=half)).violations}
+
+
+def test_a_footprint_that_tells_other_than_its_images_give_is_found_out() -> None:
+    """Of a camera that is tilted, and of a radar: the plan's own values are sound, others are not."""
+    scenario, plan = planned({"tilt_deg": 25.0})
+    radar = read_scenario(small())
+    for asked, made in ((scenario, plan), (radar, make_plan(radar))):
+        assert "footprint-quality" not in {v.constraint for v in made.violations}
+        first, *rest = made.footprints
+        assert first.niirs is not None
+        better = replace(made, footprints=(replace(first, niirs=first.niirs + 0.01), *rest))
+        found = [v for v in judge(asked, better).violations if v.constraint == "footprint-quality"]
+        assert [v.feature for v in found] == [first.sensor]

@@ -190,3 +190,14 @@ def test_without_any_height_altitude_is_missing() -> None:
     assert (found.feature, found.rule) == ("scenario", "missing-property")
     (found,) = refused(document({"gsd_m": 0.03}, altitude_m=None))
     assert (found.feature, found.rule) == ("B", "missing-property")
+
+
+def test_following_the_ground_quality_is_that_of_one_height_over_it() -> None:
+    """On the slope the region is flown over as high everywhere; what lies lower beside it is allowed for."""
+    frame = read_scenario(small()).frame
+    slope = {"t": raster(lambda e, n: 0.1 * e, frame)}
+    given = document({"gsd_m": 0.03}, {"min_interval_s": 0.0}, terrain="t", terrain_following=True)
+    region = read_scenario(given, slope).regions[0]
+    assert region.over_ground_m is not None
+    # 150 m over the lowest ground seen: of the strip, 180 m wide from there, one half lies up to 9 m lower.
+    assert 100.0 < region.over_ground_m <= 150.0 - 0.1 * 90.0 * region.over_ground_m / 150.0
