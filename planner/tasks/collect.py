@@ -31,7 +31,7 @@ from planner.tasks.methods import chosen_methods
 from planner.tasks.setting import Setting, seeing
 from planner.tasks.task import NOT_SEEN, Answer, Controls, Task
 from planner.tasks.transits import Transits
-from planner.tasks.urban import cut_by_obstacles, filled_by_obstacles, leaves_ground, swept
+from planner.tasks.urban import cut_by_obstacles, leaves_ground, refuse_filled, swept
 from planner.vehicle.limits import Use
 
 Passes = tuple[CollectPass, ...]
@@ -131,11 +131,10 @@ def _among_obstacles(
     InfeasibleError
         Where there are neither.
     """
+    refuse_filled(asked)
     try:
         found = swept(asked, setting, "auto", seed, controls.progress, controls.stop)
     except InfeasibleError:
-        if filled_by_obstacles(asked):
-            raise
         return _joint(asked, setting, seed, sight, controls)
     if not leaves_ground(found[1]):
         return found

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
+
 from shapely.geometry import Point
 from shapely.geometry.base import BaseGeometry
 
 from planner.airspace.zones import TRANSIT_MARGIN_M
-from planner.coverage.urban.regions import camera_of, open_ground, unseen_m2, urban_passes
+from planner.coverage.urban.regions import camera_of, open_ground, top_over, unseen_m2, urban_passes
 from planner.coverage.visible import Seeing
 from planner.errors import Finding, InfeasibleError
 from planner.progress import Progress, Stop, raise_if
@@ -77,11 +79,26 @@ def cut_by_obstacles(asked: Seeing) -> bool:
     return any(_open_ground(asked, each, hull).area < hull.area - LEAST_M2 for each, hull in hulls)
 
 
-def filled_by_obstacles(asked: Seeing) -> bool:
-    """Whether obstacles leave no ground of a required region to fly over, turns left aside."""
-    return any(
-        each.required and _open_ground(asked, each, each.area).area < LEAST_M2 for each in asked.regions
-    )
+def refuse_filled(asked: Seeing) -> None:
+    """Refuse a required region that obstacles leave no ground of to fly over, turns left aside.
+
+    Raises
+    ------
+    InfeasibleError
+        With the height that passes over them, where there is one.
+    """
+    for region in asked.regions:
+        if not region.required or _open_ground(asked, region, region.area).area >= LEAST_M2:
+            continue
+        level, clearance_m = asked.level.of(region), asked.airspace.clearance_m
+        over_m = top_over(region.area, asked.airspace, level) - level.height_m + level.altitude_m
+        raise InfeasibleError(
+            "hard-zone",
+            region.name,
+            f"obstacles and zones, with their clearance of {clearance_m:g} m, fill it at this height",
+            "fly elsewhere" if math.isinf(over_m) else f"fly higher: altitude_m of {math.ceil(over_m + 0.1)}",
+            (region.area.centroid.x, region.area.centroid.y),
+        )
 
 
 def _open_ground(asked: Seeing, region: Region, area: BaseGeometry) -> BaseGeometry:

@@ -93,6 +93,16 @@ def open_ground(area: BaseGeometry, airspace: Airspace, level: Level, margin_m: 
     return ground
 
 
+def top_over(area: BaseGeometry, airspace: Airspace, level: Level) -> float:
+    """How high over home what may not be entered at a level reaches over an area, clearance included."""
+    tops_m = [
+        banded.high_m + banded.kept_m
+        for banded in banded_shapes(airspace, level.amsl_m - level.height_m)
+        if banded.hard and banded.counts(*level.counted_m) and banded.shape.polygon().intersects(area)
+    ]
+    return max(tops_m, default=-math.inf)
+
+
 def unseen_m2(region: Region, passes: tuple[CollectPass, ...]) -> float:
     """How much of a region's ground no pass sees."""
     seen = shapely.union_all([each.footprint for each in passes], grid_size=1e-6)

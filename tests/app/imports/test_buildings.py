@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 from typing import Any
 
 import pytest
+from shapely.geometry import LineString, Polygon
 
 from app.imports import ImportOptions, import_regions
 from app.imports.buildings import metres
 from planner.geojson import read_scenario
+from planner.pipeline import make_plan
+from planner.validate import read_valid
 from tests.planner.scenarios import small
 
 RING = [[8.0, 47.0], [8.001, 47.0], [8.001, 47.001], [8.0, 47.001], [8.0, 47.0]]
@@ -148,3 +152,33 @@ def test_a_town_of_such_buildings_is_a_scenario() -> None:
     scenario = read_scenario(document)
     assert [obstacle.height_m for obstacle in scenario.airspace.obstacles] == [30.0]
     assert [zone.ceiling_m for zone in scenario.airspace.no_fly if zone.name == "barn"] == [float("inf")]
+
+
+def test_the_packaged_extract_is_what_stands_in_the_example() -> None:
+    """Buildings of the extract, of unknown height: zones; with one, obstacles where the example has them."""
+    examples = Path(__file__).parents[3] / "examples"
+    extract = (examples / "kaltern-osm.geojson").read_bytes()
+    assert "ODbL" in json.loads(extract)["copyright"]
+    unknown = import_regions(extract, ImportOptions())
+    assert {each["properties"]["role"] for each in unknown.collection["features"]} == {"no_fly"}
+    given = import_regions(extract, ImportOptions(height_m=15.0))
+    scenario = json.loads((examples / "city-block.geojson").read_text())
+    assert "ODbL" in scenario["name"]
+    standing = [each for each in scenario["features"] if each["properties"]["role"] == "obstacle"]
+    assert [each["geometry"] for each in standing] == [
+        each["geometry"] for each in given.collection["features"]
+    ]
+
+
+def test_the_example_is_planned_whole_and_clear() -> None:
+    """Everything is seen, the judge finds nothing, and the line keeps clear of the church."""
+    path = Path(__file__).parents[3] / "examples" / "city-block.geojson"
+    document = json.loads(path.read_text())
+    scenario = read_valid(document)
+    plan = make_plan(scenario)
+    assert plan.violations == ()
+    assert plan.metrics.coverage == {"old-town": 1.0}
+    line = LineString(scenario.frame.to_local([place[:2] for place in plan.paths[0].line]))
+    church = next(each for each in document["features"] if each["properties"].get("height_m") == 40.0)
+    outline = Polygon(scenario.frame.to_local(church["geometry"]["coordinates"][0]))
+    assert line.distance(outline) > 4.0 - 0.02

@@ -96,7 +96,7 @@ def test_a_region_filled_by_an_obstacle_is_refused() -> None:
     document["features"].append(
         feature("tower", "obstacle", "Polygon", block(-5, -5, 510, 370), height_m=90.0)
     )
-    with pytest.raises(InfeasibleError, match="fly higher") as caught:
+    with pytest.raises(InfeasibleError, match="altitude_m of 96") as caught:
         make_plan(read_scenario(document))
     assert caught.value.constraint == "hard-zone"
     assert caught.value.feature == "district"
