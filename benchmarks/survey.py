@@ -7,7 +7,7 @@ Parts, each with rows of its own:
     and by its method in both of its orders, from the first swath to the last; swaths and turns apart.
 ``items``
     Random polygons as survey items of QGroundControl: at the item's heading and spacing, and with the heading
-    free.
+    free; its lines alone, and with the 10 m that it flies on beyond each for a multirotor.
 ``convex``
     Random convex regions: metres from the first lane to the last over area / spacing and the least turns.
 ``photos``
@@ -34,7 +34,14 @@ from shapely.affinity import rotate
 from shapely.geometry import Polygon
 
 from benchmarks.photos import photos, places, seen_by
-from benchmarks.survey_baselines import fields2cover, flown_m, qgc_item_m, qgc_transects
+from benchmarks.survey_baselines import (
+    QGC_TURNAROUND_M,
+    fields2cover,
+    flown_m,
+    qgc_item_m,
+    qgc_transects,
+    with_turnaround,
+)
 from planner.airspace.surroundings import Surroundings
 from planner.airspace.values import Wind
 from planner.coverage.merge import split_region
@@ -164,6 +171,7 @@ def _measured(planner: str, count: int, lanes_m: float, turns_m: float, publishe
 def items(count: int, seed: int) -> Iterator[Row]:
     """See the module."""
     ratios: dict[str, list[float]] = {"same": [], "free": []}
+    whole: dict[str, list[float]] = {"same": [], "free": []}
     lanes = {"same": 0, "fewer": 0, "more": 0}
     for k in range(count):
         rng = np.random.default_rng([seed, k])
@@ -173,6 +181,8 @@ def items(count: int, seed: int) -> Iterator[Row]:
         azimuth_deg = float(rng.uniform(-90.0, 90.0))
         transects = qgc_transects(area, azimuth_deg, spacing_m)
         theirs_m = math.fsum(qgc_item_m(transects, radius_m))
+        flown = with_turnaround(transects, QGC_TURNAROUND_M)
+        theirs_whole_m = math.fsum(qgc_item_m(flown, radius_m))
         camera = camera_for(spacing_m, side)
         along_rad = math.radians(90.0 - azimuth_deg)
         fixed = surveyed(area, camera, radius_m, (along_rad, along_rad + math.pi))
@@ -181,7 +191,9 @@ def items(count: int, seed: int) -> Iterator[Row]:
         of = "same" if lane_count == len(transects) else "fewer" if lane_count < len(transects) else "more"
         lanes[of] += 1
         for name, passes in (("same", fixed), ("free", free)):
-            ratios[name].append(math.fsum(flown_m(lines_of(passes), radius_m)) / theirs_m)
+            ours_m = math.fsum(flown_m(lines_of(passes), radius_m))
+            ratios[name].append(ours_m / theirs_m)
+            whole[name].append(ours_m / theirs_whole_m)
     for name, of in ratios.items():
         yield {
             "bench": "survey-items",
@@ -190,6 +202,8 @@ def items(count: int, seed: int) -> Iterator[Row]:
             "mean_ratio": round(float(np.mean(of)), 4),
             "worst_ratio": round(max(of), 4),
             "longer": sum(ratio > 1.0 for ratio in of),
+            "mean_ratio_with_its_turnaround": round(float(np.mean(whole[name])), 4),
+            "longer_than_with_it": sum(ratio > 1.0 for ratio in whole[name]),
         } | ({f"lanes_{key}": value for key, value in lanes.items()} if name == "same" else {})
 
 

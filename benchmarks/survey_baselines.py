@@ -23,6 +23,8 @@ from planner.dubins.kernels import dubins_lengths
 
 Floats = NDArray[np.float64]
 
+#: How far QGroundControl flies on beyond transects where its item says nothing else, with multirotors.
+QGC_TURNAROUND_M = 10.0
 #: QGroundControl adds this to the larger side of the bounding box.
 QGC_SLACK_M = 2000.0
 
@@ -104,6 +106,15 @@ def qgc_transects(area: Polygon, azimuth_deg: float, spacing_m: float) -> list[F
     inside = area.exterior.intersection(LineString([middle - half_m * ahead, middle + half_m * ahead]))
     along_m = (shapely.get_coordinates(inside) - middle) @ ahead
     return [np.array([middle + along_m.min() * ahead, middle + along_m.max() * ahead])]
+
+
+def with_turnaround(transects: list[Floats], turnaround_m: float) -> list[Floats]:
+    """Transects flown on by so much at both ends before the turn."""
+    longer = []
+    for line in transects:
+        ahead = (line[1] - line[0]) / np.hypot(*(line[1] - line[0]))
+        longer.append(np.array([line[0] - turnaround_m * ahead, line[1] + turnaround_m * ahead]))
+    return longer
 
 
 def qgc_item_m(transects: list[Floats], radius_m: float) -> tuple[float, float]:

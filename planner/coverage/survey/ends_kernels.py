@@ -10,7 +10,9 @@ Floats = NDArray[np.float64]
 
 
 @njit(cache=True)
-def lane_ends(line_m: Floats, cells_m: Floats, twice_m: Floats, once_m: Floats) -> Floats:
+def lane_ends(
+    line_m: Floats, cells_m: Floats, nearer_m: Floats, farther_m: Floats, twice_m: Floats, once_m: Floats
+) -> Floats:
     """How far lanes go at one end.
 
     Parameters
@@ -20,22 +22,30 @@ def lane_ends(line_m: Floats, cells_m: Floats, twice_m: Floats, once_m: Floats) 
     cells_m
         How far ground goes between lanes, (P, N + 1): beside the first one, between it and the next, so on to
         beside the last. Ground beside the outer lanes is seen by these and by the next.
+    nearer_m, farther_m
+        The same of the parts of each cell that the lane beyond its farther one does not see, and of those
+        that the lane before its nearer one does not; −inf where there are none.
     twice_m, once_m
         How far ground may lie beyond a lane's end to be in two of its photos, and in one, (P,).
 
     Returns
     -------
     ndarray
-        (P, N): of the two lanes that see a cell both have its ground in one photo, the longer in two.
+        (P, N): two lanes at least have a cell's ground in one photo, one of the two beside it in two.
     """
     ends_m = line_m.copy()
     problems, lanes = line_m.shape
     for p in range(problems):
         for cell in range(lanes + 1):
             one = min(max(cell - 1, 0), lanes - 2)
-            least_m = cells_m[p, cell] - once_m[p]
-            ends_m[p, one] = max(ends_m[p, one], least_m)
-            ends_m[p, one + 1] = max(ends_m[p, one + 1], least_m)
+            full_m = cells_m[p, cell] - once_m[p]
+            inner = 0 < cell < lanes
+            beyond = inner and one + 2 < lanes and ends_m[p, one + 2] >= full_m
+            before = inner and one > 0 and ends_m[p, one - 1] >= full_m
+            near_m = nearer_m[p, cell] - once_m[p] if beyond else full_m
+            far_m = farther_m[p, cell] - once_m[p] if before else full_m
+            ends_m[p, one] = max(ends_m[p, one], near_m)
+            ends_m[p, one + 1] = max(ends_m[p, one + 1], far_m)
         for cell in range(lanes + 1):
             one = min(max(cell - 1, 0), lanes - 2)
             longer = one if ends_m[p, one] >= ends_m[p, one + 1] else one + 1

@@ -11,6 +11,7 @@ from their distances or from e.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -125,13 +126,17 @@ def lanes_at(survey: Survey, angles_rad: Floats, etas: Floats, count: int) -> La
     line_m = strip_extents(edges, angles_rad, places_m - LINE_M, places_m + LINE_M)
     paired = count > 1 and survey.camera.side_overlap >= TWICE
     if paired:
-        beside_m = strip_extents(edges, angles_rad, cells_m[..., :-1], cells_m[..., 1:])
+        low, high = cells_m[..., :-1], cells_m[..., 1:]
+        # What lies so near to a lane the one beyond it sees, too.
+        seen_m = np.minimum(laid.inset_m, laid.half_m - laid.spacing_m)[:, None, None]
+        strips = [(low, high), (low, high - seen_m), (low + seen_m, high)]
     else:
-        beside_m = strip_extents(edges, angles_rad, low_m, high_m)
+        strips = [(low_m, high_m)]
+    beside_m = [strip_extents(edges, angles_rad, *strip) for strip in strips]
     states, headings = [], []
     for way in (1, -1):
         courses_rad = angles_rad if way == 1 else angles_rad + math.pi
-        x_m = _ends(line_m, beside_m, survey.runs(courses_rad), way, paired)
+        x_m = _ends(line_m, beside_m, survey.runs(courses_rad), way)
         x_m = _at_least(x_m, way, laid.photos_m[:, None, None])
         photos_m, least_m = laid.photos_m[:, None, None], laid.least_m[:, None, None]
         length_m = way * (x_m[..., 1] - x_m[..., 0])
@@ -168,13 +173,13 @@ def places_across(laid: Frames, low_m: Floats, high_m: Floats, etas: Floats, cou
     return places_m
 
 
-def _ends(line_m: Floats, beside_m: Floats, run: Runs, way: int, paired: bool) -> Floats:
+def _ends(line_m: Floats, beside_m: Sequence[Floats], run: Runs, way: int) -> Floats:
     """Where lanes begin and end, x̂ (…, 2), for extents (…, 2) of ground on their lines and beside them.
 
     Parameters
     ----------
-    paired
-        Whether what is beside lies between two lanes that both see it; else it is one lane's own.
+    beside_m
+        Of what is beside each as its own; or of what is between two, whole and in the parts of ``lane_ends``.
     """
     shape, sides = line_m.shape[:3], []
     for side, (line_out_m, beside_out_m, other_out_m) in enumerate(
@@ -187,17 +192,20 @@ def _ends(line_m: Floats, beside_m: Floats, run: Runs, way: int, paired: bool) -
         outward = 1.0 if (side == 1) == (way == 1) else -1.0
         column = 1 if outward > 0.0 else 0
         own_m = outward * line_m[..., column] + line_out_m[:, None, None]
-        there_m = outward * beside_m[..., column]
-        if paired:
+        there_m = [outward * each[..., column] for each in beside_m]
+        if len(there_m) > 1:
             rows = shape[0] * shape[1]
+            whole_m, nearer_m, farther_m = (each.reshape(rows, -1) for each in there_m)
             far_m = lane_ends(
                 own_m.reshape(rows, -1),
-                there_m.reshape(rows, -1),
+                whole_m,
+                nearer_m,
+                farther_m,
                 np.repeat(-beside_out_m, shape[1]),
                 np.repeat(-other_out_m, shape[1]),
             ).reshape(shape)
         else:
-            far_m = np.maximum(own_m, there_m + beside_out_m[:, None, None])
+            far_m = np.maximum(own_m, there_m[0] + beside_out_m[:, None, None])
         sides.append(outward * far_m)
     return np.stack(sides, axis=-1)
 

@@ -53,8 +53,8 @@ def seen(passes: list[CollectPass], area: Polygon, camera: CameraSensor = EYE) -
 
 def test_a_cross_hatch_sees_everything_from_two_sets_of_lanes_across() -> None:
     """Two sets at right angles, each complete by itself; of two headings allowed those, of one none."""
-    for more in ({}, {"approach_rad": (0.3, 0.3 + math.pi / 2.0)}):
-        one, other = surveyed("crosshatch", **more)
+    for approach_rad in (None, (0.3, 0.3 + math.pi / 2.0)):
+        one, other = surveyed("crosshatch", approach_rad=approach_rad)
         assert math.cos(one[0].angle_rad - other[0].angle_rad) == pytest.approx(0.0, abs=1e-9)
         for passes in (one, other):
             counts = seen(passes, FIELD)
