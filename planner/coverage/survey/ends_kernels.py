@@ -11,7 +11,13 @@ Floats = NDArray[np.float64]
 
 @njit(cache=True)
 def lane_ends(
-    line_m: Floats, cells_m: Floats, nearer_m: Floats, farther_m: Floats, twice_m: Floats, once_m: Floats
+    line_m: Floats,
+    back_m: Floats,
+    cells_m: Floats,
+    nearer_m: Floats,
+    farther_m: Floats,
+    twice_m: Floats,
+    once_m: Floats,
 ) -> Floats:
     """How far lanes go at one end.
 
@@ -19,6 +25,8 @@ def lane_ends(
     ----------
     line_m
         As far as each goes for ground on its own line, (P, N), N ≥ 2; −inf where there is none.
+    back_m
+        From where on each goes there, (P, N): its other end; inf where it has none.
     cells_m
         How far ground goes between lanes, (P, N + 1): beside the first one, between it and the next, so on to
         beside the last. Ground beside the outer lanes is seen by these and by the next.
@@ -39,13 +47,16 @@ def lane_ends(
         for cell in range(lanes + 1):
             one = min(max(cell - 1, 0), lanes - 2)
             full_m = cells_m[p, cell] - once_m[p]
+            near_m = max(ends_m[p, one], nearer_m[p, cell] - once_m[p])
+            far_m = max(ends_m[p, one + 1], farther_m[p, cell] - once_m[p])
             inner = 0 < cell < lanes
+            # Who stands in goes from where the other leaves off to where the ground ends.
             beyond = inner and one + 2 < lanes and ends_m[p, one + 2] >= full_m
+            beyond = beyond and back_m[p, one + 2] <= near_m + once_m[p]
             before = inner and one > 0 and ends_m[p, one - 1] >= full_m
-            near_m = nearer_m[p, cell] - once_m[p] if beyond else full_m
-            far_m = farther_m[p, cell] - once_m[p] if before else full_m
-            ends_m[p, one] = max(ends_m[p, one], near_m)
-            ends_m[p, one + 1] = max(ends_m[p, one + 1], far_m)
+            before = before and back_m[p, one - 1] <= far_m + once_m[p]
+            ends_m[p, one] = near_m if beyond else max(ends_m[p, one], full_m)
+            ends_m[p, one + 1] = far_m if before else max(ends_m[p, one + 1], full_m)
         for cell in range(lanes + 1):
             one = min(max(cell - 1, 0), lanes - 2)
             longer = one if ends_m[p, one] >= ends_m[p, one + 1] else one + 1

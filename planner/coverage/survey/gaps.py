@@ -31,10 +31,11 @@ def photographed(
     turned = shapely.transform(survey.wanted, lambda p: p @ np.array([[cos, -sin], [sin, cos]]))
     west_m, _, east_m, _ = turned.bounds
     places_m = lanes.lines[0, 0, :, 0, 0] @ np.array([-sin, cos])
-    # Of the neighbours' strips a lane sees all that it has to see of them.
-    low, high = lanes.low_m[0, 0], lanes.high_m[0, 0]
-    low_m = np.stack([places_m - LINE_M, low, np.append(low[:1], low[:-1])])
-    high_m = np.stack([places_m + LINE_M, high, np.append(high[1:], high[-1:])])
+    laid = survey.frames(lanes.headings_rad[0, :1])
+    # What else a lane sees it may have to stand in for.
+    half_m, photos_m = float(laid.half_m[0]), float(laid.photos_m[0])
+    low_m = np.stack([places_m - LINE_M, lanes.low_m[0, 0], places_m - half_m])
+    high_m = np.stack([places_m + LINE_M, lanes.high_m[0, 0], places_m + half_m])
     west, east = np.full_like(low_m, west_m - 1.0), np.full_like(low_m, east_m + 1.0)
     strips = shapely.box(west, low_m, east, high_m)
     parts, index = shapely.get_parts(shapely.intersection(turned, strips).ravel(), return_index=True)

@@ -192,12 +192,15 @@ def _ends(line_m: Floats, beside_m: Sequence[Floats], run: Runs, way: int) -> Fl
         outward = 1.0 if (side == 1) == (way == 1) else -1.0
         column = 1 if outward > 0.0 else 0
         own_m = outward * line_m[..., column] + line_out_m[:, None, None]
+        line_back_m = run.line_out_m if side == 0 else run.line_in_m
+        back_m = outward * line_m[..., 1 - column] - line_back_m[:, None, None]
         there_m = [outward * each[..., column] for each in beside_m]
         if len(there_m) > 1:
             rows = shape[0] * shape[1]
             whole_m, nearer_m, farther_m = (each.reshape(rows, -1) for each in there_m)
             far_m = lane_ends(
                 own_m.reshape(rows, -1),
+                back_m.reshape(rows, -1),
                 whole_m,
                 nearer_m,
                 farther_m,
