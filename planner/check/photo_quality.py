@@ -7,8 +7,10 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 
+from planner.airspace.shapes import hard_shapes
 from planner.check.camera_print import nose_off_rad, photo_corners
 from planner.check.coverage import counts
 from planner.check.photo_grid import Lane, Seen, grid_over, look
@@ -103,26 +105,33 @@ def _measured(seen: Seen, sensor: CameraSensor) -> Surveyed:
 def _violations(
     scenario: Scenario, region: Region, sensor: CameraSensor, places_m: Floats, seen: Seen
 ) -> Iterator[Violation]:
-    def violation(constraint: str, message: str, amount: float, unit: str, at: int) -> Violation:
+    def violation(
+        constraint: str, message: str, amount: float, unit: str, at: int, *, hard: bool = True
+    ) -> Violation:
         where = lonlat(scenario, places_m[at])
-        return Violation(constraint, region.name, message, amount, unit, where, hard=region.required)
+        return Violation(constraint, region.name, message, amount, unit, where, hard=hard and region.required)
 
     unseen = np.flatnonzero(seen.photos == 0)
     if len(unseen):
         share = len(unseen) / len(places_m)
         said = f"no photo sees {100.0 * share:.2f} % of {region.name}"
         yield violation("photo-coverage", said, share * region.area.area, "m2", int(unseen[0]))
+    free = _free_of_obstacles(scenario, region, sensor, places_m)
     for word, asked, reached in (
         ("forward", sensor.forward_overlap, seen.forward),
         ("side", sensor.side_overlap, seen.side),
     ):
-        worst = int(np.argmin(np.where(seen.photos > 0, reached, np.inf)))
-        short = asked - float(reached[worst])
-        if seen.photos[worst] > 0 and short > OVERLAP_TOLERANCE:
+        # Beside what may not be flown over no flight overlaps as asked: that is told, and no refusal.
+        for where, hard in ((free, True), (~free, False)):
+            worst = int(np.argmin(np.where((seen.photos > 0) & where, reached, np.inf)))
+            short = asked - float(reached[worst])
+            if not (seen.photos[worst] > 0 and where[worst] and short > OVERLAP_TOLERANCE):
+                continue
             got = max(float(reached[worst]), 0.0)
-            said = f"the {word} overlap over {region.name} comes down to {100.0 * got:.1f} %, asked for are"
+            place = region.name if hard else f"ground of {region.name} beside obstacles"
+            said = f"the {word} overlap over {place} comes down to {100.0 * got:.1f} %, asked for are"
             message = f"{said} {100.0 * asked:g} %"
-            yield violation("overlap", message, min(short, asked), "", worst)
+            yield violation("overlap", message, min(short, asked), "", worst, hard=hard)
     if not (seen.photos > 0).any():
         return
     worst = int(np.nanargmax(seen.worst_gsd_m))
@@ -136,6 +145,28 @@ def _violations(
         if niirs < region.min_niirs - QUALITY_TOLERANCE:
             message = f"NIIRS over {region.name} comes down to {niirs:.2f}, min_niirs is {region.min_niirs:g}"
             yield violation("quality", message, region.min_niirs - niirs, "NIIRS", worst)
+
+
+def _free_of_obstacles(
+    scenario: Scenario, region: Region, sensor: CameraSensor, places_m: Floats
+) -> NDArray[np.bool_]:
+    """Which places lie so far from what may not be entered that lanes on all sides of them can be flown.
+
+    A photo reaches half its diagonal; lanes end, or are turned from, as far from obstacles as clearance, a
+    turn and the straight flight behind it take.
+    """
+    level = scenario.level.of(region)
+    shapes = [shape.polygon() for shape in hard_shapes(scenario.airspace, level)]
+    if not shapes:
+        return np.ones(len(places_m), dtype=np.bool_)
+    aircraft = scenario.aircraft[0].in_wind(scenario.wind.speed_m_s)
+    half_m = level.height_m * math.hypot(
+        math.tan(sensor.optics.half_width_rad),
+        math.tan(sensor.optics.half_height_rad) + math.tan(abs(sensor.tilt_rad)),
+    )
+    kept_m = half_m + aircraft.ground_turn_radius_m + aircraft.settle_m
+    solid = shapely.union_all(shapes)
+    return np.asarray(shapely.distance(shapely.points(places_m), solid) > kept_m)
 
 
 def _too_soon(scenario: Scenario, plan: Plan) -> Iterator[Violation]:

@@ -25,6 +25,7 @@ from planner.routing.greedy.route import li2018_route
 from planner.routing.joint.route import Search, joint_route
 from planner.routing.legs import Legs
 from planner.scenario import Scenario
+from planner.tasks.cells import by_cells
 from planner.tasks.hidden import Sight, hidden_findings, see_hidden
 from planner.tasks.limits import Dropped, within_limits
 from planner.tasks.methods import chosen_methods
@@ -124,18 +125,24 @@ def _found(asked: Seeing, setting: Setting, methods: dict[str, str], seed: int, 
 def _among_obstacles(
     asked: Seeing, setting: Setting, seed: int, sight: Sight | None, controls: Controls
 ) -> Found:
-    """Sweeps round what cuts the regions; where they leave ground unseen, lanes if those leave none.
+    """Lanes over cells of the open ground, or sweeps round what cuts it, whichever tour is shorter.
+
+    Where both leave ground unseen, lanes across all of it if those leave none.
 
     Raises
     ------
     InfeasibleError
-        Where there are neither.
+        Where there are none of these.
     """
     refuse_filled(asked)
+    search = _search(asked, setting, seed, None, controls)
+    cells = by_cells(asked, search)
     try:
         found = swept(asked, setting, "auto", seed, controls.progress, controls.stop)
     except InfeasibleError:
-        return _joint(asked, setting, seed, sight, controls)
+        return (cells, ()) if cells else _joint(asked, setting, seed, sight, controls)
+    if cells and (leaves_ground(found[1]) or search.legs.tour_m(cells) <= search.legs.tour_m(found[0])):
+        return cells, ()
     if not leaves_ground(found[1]):
         return found
     try:
@@ -146,6 +153,14 @@ def _among_obstacles(
 
 
 def _joint(asked: Seeing, setting: Setting, seed: int, sight: Sight | None, controls: Controls) -> Found:
+    search = _search(asked, setting, seed, sight, controls)
+    share = partial(asked.sharing, around=search.around)
+    visible = partial(asked.visible, search.around, enough=controls.enough)
+    found = joint_route(search, visible(), visible, share)
+    return found.route.passes, found.seen.dropped
+
+
+def _search(asked: Seeing, setting: Setting, seed: int, sight: Sight | None, controls: Controls) -> Search:
     around = asked.surroundings()
     ends = with_run(setting.ends, setting.level.height_m, setting.model)
     legs = Legs(setting.airspace, setting.level, setting.model, asked.objective, ends, controls.stop)
@@ -157,11 +172,7 @@ def _joint(asked: Seeing, setting: Setting, seed: int, sight: Sight | None, cont
         return see_hidden(sight, at, ends, passes, legs, controls.stop)
 
     watched = (controls.progress, controls.stop, controls.enough)
-    search = Search(ends, around, legs, seed, complete, *watched)
-    share = partial(asked.sharing, around=around)
-    visible = partial(asked.visible, around, enough=controls.enough)
-    found = joint_route(search, visible(), visible, share)
-    return found.route.passes, found.seen.dropped
+    return Search(ends, around, legs, seed, complete, *watched)
 
 
 def paper_choices(asked: Seeing, progress: Progress, stop: Stop, *, threat_aware: bool) -> Located:

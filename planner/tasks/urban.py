@@ -73,6 +73,8 @@ def cut_by_obstacles(asked: Seeing) -> bool:
     """Whether all regions may be swept by cameras from any direction, and obstacles cut or stand in one."""
     if any(each.approach_rad is not None or each.revisits > 1 for each in asked.regions):
         return False
+    if any(each.pattern not in ("auto", "lanes") for each in asked.regions):
+        return False
     if not all(isinstance(asked.suite.of(each), CameraSensor) for each in asked.regions):
         return False
     hulls = [(each, each.area.convex_hull) for each in asked.regions]

@@ -1,0 +1,97 @@
+"""Ground that obstacles cut, as cells with lanes of their own: headings, ends and order are chosen together.
+
+Boustrophedon cells (Choset 2000) of the open ground, for slices along the direction that promises least; each
+is a stop of the tour with all ways of a survey to see it, as in R. Bähnemann et al., "Revisiting
+Boustrophedon Coverage Path Planning as a Generalized Traveling Salesman Problem" (2021).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import shapely
+from shapely.geometry import Polygon
+from shapely.geometry.base import BaseGeometry
+
+from planner.airspace.surroundings import Surroundings
+from planner.coverage.decompose import OVERLAP_M
+from planner.coverage.merge import MergedRegion, split_region
+from planner.coverage.survey.pieces import Pieces, divided
+from planner.coverage.survey.targets import LaneTarget
+from planner.coverage.urban.auto import headings
+from planner.coverage.urban.boustrophedon import cells
+from planner.coverage.urban.regions import open_ground
+from planner.coverage.urban.visibility import edges_of
+from planner.coverage.visible import Seeing
+from planner.errors import InfeasibleError
+from planner.progress import Stop
+from planner.sensors.camera import CameraSensor
+
+#: Smaller cells are seen from their neighbours'.
+LEAST_CELL_M2 = 1.0
+#: Of more cells the tour is left to sweeps.
+MOST_CELLS = 60
+
+
+def cell_targets(
+    asked: Seeing, around: Surroundings, margin_m: float, enough: Stop
+) -> tuple[LaneTarget, ...] | None:
+    """A target for each cell of each region's open ground; None where too many, or none to be flown.
+
+    Parameters
+    ----------
+    margin_m
+        Kept from what may not be entered: turns at the end of lanes have to have room there.
+    """
+    found: list[LaneTarget] = []
+    for region in asked.regions:
+        for part in split_region(region):
+            level = asked.level.of(part)
+            sensor, height_m = asked.suite.over(part.sensor, part.area, asked.airspace, level)
+            assert isinstance(sensor, CameraSensor)
+            trial = Pieces(sensor, height_m, asked.at(level, around))
+            ground = open_ground(part.area, asked.airspace, level, margin_m)
+            pieces: tuple[MergedRegion, ...] | None
+            if ground.area > part.area.area - LEAST_CELL_M2:
+                pieces = divided(part, trial, whole=False, enough=enough)
+            else:
+                pieces = _best(part, ground, trial, enough)
+            if pieces is None or len(found) + len(pieces) > MOST_CELLS:
+                return None
+            found += [trial.target(piece) for piece in pieces]
+    return tuple(found)
+
+
+def _best(
+    part: MergedRegion, ground: BaseGeometry, trial: Pieces, enough: Stop
+) -> tuple[MergedRegion, ...] | None:
+    """The cells, for slices along some edges of the ground, that promise the shortest tour."""
+    best: tuple[float, tuple[MergedRegion, ...]] | None = None
+    for angle_rad in headings(edges_of(ground)):
+        if best is not None and enough():
+            break
+        outlines = list(_cells(ground, angle_rad))
+        if not outlines or len(outlines) > MOST_CELLS:
+            continue
+        pieces = tuple(trial.cut(part.piece(outline)) for outline in outlines)
+        try:
+            cost_m = trial.cost_m(pieces)
+        except InfeasibleError:
+            continue
+        if math.isfinite(cost_m) and (best is None or cost_m < best[0]):
+            best = (cost_m, pieces)
+    return None if best is None else best[1]
+
+
+def _cells(ground: BaseGeometry, angle_rad: float) -> Iterator[Polygon]:
+    """Cells that reach a little into each other, so that no rounding leaves a gap between what they see."""
+    for cell in cells(ground, angle_rad):
+        wide = shapely.intersection(
+            cell.outline.buffer(OVERLAP_M, join_style="mitre"), ground, grid_size=1e-6
+        )
+        yield from (
+            piece
+            for piece in shapely.get_parts(wide)
+            if isinstance(piece, Polygon) and piece.area > LEAST_CELL_M2
+        )

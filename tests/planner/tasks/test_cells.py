@@ -1,0 +1,66 @@
+"""A field with something in its middle: lanes over the open ground round it, in one tour."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from shapely.geometry import LineString, Polygon
+
+from planner.geojson import read_scenario
+from planner.pipeline import make_plan
+from planner.plan import Plan
+from planner.validate import findings
+from tests.planner.scenarios import feature, small, square
+
+FIELD = [[[0.0, 0.0], [0.009, 0.001], [0.008, 0.006], [0.004, 0.0045], [0.001, 0.007], [0.0, 0.0]]]
+CAMERA = {"name": "eye", "type": "camera", "model": "DJI Mavic 3 Enterprise wide"}
+
+
+def field(*more: dict[str, Any], **vehicle: Any) -> dict[str, Any]:
+    """A field that is not convex, seen by a multirotor."""
+    document = small(
+        *more, sensors=[CAMERA], altitude_m=110.0,
+        vehicles=[{"name": "uav", "type": "multirotor", "autopilot": "px4", "airspeed_m_s": 10.0, **vehicle}],
+    )  # fmt: skip
+    document["features"] = [each for each in document["features"] if each["id"] not in ("A", "B", "area")]
+    document["features"].append(feature("F", "roi", "Polygon", FIELD))
+    return document
+
+
+def mast(**properties: Any) -> dict[str, Any]:
+    return feature("mast", "obstacle", "Polygon", square(0.0045, 0.0022, 0.0004), **properties)
+
+
+def flown(asked: dict[str, Any]) -> Plan:
+    """The plan of a field with a mast: all seen, nothing hard broken, its clearance kept."""
+    assert not [each for each in findings(asked) if each.severity == "error"]
+    scenario = read_scenario(asked)
+    plan = make_plan(scenario)
+    assert plan.hard_violations == ()
+    assert plan.metrics.coverage == {"F": 1.0}
+    (obstacle,) = scenario.obstacles
+    line = LineString(scenario.frame.to_local([place[:2] for place in plan.paths[0].line]))
+    assert line.distance(Polygon(obstacle.area)) >= scenario.clearance_m - 0.05
+    return plan
+
+
+def test_a_mast_in_a_field_is_flown_round() -> None:
+    """On wings: at little more way than without it."""
+    wing = {"type": "fixed_wing", "airspeed_m_s": 16.0, "min_turn_radius_m": 40.0}
+    plan = flown(field(mast(height_m=200.0), **wing))
+    free = make_plan(read_scenario(field(**wing)))
+    assert plan.metrics.length_m < 1.4 * free.metrics.length_m
+
+
+def test_overlaps_that_an_obstacle_takes_are_told_and_no_refusal() -> None:
+    """On rotors: beside the mast overlaps fall short, which is told and forbids nothing."""
+    told = [each for each in flown(field(mast(height_m=200.0))).violations if each.constraint == "overlap"]
+    assert told
+    assert all("beside obstacles" in each.message and not each.hard for each in told)
+
+
+def test_what_is_lower_than_the_flight_changes_nothing() -> None:
+    """A shed is flown over: the same plan as without it."""
+    plan, free = (make_plan(read_scenario(each)) for each in (field(mast(height_m=8.0)), field()))
+    assert plan.metrics.length_m == pytest.approx(free.metrics.length_m)
