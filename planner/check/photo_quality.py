@@ -24,6 +24,8 @@ Floats = NDArray[np.float64]
 
 #: Overlaps are kept to this part of a photo, quality to this part of itself: what places are rounded by.
 OVERLAP_TOLERANCE, QUALITY_TOLERANCE = 0.002, 1e-4
+#: Ways to see a region whose photos are no lanes beside each other: overlaps are not asked of them.
+FIGURES = ("orbit", "spiral", "look")
 #: Photos may come this much sooner than the camera takes them: times are rounded.
 INTERVAL_TOLERANCE = 0.01
 
@@ -117,10 +119,11 @@ def _violations(
         said = f"no photo sees {100.0 * share:.2f} % of {region.name}"
         yield violation("photo-coverage", said, share * region.area.area, "m2", int(unseen[0]))
     free = _free_of_obstacles(scenario, region, sensor, places_m)
-    for word, asked, reached in (
+    overlaps = (
         ("forward", sensor.forward_overlap, seen.forward),
         ("side", sensor.side_overlap, seen.side),
-    ):
+    )
+    for word, asked, reached in () if region.pattern in FIGURES else overlaps:
         # Beside what may not be flown over no flight overlaps as asked: that is told, and no refusal.
         for where, hard in ((free, True), (~free, False)):
             worst = int(np.argmin(np.where((seen.photos > 0) & where, reached, np.inf)))

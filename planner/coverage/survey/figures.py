@@ -143,6 +143,9 @@ def spiral(
     """A spiral that sees a disc round the ground: its first turn the edge, its last one the middle."""
     found = _Round.of(ground, camera, height_m, radius_m, settle_m)
     steps: Floats = np.arange(found.count * found.sectors + 1.0)[::-1]
+    if found.inner_m + found.spacing_m > found.middle_m:
+        # The last turn comes in too late to see the middle from all sides of it.
+        steps = np.concatenate([steps, np.zeros(found.sectors - 1)])
     return found.chords(found.inner_m + found.spacing_m / found.sectors * steps)
 
 
@@ -157,6 +160,7 @@ class _Round:
     sectors: int
     corner_m: float
     photos_m: float
+    middle_m: float
 
     @classmethod
     def of(
@@ -176,7 +180,8 @@ class _Round:
         count = max(math.ceil((outer_m - inner_m) / spacing_m - 1e-9), 0) + 1
         # Behind a corner there is no room to settle.
         corner_m = radius_m * math.tan(math.pi / sectors) if settle_m == 0.0 else 0.0
-        return cls((middle.x, middle.y), inner_m, count, spacing_m, sectors, corner_m, photos_m)
+        seen_m = INNERMOST * half_m
+        return cls((middle.x, middle.y), inner_m, count, spacing_m, sectors, corner_m, photos_m, seen_m)
 
     def chords(self, apothems_m: Floats) -> Chords:
         """Chords so far from the middle."""

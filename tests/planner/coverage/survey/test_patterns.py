@@ -15,11 +15,14 @@ from planner.airspace.values import STILL_AIR
 from planner.coverage.merge import merge_regions, split_region
 from planner.coverage.survey.family import Surveys
 from planner.errors import InfeasibleError
+from planner.geojson import read_scenario
+from planner.pipeline import make_plan
 from planner.progress import never
 from planner.route import CollectPass
 from planner.sensors.camera import CameraSensor
 from planner.sensors.optics import Optics
 from planner.wishes import Pattern, Region
+from tests.planner.scenarios import feature, small, square
 
 HEIGHT_M = 60.0
 #: From 60 m a photo sees 70.5 × 47 m.
@@ -155,3 +158,15 @@ def test_regions_of_a_pattern_of_their_own_stay_apart() -> None:
     for pattern, count in (("lanes", 1), ("orbit", 2)):
         regions = tuple(Region(f"R{k}", area, pattern=pattern) for k, area in enumerate(both))  # type: ignore[arg-type]
         assert len(merge_regions(regions)) == count
+
+
+@pytest.mark.parametrize("pattern", ["crosshatch", "orbit", "spiral"])
+def test_the_judge_finds_nothing_wrong_with_a_pattern(pattern: str) -> None:
+    """From scenario to verdict: all seen, and overlaps asked of lanes alone."""
+    eye = {"name": "eye", "type": "camera", "focal_length_m": 0.02, "pixel_pitch_m": 3.9e-6}
+    document = small(altitude_m=HEIGHT_M, sensors=[{**eye, "image_px": [6000, 4000]}])
+    document["features"] = [each for each in document["features"] if each["id"] != "B"]
+    document["features"][0] = feature("A", "roi", "Polygon", square(0.0, 0.0, 0.0004), pattern=pattern)
+    plan = make_plan(read_scenario(document))
+    assert plan.violations == ()
+    assert plan.metrics.coverage == {"A": 1.0}
