@@ -166,7 +166,7 @@ def tell_plan(document: dict[str, Any]) -> None:
         f"{metrics['flight_duration_s'] / 60:.1f} min), collecting {metrics['duty_cycle']:.0%} of the way, "
         f"{sum(fraction >= 0.9999 for fraction in coverage)} of {len(coverage)} regions covered"
     )
-    if metrics.get("gap") is not None:
+    if metrics.get("lower_bound_m") and metrics.get("gap") is not None:
         say(
             f"no plan is shorter than {metrics['lower_bound_m'] / 1000:.2f} km: "
             f"this one is at most {metrics['gap']:.1%} from the best"
