@@ -26,10 +26,8 @@ journey-ardupilot: ## Fly a plan in a real ArduPlane: containers, plan, upload, 
 journey-px4: ## The same in a real PX4
 	sh docker/journey.sh px4 $(ADDRESS)
 
-# A third of their time tests wait for flights and pages: three of them keep two cores busy. In the order of the
-# tree, files of one folder that share a service and a browser follow each other, and the quick ones come last.
 test: $(VENV)/.installed-dev static/dist/index.html ## Run every test
-	$(BIN)/python -m pytest -n 3 --dist loadfile --no-loadscope-reorder
+	$(BIN)/python -m pytest -n 2 --dist loadfile
 
 lint: $(VENV)/.installed-dev ## ruff
 	$(BIN)/ruff check .
