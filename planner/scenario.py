@@ -30,6 +30,7 @@ class Scenario:
 
     Where there is terrain ``altitude_reference`` is ``amsl``; see ``planner.geojson.relief``. The flight is
     level, unless ``lowest_amsl_m`` says how far down it may come where it follows the ground.
+    ``max_height_m`` is the greatest height over ground of passes that was asked for.
     """
 
     name: str
@@ -60,6 +61,7 @@ class Scenario:
     looked_at: Polygon | None = None
     lowest_amsl_m: float | None = None
     terrain_following: bool = False
+    max_height_m: float | None = None
 
     @property
     def airspace(self) -> Airspace:

@@ -13,7 +13,7 @@ from planner.errors import Finding, InfeasibleError, ScenarioError
 from planner.geojson import read_scenario
 from planner.scenario import Scenario
 from planner.tasks.setting import Setting, seeing
-from planner.tasks.urban import cut_by_obstacles, refuse_filled
+from planner.tasks.urban import cut_by_obstacles, lanes_cut, refuse_filled
 
 #: From so many passes on planning takes tens of seconds, then minutes.
 MANY_PASSES = 120
@@ -80,7 +80,11 @@ def unseeable(scenario: Scenario) -> tuple[Finding, ...]:
     if wide and not any(finding.severity == "error" for finding in said):
         try:
             asked = seeing(scenario, Setting.of(scenario))
-            if scenario.task == "collect" and len(scenario.aircraft) == 1 and cut_by_obstacles(asked):
+            if (
+                scenario.task == "collect"
+                and len(scenario.aircraft) == 1
+                and (cut_by_obstacles(asked) or lanes_cut(asked))
+            ):
                 refuse_filled(asked)
             else:
                 check_visible(asked, asked.surroundings())

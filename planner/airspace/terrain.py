@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
@@ -179,6 +179,17 @@ class Ground:
         shapely.prepare(reach)
         inside = shapely.contains_xy(reach, east_m, north_m)
         return np.column_stack([east_m[inside], north_m[inside], self.heights_m[np.ix_(i, j)][inside]])
+
+    def within(self, area: BaseGeometry) -> Ground:
+        """The same with the posts round an area alone; of others nothing is known."""
+        rows, columns = self.heights_m.shape
+        east_m, north_m = np.meshgrid(
+            self.west_m + self.step_m * np.arange(columns), self.south_m + self.step_m * np.arange(rows)
+        )
+        reach = area.buffer(self.step_m * math.sqrt(2.0))
+        shapely.prepare(reach)
+        inside = shapely.contains_xy(reach, east_m, north_m)
+        return replace(self, heights_m=np.where(inside, self.heights_m, np.nan))
 
     def relief_beside_m(self, area: BaseGeometry, reach_m: float) -> float:
         """How much higher or lower than at a place of an area the ground is within a reach of it.

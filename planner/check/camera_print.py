@@ -9,7 +9,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 from shapely.affinity import affine_transform, translate
-from shapely.geometry import MultiPolygon, Polygon, box
+from shapely.geometry import LineString, MultiPolygon, Polygon, box
 
 from planner.airspace.airspace import Airspace, Level
 from planner.airspace.values import Wind
@@ -18,6 +18,9 @@ from planner.sensors.camera import CameraSensor
 from planner.sensors.camera_view import seen_on_terrain
 
 Floats = NDArray[np.float64]
+
+#: Photos whose overlap is 0 are no farther apart than this part of what one sees along its course.
+FARTHEST = 0.98
 
 
 def nose_off_rad(sensor: CameraSensor, course_rad: float, airspeed_m_s: float, wind: Wind) -> float:
@@ -89,7 +92,9 @@ def camera_footprint(
 
 def apart_m(photo: Polygon, sensor: CameraSensor) -> float:
     """How far along the next photo may be taken for it to share the overlap's part of the ground."""
-    low, high = 0.0, photo.bounds[2] - photo.bounds[0]
+    west_m, _, east_m, _ = photo.bounds
+    slices = [LineString([(west_m, y), (east_m, y)]) for _, y in photo.exterior.coords]
+    low, high = 0.0, FARTHEST * max(float(photo.intersection(each).length) for each in slices)
     for _ in range(60):
         middle = (low + high) / 2.0
         kept = photo.intersection(translate(photo, middle)).area >= sensor.forward_overlap * photo.area

@@ -18,6 +18,8 @@ Floats = NDArray[np.float64]
 
 #: The height over ground that is asked for is the greatest; lines of straights come so much lower.
 FOLLOWED_WITHIN_M = 4.0
+#: Collects this many times as high over ground as asked for are told of.
+MUCH_HIGHER = 1.25
 
 
 def along(scenario: Scenario, plan: Plan, collect: Collect, step_m: float) -> tuple[Floats, Floats]:
@@ -46,8 +48,8 @@ def along(scenario: Scenario, plan: Plan, collect: Collect, step_m: float) -> tu
 def followed_violations(scenario: Scenario, plan: Plan, path: FlownPath) -> Iterator[Violation]:
     """Collects that follow the ground come nowhere lower over it than asked for, less ``FOLLOWED_WITHIN_M``.
 
-    How high they come is judged by what their photos are worth. Looked at no farther apart than half the
-    ground's posts.
+    Where they come much higher, over ground steeper than is climbed, that is told; above the greatest height
+    allowed it is a hard violation. Looked at no farther apart than half the ground's posts.
     """
     ground = scenario.terrain
     asked_m = {r.name: r.over_ground_m for r in scenario.regions if r.over_ground_m is not None}
@@ -57,6 +59,21 @@ def followed_violations(scenario: Scenario, plan: Plan, path: FlownPath) -> Iter
         wanted_m = max((asked_m[name] for name in collect.regions if name in asked_m), default=0.0)
         places, altitudes_m = along(scenario, plan, collect, ground.step_m / 2.0)
         over_m = altitudes_m - ground.at(places)
+        high = int(np.argmax(np.where(np.isnan(over_m), -np.inf, over_m)))
+        cap_m = math.inf if scenario.max_height_m is None else scenario.max_height_m
+        told_m = min(cap_m + PLACE_TOLERANCE_M, MUCH_HIGHER * wanted_m)
+        if over_m[high] > told_m:
+            limit = f", {cap_m:g} m are the most" if over_m[high] > cap_m else ""
+            yield Violation(
+                "collect-height",
+                collect.roi,
+                f"collect {collect.seq} comes to {over_m[high]:.0f} m over the ground, not {wanted_m:g} m"
+                f"{limit}: it is steeper there than the aircraft climbs at its speed",
+                float(over_m[high] - min(cap_m, wanted_m)),
+                "m",
+                lonlat(scenario, places[high]),
+                hard=bool(over_m[high] > cap_m + PLACE_TOLERANCE_M),
+            )
         short_m = wanted_m - FOLLOWED_WITHIN_M - over_m
         worst = int(np.argmax(np.where(np.isnan(short_m), np.inf, short_m)))
         if not short_m[worst] <= PLACE_TOLERANCE_M:

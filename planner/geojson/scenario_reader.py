@@ -203,6 +203,7 @@ def _read(document: Any, findings: Findings, terrains: Terrains | None) -> Scena
         looked_at=counted.looked_at(frame),
         home_amsl_m=None if terrain is not None else home_amsl_m(raws, start.name),
         terrain_following=following,
+        max_height_m=heights.max_m,
     )
     scenario = with_wishes(scenario)
     tell_unused(scenario, heights, findings)

@@ -15,6 +15,8 @@ from functools import lru_cache
 from planner.sensors.optics import Optics
 
 _HALVINGS = 60
+#: Photos are no farther apart than this part of the longest chord: at all of it the strip has no width.
+FARTHEST = 0.98
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,16 +57,17 @@ class Band:
         """From where on the right to where on the left a chord of that length, at least, is seen."""
         knots = self.knots
         lengths = [self.chord(knot) for knot in knots]
-        long = [k for k, length in enumerate(lengths) if length >= chord]
+        # The longest chord itself is as long but for rounding.
+        long = [k for k, length in enumerate(lengths) if length >= chord * (1.0 - 1e-6)]
         if not long:
             return None
         first, last = long[0], long[-1]
         right, left = knots[first], knots[last]
         if first > 0:
-            share = (lengths[first] - chord) / (lengths[first] - lengths[first - 1])
+            share = max(lengths[first] - chord, 0.0) / (lengths[first] - lengths[first - 1])
             right -= share * (knots[first] - knots[first - 1])
         if last < len(knots) - 1:
-            share = (lengths[last] - chord) / (lengths[last] - lengths[last + 1])
+            share = max(lengths[last] - chord, 0.0) / (lengths[last] - lengths[last + 1])
             left += share * (knots[last + 1] - knots[last])
         return right, left
 
@@ -149,7 +152,7 @@ def pattern(optics: Optics, tilt_rad: float, crab_rad: float, forward_overlap: f
     seen = band(optics, tilt_rad, crab_rad)
     knots = seen.knots
     lengths = [seen.chord(knot) for knot in knots]
-    low, high = 0.0, max(lengths)
+    low, high = 0.0, FARTHEST * max(lengths)
     for _ in range(_HALVINGS):
         middle = (low + high) / 2.0
         low, high = (middle, high) if _shared(knots, lengths, middle) >= forward_overlap else (low, middle)

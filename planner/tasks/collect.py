@@ -32,7 +32,7 @@ from planner.tasks.methods import chosen_methods
 from planner.tasks.setting import Setting, seeing
 from planner.tasks.task import NOT_SEEN, Answer, Controls, Task
 from planner.tasks.transits import Transits
-from planner.tasks.urban import cut_by_obstacles, leaves_ground, refuse_filled, swept
+from planner.tasks.urban import cut_by_obstacles, lanes_cut, leaves_ground, refuse_filled, swept
 from planner.vehicle.limits import Use
 
 Passes = tuple[CollectPass, ...]
@@ -117,8 +117,12 @@ def _found(asked: Seeing, setting: Setting, methods: dict[str, str], seed: int, 
         return _greedy(choices, asked, setting, seed, controls.progress, controls.stop)
     by_paper = methods["coverage"] == "li2018"
     sight = Sight.of(asked.regions, setting.suite, setting.airspace, setting.level)
-    if by_paper or not cut_by_obstacles(asked):
+    if by_paper or (not lanes_cut(asked) and not cut_by_obstacles(asked)):
         return _joint(asked, setting, seed, None if by_paper else sight, controls)
+    if not cut_by_obstacles(asked):
+        refuse_filled(asked)
+        cells = by_cells(asked, _search(asked, setting, seed, sight, controls))
+        return (cells, ()) if cells else _joint(asked, setting, seed, sight, controls)
     return _among_obstacles(asked, setting, seed, sight, controls)
 
 

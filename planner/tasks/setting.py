@@ -6,6 +6,9 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from shapely import Point, union_all
+from shapely.geometry.base import BaseGeometry
+
 from planner.airspace.airspace import Airspace, Level
 from planner.airspace.envelope import SMOOTH_M, Envelope
 from planner.coverage.visible import Seeing
@@ -15,6 +18,9 @@ from planner.route import Terminal
 from planner.scenario import Scenario
 from planner.sensors.suite import Suite
 from planner.vehicle.model import FlightModel
+
+#: Hills farther than this from all that is flown over lift no flight that follows the ground.
+LEAST_ROUND_M, TURNS_ROUND = 300.0, 6.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,10 +67,23 @@ class Setting:
         following = None
         if scenario.terrain is not None and over_m:
             slope = math.tan(min(climb_slope_rad(model), sink_slope_rad(model)))
+            if model.aircraft.hovers:
+                # It flies the slower where it is steep.
+                slope = math.tan(math.radians(model.max_climb_deg))
             kept_m = scenario.over_ground_m + SMOOTH_M
-            following = Following(Envelope.over(scenario.terrain, kept_m, slope), slope)
+            ground = scenario.terrain.within(_flown_over(scenario, model))
+            following = Following(Envelope.over(ground, kept_m, slope), slope)
         where = (scenario.airspace, scenario.level, model, suite, ends)
         return cls(*where, altitudes_m, over_m, following)
+
+
+def _flown_over(scenario: Scenario, model: FlightModel) -> BaseGeometry:
+    """Ground that a flight which follows it lies over, with room for turns and ways round."""
+    places: list[BaseGeometry] = [region.area for region in scenario.regions]
+    places += [Point(end.position) for end in (scenario.start, scenario.end)]
+    reach_m = max(LEAST_ROUND_M, TURNS_ROUND * model.turn_radius_m)
+    hull: BaseGeometry = union_all(places).convex_hull.buffer(reach_m)
+    return hull
 
 
 def seeing(scenario: Scenario, setting: Setting) -> Seeing:

@@ -81,6 +81,15 @@ def cut_by_obstacles(asked: Seeing) -> bool:
     return any(_open_ground(asked, each, hull).area < hull.area - LEAST_M2 for each, hull in hulls)
 
 
+def lanes_cut(asked: Seeing) -> bool:
+    """Whether obstacles stand in a region that a camera sees in lanes, whatever the other regions ask for."""
+    return any(
+        _open_ground(asked, each, each.area).area < each.area.area - LEAST_M2
+        for each in asked.regions
+        if each.pattern in ("auto", "lanes") and isinstance(asked.suite.of(each), CameraSensor)
+    )
+
+
 def refuse_filled(asked: Seeing) -> None:
     """Refuse a required region that obstacles leave no ground of to fly over, turns left aside.
 
@@ -90,7 +99,9 @@ def refuse_filled(asked: Seeing) -> None:
         With the height that passes over them, where there is one.
     """
     for region in asked.regions:
-        if not region.required or _open_ground(asked, region, region.area).area >= LEAST_M2:
+        if not region.required or not isinstance(asked.suite.of(region), CameraSensor):
+            continue
+        if _open_ground(asked, region, region.area).area >= LEAST_M2:
             continue
         level, clearance_m = asked.level.of(region), asked.airspace.clearance_m
         over_m = top_over(region.area, asked.airspace, level) - level.height_m + level.altitude_m

@@ -17,13 +17,14 @@ from shapely.geometry.base import BaseGeometry
 from planner.airspace.surroundings import Surroundings
 from planner.coverage.decompose import OVERLAP_M
 from planner.coverage.merge import MergedRegion, split_region
-from planner.coverage.survey.pieces import Pieces, divided
-from planner.coverage.survey.targets import LaneTarget
+from planner.coverage.registry import family_of
+from planner.coverage.survey.pieces import Pieces, visits
 from planner.coverage.urban.auto import headings
 from planner.coverage.urban.boustrophedon import cells
 from planner.coverage.urban.regions import open_ground
 from planner.coverage.urban.visibility import edges_of
 from planner.coverage.visible import Seeing
+from planner.coverage.ways import Target
 from planner.errors import InfeasibleError
 from planner.progress import Stop
 from planner.sensors.camera import CameraSensor
@@ -36,7 +37,7 @@ MOST_CELLS = 60
 
 def cell_targets(
     asked: Seeing, around: Surroundings, margin_m: float, enough: Stop
-) -> tuple[LaneTarget, ...] | None:
+) -> tuple[Target, ...] | None:
     """A target for each cell of each region's open ground; None where too many, or none to be flown.
 
     Parameters
@@ -44,22 +45,23 @@ def cell_targets(
     margin_m
         Kept from what may not be entered: turns at the end of lanes have to have room there.
     """
-    found: list[LaneTarget] = []
+    found: list[Target] = []
     for region in asked.regions:
         for part in split_region(region):
             level = asked.level.of(part)
             sensor, height_m = asked.suite.over(part.sensor, part.area, asked.airspace, level)
-            assert isinstance(sensor, CameraSensor)
-            trial = Pieces(sensor, height_m, asked.at(level, around))
+            there = asked.at(level, around)
             ground = open_ground(part.area, asked.airspace, level, margin_m)
-            pieces: tuple[MergedRegion, ...] | None
-            if ground.area > part.area.area - LEAST_CELL_M2:
-                pieces = divided(part, trial, whole=False, enough=enough)
-            else:
-                pieces = _best(part, ground, trial, enough)
+            uncut = ground.area > part.area.area - LEAST_CELL_M2
+            if uncut or not isinstance(sensor, CameraSensor):
+                family, how = family_of(sensor), (part, sensor, height_m, there)
+                found += family.targets(*how, wide=True, division="auto", enough=enough)
+                continue
+            trial = Pieces(sensor, height_m, there)
+            pieces = _best(part, ground, trial, enough)
             if pieces is None or len(found) + len(pieces) > MOST_CELLS:
                 return None
-            found += [trial.target(piece) for piece in pieces]
+            found += [trial.target(visit) for piece in pieces for visit in visits(piece, trial)]
     return tuple(found)
 
 
@@ -68,6 +70,8 @@ def _best(
 ) -> tuple[MergedRegion, ...] | None:
     """The cells, for slices along some edges of the ground, that promise the shortest tour."""
     best: tuple[float, tuple[MergedRegion, ...]] | None = None
+    if ground.area < LEAST_CELL_M2:
+        return None
     for angle_rad in headings(edges_of(ground)):
         if best is not None and enough():
             break

@@ -73,7 +73,8 @@ def test_a_photo_shares_the_asked_part_with_the_next(
     photo = image_on_ground(A6000, tilt, sensor.crab_rad(course), 100.0)
     spacing_m = sensor.photo_spacing_m(100.0, course)
     shared = photo.intersection(translate(photo, spacing_m)).area / photo.area
-    assert shared == pytest.approx(overlap, abs=1e-6)
+    # Photos that were to share nothing share a little: so that no strip beside them is without width.
+    assert shared == pytest.approx(overlap, abs=1e-6) or (overlap < 0.05 and overlap < shared < 0.05)
 
 
 @given(drifts, courses, tilts, overlaps, st.floats(0.0, 15.0))
@@ -194,3 +195,13 @@ def test_what_is_seen_from_a_line_beside_a_slope_is_that_over_level_ground() -> 
     assert seen_on_terrain(camera, line, "down", np.full(5, 200.0), ground).area.equals_exact(
         seen_on_terrain(camera, line, "down", 200.0, ground).area, 1e-9
     )
+
+
+@given(st.floats(0.0, 0.6), courses, st.floats(0.0, 0.05))
+def test_photos_that_hardly_overlap_leave_a_strip(drift: float, course: float, overlap: float) -> None:
+    """Overlaps of next to nothing, whatever the crab: what a pass sees has an area, for judge and planner."""
+    camera = replace(PLAIN, forward_overlap=overlap, side_overlap=0.0).in_wind(drift, 0.0)
+    line = np.array([[0.0, 0.0], [400.0 * math.cos(course), 400.0 * math.sin(course)]])
+    airspace, level = Airspace(wind=Wind(10.0 * drift, 0.0)), Level(100.0, 100.0)
+    assert seen_on_flat(camera, line, 100.0).area > 0.0
+    assert camera_footprint(camera, line, "down", 100.0, 10.0, airspace, level).area > 0.0

@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 from shapely.geometry import LineString, Polygon
 
+from planner.errors import InfeasibleError
 from planner.geojson import read_scenario
 from planner.pipeline import make_plan
 from planner.plan import Plan
@@ -64,3 +65,30 @@ def test_what_is_lower_than_the_flight_changes_nothing() -> None:
     """A shed is flown over: the same plan as without it."""
     plan, free = (make_plan(read_scenario(each)) for each in (field(mast(height_m=8.0)), field()))
     assert plan.metrics.length_m == pytest.approx(free.metrics.length_m)
+
+
+def test_obstacles_are_flown_round_beside_a_radars_region_and_by_headings_allowed() -> None:
+    """A SAR's region in the same scenario, and headings asked for, take nothing of it."""
+    sar = small()["sensors"][0]
+    beside = feature("S", "roi", "Polygon", square(0.02, 0.0, 0.002), sensor="sar")
+    asked = field(mast(height_m=200.0), beside)
+    asked["sensors"].append(sar)
+    next(each for each in asked["features"] if each["id"] == "F")["properties"]["approach_deg"] = [0.0, 180.0]
+    assert not [each for each in findings(asked) if each.severity == "error"]
+    plan = make_plan(read_scenario(asked))
+    assert plan.hard_violations == ()
+    assert plan.metrics.coverage == {"F": 1.0, "S": 1.0}
+
+
+def test_a_field_that_a_mast_leaves_no_room_to_turn_in_is_no_traceback() -> None:
+    """A wing over a field smaller than its turns, a mast in the middle: a plan, or a refusal in words."""
+    asked = field(mast(height_m=200.0), type="fixed_wing", airspeed_m_s=16.0, min_turn_radius_m=90.0)
+    next(each for each in asked["features"] if each["id"] == "F")["geometry"]["coordinates"] = square(
+        0.0035, 0.0012, 0.0025
+    )
+    refused: list[InfeasibleError] = []
+    try:
+        make_plan(read_scenario(asked))
+    except InfeasibleError as error:
+        refused.append(error)
+    assert all(error.relaxation for error in refused)
