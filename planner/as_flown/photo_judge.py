@@ -47,6 +47,9 @@ Floats = NDArray[np.float64]
 #: Without an interval of the plan's, frames of a video are this part of the image's length apart.
 VIDEO_PART = 0.25
 
+#: Photos so far beside the line of a pass are of it, whatever the track says of that moment.
+ON_LINE_M = 5.0
+
 
 @dataclass(frozen=True, slots=True)
 class RegionPhotos:
@@ -198,6 +201,20 @@ class PhotoJudge:
         step_m = photos.interval_m if photos is not None else VIDEO_PART * length_m
         return np.linspace(0.0, planned.length_m, max(2, math.ceil(planned.length_m / step_m) + 1))
 
+    def _at_an_end(self, frames: Frames, planned: PlannedPass) -> NDArray[np.bool_]:
+        """Photos on a pass's line, or half an interval beyond it, at a moment that counts for no pass.
+
+        The first and the last are taken as the aircraft rolls in or out.
+        """
+        photos = self._photos.get(planned.key)
+        if photos is None:
+            return np.zeros(len(frames.row), dtype=bool)
+        along_m, across_m = planned.along_m(frames.places), planned.across_m(frames.places)
+        beyond_m = photos.interval_m / 2.0
+        on_line = (along_m >= -beyond_m) & (along_m <= planned.length_m + beyond_m)
+        near = across_m <= min(planned.beside_m, ON_LINE_M)
+        return np.asarray((frames.row < 0) & on_line & near)
+
     def _add(
         self, camera: PlanCamera, frames: Frames, passes: Mapping[int, PlannedPass], *, proven: bool = True
     ) -> None:
@@ -238,7 +255,7 @@ class PhotoJudge:
         corners = outlines(shots, camera, below_m)
         corners[~counts] = np.nan
         for row, planned in passes.items():
-            own = frames.row == row
+            own = (frames.row == row) | self._at_an_end(frames, planned)
             along_m = planned.along_m(frames.places[own])
             order = np.argsort(along_m, kind="stable")
             self._taken[planned.key].append(

@@ -11,6 +11,8 @@ from planner.geojson.fields import Findings
 from planner.scenario import Scenario
 from planner.sensors.camera import CameraSensor
 
+#: Photos are hardly meant from higher.
+HIGH_M = 1_500.0
 #: From this part of the airspeed on a wind decides the flight.
 NEAR_AIRSPEED = 0.6
 #: Flight from the start to the nearest region, and of the whole, that is more than most are meant to be.
@@ -30,6 +32,22 @@ def check_plausible(scenario: Scenario, findings: Findings) -> None:
         # There and back in a wind takes this speed's time at best, whatever the direction.
         _times(scenario, math.sqrt(airspeed_m_s**2 - wind_m_s**2), findings)
     _swapped(scenario, findings)
+    _high(scenario, findings)
+
+
+def _high(scenario: Scenario, findings: Findings) -> None:
+    """Cameras so high that a length was meant in another unit."""
+    for region in scenario.regions:
+        sensor, level = scenario.sensor_for(region), scenario.level.of(region)
+        height_m = level.height_m if region.over_ground_m is None else region.over_ground_m
+        if isinstance(sensor, CameraSensor) and height_m > HIGH_M:
+            asked = f", for gsd_m {region.gsd_m:g}" if region.gsd_m is not None else ""
+            findings.warning(
+                region.name,
+                "height-unlikely",
+                f"is to be photographed from {height_m:.0f} m{asked}",
+                "Lengths are metres: 2.5 cm a pixel is gsd_m 0.025. Give max_height_m to stay lower.",
+            )
 
 
 def _wind(airspeed_m_s: float, wind_m_s: float, findings: Findings) -> None:

@@ -17,6 +17,8 @@ from planner.plan import FlownPath, LonLatAlt, PhaseKind
 OFF_GROUND_M = 1.0
 #: A boundary that was passed no nearer than this was not passed.
 NEAR_M = 150.0
+#: Times at which a place is passed this much farther off count as passing it, too.
+AS_NEAR_M = 10.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,7 +34,8 @@ def flown_phases(path: FlownPath, samples: Sequence[TrackSample]) -> tuple[Flown
     """Durations of the phases of a path, as planned and as flown.
 
     A phase ends when the track comes nearest, in three dimensions, to where its end is planned, behind the
-    end of the phase before. The first begins as the aircraft leaves the ground; a landing ends as it is back.
+    end of the phase before; of several times at the one planned. The first begins as the aircraft leaves the
+    ground; a landing ends as it is back.
     """
     flown = [sample for sample in samples if sample.altitude_home_m is not None]
     off_ground = [s.time_s for s in flown if (s.altitude_home_m or 0.0) > OFF_GROUND_M]
@@ -52,7 +55,7 @@ def flown_phases(path: FlownPath, samples: Sequence[TrackSample]) -> tuple[Flown
         else:
             place = _place_at(path, phase.end_m)
             local = np.array([*frame.to_local([place[:2]])[0], place[2] - ground_m])
-            ended_s = _passed_s(times_s, places, local, after_s)
+            ended_s = _passed_s(times_s, places, local, after_s, after_s + phase.end_s - phase.start_s)
         flown_s = None if begun_s is None or ended_s is None else ended_s - begun_s
         found.append(FlownPhase(phase.kind, phase.end_s - phase.start_s, flown_s))
         begun_s, after_s = ended_s, after_s if ended_s is None else ended_s
@@ -60,11 +63,26 @@ def flown_phases(path: FlownPath, samples: Sequence[TrackSample]) -> tuple[Flown
 
 
 def _passed_s(
-    times_s: NDArray[np.float64], places: NDArray[np.float64], place: NDArray[np.float64], after_s: float
+    times_s: NDArray[np.float64],
+    places: NDArray[np.float64],
+    place: NDArray[np.float64],
+    after_s: float,
+    planned_s: float,
 ) -> float | None:
+    """When a place was passed; of several times as near to it, the one nearest to when it was planned.
+
+    What takes off and lands at one place passes each height over it twice.
+    """
     away_m = np.where(times_s >= after_s, np.linalg.norm(places - place, axis=1), math.inf)
-    nearest = int(np.argmin(away_m))
-    return float(times_s[nearest]) if away_m[nearest] <= NEAR_M else None
+    if not away_m.min() <= NEAR_M:
+        return None
+    near = np.concatenate([[False], away_m <= away_m.min() + AS_NEAR_M, [False]])
+    edges = np.flatnonzero(np.diff(near.astype(np.int8)))
+    passed = [
+        first + int(np.argmin(away_m[first:last]))
+        for first, last in zip(edges[::2], edges[1::2], strict=True)
+    ]
+    return float(min((times_s[k] for k in passed), key=lambda at_s: abs(float(at_s) - planned_s)))
 
 
 def _landed_s(flown: Sequence[TrackSample], after_s: float) -> float | None:

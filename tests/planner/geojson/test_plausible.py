@@ -79,6 +79,17 @@ def test_lanes_of_photos_are_counted_by_their_overlap() -> None:
     assert hours == pytest.approx(5_560.0**2 / lane_m / 20.0 / 3600.0, rel=0.15)
 
 
+def test_photos_from_a_height_nobody_means_are_told() -> None:
+    """A pixel of 2.5 where 2.5 cm are meant: the height it asks for, and the unit."""
+    camera = {"name": "eye", "type": "camera", "model": "Sony RX1R II"}
+    for gsd_m, is_told in ((2.5, True), (0.025, False)):
+        document = open_() | {"sensors": [camera], "max_height_m": 20_000.0}
+        del document["altitude_m"]
+        for each in document["features"][:2]:
+            each["properties"]["gsd_m"] = gsd_m
+        assert bool(told(document, "height-unlikely")) == is_told
+
+
 def test_a_place_with_its_axes_exchanged_is_told() -> None:
     """Where latitude and longitude are so alike that nothing is out of range or too far."""
     document = open_()

@@ -7,8 +7,11 @@ import pytest
 
 from app.services.flights.phases import flown_phases
 from app.services.records import TrackSample
+from planner.geojson import read_scenario
+from planner.pipeline import make_plan as flight_plan
 from planner.plan import FlownPath
 from tests.mavlink.plans import make_plan
+from tests.planner.scenarios import small
 
 
 def recorded(path: FlownPath, slower: float, from_s: float = 100.0) -> list[TrackSample]:
@@ -45,3 +48,16 @@ def test_what_was_not_recorded_is_unknown() -> None:
     cut = flown_phases(path, samples[: len(samples) // 2])
     assert cut[0].flown_s is not None
     assert cut[-1].flown_s is None
+
+
+def test_what_lands_where_it_took_off_passes_each_height_twice() -> None:
+    """A multirotor planned from home and back: its climb and its mission are not taken for the landing."""
+    document = small(altitude_m=90.0)
+    document["features"] = [each for each in document["features"] if each["id"] != "B"]
+    document["sensors"] = [{"name": "eye", "type": "camera", "model": "Sony RX1R II", "min_interval_s": 0.0}]
+    document["vehicles"][0] |= {"type": "multirotor", "autopilot": "px4", "airspeed_m_s": 10.0}
+    (path,) = flight_plan(read_scenario(document)).paths
+    assert path.line[0][:2] == pytest.approx(path.line[-1][:2], abs=1e-5)
+    for phase in flown_phases(path, recorded(path, 1.1)):
+        if phase.kind == "mission":
+            assert phase.flown_s == pytest.approx(1.1 * phase.planned_s, rel=0.15)
