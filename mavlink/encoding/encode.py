@@ -83,7 +83,10 @@ def encode(
         task.near_m,
         switching.on_delay_m,
     )
-    home = [home_item(plan.home, options.home_altitude_m)] if task.dialect.home_row else []
+    # A plan over the sea knows how high its home lies.
+    known_m = task.path.line[0][2] if plan.altitude_reference == "amsl" else 0.0
+    home_m = options.home_altitude_m or known_m
+    home = [home_item(plan.home, home_m)] if task.dialect.home_row else []
     flight = _flight(task, stops, switching, pointing)
     fence, fence_notes = fence_items(plan, (task.path,), task.dialect.fence_store)
     return Mission(
@@ -103,7 +106,7 @@ def encode(
             *last.notes,
             *fence_notes,
         ),
-        home_altitude_m=options.home_altitude_m,
+        home_altitude_m=home_m,
         speed_m_s=task.vehicle.airspeed_m_s,
     )
 
