@@ -116,6 +116,8 @@ ELSEWHERE = {
     Fault.DENY_ARM,
     Fault.SENSOR_DEAD,
     Fault.SENSOR_SKIPS,
+    Fault.PHOTOS_LOST,
+    Fault.FEEDBACK_LOST,
 }
 
 
