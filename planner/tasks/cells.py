@@ -31,11 +31,11 @@ def by_cells(asked: Seeing, search: Search) -> Passes | None:
     model = asked.model
     room_m = asked.airspace.clearance_m + TRANSIT_MARGIN_M
     for turn_m in (model.turn_radius_m + model.settle_m, model.turn_radius_m, model.turn_radius_m / 2.0):
-        targets = cell_targets(asked, search.around, room_m + turn_m, search.enough)
-        if targets is None:
-            continue
-        seen = Visible(targets, (), (), ())
         try:
+            targets = cell_targets(asked, search.around, room_m + turn_m, search.enough)
+            if targets is None:
+                continue
+            seen = Visible(targets, (), (), ())
             found = joint_route(search, seen, partial(_same, seen), _apart)
         except InfeasibleError:
             continue
