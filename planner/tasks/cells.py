@@ -15,11 +15,9 @@ from planner.coverage.ways import Target
 from planner.errors import InfeasibleError
 from planner.route import CollectPass
 from planner.routing.joint.route import Search, joint_route
+from planner.tasks.urban import LEFT_PART
 
 Passes = tuple[CollectPass, ...]
-
-#: More of a region than this part left unseen is told.
-LEFT_PART = 1e-5
 
 
 def by_cells(asked: Seeing, search: Search) -> Passes | None:
