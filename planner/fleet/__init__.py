@@ -1,0 +1,1 @@
+"""Several aircraft: who does what, when; knows neither sensors nor the scenario."""
