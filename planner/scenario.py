@@ -19,7 +19,7 @@ from planner.route import Terminal
 from planner.sensors.base import Sensor
 from planner.sensors.suite import Suite
 from planner.vehicle.aircraft import Aircraft
-from planner.wishes import Method, Objective, Region
+from planner.wishes import Method, Objective, Region, Separation
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,7 +30,8 @@ class Scenario:
 
     Where there is terrain ``altitude_reference`` is ``amsl``; see ``planner.geojson.relief``. The flight is
     level, unless ``lowest_amsl_m`` says how far down it may come where it follows the ground.
-    ``max_height_m`` is the greatest height over ground of passes that was asked for.
+    ``max_height_m`` is the greatest height over ground of passes that was asked for. ``bases`` are those that
+    aircraft start from and return to by name; one that names none flies from ``start`` to ``end``.
     """
 
     name: str
@@ -62,6 +63,45 @@ class Scenario:
     lowest_amsl_m: float | None = None
     terrain_following: bool = False
     max_height_m: float | None = None
+    bases: tuple[Terminal, ...] = ()
+    separation: Separation | None = None
+
+    def ends_of(self, aircraft: Aircraft) -> tuple[Terminal, Terminal]:
+        """Where an aircraft starts, and where it ends."""
+        base = next((base for base in self.bases if base.name == aircraft.base), None)
+        return (self.start, self.end) if base is None else (base, Terminal(base.name, base.position))
+
+    def of_one(self, aircraft: Aircraft) -> Scenario:
+        """What one of several aircraft may be asked: the regions its sensors see, from its own ends.
+
+        Each region names its sensor: another may be the first on board.
+        """
+        if len(self.aircraft) == 1:
+            return self
+        start, end = self.ends_of(aircraft)
+        asked = [(region, self.sensor_for(region).name) for region in self.regions]
+        regions = tuple(replace(region, sensor=name) for region, name in asked if aircraft.carries(name))
+        suite = self.suite.aboard(aircraft, self.level.amsl_m)
+        return replace(
+            self, aircraft=(aircraft,), sensors=suite.sensors, regions=regions, start=start, end=end, bases=()
+        )
+
+    @property
+    def is_fleet(self) -> bool:
+        """Whether more is asked than one flight of one aircraft at any time."""
+        return (
+            len(self.aircraft) > 1
+            or any(aircraft.batteries > 1 for aircraft in self.aircraft)
+            or any(region.time_window_s is not None for region in self.regions)
+            or any(region.revisit_after_s > 0.0 for region in self.regions)
+        )
+
+    def terminals(self) -> tuple[Terminal, ...]:
+        """Every place where a flight starts or ends, those of one place once."""
+        found: dict[tuple[float, float], Terminal] = {}
+        for terminal in (end for aircraft in self.aircraft for end in self.ends_of(aircraft)):
+            found.setdefault(terminal.position, terminal)
+        return tuple(found.values())
 
     @property
     def airspace(self) -> Airspace:

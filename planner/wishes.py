@@ -20,7 +20,9 @@ class Region:
     seen, on separate occasions; ``axis`` the line a corridor follows; ``altitude_m`` is that of its passes
     over the scenario's datum, None for the route's. ``over_ground_m`` is the height of passes that follow the
     ground, None for level ones. ``min_resolution_m``, ``gsd_m`` and ``min_niirs`` ask for quality: the worst
-    inside it; ``pattern`` is how a camera is to see it.
+    inside it; ``pattern`` is how a camera is to see it. All of it is to be seen within ``time_window_s``,
+    seconds after the mission's start, None for any time; of several visits each begins ``revisit_after_s``
+    or more after the one before has ended.
     """
 
     name: str
@@ -37,6 +39,16 @@ class Region:
     gsd_m: float | None = None
     min_niirs: float | None = None
     pattern: Pattern = "auto"
+    time_window_s: tuple[float, float] | None = None
+    revisit_after_s: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Separation:
+    """What aircraft of one plan keep from each other at every instant: one of the two distances."""
+
+    horizontal_m: float
+    vertical_m: float
 
 
 @dataclass(frozen=True, slots=True)

@@ -61,6 +61,11 @@ def read_aircraft(raw: Any, index: int, findings: Findings) -> Aircraft | None:
     steady_m = 0.0 if steady is None or airspeed_m_s is None else steady.settle_s * airspeed_m_s
     settle_m = fields.number("settle_m", steady_m, minimum=0.0)
     base = fields.text("base", None)
+    sensors = _on_board(fields)
+    batteries = fields.integer("batteries", 1, minimum=1)
+    turnaround_s = fields.number("turnaround_s", 0.0, minimum=0.0)
+    if batteries == 1:
+        fields.unused("turnaround_s", "is the time between flights, and it has one battery")
     finish: Any = fields.choice("finish", ("auto", "land", "return", "loiter"), "auto")
     if "reserve" in fields and energy_wh is None:
         fields.wrong("reserve", "is a part of energy_wh, which is missing", "Add energy_wh or remove it.")
@@ -87,8 +92,31 @@ def read_aircraft(raw: Any, index: int, findings: Findings) -> Aircraft | None:
     return Aircraft(
         name, kind, autopilot, airspeed_m_s, radius_m, max_climb_deg, energy_wh, power, range_m, time_s,
         settle_m, base, reserve=reserve, finish=finish,
-        min_airspeed_m_s=slowest_m_s,
+        min_airspeed_m_s=slowest_m_s, sensors=sensors, batteries=batteries, turnaround_s=turnaround_s or 0.0,
     )  # fmt: skip
+
+
+def _on_board(fields: Fields) -> tuple[str, ...] | None:
+    value = fields.raw("sensors")
+    if value is None:
+        return None
+    if not isinstance(value, list) or not value or not all(isinstance(v, str) and v for v in value):
+        fields.wrong("sensors", f"is {value!r}", "Give a list of names of sensors, or leave it out for all.")
+        return None
+    return tuple(dict.fromkeys(value))
+
+
+def shared_steadiness(vehicles: Iterable[Any]) -> Steadiness | None:
+    """The least steady of all that is known of the carriers; None where nothing is."""
+    known = [steady for raw in vehicles if (steady := named_steadiness(raw)) is not None]
+    if not known:
+        return None
+    return Steadiness(
+        max(steady.settle_s for steady in known),
+        max(steady.pointing_deg for steady in known),
+        max(steady.position_m for steady in known),
+        max(steady.kept_m for steady in known),
+    )
 
 
 def named_steadiness(raw: Any) -> Steadiness | None:

@@ -132,8 +132,11 @@ def read_region(raw: RawFeature, frame: LocalFrame, findings: Findings) -> Regio
     if revisits > MOST_REVISITS:
         fields.wrong("revisits", f"is {revisits}", f"Give {MOST_REVISITS} at most.", rule="out-of-range")
         revisits = 1
-    if fields.raw("time_window_s") is not None:
-        _not_yet(raw, "time_window_s", "time windows", "Leave time_window_s out.", findings)
+    window_s = _window_s(fields)
+    after_s = fields.number("revisit_after_s", 0.0, minimum=0.0)
+    if revisits == 1 and after_s:
+        fields.unused("revisit_after_s", "is the time between visits, and it is visited once")
+        after_s = 0.0
     priority = fields.number("priority", 1.0, minimum=0.0)
     required = fields.flag("required", True)
     sensor = fields.text("sensor", None)
@@ -153,7 +156,31 @@ def read_region(raw: RawFeature, frame: LocalFrame, findings: Findings) -> Regio
     return Region(
         raw.name, area, priority, required, sensor, min_resolution_m, approach, revisits, axis, altitude_m,
         gsd_m=gsd_m, min_niirs=min_niirs, pattern=pattern or "auto",
+        time_window_s=window_s, revisit_after_s=after_s or 0.0,
     )  # fmt: skip
+
+
+def _window_s(fields: Fields) -> tuple[float, float] | None:
+    value = fields.raw("time_window_s")
+    if value is None:
+        return None
+    if not isinstance(value, list) or len(value) != 2 or not all(is_finite(v) and v >= 0.0 for v in value):
+        fields.wrong(
+            "time_window_s", f"is {value!r}", "Give [earliest, latest], seconds after the mission's start."
+        )
+        return None
+    first_s, last_s = float(value[0]), float(value[1])
+    if last_s <= first_s:
+        fields.wrong(
+            "time_window_s",
+            f"closes at {last_s:g} s, before it opens at {first_s:g} s"
+            if last_s < first_s
+            else f"opens and closes at {first_s:g} s",
+            "Write the earliest time first, the latest behind it.",
+            rule="window-empty",
+        )
+        return None
+    return first_s, last_s
 
 
 def _headings(fields: Fields) -> tuple[float, ...] | None:
@@ -238,9 +265,3 @@ def read_terminal(raw: RawFeature, frame: LocalFrame, findings: Findings) -> Ter
         return None
     angle = None if heading_deg is None else frame.angle_rad(*place, heading_deg)
     return Terminal(raw.name, place, angle)
-
-
-def _not_yet(raw: RawFeature, name: str, what: str, fix: str, findings: Findings) -> None:
-    findings.error(
-        raw.name, "not-supported", f"{name} asks for {what}, which this version does not plan", fix
-    )

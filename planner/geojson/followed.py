@@ -74,7 +74,7 @@ def followed(
         )
         return found, level_m, level_m
     places = [region.area for region in found]
-    ends = [shapely.Point(end.position) for end in (scenario.start, scenario.end)]
+    ends = [shapely.Point(end.position) for end in (scenario.start, scenario.end, *scenario.bases)]
     # Between regions the flight keeps over what lies there.
     low_m, high_m = ground.range_over(shapely.union_all([*places, *ends]).convex_hull)
     return found, max(high_m + max(*follow_m, clearance_m), level_m), low_m + min(*follow_m, clearance_m)

@@ -101,7 +101,8 @@ def _hours(time_s: float) -> str:
 def _swapped(scenario: Scenario, findings: Findings) -> None:
     """Places that lie beside the others once latitude and longitude are exchanged."""
     places = {region.name: region.area.centroid.coords[0] for region in scenario.regions}
-    places |= {terminal.name: terminal.position for terminal in (scenario.start, scenario.end)}
+    ends = (scenario.start, scenario.end, *scenario.bases)
+    places |= {terminal.name: terminal.position for terminal in ends}
     names, at_m = list(places), np.array(list(places.values()))
     middle = np.median(at_m, axis=0)
     for name, place in zip(names, at_m, strict=True):

@@ -170,7 +170,7 @@ def _above(name: str, level_m: float, top_m: float, clearance_m: float, findings
 
 def _bounds(scenario: Scenario) -> tuple[float, float, float, float]:
     parts: list[BaseGeometry] = [region.area for region in scenario.regions]
-    parts += [shapely.Point(end.position) for end in (scenario.start, scenario.end)]
+    parts += [shapely.Point(end.position) for end in (scenario.start, scenario.end, *scenario.bases)]
     margin_m = OPEN_MARGIN_M
     if scenario.area is not None:
         parts.append(scenario.area)
@@ -183,7 +183,8 @@ def _ranges(scenario: Scenario, ground: Ground, findings: Findings) -> dict[str,
     """Lowest and highest ground of each region; None after a finding where some that must be known is not."""
     ranges_m: dict[str, tuple[float, float]] = {}
     known = True
-    ends = {end.name: shapely.Point(end.position).buffer(1.0) for end in (scenario.start, scenario.end)}
+    places = (scenario.start, scenario.end, *scenario.bases)
+    ends = {end.name: shapely.Point(end.position).buffer(1.0) for end in places}
     for name, area in [(region.name, region.area) for region in scenario.regions] + list(ends.items()):
         low_m, top_m = ground.range_over(area)
         if math.isnan(top_m):

@@ -193,7 +193,7 @@ def _terminals(scenario: Scenario, findings: Findings) -> None:
             continue
         shape = banded.shape
         for terminal in _ends(scenario):
-            end = "start" if terminal is scenario.start else "end"
+            end = _role(scenario, terminal)
             away_m = shape.away_m(Point(terminal.position))
             if away_m <= 0.0:
                 findings.error(
@@ -217,6 +217,14 @@ def _whole_or_tenths(length_m: float) -> float:
 
 
 def _ends(scenario: Scenario) -> tuple[Terminal, ...]:
+    if scenario.bases:
+        return scenario.terminals()
     if scenario.end.position == scenario.start.position:
         return (scenario.start,)
     return (scenario.start, scenario.end)
+
+
+def _role(scenario: Scenario, terminal: Terminal) -> str:
+    if any(terminal is base for base in scenario.bases):
+        return "base"
+    return "start" if terminal is scenario.start else "end"

@@ -16,6 +16,7 @@ from planner.geojson import equipment, features
 from planner.geojson.extent import check_bbox, frame_of, within
 from planner.geojson.far import near_features
 from planner.geojson.fields import Fields, Findings
+from planner.geojson.fleet import check_fleet, read_separation, start_of
 from planner.geojson.heights import Heights, at_chosen_heights, tell_unused, with_wishes
 from planner.geojson.home import home_amsl_m, kept_clear
 from planner.geojson.plausible import check_plausible
@@ -35,7 +36,7 @@ NOT_YET = ("search",)
 MEMBERS = (
     "type", "features", "name", "bbox", "crs", "vehicles", "sensors", "altitude_m", "min_height_m",
     "max_height_m", "altitude_reference", "terrain", "terrain_following", "wind", "clearance_m", "objective",
-    "task", "method", "seed", "time_budget_s",
+    "task", "method", "seed", "time_budget_s", "separation",
 )  # fmt: skip
 
 CRS84 = (
@@ -128,16 +129,11 @@ def _read(document: Any, findings: Findings, terrains: Terrains | None) -> Scena
     top.refuse_unknown(also_known=MEMBERS)
     vehicles = equipment.listed(document, "vehicles", findings)
     aircraft = [equipment.read_aircraft(raw, i, findings) for i, raw in enumerate(vehicles)]
-    steady = equipment.named_steadiness(vehicles[0]) if vehicles else None
+    steady = equipment.shared_steadiness(vehicles)
     sensors = [
         equipment.read_sensor(raw, i, findings, steady)
         for i, raw in enumerate(equipment.listed(document, "sensors", findings))
     ]
-    if len(aircraft) > 1:
-        findings.error(
-            "scenario", "not-supported", f"has {len(aircraft)} vehicles; this version plans for one",
-            "Send one scenario a vehicle.",
-        )  # fmt: skip
     altitude_m = top.number("altitude_m", None, minimum=features.LOWEST_M, maximum=features.HIGHEST_M)
     heights = Heights.read(top)
     if not heights.decided(regions):
@@ -172,10 +168,10 @@ def _read(document: Any, findings: Findings, terrains: Terrains | None) -> Scena
     method = equipment.read_method(document.get("method"), findings)
     if not regions and not any(raw.role == "roi" for raw in raws):
         findings.error("scenario", "no-region", "has no region of interest", "Add a feature of role roi.")
-    start = _start(starts, bases, aircraft, raws, findings)
-    for base in bases:
-        if base is not start:
-            findings.warning(base.name, "not-used", "is a base that no vehicle starts from", "Remove it.")
+    separation = read_separation(document.get("separation"), findings)
+    if len(aircraft) == 1 and separation is not None:
+        findings.warning("separation", "not-used", "is kept between aircraft, and there is one", "Remove it.")
+    start = start_of(starts, bases, aircraft, raws, findings)
     if findings.errors or start is None or clearance_m is None:
         return None
     scenario = Scenario(
@@ -204,7 +200,16 @@ def _read(document: Any, findings: Findings, terrains: Terrains | None) -> Scena
         home_amsl_m=None if terrain is not None else home_amsl_m(raws, start.name),
         terrain_following=following,
         max_height_m=heights.max_m,
+        bases=tuple(bases) if len(aircraft) > 1 else (),
+        separation=separation if len(aircraft) > 1 else None,
     )
+    check_fleet(scenario, bases, findings)
+    if scenario.is_fleet:
+        findings.error(
+            "scenario", "not-supported", "asks for more than one flight of one aircraft at any time, which "
+            "this version does not plan",
+            "Send one scenario a vehicle, without time_window_s, revisit_after_s and batteries.",
+        )  # fmt: skip
     scenario = with_wishes(scenario)
     tell_unused(scenario, heights, findings)
     if terrain is not None:
@@ -265,25 +270,3 @@ def _raw_features(
         if raw is not None:
             raws.append(raw)
     return raws
-
-
-def _start(
-    starts: list[Terminal],
-    bases: list[Terminal],
-    aircraft: list[Any],
-    raws: list[features.RawFeature],
-    findings: Findings,
-) -> Terminal | None:
-    base = next((a.base for a in aircraft if a is not None and a.base is not None), None)
-    if base is not None:
-        found = next((b for b in bases if b.name == base), None)
-        if found is None:
-            findings.error("scenario", "unknown-base", f"a vehicle names the base {base!r}", "Add that base.")
-        return found
-    if starts:
-        return starts[0]
-    if len(bases) == 1:
-        return bases[0]
-    if not any(raw.role == "start" for raw in raws):
-        findings.error("scenario", "no-start", "has no start", "Add a Point of role start.")
-    return None

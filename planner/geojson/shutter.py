@@ -16,6 +16,7 @@ from planner.errors import InfeasibleError
 from planner.geojson.fields import Findings
 from planner.scenario import Scenario
 from planner.sensors.camera import CameraSensor
+from planner.sensors.suite import camera_on
 from planner.vehicle.aircraft import Aircraft
 from planner.vehicle.atmosphere import true_over_equivalent
 from planner.vehicle.model import FlightModel
@@ -41,8 +42,8 @@ class _Shooting:
     def short(self, aircraft: Aircraft, scenario: Scenario) -> tuple[float, float]:
         """The way that the camera needs between photos, by what its overlap leaves; on which course least."""
         model = FlightModel.of(aircraft, scenario.wind)
-        camera = _flown(self.camera, aircraft, scenario)
-        camera = camera.in_wind(model.drift, scenario.wind.toward_rad)
+        flown = camera_on(self.camera, aircraft, scenario.level.amsl_m)
+        camera = flown.in_wind(model.drift, scenario.wind.toward_rad)
         return min((self._worse(camera, course_rad), course_rad) for course_rad in self._courses())
 
     def _courses(self) -> Sequence[float]:
@@ -67,7 +68,17 @@ class _Shooting:
 
 
 def at_camera_speed(scenario: Scenario, findings: Findings) -> Scenario:
-    """The scenario flown no faster than its cameras take photos, and its cameras told how fast that is."""
+    """The scenario flown no faster than its cameras take photos, and its cameras told how fast that is.
+
+    Of several aircraft each by the cameras on board; they are told by ``Scenario.of_one``.
+    """
+    if len(scenario.aircraft) == 1:
+        return _alone(scenario, findings)
+    flown = [_alone(scenario.of_one(aircraft), findings).aircraft[0] for aircraft in scenario.aircraft]
+    return replace(scenario, aircraft=tuple(flown))
+
+
+def _alone(scenario: Scenario, findings: Findings) -> Scenario:
     shootings = _shootings(scenario)
     if not shootings or not scenario.aircraft:
         return scenario
@@ -89,17 +100,12 @@ def at_camera_speed(scenario: Scenario, findings: Findings) -> Scenario:
             "Lower forward_overlap, or fly higher, for it to fly faster.",
         )
         aircraft = slower
+    amsl_m = scenario.level.amsl_m
     sensors = tuple(
-        _flown(sensor, aircraft, scenario) if isinstance(sensor, CameraSensor) else sensor
+        camera_on(sensor, aircraft, amsl_m) if isinstance(sensor, CameraSensor) else sensor
         for sensor in scenario.sensors
     )
-    return replace(scenario, aircraft=(aircraft, *scenario.aircraft[1:]), sensors=sensors)
-
-
-def _flown(camera: CameraSensor, aircraft: Aircraft, scenario: Scenario) -> CameraSensor:
-    """A camera on an aircraft, at the highest level flown: what hovers flies at a speed over the ground."""
-    thin = 1.0 if aircraft.hovers else true_over_equivalent(scenario.level.amsl_m)
-    return replace(camera, airspeed_m_s=aircraft.airspeed_m_s, thin=thin)
+    return replace(scenario, aircraft=(aircraft,), sensors=sensors)
 
 
 def _shootings(scenario: Scenario) -> list[_Shooting]:

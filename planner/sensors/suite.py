@@ -9,10 +9,19 @@ from shapely.geometry import MultiPolygon, Polygon
 from planner.airspace.airspace import Airspace, Level
 from planner.airspace.envelope import SMOOTH_M
 from planner.sensors.base import Sensor
+from planner.sensors.camera import CameraSensor
+from planner.vehicle.aircraft import Aircraft
+from planner.vehicle.atmosphere import true_over_equivalent
 from planner.wishes import Region
 
 #: Heights between the posts of a plan are known to this.
 RELIEF_MARGIN_M = 0.5
+
+
+def camera_on(camera: CameraSensor, aircraft: Aircraft, amsl_m: float) -> CameraSensor:
+    """A camera on an aircraft so high over the sea: what hovers flies at a speed over the ground."""
+    thin = 1.0 if aircraft.hovers else true_over_equivalent(amsl_m)
+    return replace(camera, airspeed_m_s=aircraft.airspeed_m_s, thin=thin)
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,6 +44,13 @@ class Suite:
     def of(self, region: Region) -> Sensor:
         """The sensor asked for by a region."""
         return self.named(region.sensor)
+
+    def aboard(self, aircraft: Aircraft, amsl_m: float) -> Suite:
+        """Those that an aircraft carries, its cameras told how fast they are flown so high over the sea."""
+        carried = [sensor for sensor in self.sensors if aircraft.carries(sensor.name)]
+        return Suite(
+            tuple(camera_on(s, aircraft, amsl_m) if isinstance(s, CameraSensor) else s for s in carried)
+        )
 
     def in_wind(self, drift: float, toward_rad: float) -> Suite:
         """The same on an aircraft in a steady wind: its speed by the airspeed, and where the air moves to."""

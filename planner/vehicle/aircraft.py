@@ -50,6 +50,10 @@ class Aircraft:
     min_airspeed_m_s
         The slowest that it may be flown at where ``airspeed_m_s`` is too fast for a camera; None for wings
         that fly at no other speed.
+    sensors
+        Names of those on board; None for all.
+    batteries, turnaround_s
+        How many flights it can make, each with all of its energy, and the time between two of them.
     """
 
     name: str
@@ -68,6 +72,13 @@ class Aircraft:
     reserve: float = DEFAULT_RESERVE
     finish: FinishWish = "auto"
     min_airspeed_m_s: float | None = None
+    sensors: tuple[str, ...] | None = None
+    batteries: int = 1
+    turnaround_s: float = 0.0
+
+    def carries(self, sensor: str) -> bool:
+        """Whether a sensor is on board."""
+        return self.sensors is None or sensor in self.sensors
 
     @property
     def hovers(self) -> bool:

@@ -154,6 +154,13 @@ def based(place: float = -0.03, base: str | None = "B1", **properties: Any) -> D
     return vehicle(with_features(*bases), base=base)
 
 
+def two_aircraft(**properties: Any) -> Document:
+    """Two aircraft, of which one has more properties."""
+    document = small()
+    (one,) = document["vehicles"]
+    return document | {"vehicles": [one, one | {"name": "other"} | properties]}
+
+
 def two_sensors(name: str) -> Document:
     """Two sensors that look to different sides."""
     document = of_feature("A", sensor=name)
@@ -257,6 +264,9 @@ PROOFS: dict[tuple[str, str], tuple[Document, Document]] = {
     ("roi", "width_m"): (with_features(line()), with_features(line(width_m=250.0))),
     ("roi", "radius_m"): (with_features(target()), with_features(target(radius_m=150.0))),
     ("roi", "time_window_s"): (small(), of_feature("A", time_window_s=[0, 600])),
+    ("roi", "revisit_after_s"): (
+        of_feature("A", revisits=2), of_feature("A", revisits=2, revisit_after_s=600.0),
+    ),
     ("roi", "min_niirs"): (small(), of_feature("A", min_niirs=5.4)),
     ("roi", "pattern"): (camera(), camera(of_feature("A", pattern="crosshatch"))),
     ("roi", "gsd_m"): (camera(), camera(of_feature("A", gsd_m=0.03))),
@@ -310,6 +320,11 @@ PROOFS: dict[tuple[str, str], tuple[Document, Document]] = {
     ("vehicle", "settle_m"): (small(), vehicle(settle_m=300.0)),
     ("vehicle", "finish"): (small(), vehicle(finish="land")),
     ("vehicle", "base"): (based(), based(base="B0")),
+    ("vehicle", "sensors"): (two_aircraft(), two_aircraft(sensors=["eye"])),
+    ("vehicle", "batteries"): (vehicle(max_range_m=1000.0), vehicle(max_range_m=1000.0, batteries=4)),
+    ("vehicle", "turnaround_s"): (vehicle(batteries=1), vehicle(batteries=1, turnaround_s=60.0)),
+    ("separation", "horizontal_m"): (small(), member("separation", {"horizontal_m": -50.0})),
+    ("separation", "vertical_m"): (small(), member("separation", {"vertical_m": -50.0})),
     ("sensor", "name"): (small(), sensor(name="other")),
     ("sensor", "type"): (small(), sensor(type="camera")),
     ("sensor", "incidence_deg"): (small(), sensor(incidence_deg=40.0)),
@@ -398,7 +413,8 @@ PROOFS |= {(role, "role_in_doubt"): (with_name(role), doubted(role)) for role in
 
 #: Members that hold the others, and what says which reader reads a feature.
 STRUCTURE = {
-    ("scenario", name) for name in ("type", "features", "vehicles", "sensors", "wind", "objective", "method")
+    ("scenario", name)
+    for name in ("type", "features", "vehicles", "sensors", "wind", "objective", "method", "separation")
 }
 
 
@@ -444,9 +460,9 @@ def test_each_accepted_property_changes_something(kind: str, name: str) -> None:
         (member("description", "a flight"), "description"),
         (of_feature("A", radius_m=5.0), "radius_m"),
         (of_feature("area", hard=True), "hard"),
-        (vehicle(batteries=2), "batteries"),
+        (vehicle(battery=2), "battery"),
         (sensor(gain=2.0), "gain"),
-        (member("separation", {"vertical_m": 30.0}), "separation"),
+        (member("spacing", {"vertical_m": 30.0}), "spacing"),
     ],
 )
 def test_what_nothing_reads_is_refused_by_name(document: Document, name: str) -> None:
