@@ -1,12 +1,18 @@
-"""What all tests share: how Hypothesis searches.
+"""What all tests share: how Hypothesis searches, and how time passes.
 
 By default the examples are the same in every run and no single one is timed, so that a busy machine changes
-nothing; ``pytest --hypothesis-profile=explore`` looks for new ones.
+nothing; ``pytest --hypothesis-profile=explore`` looks for new ones. Tests marked ``virtual_time`` do not wait.
 """
 
 from __future__ import annotations
 
+import asyncio
+from collections.abc import Callable, Mapping
+
+import pytest
 from hypothesis import HealthCheck, settings
+
+from tests.virtual_time import VirtualLoop
 
 settings.register_profile(
     "steady",
@@ -17,3 +23,12 @@ settings.register_profile(
 )
 settings.register_profile("explore", deadline=None, max_examples=1000)
 settings.load_profile("steady")
+
+
+def pytest_asyncio_loop_factories(
+    item: pytest.Item,
+) -> Mapping[str, Callable[[], asyncio.AbstractEventLoop]]:
+    """The loop that a test runs in."""
+    if item.get_closest_marker("virtual_time") is not None:
+        return {"virtual": VirtualLoop}
+    return {"real": asyncio.new_event_loop}

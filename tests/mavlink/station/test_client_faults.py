@@ -8,6 +8,8 @@ from collections.abc import AsyncIterator
 from dataclasses import replace
 from functools import partial
 
+import pytest
+
 from mavlink.dialects import dialect_for
 from mavlink.dialects.compare import differences
 from mavlink.links.link import memory_pair
@@ -16,18 +18,15 @@ from mavlink.sim.modes import Flavour
 from mavlink.sim.run import serve_link
 from mavlink.sim.settings import SimSettings
 from mavlink.station.client import VehicleClient
-from mavlink.station.verify import Compare, VerifiedUpload
+from mavlink.station.verify import Compare
 from mavlink.transfer.machine import TransferSettings
 from mavlink.transfer.outcome import Accepted, Refused, Unknown
 from mavlink.wire.items import Command, MissionItem, MissionType
 
+pytestmark = pytest.mark.virtual_time
+
 # The count and questions are repeated early; the patience with a vehicle that asks again each second stays.
 QUICK = TransferSettings(timeout_s=0.8, retries=3, silence_s=4.0, acknowledgement_s=2.5)
-#: Silent for so long it counts as lost: longer than a busy machine keeps a loop waiting, and shorter where a
-#: loss is meant.
-LOST_AFTER_S, SOON_LOST_S = 6.0, 1.5
-#: So many aircraft at once: on a busy machine more would keep each other waiting longer than that.
-AT_ONCE = 12
 ITEMS = (
     MissionItem(0, 0, Command.NAV_WAYPOINT, x=473_977_000, y=85_456_000, z=488.0),
     MissionItem(1, 3, Command.NAV_TAKEOFF, 15.0, x=473_990_000, y=85_456_000, z=80.0),
@@ -56,16 +55,15 @@ def mission(flavour: Flavour) -> tuple[MissionItem, ...]:
 
 
 @contextlib.asynccontextmanager
-async def simulated(
-    flavour: Flavour, *faults: Fault, lost_after_s: float = LOST_AFTER_S
-) -> AsyncIterator[VehicleClient]:
+async def simulated(flavour: Flavour, *faults: Fault) -> AsyncIterator[VehicleClient]:
     """A client connected to a simulated aircraft with faults."""
     ground, air = memory_pair()
     settings = SimSettings(autopilot=flavour, faults=faults, vanish_for_s=2.0)
     stop = asyncio.Event()
     flight = asyncio.create_task(serve_link(air, settings, stop=stop))
     try:
-        async with VehicleClient(ground, settings=QUICK, lost_after_s=lost_after_s) as client:
+        clock = asyncio.get_running_loop().time
+        async with VehicleClient(ground, settings=QUICK, lost_after_s=1.5, clock=clock) as client:
             await client.connect(10)
             yield client
     finally:
@@ -130,40 +128,32 @@ def test_no_fault_is_left_out() -> None:
     assert set(Fault) == set(EXPECTED) | ELSEWHERE
 
 
-async def test_every_fault_has_its_word() -> None:
-    """What is stored is called stored, and nothing else is; all faults of both autopilots side by side."""
-    turns = asyncio.Semaphore(AT_ONCE)
-
-    async def upload(flavour: Flavour, fault: Fault) -> VerifiedUpload:
-        async with turns, simulated(flavour, fault) as client:
-            return await client.upload_verified(mission(flavour), MissionType.MISSION, comparison(flavour))
-
-    cases = [(flavour, fault) for flavour in Flavour for fault in EXPECTED]
-    results = await asyncio.gather(*[upload(flavour, fault) for flavour, fault in cases])
-    for (flavour, fault), result in zip(cases, results, strict=True):
-        expected = EXPECTED[fault]
-        status, outcome = expected[flavour] if isinstance(expected, dict) else expected
-        assert result.status == status, f"{flavour} {fault}: {result}"
-        assert outcome is None or isinstance(result.outcome, outcome), f"{flavour} {fault}: {result}"
+@pytest.mark.parametrize("flavour", Flavour)
+@pytest.mark.parametrize("fault", EXPECTED)
+async def test_every_fault_has_its_word(flavour: Flavour, fault: Fault) -> None:
+    """What is stored is called stored, and nothing else is."""
+    expected = EXPECTED[fault]
+    status, outcome = expected[flavour] if isinstance(expected, dict) else expected
+    async with simulated(flavour, fault) as client:
+        result = await client.upload_verified(mission(flavour), MissionType.MISSION, comparison(flavour))
+    assert result.status == status
+    assert outcome is None or isinstance(result.outcome, outcome)
 
 
-async def test_an_aircraft_that_vanishes_is_resolved_on_its_return() -> None:
+@pytest.mark.parametrize("flavour", Flavour)
+async def test_an_aircraft_that_vanishes_is_resolved_on_its_return(flavour: Flavour) -> None:
     """Unknown while it is away; when it is back the read-back shows that the upload did not take."""
-
-    async def vanish(flavour: Flavour) -> None:
-        async with simulated(flavour, Fault.VANISH_MID_UPLOAD, lost_after_s=SOON_LOST_S) as client:
-            compare = comparison(flavour)
-            result = await client.upload_verified(mission(flavour), MissionType.MISSION, compare)
-            assert (result.status, result.held, client.pending) == ("unknown", None, True)
-            await client.wait_for(lambda state: state.connected, 10)
-            resolved = await client.resolve_pending()
-            assert resolved is not None
-            assert resolved.held is not None
-            assert resolved.status == "different"
-            result = await client.upload_verified(mission(flavour), MissionType.MISSION, compare)
-            assert result.status == "stored"
-
-    await asyncio.gather(*[vanish(flavour) for flavour in Flavour])
+    async with simulated(flavour, Fault.VANISH_MID_UPLOAD) as client:
+        compare = comparison(flavour)
+        result = await client.upload_verified(mission(flavour), MissionType.MISSION, compare)
+        assert (result.status, result.held, client.pending) == ("unknown", None, True)
+        await client.wait_for(lambda state: state.connected, 10)
+        resolved = await client.resolve_pending()
+        assert resolved is not None
+        assert resolved.held is not None
+        assert resolved.status == "different"
+        result = await client.upload_verified(mission(flavour), MissionType.MISSION, compare)
+        assert result.status == "stored"
 
 
 async def test_commands_without_an_answer_and_denied() -> None:
