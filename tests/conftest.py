@@ -1,7 +1,7 @@
 """What all tests share: how Hypothesis searches, and how time passes.
 
 By default the examples are the same in every run and no single one is timed, so that a busy machine changes
-nothing; ``pytest --hypothesis-profile=explore`` looks for new ones. Tests marked ``virtual_time`` do not wait.
+nothing; ``pytest --hypothesis-profile=explore`` looks for new ones. Tests marked ``virtual_time`` never wait.
 """
 
 from __future__ import annotations

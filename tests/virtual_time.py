@@ -1,8 +1,8 @@
 """An event loop whose clock is its own: it jumps to whatever is due next as soon as nothing is left to do.
 
-For tests marked ``virtual_time``, whose tasks talk to each other inside this process alone. Minutes of waiting
-pass at once, and a busy machine changes nothing: between two moments all that can be done is done. Whoever is
-told a clock has to be told ``asyncio.get_running_loop().time``.
+For tests marked ``virtual_time``, whose tasks talk to each other inside this process alone. Minutes of
+waiting pass at once, and a busy machine changes nothing: between two moments all that can be done is done.
+Whoever takes a clock is given ``asyncio.get_running_loop().time``.
 """
 
 from __future__ import annotations

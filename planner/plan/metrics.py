@@ -1,0 +1,89 @@
+"""How a plan is judged: what it costs and gives, what it leaves out, which constraints it does not keep."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from planner.plan.seen import Surveyed
+from planner.plan.words import LonLat
+
+
+@dataclass(frozen=True, slots=True)
+class Violation:
+    """A constraint that the plan does not keep.
+
+    Parameters
+    ----------
+    constraint
+        ``turn-radius``, ``area``, ``hard-zone``, ``coverage``, ``collect-straight``, ``settling``,
+        ``continuity``, ``range``, ``flight-time``, ``energy``, ``soft-threat``.
+    feature
+        The region, zone or vehicle concerned.
+    where
+        The worst place; None where there is none.
+    amount, unit
+        By how much.
+    hard
+        Whether a plan with it may be uploaded only with an explicit override.
+    """
+
+    constraint: str
+    feature: str
+    message: str
+    amount: float
+    unit: str
+    where: LonLat | None = None
+    hard: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class LeftOut:
+    """A region that need not be seen and is not.
+
+    Parameters
+    ----------
+    reason
+        ``range``, ``flight-time``, ``energy``, or what keeps every pass from seeing it: ``swath``, ``area`` …
+    margin
+        By how much a flight with it is over that limit, in m, s or Wh; None for other reasons.
+    """
+
+    roi: str
+    reason: str
+    margin: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Metrics:
+    """What the plan costs and gives.
+
+    ``length_m`` and ``duration_s`` are those of the mission phase, from where take-off and climbing turns end
+    to where descending turns or the landing begin; ``flight_length_m``, ``flight_duration_s`` and
+    ``energy_wh`` of all phases. ``route_length_m`` is the line over the ground from start to end, without
+    turns flown for height; ``lower_bound_m`` what no mission phase over these regions is shorter than,
+    threats left out, and ``gap`` by what part of its length this one is longer; None without a bound.
+    ``photos`` counts those of all cameras, ``photos_mb`` is about what they take to be stored; None where
+    there are none on board. ``surveys`` tells by region what they give.
+    """
+
+    length_m: float
+    collection_length_m: float
+    duty_cycle: float
+    path_length_ratio: float | None
+    risk_missile: float
+    risk_radar: float
+    turns: int
+    duration_s: float
+    energy_wh: float | None
+    coverage: dict[str, float]
+    importance_collected: float | None = None
+    planning_time_s: dict[str, float] = field(default_factory=dict)
+    lower_bound_m: float | None = None
+    gap: float | None = None
+    flight_length_m: float | None = None
+    flight_duration_s: float | None = None
+    route_length_m: float | None = None
+    left_out: tuple[LeftOut, ...] = ()
+    photos: int | None = None
+    photos_mb: float | None = None
+    surveys: dict[str, Surveyed] = field(default_factory=dict)
