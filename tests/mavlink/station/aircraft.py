@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-import time
 from collections.abc import AsyncIterator, Callable
 from typing import Self
 
@@ -70,7 +69,7 @@ class Aircraft:
             await self.say(
                 "HEARTBEAT", autopilot=self.autopilot, type=self.kind, custom_mode=10, base_mode=0x80
             )
-            for answer in self.vehicle.tick(time.monotonic()):
+            for answer in self.vehicle.tick(asyncio.get_running_loop().time()):
                 await self.say(answer.name, **dict(answer.fields))
             await asyncio.sleep(0.1)
 
@@ -94,7 +93,7 @@ class Aircraft:
             return
         if message.name == "MISSION_ITEM_INT" and message.integer("seq") == self.vanish_at_item:
             self.vanish()
-        for answer in self.vehicle.receive(message, time.monotonic()):
+        for answer in self.vehicle.receive(message, asyncio.get_running_loop().time()):
             await self.say(answer.name, **{**answer.fields, "target_system": message.system_id})
 
     def vanish(self) -> None:
@@ -123,7 +122,9 @@ async def flying(
     ground, air = memory_pair(faults, seed)
     autopilot = {"ardupilot": 3, "px4": 12, "generic": 0}[manner]
     stub = StubVehicle("px4" if manner == "px4" else "ardupilot")
-    client = VehicleClient(ground, settings=settings, lost_after_s=lost_after_s, tap=tap)
+    client = VehicleClient(
+        ground, settings=settings, lost_after_s=lost_after_s, tap=tap, clock=asyncio.get_running_loop().time
+    )
     async with Aircraft(air, stub, autopilot, kind) as aircraft, client:
         await client.connect(5)
         yield client, aircraft
