@@ -2,7 +2,7 @@
 
 For tests marked ``virtual_time``, whose tasks talk to each other inside this process alone. Minutes of
 waiting pass at once, and a busy machine changes nothing: between two moments all that can be done is done.
-Whoever takes a clock is given ``asyncio.get_running_loop().time``.
+Whoever takes a clock is given ``loop_time_s``.
 """
 
 from __future__ import annotations
@@ -34,3 +34,8 @@ class VirtualLoop(asyncio.SelectorEventLoop):
 
     def time(self) -> float:
         return self._jumping.now_s
+
+
+def loop_time_s() -> float:
+    """The time of the loop that asks, virtual or not: for whoever takes a clock."""
+    return asyncio.get_running_loop().time()

@@ -17,6 +17,9 @@ from mavlink.wire.items import MissionType
 from mavlink.wire.messages import Message
 from tests.mavlink.station.aircraft import flying
 from tests.mavlink.transfer.vehicle import waypoints
+from tests.virtual_time import loop_time_s
+
+pytestmark = pytest.mark.virtual_time
 
 
 def flight(folder: Path, seconds: int = 60) -> Path:
@@ -39,7 +42,7 @@ def flight(folder: Path, seconds: int = 60) -> Path:
 async def test_a_recording_is_watched_like_a_vehicle(tmp_path: Path) -> None:
     """State and track are those of the flight; at its end the client says so."""
     url = f"replay:{flight(tmp_path)}?speedup=200"
-    async with VehicleClient(await open_link(url)) as client:
+    async with VehicleClient(await open_link(url), clock=loop_time_s) as client:
         recorder = client.start_recording()
         state = await client.connect(5)
         assert (state.system_id, state.mode) == (7, "AUTO")
@@ -56,7 +59,7 @@ async def test_a_recording_is_watched_like_a_vehicle(tmp_path: Path) -> None:
 async def test_a_recording_takes_no_orders(tmp_path: Path) -> None:
     """Uploads, downloads, clearing and commands are refused by name, at once."""
     url = f"replay:{flight(tmp_path)}?speedup=10"
-    async with VehicleClient(await open_link(url)) as client:
+    async with VehicleClient(await open_link(url), clock=loop_time_s) as client:
         await client.connect(5)
         for order in (
             client.upload(waypoints(2), MissionType.MISSION),
@@ -83,7 +86,7 @@ async def test_what_a_client_records_it_can_play(tmp_path: Path) -> None:
     names = [m.name for _, frame in read_tlog(path) for m in codec.feed(frame)]
     assert names.count("MISSION_ITEM_INT") == 3
     assert {"HEARTBEAT", "MISSION_COUNT", "MISSION_ACK"} <= set(names)
-    async with VehicleClient(await open_link(f"replay:{path}")) as replayed:
+    async with VehicleClient(await open_link(f"replay:{path}"), clock=loop_time_s) as replayed:
         with contextlib.suppress(NotConnectedError):  # it may be over before anybody waits
             await replayed.connect(5)
         with pytest.raises(NotConnectedError, match="is over"):
@@ -117,7 +120,7 @@ async def test_addresses_that_cannot_be_played(tmp_path: Path, url: str, words: 
 async def test_a_recording_keeps_its_own_clock(tmp_path: Path) -> None:
     """Played a hundred times as fast, the track begins and ends when it was flown."""
     url = f"replay:{flight(tmp_path, 20)}?speedup=100"
-    async with VehicleClient(await open_link(url)) as client:
+    async with VehicleClient(await open_link(url), clock=loop_time_s) as client:
         recorder = client.start_recording()
         assert recorder.recorded is None
         await client.connect(5)

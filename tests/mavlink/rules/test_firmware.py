@@ -18,6 +18,9 @@ from mavlink.state.telemetry import VehicleState, updated
 from mavlink.station.client import VehicleClient
 from mavlink.transfer.machine import TransferSettings
 from mavlink.wire.codec import Codec
+from tests.virtual_time import loop_time_s
+
+pytestmark = pytest.mark.virtual_time
 
 #: What ArduCopter and ArduPlane call them, by the releases' own lists of changed names.
 NAMES = {
@@ -80,7 +83,7 @@ async def test_a_multirotor_is_read_whatever_its_version(firmware: tuple[int, in
     flying = asyncio.create_task(serve_link(air, settings))
     hasty = TransferSettings(timeout_s=0.15, item_timeout_s=0.025)
     wanted = ("WPNAV_SPEED", "WPNAV_ACCEL", "WPNAV_JERK", "LAND_SPEED", "RTL_ALT", "ANGLE_MAX")
-    async with VehicleClient(ground, settings=hasty) as client:
+    async with VehicleClient(ground, settings=hasty, clock=loop_time_s) as client:
         await client.connect(5)
         await client.wait_for(lambda state: state.firmware is not None, 5)
         assert client.state.firmware == f"{firmware[0]}.{firmware[1]}.0"

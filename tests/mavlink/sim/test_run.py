@@ -76,6 +76,7 @@ class Pipe(MemoryLink):
     waiting_bytes = 0
 
 
+@pytest.mark.virtual_time
 async def test_time_stands_still_while_the_link_is_behind() -> None:
     """An aircraft faster than its listener waits for it, and loses no time of its own by that."""
     ours, theirs = MemoryLink("ground", NO_FAULTS, 0), Pipe("air", NO_FAULTS, 1)
@@ -99,6 +100,7 @@ async def test_time_stands_still_while_the_link_is_behind() -> None:
     assert stamps[-1] - stamps[0] < 550
 
 
+@pytest.mark.virtual_time
 async def test_a_mission_is_flown_over_a_link_and_the_server_stops() -> None:
     """In one process, two hundred times faster than real time; then the stop event ends it."""
     ours, theirs = memory_pair()
@@ -113,6 +115,7 @@ async def test_a_mission_is_flown_over_a_link_and_the_server_stops() -> None:
     assert {m.system_id for m in ground.heard} == {1}
 
 
+@pytest.mark.virtual_time
 async def test_nonsense_on_the_link_does_not_end_it() -> None:
     """Noise and commands full of NaN are survived; the next question is answered."""
     ours, theirs = memory_pair()

@@ -21,6 +21,9 @@ from mavlink.wire.items import MissionItem, MissionType
 from mavlink.wire.messages import Message
 from tests.mavlink.station.aircraft import flying
 from tests.mavlink.transfer.vehicle import waypoints
+from tests.virtual_time import loop_time_s
+
+pytestmark = pytest.mark.virtual_time
 
 LAND_MISSING = "navigator_mis_land_missing"
 
@@ -173,7 +176,7 @@ async def test_a_client_asks_for_a_lost_event() -> None:
     vehicle = Codec(1, 1)
     heartbeat = Message("HEARTBEAT", {"type": 1, "autopilot": 12})
     await air.send(vehicle.pack(heartbeat) + vehicle.pack(current(6)) + vehicle.pack(current(7)))
-    async with VehicleClient(ground) as client:
+    async with VehicleClient(ground, clock=loop_time_s) as client:
         await client.connect(5.0)
         request = None
         async with asyncio.timeout(5.0):

@@ -34,6 +34,9 @@ from mavlink.station.client import VehicleClient
 from mavlink.wire.codec import Codec
 from mavlink.wire.messages import Message
 from tests.mavlink.state.test_telemetry import at, received
+from tests.virtual_time import loop_time_s
+
+pytestmark = pytest.mark.virtual_time
 
 
 def recorded(output: SensorOutput | None, *messages: Message) -> Track:
@@ -198,7 +201,7 @@ async def simulated(settings: SimSettings) -> AsyncIterator[VehicleClient]:
     here, there = memory_pair()
     flying = asyncio.create_task(serve_link(there, settings))
     try:
-        async with VehicleClient(here) as client:
+        async with VehicleClient(here, clock=loop_time_s) as client:
             await client.connect(5.0)
             yield client
     finally:
@@ -243,7 +246,7 @@ async def test_cameras_beside_the_autopilot_are_heard() -> None:
     here, there = memory_pair()
     photo = Message("CAMERA_IMAGE_CAPTURED", {"image_index": 1, "capture_result": 1, "lat": 1, "lon": 1})
     heartbeat = Message("HEARTBEAT", {"autopilot": 3, "type": 1, "mavlink_version": 3})
-    async with VehicleClient(here) as client:
+    async with VehicleClient(here, clock=loop_time_s) as client:
         connecting = asyncio.create_task(client.connect(5.0))
         await there.send(Codec(7, 1).pack(heartbeat))
         await connecting

@@ -15,6 +15,7 @@ from mavlink.transfer.machine import TransferSettings
 from mavlink.wire.codec import Codec
 from mavlink.wire.messages import Message, Value
 from tests.mavlink.transfer.vehicle import StubVehicle
+from tests.virtual_time import loop_time_s
 
 # A tenth of the protocol's patience, so that tests of time-outs are short.
 HASTY = TransferSettings(timeout_s=0.15, item_timeout_s=0.025, silence_s=0.8, acknowledgement_s=0.4)
@@ -69,7 +70,7 @@ class Aircraft:
             await self.say(
                 "HEARTBEAT", autopilot=self.autopilot, type=self.kind, custom_mode=10, base_mode=0x80
             )
-            for answer in self.vehicle.tick(asyncio.get_running_loop().time()):
+            for answer in self.vehicle.tick(loop_time_s()):
                 await self.say(answer.name, **dict(answer.fields))
             await asyncio.sleep(0.1)
 
@@ -122,9 +123,7 @@ async def flying(
     ground, air = memory_pair(faults, seed)
     autopilot = {"ardupilot": 3, "px4": 12, "generic": 0}[manner]
     stub = StubVehicle("px4" if manner == "px4" else "ardupilot")
-    client = VehicleClient(
-        ground, settings=settings, lost_after_s=lost_after_s, tap=tap, clock=asyncio.get_running_loop().time
-    )
+    client = VehicleClient(ground, settings=settings, lost_after_s=lost_after_s, tap=tap, clock=loop_time_s)
     async with Aircraft(air, stub, autopilot, kind) as aircraft, client:
         await client.connect(5)
         yield client, aircraft

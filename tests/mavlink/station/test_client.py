@@ -20,6 +20,9 @@ from mavlink.wire.items import Command, MissionType
 from mavlink.wire.messages import Message
 from tests.mavlink.station.aircraft import HASTY, Aircraft, flying
 from tests.mavlink.transfer.vehicle import StubVehicle, waypoints
+from tests.virtual_time import loop_time_s
+
+pytestmark = pytest.mark.virtual_time
 
 MISSION = MissionType.MISSION
 
@@ -33,7 +36,7 @@ async def test_connecting_takes_the_autopilots_heartbeat() -> None:
         (Codec(5, 1), {"type": 1, "autopilot": 12, "custom_mode": 4 << 16 | 4 << 24}),
     ]:
         await air.send(sender.pack(Message("HEARTBEAT", fields)))
-    async with VehicleClient(ground) as client:
+    async with VehicleClient(ground, clock=loop_time_s) as client:
         state = await client.connect(5)
         assert (state.system_id, state.autopilot, state.type, state.mode) == (
             5,
@@ -47,7 +50,7 @@ async def test_connecting_takes_the_autopilots_heartbeat() -> None:
 async def test_no_vehicle_is_said() -> None:
     """Without a heartbeat in time VehicleNotFoundError; a later one still connects."""
     ground, air = memory_pair()
-    async with VehicleClient(ground, settings=HASTY) as client:
+    async with VehicleClient(ground, settings=HASTY, clock=loop_time_s) as client:
         with pytest.raises(VehicleNotFoundError, match=r"0\.05 s"):
             await client.connect(0.05)
         with pytest.raises(NotConnectedError):
@@ -72,7 +75,10 @@ async def test_over_udp() -> None:
     """The same over sockets on loopback."""
     ground = await open_udp("127.0.0.1", 0, listen=True)
     air = await open_udp("127.0.0.1", ground.local_port, listen=False)
-    async with Aircraft(air, StubVehicle()) as aircraft, VehicleClient(ground) as client:
+    async with (
+        Aircraft(air, StubVehicle()) as aircraft,
+        VehicleClient(ground, clock=loop_time_s) as client,
+    ):
         await client.connect(5)
         assert await client.upload(waypoints(100), MISSION) == Accepted()
         assert aircraft.vehicle.held[0] == waypoints(100)
@@ -142,7 +148,10 @@ async def test_closing_leaves_no_task_and_no_waiter() -> None:
 async def test_a_link_that_fails_ends_the_client() -> None:
     """When the link itself ends, the state says so and calls name the reason."""
     ground, air = memory_pair()
-    async with Aircraft(air, StubVehicle()), VehicleClient(ground) as client:
+    async with (
+        Aircraft(air, StubVehicle()),
+        VehicleClient(ground, clock=loop_time_s) as client,
+    ):
         await client.connect(5)
         await ground.close()
         await client.wait_for(lambda state: not state.connected, 5)

@@ -10,6 +10,8 @@ from mavlink.transfer.outcome import Accepted
 from mavlink.wire.items import Command
 from tests.mavlink.station.aircraft import flying
 
+pytestmark = pytest.mark.virtual_time
+
 
 async def test_commands_are_answered_and_take_turns() -> None:
     """Accepted, refused and unanswered commands; two of one number do not take each other's answer."""

@@ -22,6 +22,7 @@ from mavlink.station.verify import Compare
 from mavlink.transfer.machine import TransferSettings
 from mavlink.transfer.outcome import Accepted, Refused, Unknown
 from mavlink.wire.items import Command, MissionItem, MissionType
+from tests.virtual_time import loop_time_s
 
 pytestmark = pytest.mark.virtual_time
 
@@ -62,8 +63,7 @@ async def simulated(flavour: Flavour, *faults: Fault) -> AsyncIterator[VehicleCl
     stop = asyncio.Event()
     flight = asyncio.create_task(serve_link(air, settings, stop=stop))
     try:
-        clock = asyncio.get_running_loop().time
-        async with VehicleClient(ground, settings=QUICK, lost_after_s=1.5, clock=clock) as client:
+        async with VehicleClient(ground, settings=QUICK, lost_after_s=1.5, clock=loop_time_s) as client:
             await client.connect(10)
             yield client
     finally:

@@ -16,6 +16,9 @@ from mavlink.wire.items import Command, MissionType
 from mavlink.wire.messages import Message
 from tests.mavlink.station.aircraft import HASTY, LOST_AFTER_S, Aircraft
 from tests.mavlink.transfer.vehicle import StubVehicle, waypoints
+from tests.virtual_time import loop_time_s
+
+pytestmark = pytest.mark.virtual_time
 
 MISSION = MissionType.MISSION
 
@@ -57,7 +60,7 @@ async def seated() -> AsyncIterator[tuple[VehicleClient, Seat]]:
     """A client of system 1, which holds three waypoints."""
     ground, air = memory_pair()
     seat = Seat(air)
-    async with VehicleClient(ground, settings=HASTY, lost_after_s=LOST_AFTER_S) as client:
+    async with VehicleClient(ground, settings=HASTY, lost_after_s=LOST_AFTER_S, clock=loop_time_s) as client:
         await seat.sit(1)
         await client.connect(5)
         assert (await client.upload(waypoints(3), MISSION)).kind == "accepted"
@@ -120,7 +123,10 @@ async def test_the_vehicle_itself_comes_back_without_a_word(seated: tuple[Vehicl
 async def test_others_beside_a_vehicle_that_is_there_mean_nothing() -> None:
     """A second autopilot, a camera and a ground station on the link change nothing."""
     ground, air = memory_pair()
-    async with Aircraft(air, StubVehicle()) as aircraft, VehicleClient(ground, settings=HASTY) as client:
+    async with (
+        Aircraft(air, StubVehicle()) as aircraft,
+        VehicleClient(ground, settings=HASTY, clock=loop_time_s) as client,
+    ):
         await client.connect(5)
         for sender, fields in [
             (Codec(2, 1), {"type": 1, "autopilot": 3}),
@@ -135,7 +141,7 @@ async def test_others_beside_a_vehicle_that_is_there_mean_nothing() -> None:
 async def test_a_client_that_knows_its_vehicle_takes_no_other() -> None:
     """A link opened anew for system 1, as after a failure, does not take the first that answers."""
     ground, air = memory_pair()
-    client = VehicleClient(ground, settings=HASTY, vehicle_system=1)
+    client = VehicleClient(ground, settings=HASTY, vehicle_system=1, clock=loop_time_s)
     async with Aircraft(air, StubVehicle(), system_id=2), client:
         connecting = asyncio.create_task(client.connect(20))
         await client.wait_for(lambda state: state.other_system == 2, 20)

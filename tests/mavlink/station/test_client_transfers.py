@@ -23,6 +23,8 @@ from mavlink.wire.messages import Message
 from tests.mavlink.station.aircraft import HASTY, LOST_AFTER_S, flying
 from tests.mavlink.transfer.vehicle import waypoints
 
+pytestmark = pytest.mark.virtual_time
+
 MISSION, FENCE = MissionType.MISSION, MissionType.FENCE
 
 

@@ -17,6 +17,9 @@ from mavlink.station.client import VehicleClient
 from mavlink.transfer.machine import DEFAULT_SETTINGS
 from mavlink.transfer.outcome import Accepted, Unknown
 from mavlink.wire.items import Command, Frame, MissionItem, MissionType
+from tests.virtual_time import loop_time_s
+
+pytestmark = pytest.mark.virtual_time
 
 HASTY = replace(DEFAULT_SETTINGS, timeout_s=0.2, retries=1)
 SPEED, WAYPOINT = 3, 4
@@ -44,7 +47,7 @@ async def in_flight(flavour: Flavour) -> AsyncIterator[VehicleClient]:
     ground, air = memory_pair()
     simulator = asyncio.create_task(serve_link(air, SimSettings(autopilot=flavour, speedup=20.0)))
     try:
-        async with VehicleClient(ground, settings=HASTY) as client:
+        async with VehicleClient(ground, settings=HASTY, clock=loop_time_s) as client:
             await client.connect(5.0)
             assert await client.upload(mission(flavour), MissionType.MISSION) == Accepted()
             assert (await client.arm()).accepted

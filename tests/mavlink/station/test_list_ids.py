@@ -19,6 +19,8 @@ from tests.mavlink.station.aircraft import Aircraft, flying
 from tests.mavlink.station.test_client_transfers import compare
 from tests.mavlink.transfer.vehicle import waypoints
 
+pytestmark = pytest.mark.virtual_time
+
 MISSION, FENCE = MissionType.MISSION, MissionType.FENCE
 OTHER = 0x0BADCAFE
 

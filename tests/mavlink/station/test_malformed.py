@@ -6,6 +6,7 @@ import asyncio
 import math
 import struct
 
+import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from pymavlink.dialects.v20 import ardupilotmega as dialect
@@ -20,6 +21,8 @@ from mavlink.wire.items import MissionType
 from mavlink.wire.messages import Message
 from tests.mavlink.station.aircraft import flying
 from tests.mavlink.transfer.vehicle import waypoints
+
+pytestmark = pytest.mark.virtual_time
 
 NAMES = sorted(definition.msgname for definition in dialect.mavlink_map.values())
 IDS = {definition.msgname: number for number, definition in dialect.mavlink_map.items()}

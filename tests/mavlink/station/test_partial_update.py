@@ -18,6 +18,7 @@ from tests.mavlink.station.aircraft import flying
 from tests.mavlink.station.test_client_faults import comparison, mission, simulated
 from tests.mavlink.station.test_client_transfers import compare
 from tests.mavlink.transfer.vehicle import waypoints
+from tests.virtual_time import loop_time_s
 
 pytestmark = pytest.mark.virtual_time
 
@@ -84,7 +85,7 @@ async def test_home_cannot_be_replaced() -> None:
 async def test_an_update_of_nobody_is_refused() -> None:
     """Without a vehicle nothing is begun."""
     ground, air = memory_pair()
-    async with VehicleClient(ground) as client:
+    async with VehicleClient(ground, clock=loop_time_s) as client:
         with pytest.raises(NotConnectedError):
             await client.update_items(waypoints(12), CHANGED, compare)
     await air.close()

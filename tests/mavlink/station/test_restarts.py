@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from random import Random
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -18,6 +19,8 @@ from mavlink.wire.items import MissionType
 from mavlink.wire.messages import Message
 from tests.mavlink.station.aircraft import HASTY, flying
 from tests.mavlink.transfer.vehicle import waypoints
+
+pytestmark = pytest.mark.virtual_time
 
 STATE = VehicleState(connected=True)
 

@@ -23,6 +23,9 @@ from mavlink.wire.signing import Signing, SigningKey
 from tests.mavlink.station.aircraft import HASTY
 from tests.mavlink.station.test_strangers import Stranger
 from tests.mavlink.transfer.vehicle import waypoints
+from tests.virtual_time import loop_time_s
+
+pytestmark = pytest.mark.virtual_time
 
 SECRET, OTHER = bytes(range(32)), bytes(range(1, 33))
 KEYS = {"ours": SECRET, "another": OTHER}
@@ -46,7 +49,12 @@ async def simulated(
     flying = asyncio.create_task(serve_link(air, settings))
     tap = None if tape is None else tape.append
     client = VehicleClient(
-        ground, settings=HASTY, signing=signing(ours) if ours else None, tap=tap, lost_after_s=2.5
+        ground,
+        settings=HASTY,
+        signing=signing(ours) if ours else None,
+        tap=tap,
+        lost_after_s=2.5,
+        clock=loop_time_s,
     )
     client._driver.start()
     try:
@@ -154,7 +162,7 @@ class Keyed(Stranger):
 async def test_forgers_are_no_rivals_and_the_vehicle_may_move() -> None:
     """Unsigned and wrongly signed heartbeats of its system change nothing; with the key it is followed."""
     ground = await open_udp("127.0.0.1", 0, listen=True)
-    async with VehicleClient(ground, signing=signing(), lost_after_s=0.6) as client:
+    async with VehicleClient(ground, signing=signing(), lost_after_s=0.6, clock=loop_time_s) as client:
         connecting = asyncio.create_task(client.connect(5))
         with (
             Keyed(ground.local_port, SECRET) as vehicle,
@@ -186,7 +194,7 @@ async def test_forgers_are_no_rivals_and_the_vehicle_may_move() -> None:
 async def test_a_vehicle_whose_clock_is_behind_is_told_the_time() -> None:
     """Its frames are too old to count; it hears one of this side's, and counts from its next one on."""
     ground = await open_udp("127.0.0.1", 0, listen=True)
-    async with VehicleClient(ground, signing=signing(), lost_after_s=0.6) as client:
+    async with VehicleClient(ground, signing=signing(), lost_after_s=0.6, clock=loop_time_s) as client:
         connecting = asyncio.create_task(client.connect(10))
         with Keyed(ground.local_port, SECRET, behind_s=7200.0) as vehicle:
             vehicle.beat()

@@ -5,11 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+import pytest
+
 from mavlink.dialects import dialect_for
 from mavlink.dialects.compare import Difference, differences
 from mavlink.wire.items import Frame, MissionItem, MissionType
 from tests.mavlink.station.aircraft import LOST_AFTER_S, flying
 from tests.mavlink.transfer.vehicle import StubVehicle, waypoints
+
+pytestmark = pytest.mark.virtual_time
 
 PLANE = dialect_for("ardupilot", "fixed_wing")
 

@@ -19,6 +19,9 @@ from mavlink.transfer.command import CommandResult
 from mavlink.wire.items import Command, MissionType
 from tests.mavlink.station.aircraft import HASTY, Aircraft
 from tests.mavlink.transfer.vehicle import StubVehicle, waypoints
+from tests.virtual_time import loop_time_s
+
+pytestmark = pytest.mark.virtual_time
 
 LOST_AFTER_S = 0.6
 
@@ -67,7 +70,7 @@ async def listening() -> AsyncIterator[tuple[VehicleClient, Aircraft, int]]:
     """A client on a port that anybody may send to, and its aircraft."""
     ground = await open_udp("127.0.0.1", 0, listen=True)
     air = await open_udp("127.0.0.1", ground.local_port, listen=False)
-    client = VehicleClient(ground, settings=HASTY, lost_after_s=LOST_AFTER_S)
+    client = VehicleClient(ground, settings=HASTY, lost_after_s=LOST_AFTER_S, clock=loop_time_s)
     async with Aircraft(air, StubVehicle()) as aircraft, client:
         await client.connect(5)
         yield client, aircraft, ground.local_port
@@ -193,7 +196,7 @@ async def test_a_called_peer_is_heard_alone() -> None:
         link = await open_link(f"udpout:{called.address}")
         assert isinstance(link, UdpLink)
         own = ("127.0.0.1", link.local_port)
-        async with VehicleClient(link, lost_after_s=LOST_AFTER_S) as client:
+        async with VehicleClient(link, lost_after_s=LOST_AFTER_S, clock=loop_time_s) as client:
             connecting = asyncio.create_task(client.connect(5))
             stranger._to = called._to = own
             stranger.beat()

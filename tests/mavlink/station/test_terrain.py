@@ -17,6 +17,8 @@ from mavlink.station.terrain import BLOCKS, MOST_BLOCKS, POSTS, TerrainServer, W
 from mavlink.wire.codec import Codec
 from mavlink.wire.messages import Message
 
+pytestmark = pytest.mark.virtual_time
+
 GEOD = Geod(ellps="WGS84")
 
 

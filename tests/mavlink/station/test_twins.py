@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from random import Random
 
 import pytest
@@ -18,6 +17,9 @@ from mavlink.wire.codec import Codec
 from mavlink.wire.messages import Message
 from tests.mavlink.station.aircraft import HASTY, Aircraft
 from tests.mavlink.transfer.vehicle import StubVehicle
+from tests.virtual_time import loop_time_s
+
+pytestmark = pytest.mark.virtual_time
 
 #: Seconds between two frames of an aircraft, and how many are sent.
 _EVERY_S, _FRAMES = 0.1, 200
@@ -118,7 +120,7 @@ async def test_the_client_orders_neither() -> None:
     """On a stream of two what flies is refused, and a stop is sent; once one is gone all is well again."""
     ground, air = memory_pair()
     clock = {"ahead_s": 0.0}
-    client = VehicleClient(ground, settings=HASTY, clock=lambda: time.monotonic() + clock["ahead_s"])
+    client = VehicleClient(ground, settings=HASTY, clock=lambda: loop_time_s() + clock["ahead_s"])
     second = Codec(1, 1)
     async with Aircraft(air, StubVehicle()) as aircraft, client:
         await client.connect(5)

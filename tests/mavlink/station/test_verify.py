@@ -14,6 +14,8 @@ from mavlink.transfer.machine import Progress
 from mavlink.transfer.outcome import Accepted, Outcome
 from mavlink.wire.items import Command, Frame, MissionItem, MissionType
 
+pytestmark = pytest.mark.virtual_time
+
 HERE = (8.5, 47.4)
 CORNER = replace(placed(Command.NAV_FENCE_POLYGON_VERTEX_INCLUSION, HERE, 0.0, Frame.GLOBAL), param1=3.0)
 CIRCLE = replace(placed(Command.NAV_FENCE_CIRCLE_EXCLUSION, HERE, 0.0, Frame.GLOBAL), param1=250.0)
