@@ -28,14 +28,19 @@ class Ending:
     resolved: bool
 
 
+def _length(random: Random, most: int) -> int:
+    """From 1 to the most, each order of magnitude as often as another."""
+    return round(most ** random.random())
+
+
 def storm(seed: int, loss: float, most: int, refusing: bool) -> Ending:
     """One upload of a random length onto a random old mission, then a read-back in the same weather."""
     random = Random(seed)
-    items = ITEMS[: random.randint(1, most)]
+    items = ITEMS[: _length(random, most)]
     manner = random.choice(["ardupilot", "px4"])
     refused = {random.randrange(len(items)): MissionResult.INVALID_PARAM2} if refusing else {}
     vehicle = StubVehicle(manner, refused)
-    vehicle.held[0] = old = ITEMS[: random.randint(0, most)]
+    vehicle.held[0] = old = ITEMS[: _length(random, most) - 1]
     machine = UploadMachine(items, MissionType.MISSION, 1, 1)
     Air(machine, vehicle, Weather(loss, 0.05, 0.05, seed)).run()
     for again in range(3):  # as mavlink.station.verify does
