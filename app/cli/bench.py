@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import importlib
+import inspect
 import json
+from collections.abc import Callable
 from enum import StrEnum
+from pathlib import Path
 from typing import Annotated, Any
 
 import typer
@@ -28,6 +31,7 @@ class Benchmark(StrEnum):
     READS = "reads"
     URBAN = "urban"
     VALIDATE = "validate"
+    ORIENTEERING = "orienteering"
 
 
 def _options(pairs: list[str]) -> dict[str, Any]:
@@ -42,6 +46,16 @@ def _options(pairs: list[str]) -> dict[str, Any]:
             value = text
         options[name] = tuple(value) if isinstance(value, list) else value
     return options
+
+
+def _accepted(name: str, run: Callable[..., Any], options: dict[str, Any]) -> None:
+    """Refuse what a benchmark does not take, and the lack of what it needs."""
+    taken = inspect.signature(run).parameters
+    for option in options:
+        if option not in taken:
+            raise typer.BadParameter(f"{name} takes no {option}; it takes {', '.join(taken) or 'nothing'}")
+    if "file" in taken and "file" not in options:
+        raise typer.BadParameter(f"{name} needs a file: swathplan bench {name} FILE")
 
 
 def _cell(value: Any) -> str:
@@ -73,17 +87,28 @@ def _table(rows: list[dict[str, Any]]) -> str:
 
 def bench(
     name: Annotated[Benchmark, typer.Argument(help="Which benchmark.")],
+    file: Annotated[
+        Path | None,
+        typer.Argument(help="Problem to solve, of benchmarks that take one.", exists=True, dir_okay=False),
+    ] = None,
+    budget: Annotated[float | None, typer.Option(help="Only this budget of the file.", min=0.0)] = None,
+    seconds: Annotated[float | None, typer.Option(help="Time for each problem.", min=0.0)] = None,
+    paths: Annotated[
+        Path | None, typer.Option(help="Folder for the paths found.", file_okay=False, metavar="DIR")
+    ] = None,
     option: Annotated[
         list[str] | None, typer.Option(help="Option of the benchmark, e.g. repeats=1.", metavar="NAME=VALUE")
     ] = None,
     as_json: Json = False,
 ) -> None:
     """Run a benchmark: a table, or JSON lines as they come with --json."""
-    options = _options(option or [])
+    given = {"file": file, "budget": budget, "seconds": seconds, "paths": paths}
+    options = _options(option or []) | {key: value for key, value in given.items() if value is not None}
     try:
         module = importlib.import_module(f"benchmarks.{name.value}")
     except ModuleNotFoundError as error:
         raise CommandError(f"{error}; benchmarks run from the source tree with its dev extra") from error
+    _accepted(name.value, module.run, options)
     rows: list[dict[str, Any]] = []
     for row in module.run(**options):
         if as_json:

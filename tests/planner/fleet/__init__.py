@@ -1,0 +1,1 @@
+"""Tests of several aircraft, and of what one of them cannot all fly to."""

@@ -1,0 +1,1 @@
+"""The orienteering form: the most reward within a limit, and home again."""
