@@ -32,6 +32,7 @@ class Benchmark(StrEnum):
     URBAN = "urban"
     VALIDATE = "validate"
     ORIENTEERING = "orienteering"
+    SMOOTHING = "smoothing"
 
 
 def _options(pairs: list[str]) -> dict[str, Any]:

@@ -65,7 +65,7 @@ def smooth(
         From the first waypoint to the last, exactly in the directions given, turns never tighter than the
         radius. Pieces for which ``clear`` is false are in it only where every way has one; the fewest then.
     """
-    points = _distinct(np.asarray(waypoints, dtype=np.float64))
+    points = distinct(np.asarray(waypoints, dtype=np.float64))
     poses, along_m = _poses(points, start_angle_rad, end_angle_rad)
     graph = _Graph(poses, along_m, radius_m, clear, method)
     while True:
@@ -175,7 +175,7 @@ class _Graph:
         return dearer
 
 
-def _distinct(points: Array) -> Array:
+def distinct(points: Array) -> Array:
     """The waypoints without those that repeat their forerunner; at least two."""
     if points.ndim != 2 or points.shape[1] != 2 or len(points) < 2 or not np.isfinite(points).all():
         raise ValueError(f"waypoints need the shape (N, 2), N >= 2, finite, not {points.shape}")

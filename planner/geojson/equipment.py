@@ -33,7 +33,7 @@ METHODS = {
     "coverage": ("auto", "li2018", *OWN_ORDER),
     "routing": ("auto", "joint", "li2018", "li2018-threat-aware"),
     "transit": ("auto", "ssas", "tangent"),
-    "smoothing": ("auto", "fillet", "shortcut"),
+    "smoothing": ("auto", "fillet", "shortcut", "three-arc", "past-target", "short-turn"),
     "search": ("auto",),
 }
 

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import cast
 
 from planner.airspace.envelope import SMOOTH_M
 from planner.airspace.zones import KeepOut
 from planner.dubins.path import Path, Segment
+from planner.dubins.rounding import RoundingMethod
 from planner.errors import InfeasibleError
 from planner.profile.compose import Composed
 from planner.progress import Progress, Stop
@@ -99,9 +100,6 @@ class Transits:
     def _ssas(self, start: Anchor, goal: Anchor, zones: KeepOut, other: Connector, stop: Stop) -> Path:
         """SSAS's line; none where it leads through threats and costs more than another."""
         threats, height_m = self.setting.airspace.threats, self.setting.level.lowest.height_m
-        smoothing: Literal["fillet", "shortcut"] = (
-            "shortcut" if self.methods["smoothing"] == "shortcut" else "fillet"
-        )
         try:
             path, _ = ssas_connector.connect(
                 start,
@@ -111,7 +109,7 @@ class Transits:
                 height_m=height_m,
                 keep_out=zones,
                 radius_m=self.setting.model.turn_radius_m,
-                smoothing=smoothing,
+                smoothing=cast(RoundingMethod, self.methods["smoothing"]),
                 stop=stop,
             )
         except InfeasibleError as error:

@@ -18,7 +18,7 @@ from planner.airspace.threats import metres_inside, threat_arrays
 from planner.airspace.values import Threat
 from planner.airspace.zones import MITRE_LIMIT, KeepOut
 from planner.dubins.path import Path
-from planner.dubins.smoothing import SmoothingMethod, smooth
+from planner.dubins.rounding import RoundingMethod, round_off
 from planner.dubins.words import candidates
 from planner.errors import InfeasibleError, OutOfBudgetError
 from planner.progress import Stop, never, raise_if
@@ -108,7 +108,7 @@ def connect(
     height_m: float,
     keep_out: KeepOut,
     radius_m: float,
-    smoothing: SmoothingMethod = "fillet",
+    smoothing: RoundingMethod = "fillet",
     stop: Stop = never,
 ) -> tuple[Path, SsasResult]:
     """A flyable line from one anchor to another by SSAS.
@@ -127,7 +127,7 @@ def connect(
     radius_m
         Turn radius of the arcs.
     smoothing
-        How legs become arcs, see ``planner.dubins.smoothing.smooth``.
+        How legs become arcs, see ``planner.dubins.rounding.round_off``.
     stop
         Asked before each attempt and each run of the search.
 
@@ -161,7 +161,7 @@ def connect(
         except InfeasibleError as error:
             failures.append((attempt.threats == "closed", error))
             continue
-        path = smooth(found.waypoints, start.angle_rad, goal.angle_rad, radius_m, wanted.clear, smoothing)
+        path = round_off(found.waypoints, start.angle_rad, goal.angle_rad, radius_m, wanted.clear, smoothing)
         if wanted.clear(path):
             if path.length_m <= job.short_m():
                 return path, found

@@ -59,6 +59,19 @@ def test_smoothing_by_shortcuts_is_shorter_than_by_fillets() -> None:
     assert turns[1] < turns[0]
 
 
+def test_turns_by_name_keep_the_hard_constraints() -> None:
+    """The judge accepts SSAS legs rounded by each of the named turns, and each makes another line."""
+    threat = feature("T", "threat", "Point", [0.016, 0.006], model="missile", radius_m=900.0)
+    lengths_m = set()
+    for smoothing in ("fillet", "three-arc", "past-target", "short-turn"):
+        method = {"routing": "li2018", "transit": "ssas", "smoothing": smoothing}
+        plan = make_plan(read_scenario(small(threat, method=method)))
+        assert plan.hard_violations == ()
+        assert plan.methods["smoothing"] == smoothing
+        lengths_m.add(plan.metrics.length_m)
+    assert len(lengths_m) == 4
+
+
 def test_same_scenario_same_plan() -> None:
     """Planning twice gives the same bytes but for the times."""
     first, second = (write_plan(make_plan(read_scenario(case(1)))) for _ in range(2))

@@ -11,7 +11,7 @@ const METHODS: Record<string, readonly string[]> = {
   coverage: ["auto", "li2018", "majeed2019", "boustrophedon-cells", "coverage-alternatives"],
   routing: ["auto", "joint", "li2018", "li2018-threat-aware"],
   transit: ["auto", "ssas", "tangent"],
-  smoothing: ["auto", "fillet", "shortcut"],
+  smoothing: ["auto", "fillet", "shortcut", "three-arc", "past-target", "short-turn"],
 };
 const WEIGHTS = ["length", "missile", "radar", "energy", "turns"] as const;
 
