@@ -3,20 +3,24 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 
+from shapely.geometry import LineString, MultiLineString
+
 from planner.bounds.allowance import Allowance
 from planner.check import judge
+from planner.errors import Finding
 from planner.metrics import measure
-from planner.plan import Plan
+from planner.plan import LeftOut, Plan
 from planner.progress import Progress, Stop, never, silent
-from planner.publish import Chart, assemble, uncovered
+from planner.publish import Chart, assemble, fence, uncovered
 from planner.scenario import Scenario
 from planner.tasks.methods import chosen_methods
 from planner.tasks.registry import task_of
-from planner.tasks.task import Controls
+from planner.tasks.task import Answer, Controls
+from planner.together import Part, together
 from planner.version import __version__
 
 Clock = Callable[[], float]
@@ -73,41 +77,63 @@ def make_plan(
     """
     watch = _Stopwatch(clock)
     enough = _budget(clock, scenario.time_budget_s)
-    answer = task_of(scenario.task).answer(scenario, Controls(progress, stop, enough, watch.stage))
+    controls = Controls(progress, stop, enough, watch.stage)
+    if scenario.task == "collect" and scenario.is_fleet:
+        return _fleet_plan(scenario, controls, watch)
+    answer = task_of(scenario.task).answer(scenario, controls)
     setting = answer.setting
     chart = Chart(scenario.frame, setting.level)
     with watch.stage("publish"):
-        start, end = setting.ends
-        direct_m = math.dist(start.position, end.position)
-        draft = assemble(
-            scenario.name,
-            chart,
+        draft = _draft(scenario, chart, answer)
+    return _judged(scenario, draft, chart, answer.dropped, answer.left_out, controls, watch)
+
+
+def _draft(scenario: Scenario, chart: Chart, answer: Answer) -> Plan:
+    """The plan of one flight, not yet judged."""
+    setting = answer.setting
+    start, end = setting.ends
+    direct_m = math.dist(start.position, end.position)
+    return assemble(
+        scenario.name,
+        chart,
+        setting.model,
+        setting.airspace,
+        setting.suite,
+        setting.ends,
+        answer.composed,
+        answer.legs,
+        answer.passes,
+        metrics=measure(
+            answer.composed.flight,
+            answer.passes,
             setting.model,
             setting.airspace,
-            setting.suite,
-            setting.ends,
-            answer.composed,
-            answer.legs,
-            answer.passes,
-            metrics=measure(
-                answer.composed.flight,
-                answer.passes,
-                setting.model,
-                setting.airspace,
-                setting.level,
-                direct_m,
-            ),
-            methods=answer.methods,
-            planner_version=__version__,
-            scenario_hash=scenario.scenario_hash,
-            seed=scenario.seed,
-            warnings=tuple(str(f) for f in (*scenario.warnings, *answer.dropped)) + answer.notes,
-        )
-    progress("check", 0.95)
+            setting.level,
+            direct_m,
+        ),
+        methods=answer.methods,
+        planner_version=__version__,
+        scenario_hash=scenario.scenario_hash,
+        seed=scenario.seed,
+        warnings=tuple(str(f) for f in (*scenario.warnings, *answer.dropped)) + answer.notes,
+    )
+
+
+def _judged(
+    scenario: Scenario,
+    draft: Plan,
+    chart: Chart,
+    dropped: Sequence[Finding],
+    left_out: tuple[LeftOut, ...],
+    controls: Controls,
+    watch: _Stopwatch,
+) -> Plan:
+    """A draft with its verdict."""
+    controls.progress("check", 0.95)
     with watch.stage("check"):
         verdict = judge(scenario, draft)
-    reasons = {name: f.message for f in answer.dropped for name in f.feature.split("+")}
-    progress("done", 1.0)
+    reasons = {name: f.message for f in dropped for name in f.feature.split("+")}
+    controls.progress("done", 1.0)
     return replace(
         draft,
         metrics=replace(
@@ -115,11 +141,42 @@ def make_plan(
             coverage=verdict.coverage,
             surveys=verdict.surveys,
             planning_time_s=dict(watch.seconds),
-            left_out=answer.left_out,
+            left_out=left_out,
         ),
         violations=verdict.violations,
         uncovered=uncovered(chart, verdict.unseen, reasons),
     )
+
+
+def _fleet_plan(scenario: Scenario, controls: Controls, watch: _Stopwatch) -> Plan:
+    """The plan of several flights."""
+    # Here: one flight needs no search for routes of many.
+    from planner.tasks.fleet.flights import answer_of
+    from planner.tasks.fleet.task import fleet
+
+    found = fleet(scenario, controls)
+    whole = Chart(scenario.frame, scenario.level)
+    with watch.stage("publish"):
+        parts = []
+        for sortie in found.sorties:
+            crew = found.crews[sortie.flown.crew]
+            chart = Chart(scenario.frame, crew.setting.level)
+            parts.append(
+                Part(_draft(scenario, chart, answer_of(crew, sortie.flown)), sortie.start_s, sortie.number)
+            )
+        flown = MultiLineString(
+            [LineString(s.flown.composed.flight.path.sample(10.0)[:, :2]) for s in found.sorties]
+        )
+        draft = together(
+            parts,
+            fence(whole, scenario.airspace, flown),
+            scenario.level.altitude_m,
+            {region.name: region.priority for region in scenario.regions},
+        )
+        home, end = whole.lonlats([scenario.start.position, scenario.end.position])
+        warnings = tuple(str(finding) for finding in found.dropped) + draft.warnings
+        draft = replace(draft, home=home, end=end, methods=found.methods, warnings=warnings)
+    return _judged(scenario, draft, whole, found.dropped, found.left_out, controls, watch)
 
 
 def with_bound(
@@ -131,6 +188,8 @@ def with_bound(
     share: bool = False,
 ) -> Plan:
     """The same plan with what no plan over the regions it sees is shorter than, and how far it is above that.
+
+    That of several flights is given back as it is: nothing is proven of those.
 
     Parameters
     ----------
@@ -144,6 +203,8 @@ def with_bound(
         Whether the search ends after its share of the work, counted so that the same scenario and plan have
         the same bound on any machine; to its end otherwise.
     """
+    if plan.is_fleet or scenario.is_fleet:
+        return plan
     watch = _Stopwatch(clock)
     route_m = plan.metrics.route_length_m or plan.metrics.length_m
     allowance = Allowance(lines_for_bound(scenario, plan) if share else math.inf, enough)

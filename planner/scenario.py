@@ -19,7 +19,7 @@ from planner.route import Terminal
 from planner.sensors.base import Sensor
 from planner.sensors.suite import Suite
 from planner.vehicle.aircraft import Aircraft
-from planner.wishes import Method, Objective, Region, Separation
+from planner.wishes import DEFAULT_SEPARATION, Method, Objective, Region, Separation
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,6 +85,11 @@ class Scenario:
         return replace(
             self, aircraft=(aircraft,), sensors=suite.sensors, regions=regions, start=start, end=end, bases=()
         )
+
+    @property
+    def kept_apart(self) -> Separation:
+        """What aircraft keep from each other."""
+        return self.separation or DEFAULT_SEPARATION
 
     @property
     def is_fleet(self) -> bool:

@@ -57,8 +57,11 @@ def read_valid(document: Any, terrains: Terrains | None = None) -> Scenario:
 def unseeable(scenario: Scenario) -> tuple[Finding, ...]:
     """A finding for each region that no pass can see: a warning where the region is not required.
 
-    Where each can be seen by itself, also what hard zones, terrain and the wind forbid.
+    Where each can be seen by itself, also what hard zones, terrain and the wind forbid. Of several aircraft
+    one that sees a region is enough.
     """
+    if len(scenario.aircraft) > 1:
+        return _unseen_by_all(scenario)
     found = []
     # The paper's methods, asked for by name, know two passes at most.
     wide = scenario.method.coverage == "auto" and scenario.method.routing in ("auto", "joint")
@@ -91,6 +94,23 @@ def unseeable(scenario: Scenario) -> tuple[Finding, ...]:
         except InfeasibleError as error:
             found.append(_finding(error, True))
     return tuple(found)
+
+
+def _unseen_by_all(scenario: Scenario) -> tuple[Finding, ...]:
+    """What is said of a region by each aircraft that has its sensor on board; what else is said by any."""
+    names = {region.name for region in scenario.regions}
+    said: dict[str, list[tuple[Finding, ...]]] = {}
+    found: list[Finding] = []
+    for aircraft in scenario.aircraft:
+        alone = scenario.of_one(aircraft)
+        own = unseeable(alone)
+        found += [finding for finding in own if finding.feature not in names]
+        for region in alone.regions:
+            about = tuple(finding for finding in own if finding.feature == region.name)
+            said.setdefault(region.name, []).append(about)
+    for each in said.values():
+        found += each[0] if all(each) else ()
+    return tuple(dict.fromkeys(found))
 
 
 def laborious(scenario: Scenario) -> tuple[Finding, ...]:

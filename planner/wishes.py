@@ -51,15 +51,26 @@ class Separation:
     vertical_m: float
 
 
+#: Where a scenario does not say.
+DEFAULT_SEPARATION = Separation(100.0, 30.0)
+
+
 @dataclass(frozen=True, slots=True)
 class Objective:
-    """Weights of the cost terms: w1, w2, w3 of eq 25 (Li et al. 2018) and two more."""
+    """Weights of the cost terms: w1, w2, w3 of eq 25 (Li et al. 2018) and two more.
+
+    Those of several flights besides, by the second: when the last has landed, the time in the air of all, and
+    what is collected of priority against both.
+    """
 
     length: float = 1.0
     missile: float = 1.0
     radar: float = 1.0
     energy: float = 0.0
     turns: float = 0.0
+    last_landing: float = 1.0
+    total_time: float = 0.1
+    priority: float = 1.0
 
 
 @dataclass(frozen=True, slots=True)

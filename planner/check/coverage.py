@@ -23,6 +23,8 @@ from planner.wishes import Region
 GRID_M = 1e-6
 #: A region counts as seen when no more than this fraction of it is left out.
 UNSEEN_FRACTION = 1e-5
+#: Times are rounded to a millisecond.
+TIME_TOLERANCE_S = 0.01
 
 
 def covered(
@@ -34,12 +36,15 @@ def covered(
     violations = []
     seen_by = [(collect, footprint(scenario, collect, plan)) for collect in plan.collects]
     for region in scenario.regions:
-        prints = [
-            ground
+        own = [
+            (collect, ground)
             for collect, ground in seen_by
             if ground.intersects(region.area) and counts(scenario, region, collect)
         ]
-        seen = seen_times(prints, region.revisits)
+        if region.revisit_after_s > 0.0:
+            seen = seen_apart(region, own)
+        else:
+            seen = seen_times([ground for _, ground in own], region.revisits)
         # A millimetre of slack: coordinates are rounded to a hundredth of one.
         rest = difference(region.area, seen.buffer(1e-3), grid_size=GRID_M)
         fraction = max(0.0, 1.0 - rest.area / region.area.area)
@@ -62,6 +67,27 @@ def covered(
             )
         )
     return coverage, unseen, violations
+
+
+def seen_apart(region: Region, seen_by: Sequence[tuple[Collect, BaseGeometry]]) -> BaseGeometry:
+    """What the last visit sees of a region whose visits lie apart; all of it where there are enough.
+
+    A visit ends as soon as all is seen; the next one begins with the first collect that is late enough.
+    """
+    visits, from_s, until_s = 0, -math.inf, -math.inf
+    seen: BaseGeometry = Polygon()
+    for collect, ground in sorted(seen_by, key=lambda each: each[0].start_s):
+        if collect.start_s < from_s - TIME_TOLERANCE_S:
+            continue
+        seen = union_all([seen, ground], grid_size=GRID_M)
+        until_s = max(until_s, collect.end_s)
+        rest = difference(region.area, seen.buffer(1e-3), grid_size=GRID_M)
+        if rest.area <= UNSEEN_FRACTION * region.area.area:
+            visits += 1
+            if visits == region.revisits:
+                return seen
+            from_s, until_s, seen = until_s + region.revisit_after_s, -math.inf, Polygon()
+    return seen
 
 
 def seen_times(prints: Sequence[BaseGeometry], times: int) -> BaseGeometry:
@@ -96,7 +122,11 @@ def _resolves(resolution_m: float | None, asked_m: float | None) -> bool:
 
 
 def counts(scenario: Scenario, region: Region, collect: Collect) -> bool:
-    """Whether a collect sees with a sensor, a resolution, a height and a direction that the region allows."""
+    """Whether a collect sees with a sensor, a resolution, a height, a direction, at a time that it allows."""
+    if region.time_window_s is not None:
+        first_s, last_s = region.time_window_s
+        if collect.start_s < first_s - TIME_TOLERANCE_S or collect.end_s > last_s + TIME_TOLERANCE_S:
+            return False
     sensor = next(s for s in scenario.sensors if s.name == collect.sensor)
     if not _same(sensor, scenario.sensor_for(region)):
         return False

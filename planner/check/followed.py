@@ -30,7 +30,7 @@ def along(scenario: Scenario, plan: Plan, collect: Collect, step_m: float) -> tu
     tuple of ndarray
         (N, 2) metres east and north, and (N,) over the plan's datum.
     """
-    path = plan.path_of(collect.vehicle)
+    path = plan.path_of(collect.vehicle, collect.sortie)
     line = Measured(scenario.frame.to_local([place[:2] for place in path.line]))
     altitudes_m = np.array([place[2] for place in path.line])
     reached_m = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(line.along_m), np.diff(altitudes_m)))])

@@ -162,12 +162,12 @@ def _free_of_obstacles(
     shapes = [shape.polygon() for shape in hard_shapes(scenario.airspace, level)]
     if not shapes:
         return np.ones(len(places_m), dtype=np.bool_)
-    aircraft = scenario.aircraft[0].in_wind(scenario.wind.speed_m_s)
+    fleet = [aircraft.in_wind(scenario.wind.speed_m_s) for aircraft in scenario.aircraft]
     half_m = level.height_m * math.hypot(
         math.tan(sensor.optics.half_width_rad),
         math.tan(sensor.optics.half_height_rad) + math.tan(abs(sensor.tilt_rad)),
     )
-    kept_m = half_m + aircraft.ground_turn_radius_m + aircraft.settle_m
+    kept_m = half_m + max(each.ground_turn_radius_m + each.settle_m for each in fleet)
     solid = shapely.union_all(shapes)
     return np.asarray(shapely.distance(shapely.points(places_m), solid) > kept_m)
 

@@ -13,6 +13,7 @@ from planner.check.clearance import clearance_violations, place_violations
 from planner.check.continuity import collect_violations, terminal_violations
 from planner.check.coverage import covered
 from planner.check.energy import line_wh
+from planner.check.fleet import fleet_violations, window_violations
 from planner.check.followed import followed_violations
 from planner.check.footprint_quality import footprint_violations
 from planner.check.heights import (
@@ -70,10 +71,12 @@ def judge(scenario: Scenario, plan: Plan) -> Verdict:
     lengths_m: list[float] = []
     tightest_m = math.inf
     home_ground_m = scenario.level.altitude_m - scenario.level.height_m
-    for path in plan.paths:
-        aircraft = next(a for a in scenario.aircraft if a.name == path.vehicle).in_wind(
-            scenario.wind.speed_m_s
-        )
+    # Each flight by itself first, as its own aircraft was asked.
+    asked, published = scenario, plan
+    for flown in published.paths:
+        aircraft = next(a for a in asked.aircraft if a.name == flown.vehicle)
+        scenario, plan = asked.of_one(aircraft), published.of(flown.vehicle, flown.sortie)
+        (path,), aircraft = plan.paths, aircraft.in_wind(asked.wind.speed_m_s)
         vehicle = next(v for v in plan.vehicles if v.name == path.vehicle)
         line_m = scenario.frame.to_local([place[:2] for place in path.line])
         altitudes_m = np.array([place[2] for place in path.line])
@@ -107,6 +110,9 @@ def judge(scenario: Scenario, plan: Plan) -> Verdict:
         measured = Measured(line_m)
         violations += collect_violations(scenario, plan, path, measured, over_ground_m, aircraft.settle_m)
         violations += followed_violations(scenario, plan, path)
+    scenario, plan = asked, published
+    violations += window_violations(scenario, plan)
+    violations += fleet_violations(scenario, plan, scenario.kept_apart)
     coverage, unseen, missed = covered(scenario, plan)
     violations += missed
     surveys, short = surveyed(scenario, plan)

@@ -10,10 +10,7 @@ from planner.geojson.fields import Fields, Findings
 from planner.route import Terminal
 from planner.scenario import Scenario
 from planner.vehicle.aircraft import Aircraft
-from planner.wishes import Separation
-
-#: Kept between aircraft of one plan where a scenario does not say.
-DEFAULT_SEPARATION = Separation(100.0, 30.0)
+from planner.wishes import DEFAULT_SEPARATION, Separation
 
 
 def read_separation(raw: Any, findings: Findings) -> Separation | None:
@@ -84,6 +81,13 @@ def check_fleet(scenario: Scenario, bases: Sequence[Terminal], findings: Finding
                     f"has the sensor {name!r} on board, which is not among the scenario's",
                     f"Use some of: {', '.join(sensors)}.",
                 )
+        if (len(scenario.aircraft) > 1 or aircraft.batteries > 1) and _circles(aircraft):
+            findings.error(
+                f"vehicle {aircraft.name}",
+                "finish-not-apart",
+                f"ends its flight circling (finish {aircraft.finish}), where others take off and land",
+                "Set finish to land, or leave it out.",
+            )
         limits = (aircraft.energy_wh, aircraft.max_range_m, aircraft.max_flight_time_s)
         if aircraft.batteries > 1 and not any(limits):
             findings.warning(
@@ -114,3 +118,8 @@ def check_fleet(scenario: Scenario, bases: Sequence[Terminal], findings: Finding
                 f"Widen time_window_s by more than {least_s - (last_s - first_s):g} s, or lower "
                 "revisit_after_s.",
             )
+
+
+def _circles(aircraft: Aircraft) -> bool:
+    """Whether its flight ends in the air, by what is asked for."""
+    return aircraft.finish == "loiter" or (aircraft.finish == "return" and not aircraft.hovers)

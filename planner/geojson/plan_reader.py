@@ -24,6 +24,7 @@ from planner.plan import (
     Surveyed,
     Transit,
     Uncovered,
+    VehicleMetrics,
     Violation,
     ZoneCircle,
     ZonePolygon,
@@ -65,7 +66,7 @@ def read_plan(document: Any) -> Plan:
     try:
         return Plan(
             name=str(document.get("name", "plan")),
-            vehicles=tuple(PlanVehicle(**v) for v in document["vehicles"]),
+            vehicles=tuple(_vehicle(v) for v in document["vehicles"]),
             altitude_m=float(document["altitude_m"]),
             altitude_reference=document["altitude_reference"],
             home=_place(document["home"]),
@@ -148,6 +149,7 @@ def _path(p: Mapping[str, Any], line: Any) -> FlownPath:
         tuple(Phase(**phase) for phase in p["phases"]),
         p["take_off_heading_deg"],
         p["sortie"],
+        float(p.get("start_s", 0.0)),
     )
 
 
@@ -166,6 +168,7 @@ def _collect(p: Mapping[str, Any], line: Any) -> Collect:
         p["end_m"],
         p["start_s"],
         p["end_s"],
+        p.get("sortie", 1),
     )
 
 
@@ -181,6 +184,7 @@ def _transit(p: Mapping[str, Any], line: Any) -> Transit:
         p["risk_radar"],
         p["method"],
         p.get("clearance_m"),
+        p.get("sortie", 1),
     )
 
 
@@ -210,7 +214,13 @@ def _photos(p: Mapping[str, Any], places: Any) -> Photos:
 def _metrics(p: Mapping[str, Any]) -> Metrics:
     surveys = {name: Surveyed(**each) for name, each in p.get("surveys", {}).items()}
     left_out = tuple(LeftOut(**each) for each in p.get("left_out", ()))
-    return Metrics(**{**p, "left_out": left_out, "surveys": surveys})
+    vehicles = {name: VehicleMetrics(**each) for name, each in p.get("vehicles", {}).items()}
+    return Metrics(**{**p, "left_out": left_out, "surveys": surveys, "vehicles": vehicles})
+
+
+def _vehicle(v: Mapping[str, Any]) -> PlanVehicle:
+    places = {name: _place(v[name]) for name in ("home", "end") if v.get(name) is not None}
+    return PlanVehicle(**{**v, **places})
 
 
 def _uncovered(p: Mapping[str, Any], coordinates: Any) -> Uncovered:

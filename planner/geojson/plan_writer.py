@@ -16,9 +16,11 @@ from planner.plan import (
     FlownPath,
     Footprint,
     LonLat,
+    Metrics,
     PathSegment,
     Phase,
     Plan,
+    PlanVehicle,
     Ring,
     ZoneCircle,
     ZonePolygon,
@@ -32,7 +34,7 @@ DECIMALS_M = 4
 def write_plan(plan: Plan) -> dict[str, Any]:
     """The plan as a GeoJSON FeatureCollection; ``read_plan`` reads it back."""
     features = [
-        *(_collect(c) for c in plan.collects),
+        *(_collect(c, fleet=plan.is_fleet) for c in plan.collects),
         *(
             _feature(
                 "LineString",
@@ -46,10 +48,11 @@ def write_plan(plan: Plan) -> dict[str, Any]:
                 risk_radar=t.risk_radar,
                 method=t.method,
                 clearance_m=None if t.clearance_m is None else _m(t.clearance_m),
+                **({"sortie": t.sortie} if plan.is_fleet else {}),
             )
             for t in plan.transits
         ),
-        *(_path(p) for p in plan.paths),
+        *(_path(p, fleet=plan.is_fleet) for p in plan.paths),
         *(
             _ground(
                 [(f.ring, *f.holes)],
@@ -94,7 +97,7 @@ def write_plan(plan: Plan) -> dict[str, Any]:
         "type": "FeatureCollection",
         "name": plan.name,
         "features": features,
-        "vehicles": [asdict(v) for v in plan.vehicles],
+        "vehicles": [_vehicle(v) for v in plan.vehicles],
         "cameras": [asdict(c) for c in plan.cameras],
         "wind": asdict(plan.wind),
         "altitude_m": plan.altitude_m,
@@ -106,7 +109,7 @@ def write_plan(plan: Plan) -> dict[str, Any]:
             "exclusion": [_zone(z) for z in plan.fence.exclusion],
             "exclusion_circles": [_circle(z) for z in plan.fence.exclusion_circles],
         },
-        "metrics": asdict(plan.metrics),
+        "metrics": _metrics(plan.metrics),
         "violations": [
             {**asdict(v), "where": None if v.where is None else list(_lonlat(v.where))}
             for v in plan.violations
@@ -117,6 +120,21 @@ def write_plan(plan: Plan) -> dict[str, Any]:
         "planner_version": plan.planner_version,
         "seed": plan.seed,
     }
+
+
+def _vehicle(vehicle: PlanVehicle) -> dict[str, Any]:
+    """Its places only where they are not the plan's."""
+    places = {name: getattr(vehicle, name) for name in ("home", "end")}
+    given = {name: list(_lonlat(place)) for name, place in places.items() if place is not None}
+    return {name: value for name, value in asdict(vehicle).items() if name not in places} | given
+
+
+def _metrics(metrics: Metrics) -> dict[str, Any]:
+    """What only several flights have is left out of one."""
+    written = asdict(metrics)
+    if not metrics.vehicles:
+        del written["vehicles"], written["last_landing_s"]
+    return written
 
 
 def _quality(f: Footprint) -> dict[str, float]:
@@ -131,7 +149,7 @@ def _hidden(f: Footprint) -> dict[str, float]:
     return {name: round(value, 1) for name, value in given.items() if value is not None}
 
 
-def _collect(c: Collect) -> dict[str, Any]:
+def _collect(c: Collect, *, fleet: bool) -> dict[str, Any]:
     return _feature(
         "LineString",
         _line3(c.line),
@@ -147,10 +165,11 @@ def _collect(c: Collect) -> dict[str, Any]:
         end_m=_m(c.end_m),
         start_s=round(c.start_s, 3),
         end_s=round(c.end_s, 3),
+        **({"sortie": c.sortie} if fleet else {}),
     )
 
 
-def _path(p: FlownPath) -> dict[str, Any]:
+def _path(p: FlownPath, *, fleet: bool) -> dict[str, Any]:
     return _feature(
         "LineString",
         _line3(p.line),
@@ -164,6 +183,7 @@ def _path(p: FlownPath) -> dict[str, Any]:
         take_off_heading_deg=None if p.take_off_heading_deg is None else round(p.take_off_heading_deg, 6),
         phases=[_phase(phase) for phase in p.phases],
         segments=[_segment(s) for s in p.segments],
+        **({"start_s": round(p.start_s, 3)} if fleet else {}),
     )
 
 

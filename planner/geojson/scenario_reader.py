@@ -204,12 +204,6 @@ def _read(document: Any, findings: Findings, terrains: Terrains | None) -> Scena
         separation=separation if len(aircraft) > 1 else None,
     )
     check_fleet(scenario, bases, findings)
-    if scenario.is_fleet:
-        findings.error(
-            "scenario", "not-supported", "asks for more than one flight of one aircraft at any time, which "
-            "this version does not plan",
-            "Send one scenario a vehicle, without time_window_s, revisit_after_s and batteries.",
-        )  # fmt: skip
     scenario = with_wishes(scenario)
     tell_unused(scenario, heights, findings)
     if terrain is not None:

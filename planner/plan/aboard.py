@@ -5,12 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Final, Literal
 
-from planner.plan.words import Finish, Trigger
+from planner.plan.words import Finish, LonLat, Trigger
 
 
 @dataclass(frozen=True, slots=True)
 class PlanVehicle:
-    """What the mission needs to know of the aircraft."""
+    """What the mission needs to know of the aircraft.
+
+    ``home`` is where it takes off and ``end`` where it finishes; None where the plan's own are.
+    """
 
     name: str
     type: Literal["fixed_wing", "multirotor", "vtol"]
@@ -19,6 +22,8 @@ class PlanVehicle:
     min_turn_radius_m: float
     max_climb_deg: float = 8.0
     finish: Finish = "land"
+    home: LonLat | None = None
+    end: LonLat | None = None
 
 
 @dataclass(frozen=True, slots=True)

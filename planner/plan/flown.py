@@ -57,6 +57,8 @@ class FlownPath:
     ``line`` has vertices at most 10 m apart on arcs; straights need only their ends. Altitudes are over the
     plan's ``altitude_reference``; distances along it are in three dimensions. ``phases`` follow each other
     without gaps; ``take_off_heading_deg`` is where the aircraft must point at lift-off, None for what hovers.
+    It lifts off ``start_s`` after the plan's start; ``sortie`` counts the flights of one aircraft from 1.
+    Times of phases and collects are those of the plan's clock.
     """
 
     vehicle: str
@@ -69,6 +71,12 @@ class FlownPath:
     phases: tuple[Phase, ...] = ()
     take_off_heading_deg: float | None = None
     sortie: int = 1
+    start_s: float = 0.0
+
+    @property
+    def end_s(self) -> float:
+        """When it has ended, on the plan's clock."""
+        return self.start_s + self.duration_s
 
     def phase(self, kind: PhaseKind) -> Phase | None:
         """The phase of a kind; None where the flight has none."""
@@ -91,6 +99,7 @@ class Collect:
     end_m: float
     start_s: float
     end_s: float
+    sortie: int = 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,3 +120,4 @@ class Transit:
     risk_radar: float
     method: str
     clearance_m: float | None = None
+    sortie: int = 1

@@ -54,6 +54,27 @@ class LeftOut:
 
 
 @dataclass(frozen=True, slots=True)
+class VehicleMetrics:
+    """What one of several aircraft does: all phases of all its sorties.
+
+    Parameters
+    ----------
+    priority
+        Collected: the sum over the regions that it sees, of those that others see too its share of visits.
+    take_off_s, landing_s
+        Of the first and of the last sortie, on the plan's clock.
+    """
+
+    length_m: float
+    duration_s: float
+    energy_wh: float | None
+    priority: float
+    sorties: int
+    take_off_s: float
+    landing_s: float
+
+
+@dataclass(frozen=True, slots=True)
 class Metrics:
     """What the plan costs and gives.
 
@@ -63,7 +84,9 @@ class Metrics:
     turns flown for height; ``lower_bound_m`` what no mission phase over these regions is shorter than,
     threats left out, and ``gap`` by what part of its length this one is longer; None without a bound.
     ``photos`` counts those of all cameras, ``photos_mb`` is about what they take to be stored; None where
-    there are none on board. ``surveys`` tells by region what they give.
+    there are none on board. ``surveys`` tells by region what they give. Of several aircraft or sorties all
+    are sums; ``vehicles`` tells of each aircraft, ``last_landing_s`` when the last is down; empty and None
+    for one flight.
     """
 
     length_m: float
@@ -87,3 +110,5 @@ class Metrics:
     photos: int | None = None
     photos_mb: float | None = None
     surveys: dict[str, Surveyed] = field(default_factory=dict)
+    vehicles: dict[str, VehicleMetrics] = field(default_factory=dict)
+    last_landing_s: float | None = None

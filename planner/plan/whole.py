@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from planner.plan.aboard import STILL_AIR, PlanCamera, PlanVehicle, PlanWind
 from planner.plan.fence import Fence
@@ -43,9 +43,49 @@ class Plan:
     cameras: tuple[PlanCamera, ...] = ()
     wind: PlanWind = STILL_AIR
 
-    def path_of(self, vehicle: str) -> FlownPath:
-        """The path of one vehicle."""
-        return next(path for path in self.paths if path.vehicle == vehicle)
+    def path_of(self, vehicle: str, sortie: int = 1) -> FlownPath:
+        """The path of one sortie of a vehicle."""
+        return next(path for path in self.paths if (path.vehicle, path.sortie) == (vehicle, sortie))
+
+    def sorties_of(self, vehicle: str) -> tuple[int, ...]:
+        """The numbers of a vehicle's sorties, in flight order."""
+        return tuple(sorted(path.sortie for path in self.paths if path.vehicle == vehicle))
+
+    @property
+    def is_fleet(self) -> bool:
+        """Whether there is more than one flight that begins with the plan."""
+        return len(self.paths) > 1 or any(path.start_s > 0.0 for path in self.paths)
+
+    def of(self, vehicle: str, sortie: int = 1) -> Plan:
+        """One flight of one vehicle as a plan of its own: its home and end, its times from lift-off.
+
+        Metrics, warnings and violations stay those of the whole.
+        """
+        if not self.is_fleet:
+            return self
+        path = self.path_of(vehicle, sortie)
+        value = next(each for each in self.vehicles if each.name == vehicle)
+        collects = tuple(
+            replace(each, start_s=each.start_s - path.start_s, end_s=each.end_s - path.start_s)
+            for each in self.collects
+            if (each.vehicle, each.sortie) == (vehicle, sortie)
+        )
+        seqs = {each.seq for each in collects}
+        phases = tuple(
+            replace(each, start_s=each.start_s - path.start_s, end_s=each.end_s - path.start_s)
+            for each in path.phases
+        )
+        return replace(
+            self,
+            vehicles=(value,),
+            home=value.home or self.home,
+            end=value.end or self.end,
+            paths=(replace(path, start_s=0.0, phases=phases),),
+            collects=collects,
+            transits=tuple(t for t in self.transits if (t.vehicle, t.sortie) == (vehicle, sortie)),
+            footprints=tuple(f for f in self.footprints if f.vehicle == vehicle and f.seq in seqs),
+            photos=tuple(p for p in self.photos if p.vehicle == vehicle and p.seq in seqs),
+        )
 
     def collects_of(self, vehicle: str) -> tuple[Collect, ...]:
         """The collects of one vehicle in flight order."""

@@ -54,6 +54,8 @@ class Station:
         Its own, over the flight's datum; None for the route's.
     followed
         Heights of a pass that follows the ground, over the flight's datum; None for a level one.
+    hold
+        Circles flown before the settling run, back to where the leg ends; None without any.
     """
 
     name: str
@@ -61,6 +63,7 @@ class Station:
     collect: CollectPass | None = None
     altitude_m: float | None = None
     followed: Heights | None = None
+    hold: Path | None = None
 
     @classmethod
     def of(
@@ -210,7 +213,7 @@ def fly_whole(
             ),
         )
     )
-    rising = _settled(rising, first.collect)
+    rising = _settled(rising, first)
     if following is not None:
         rising = following.over_rise(rising, first_m)
     arrived, between = rising.path, []
@@ -223,7 +226,7 @@ def fly_whole(
             leg = made(partial(_changed, *ends_of_leg, between_m, model, layers))
         else:
             leg = made(partial(_followed, *ends_of_leg, between_m, model, layers, following))
-        arrived = _straight_on(leg.path, there.collect)
+        arrived = _straight_on(leg.path, there)
         settled_m = arrived.length_m - leg.path.length_m
         if settled_m > 0.0:
             leg = replace(leg, path=arrived, heights=leg.heights.then(level_heights(settled_m, between_m[1])))
@@ -364,16 +367,19 @@ def _leaves(station: Station, arrived: Path) -> Anchor:
     return Anchor(*pose.position, pose.angle_rad)
 
 
-def _settled(rising: Rise, collect: CollectPass | None) -> Rise:
+def _settled(rising: Rise, first: Station) -> Rise:
     """A rise with the settling run of the first pass."""
     top_m = rising.heights.knots[-1][1]
-    path = _straight_on(rising.path, collect)
+    path = _straight_on(rising.path, first)
     gap_m = path.length_m - rising.path.length_m
     heights = rising.heights.then(level_heights(gap_m, top_m)) if gap_m > 0.0 else rising.heights
     return replace(rising, path=path, heights=heights)
 
 
-def _straight_on(path: Path, collect: CollectPass | None) -> Path:
+def _straight_on(path: Path, station: Station) -> Path:
     """A leg with the settling run behind it: straight on to where the collect begins."""
+    collect = station.collect
+    if station.hold is not None:
+        path = join(path, station.hold)
     gap_m = 0.0 if collect is None else math.dist(path.end.position, collect.start)
     return join(path, Path((Segment("straight", path.end, gap_m),))) if gap_m > 1e-9 else path

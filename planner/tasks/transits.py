@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from types import MappingProxyType
 from typing import cast
 
 from planner.airspace.envelope import SMOOTH_M
@@ -20,6 +21,8 @@ from planner.tasks.setting import Setting
 from planner.transit import ssas_connector
 from planner.transit.refine import Risk, connect_by_cost
 from planner.wishes import Objective
+
+NO_HOLDS: Mapping[int, Path] = MappingProxyType({})
 
 
 def _line(collect: CollectPass) -> Path:
@@ -48,18 +51,26 @@ class Transits:
         return cls(setting, objective, methods, risk)
 
     def through(
-        self, passes: Sequence[CollectPass], progress: Progress, stop: Stop
+        self,
+        passes: Sequence[CollectPass],
+        progress: Progress,
+        stop: Stop,
+        holds: Mapping[int, Path] = NO_HOLDS,
     ) -> tuple[Composed, tuple[Leg, ...], tuple[str, ...]]:
-        """The flight through all collects, its legs, and what is to be said of them."""
+        """The flight through all collects, its legs, and what is to be said of them.
+
+        ``holds`` are circles before the settling run of some passes, by their numbers.
+        """
         settle_m = self.setting.model.settle_m
         own_m, over_m = self.setting.altitudes_m, self.setting.over_ground_m
         following = self.setting.following
         stations = []
-        for each in passes:
+        for number, each in enumerate(passes):
             name, followed = each.regions[0], None
             if following is not None and name in over_m:
                 followed = following.over_pass(_line(each), over_m[name] - SMOOTH_M)
-            stations.append(Station.of(each, settle_m, own_m.get(name), followed))
+            station = Station.of(each, settle_m, own_m.get(name), followed)
+            stations.append(replace(station, hold=holds[number]) if number in holds else station)
         return self.by(stations, progress, stop)
 
     def by(

@@ -10,6 +10,7 @@ import pytest
 from planner.geojson import fleet
 from planner.geojson.fields import Findings
 from planner.validate import findings
+from planner.wishes import DEFAULT_SEPARATION
 from tests.planner.scenarios import feature, small, square
 
 Document = dict[str, Any]
@@ -50,6 +51,7 @@ ZONE = feature("N", "no_fly", "Polygon", square(0.015, -0.025, 0.01))
         (of_two(separation=50.0), "scenario", "bad-value"),
         (of_two(second={"sensors": ["eye"]}), "vehicle second", "unknown-sensor"),
         (of_two(second={"sensors": []}), "vehicle second", "bad-value"),
+        (of_two(second={"finish": "return"}), "vehicle second", "finish-not-apart"),
         (of_two(second={"batteries": 0}), "vehicle second", "out-of-range"),
     ],
 )
@@ -76,6 +78,6 @@ def test_separation_has_defaults_for_what_is_not_said() -> None:
     found = Findings()
     said = fleet.read_separation({"vertical_m": 50.0}, found)
     assert said is not None
-    assert (said.horizontal_m, said.vertical_m) == (fleet.DEFAULT_SEPARATION.horizontal_m, 50.0)
+    assert (said.horizontal_m, said.vertical_m) == (DEFAULT_SEPARATION.horizontal_m, 50.0)
     assert fleet.read_separation(None, found) is None
     assert not found.all()

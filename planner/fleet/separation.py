@@ -1,0 +1,146 @@
+"""Aircraft kept apart by when they take off: the least delays that leave no two of them near each other.
+
+Of one flight that stands and one that may begin later, every two places nearer than what is to be kept rule
+out the delays that bring both there at once. What is left of all delays begins with the least.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from planner.profile.flight import Flight, Stretch
+from planner.vehicle.model import FlightModel
+from planner.wishes import Separation
+
+Floats = NDArray[np.float64]
+
+#: Places of a flight that are looked at lie no further apart than this part of what is kept, within bounds.
+STEP_OF_KEPT, LEAST_STEP_M, MOST_STEP_M = 0.25, 5.0, 50.0
+#: Kept besides what is asked for: how well a place at a time is known.
+MARGIN_M, MARGIN_UP_M, MARGIN_S = 5.0, 1.0, 1.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Track:
+    """Places of a flight, in order.
+
+    Parameters
+    ----------
+    places
+        float64, shape (N, 4): seconds, east_m, north_m, altitude_m.
+    """
+
+    places: Floats
+
+    def later(self, delay_s: float) -> Track:
+        """The same flight begun later."""
+        return Track(self.places + np.array([delay_s, 0.0, 0.0, 0.0]))
+
+
+def step_m(separation: Separation) -> float:
+    """How far apart places that are looked at may lie."""
+    return min(max(STEP_OF_KEPT * separation.horizontal_m, LEAST_STEP_M), MOST_STEP_M)
+
+
+def track_of(flight: Flight, model: FlightModel, apart_m: float) -> Track:
+    """The places of a flight, times from its lift-off."""
+    rows = [
+        _places(stretch, model, apart_m, flight.starts_s[k], flight.starts_s[k + 1])
+        for k, stretch in enumerate(flight.stretches)
+    ]
+    return Track(np.concatenate(rows))
+
+
+def _places(stretch: Stretch, model: FlightModel, apart_m: float, from_s: float, until_s: float) -> Floats:
+    count = max(2, math.ceil(stretch.length_m / apart_m) + 1)
+    parts = np.linspace(0.0, 1.0, count)
+    rise_m = stretch.end_altitude_m - stretch.start_altitude_m
+    altitudes_m = stretch.start_altitude_m + parts * rise_m
+    segment = stretch.segment
+    if segment is None:
+        east_m, north_m = stretch.pose.position
+        times_s = from_s + parts * (until_s - from_s)
+        return np.column_stack([times_s, np.full(count, east_m), np.full(count, north_m), altitudes_m])
+    places = np.array([segment.at(part * segment.length_m).position for part in parts.tolist()])
+    # An arc in a wind is flown slowly on one side, and fast on the other.
+    middles = 0.5 * (parts[1:] + parts[:-1])
+    slowness = 1.0 / model.ground_speed_m_s(segment.start.angle_rad + segment.turn_rad * middles)
+    shares = np.concatenate([[0.0], np.cumsum(np.broadcast_to(slowness, middles.shape))])
+    times_s = from_s + shares / shares[-1] * (until_s - from_s)
+    return np.column_stack([times_s, places, altitudes_m])
+
+
+def least_delay_s(placed: Sequence[Track], moving: Track, separation: Separation) -> float:
+    """The least delay of a flight that keeps it apart from all that are placed.
+
+    Parameters
+    ----------
+    placed
+        Flights that stand.
+    moving
+        As it would be flown without a delay.
+    """
+    barred = [_barred(track, moving, separation) for track in placed]
+    spans = np.concatenate([span for span in barred if len(span)] or [np.empty((0, 2))])
+    delay_s = 0.0
+    for first_s, last_s in spans[np.argsort(spans[:, 0])].tolist():
+        if first_s > delay_s:
+            break
+        delay_s = max(delay_s, last_s)
+    return delay_s
+
+
+def _barred(track: Track, moving: Track, separation: Separation) -> Floats:
+    """Delays ruled out by one flight, (K, 2): from and until, those that overlap taken together."""
+    if separation.horizontal_m <= 0.0 or separation.vertical_m <= 0.0:
+        return np.empty((0, 2))
+    one, other = track.places, moving.places
+    step = max(_longest_m(one), _longest_m(other))
+    near = cKDTree(one[:, 1:3]).query_ball_tree(
+        cKDTree(other[:, 1:3]), separation.horizontal_m + step + MARGIN_M
+    )
+    counts = [len(found) for found in near]
+    if not sum(counts):
+        return np.empty((0, 2))
+    rows = np.repeat(np.arange(len(one)), counts)
+    columns = np.concatenate([np.array(found, dtype=np.int64) for found in near if found])
+    rise_m = max(_steepest_m(one), _steepest_m(other))
+    beside = np.abs(one[rows, 3] - other[columns, 3]) < separation.vertical_m + rise_m + MARGIN_UP_M
+    delays_s = one[rows[beside], 0] - other[columns[beside], 0]
+    # Between two places looked at the aircraft takes this long at most.
+    apart_s = _slowest_s(one) + _slowest_s(other) + MARGIN_S
+    return _together(delays_s, apart_s)
+
+
+def _together(delays_s: Floats, apart_s: float) -> Floats:
+    if not len(delays_s):
+        return np.empty((0, 2))
+    ordered = np.sort(delays_s)
+    gaps = np.flatnonzero(np.diff(ordered) > 2.0 * apart_s)
+    firsts = ordered[np.concatenate([[0], gaps + 1])]
+    lasts = ordered[np.concatenate([gaps, [len(ordered) - 1]])]
+    spans = np.column_stack([firsts - apart_s, lasts + apart_s])
+    return np.asarray(spans[spans[:, 1] > 0.0])
+
+
+def _longest_m(places: Floats) -> float:
+    return float(np.hypot(*np.diff(places[:, 1:3], axis=0).T).max(initial=0.0))
+
+
+def _steepest_m(places: Floats) -> float:
+    return float(np.abs(np.diff(places[:, 3])).max(initial=0.0))
+
+
+def _slowest_s(places: Floats) -> float:
+    return float(np.diff(places[:, 0]).max(initial=0.0))
+
+
+def placed_at(track: Track, start_s: float) -> Track:
+    """A track on the plan's clock."""
+    return replace(track, places=track.places + np.array([start_s, 0.0, 0.0, 0.0]))

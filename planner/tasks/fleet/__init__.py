@@ -1,0 +1,1 @@
+"""The task ``collect`` for several aircraft, sorties, windows and visits apart."""

@@ -1,0 +1,209 @@
+"""One aircraft of several: what its stages are told, and the ways it can do each job."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planner.airspace.surroundings import Surroundings
+from planner.coverage.visible import Seeing
+from planner.coverage.ways import Options
+from planner.errors import Finding, InfeasibleError
+from planner.fleet.problem import Travel
+from planner.profile.ends import climb_slope_rad, sink_slope_rad, with_run
+from planner.route import Terminal
+from planner.routing.joint.chain import estimates, from_start, to_end
+from planner.scenario import Scenario
+from planner.tasks.fleet.jobs import Job
+from planner.tasks.setting import Setting, seeing
+from planner.vehicle.aircraft import Aircraft
+from planner.vehicle.energy import FlightState
+
+Floats = NDArray[np.float64]
+
+#: Options of a region are looked at by headings so far apart; the best of each sector are the ways to do it.
+STEP_RAD = math.radians(15.0)
+ETAS = np.array([0.0, 1.0])
+SECTORS = 4
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Ways:
+    """Ways to do one job: poses before and behind it, (K, 3), and what lies between, metres, (K,)."""
+
+    entries: Floats
+    exits: Floats
+    inner_m: Floats
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Crew:
+    """One aircraft.
+
+    Parameters
+    ----------
+    alone
+        The scenario as it is asked of this aircraft.
+    ends
+        Its own, the start with the run that a flight begins with.
+    power_w
+        At cruise; None without a power model.
+    """
+
+    aircraft: Aircraft
+    alone: Scenario
+    setting: Setting
+    asked: Seeing
+    around: Surroundings
+    ends: tuple[Terminal, Terminal]
+    power_w: float | None
+
+    @classmethod
+    def of(cls, scenario: Scenario, aircraft: Aircraft) -> Crew:
+        """The crew of an aircraft of a scenario.
+
+        Raises
+        ------
+        InfeasibleError
+            ``"wind"``: it is not faster than the wind.
+        """
+        # A battery is changed, or the next one takes off, where an aircraft has landed.
+        shared = len(scenario.aircraft) > 1 or aircraft.batteries > 1
+        landing = replace(aircraft, finish="land") if shared and aircraft.finish == "auto" else aircraft
+        alone = replace(scenario.of_one(aircraft), aircraft=(landing,))
+        setting = Setting.of(alone)
+        asked = seeing(alone, setting)
+        model = setting.model
+        power = model.aircraft.power
+        state = FlightState(model.airspeed_m_s, 0.0, 1.0, setting.level.amsl_m)
+        return cls(
+            landing,
+            alone,
+            setting,
+            asked,
+            asked.surroundings(),
+            with_run(setting.ends, setting.level.height_m, model),
+            None if power is None else power.power_w(state),
+        )
+
+    @property
+    def kind(self) -> tuple[object, ...]:
+        """What the ways of two crews are the same by."""
+        plain = replace(
+            self.aircraft, name="", base=None, energy_wh=None, power=None, max_range_m=None,
+            max_flight_time_s=None, batteries=1, turnaround_s=0.0, reserve=0.0,
+        )  # fmt: skip
+        return (plain, self.setting.suite)
+
+    def ways(self, job: Job) -> Ways:
+        """The ways to do a job.
+
+        Raises
+        ------
+        InfeasibleError
+            Where there are none.
+        """
+        asked = replace(self.asked, regions=(job.asked,))
+        targets = asked.visible(self.around).targets
+        coarse = [target.coarse(STEP_RAD, ETAS) for target in targets]
+        first = coarse[0]
+        if len(coarse) == 1:
+            return _best(first.entries, first.exits, first.inner_m)
+        # Of a divided region the parts follow each other as they come; the ways differ in their ends.
+        inner_m, exits = self._on(first, coarse[1:])
+        return _best(first.entries, exits, inner_m)
+
+    def _on(self, first: Options, others: Sequence[Options]) -> tuple[Floats, Floats]:
+        """From each option of a first target through all others: what it costs, and where it ends."""
+        costs_m, exits = np.asarray(first.inner_m), np.asarray(first.exits)
+        for other in others:
+            legs_m = estimates(exits, other.entries, self.around, self.around.discs) + other.inner_m[None, :]
+            picked = legs_m.argmin(axis=1)
+            costs_m = costs_m + legs_m[np.arange(len(picked)), picked]
+            exits = np.asarray(other.exits)[picked]
+        return costs_m, exits
+
+    @property
+    def besides_s(self) -> float:
+        """What a flight takes besides its way over the ground, about: climbing and descending on the spot."""
+        height_m = self.setting.level.height_m
+        model = self.setting.model
+        slopes = (climb_slope_rad(model), sink_slope_rad(model))
+        if model.aircraft.hovers:
+            slopes = (math.radians(30.0), math.radians(30.0))
+        return sum(height_m / math.tan(slope) for slope in slopes) / model.airspeed_m_s / 2.0
+
+    def seconds(self, entries: Floats, exits: Floats) -> tuple[Floats, Floats, Floats]:
+        """Between ways (N, N), from the start (N,), and to the end (N,): seconds."""
+        start, end = self.ends
+        discs, speed_m_s = self.around.discs, self.setting.model.airspeed_m_s
+        between = estimates(exits, entries, self.around, discs) / speed_m_s
+        out = from_start(start, self.around, entries, discs) / speed_m_s
+        home = to_end(end, self.around, exits, discs) / speed_m_s
+        return between, out, home
+
+    def travel(self, seconds: Floats) -> Travel:
+        """What ways of so many seconds take of everything."""
+        return Travel(
+            seconds,
+            seconds * self.setting.model.airspeed_m_s,
+            None if self.power_w is None else seconds * (self.power_w / 3600.0),
+        )
+
+
+def _best(entries: Floats, exits: Floats, inner_m: Floats) -> Ways:
+    """The cheapest of each sector of headings."""
+    sectors = np.floor(np.mod(entries[:, 2], math.tau) / (math.tau / SECTORS)).astype(np.int64) % SECTORS
+    kept = [
+        int(rows[np.argmin(inner_m[rows])])
+        for sector in range(SECTORS)
+        if len(rows := np.flatnonzero((sectors == sector) & np.isfinite(inner_m)))
+    ]
+    return Ways(np.asarray(entries)[kept], np.asarray(exits)[kept], np.asarray(inner_m)[kept])
+
+
+def crews_of(scenario: Scenario) -> tuple[Crew, ...]:
+    """One for each aircraft."""
+    return tuple(Crew.of(scenario, aircraft) for aircraft in scenario.aircraft)
+
+
+def ways_of(
+    crews: Sequence[Crew], jobs: Iterable[Job]
+) -> tuple[dict[tuple[str, int], Ways], dict[str, Finding]]:
+    """The ways of each job by its name and the number of a crew; crews of one kind share them.
+
+    Returns
+    -------
+    tuple
+        The ways; and why a job has none at all, by its name.
+    """
+    found: dict[tuple[str, int], Ways] = {}
+    why: dict[str, Finding] = {}
+    known: dict[tuple[object, ...], Ways | InfeasibleError] = {}
+    for job in jobs:
+        refused: InfeasibleError | None = None
+        for number, crew in enumerate(crews):
+            if not any(region.name == job.of for region in crew.alone.regions):
+                continue
+            key = (job.region.name, crew.kind)
+            if key not in known:
+                try:
+                    known[key] = crew.ways(job)
+                except InfeasibleError as error:
+                    known[key] = error
+            ways = known[key]
+            if isinstance(ways, InfeasibleError):
+                refused = ways
+            elif len(ways.inner_m):
+                found[job.region.name, number] = ways
+        if refused is not None and not any(name == job.region.name for name, _ in found):
+            if job.region.required:
+                raise refused
+            why[job.region.name] = Finding(
+                job.of, f"not-seen-{refused.constraint}", refused.message, refused.relaxation, "warning"
+            )
+    return found, why

@@ -1,0 +1,266 @@
+"""One flight of one aircraft: its jobs in the order that is shortest, or in a given one with waits."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from planner.airspace.zones import TRANSIT_MARGIN_M, keep_out
+from planner.coverage.ways import Target
+from planner.dubins.path import Path
+from planner.errors import InfeasibleError
+from planner.fleet.waiting import Due, Timing, holds, least_hold_s, timing
+from planner.metrics import used
+from planner.plan import LeftOut
+from planner.profile.compose import Composed
+from planner.progress import silent
+from planner.publish import Leg
+from planner.route import CollectPass
+from planner.routing.joint.chain import layers_of
+from planner.routing.joint.tours import Choice, Tours
+from planner.tasks.collect import collect
+from planner.tasks.fleet.crews import ETAS, STEP_RAD, Crew
+from planner.tasks.fleet.jobs import Job, as_asked, renamed
+from planner.tasks.methods import chosen_methods
+from planner.tasks.task import Answer, Controls
+from planner.tasks.transits import Transits
+from planner.vehicle.limits import Excess, Use, exceeded
+
+#: Windows are kept with this to spare.
+SPARE_S = 0.5
+
+
+@dataclass(frozen=True, slots=True)
+class Flown:
+    """One flight, times from its lift-off.
+
+    Parameters
+    ----------
+    crew, jobs
+        Number of the crew; its jobs in flight order, with the visit that each is.
+    composed, legs, passes
+        As ``Answer`` has them, by the names that were asked for.
+    spans_s
+        Of each job, when it begins and ends.
+    """
+
+    crew: int
+    jobs: tuple[tuple[Job, int], ...]
+    composed: Composed
+    legs: tuple[Leg, ...]
+    passes: tuple[CollectPass, ...]
+    notes: tuple[str, ...]
+    spans_s: tuple[tuple[float, float], ...]
+    use: Use
+    methods: dict[str, str]
+
+    @property
+    def duration_s(self) -> float:
+        """Of all phases."""
+        return self.composed.flight.duration_s
+
+
+def over(crew: Crew, flown: Flown) -> tuple[Excess, ...]:
+    """The limits that a flight is over."""
+    return exceeded(crew.setting.model.aircraft, flown.use)
+
+
+def in_best_order(crew: Crew, number: int, jobs: Sequence[tuple[Job, int]], controls: Controls) -> Flown:
+    """A flight whose jobs may be done at any time.
+
+    Raises
+    ------
+    InfeasibleError
+        Where there is no such flight.
+    """
+    regions = tuple(job.asked for job, _ in jobs)
+    unlimited = replace(
+        crew.alone.aircraft[0],
+        energy_wh=None,
+        max_range_m=None,
+        max_flight_time_s=None,
+    )
+    alone = replace(crew.alone, regions=regions, aircraft=(unlimited,))
+    answer = collect(alone, replace(controls, progress=silent))
+    return _flown(
+        crew, number, jobs, answer.composed, answer.legs, answer.passes, answer.notes, answer.methods
+    )
+
+
+def in_given_order(crew: Crew, number: int, jobs: Sequence[tuple[Job, int]], controls: Controls) -> Flown:
+    """A flight in the order given whose jobs may be done at any time.
+
+    Raises
+    ------
+    InfeasibleError
+        Where there is no such flight.
+    """
+    with controls.stage("routing"):
+        order = in_order(crew, jobs, controls)
+    return _through(crew, number, jobs, order, (), controls)
+
+
+@dataclass(frozen=True, slots=True)
+class Order:
+    """Passes in a given order of jobs, and which job each is of."""
+
+    passes: tuple[CollectPass, ...]
+    of: tuple[int, ...]
+
+
+def in_order(crew: Crew, jobs: Sequence[tuple[Job, int]], controls: Controls) -> Order:
+    """The passes of jobs in the order given, chosen together.
+
+    Raises
+    ------
+    InfeasibleError
+        Where one cannot be seen.
+    """
+    targets: list[Target] = []
+    owners: list[int] = []
+    for place, (job, _) in enumerate(jobs):
+        own = replace(crew.asked, regions=(job.asked,)).visible(crew.around).targets
+        targets.extend(own)
+        owners.extend([place] * len(own))
+    coarse = [target.coarse(STEP_RAD, ETAS) for target in targets]
+    layers = layers_of(crew.ends, crew.around, coarse, crew.around.discs)
+    cost_m, picked = layers.best()
+    if not math.isfinite(cost_m):
+        raise InfeasibleError(
+            "transit", crew.aircraft.name, "no line leads through its regions in time", "Widen the windows."
+        )
+    tours = Tours(crew.ends, crew.around, targets)
+    choice = tours.fitted(tours.refined(Choice.of(range(len(targets)), coarse, picked, cost_m)))
+    passes: list[CollectPass] = []
+    of: list[int] = []
+    for owner, target, row in zip(owners, tours.visited(choice), choice.picked, strict=True):
+        own_passes = target.passes(row, 0)
+        passes.extend(own_passes)
+        of.extend([owner] * len(own_passes))
+    return Order(tuple(passes), tuple(of))
+
+
+def with_waits(
+    crew: Crew,
+    number: int,
+    jobs: Sequence[tuple[Job, int]],
+    order: Order,
+    bounds_s: Sequence[tuple[float, float]],
+    ready_s: float,
+    controls: Controls,
+) -> tuple[Flown, Timing]:
+    """A flight in a given order that waits where it would be early.
+
+    Parameters
+    ----------
+    bounds_s
+        Of each job on the plan's clock: when it may begin, and when it has to be over.
+    ready_s
+        When it may lift off.
+
+    Raises
+    ------
+    InfeasibleError
+        Where there is no room to wait in.
+    """
+    plain = _through(crew, number, jobs, order, (), controls)
+    held_s = least_hold_s(crew.setting.model)
+    dues: list[Due] = []
+    for (job, _), (start_s, end_s), (opens_s, closes_s) in zip(jobs, plain.spans_s, bounds_s, strict=True):
+        before = [k for k in range(len(dues)) if jobs[k][0].region.name == job.region.name]
+        apart_s = job.region.revisit_after_s + SPARE_S
+        dues.append(Due(start_s, end_s, opens_s, closes_s, held_s, before[-1] if before else None, apart_s))
+    when = timing(dues, ready_s)
+    if when.waited_s <= 0.0:
+        return plain, when
+    return _through(crew, number, jobs, order, when.waits_s, controls), when
+
+
+def _through(
+    crew: Crew,
+    number: int,
+    jobs: Sequence[tuple[Job, int]],
+    order: Order,
+    waits_s: Sequence[float],
+    controls: Controls,
+) -> Flown:
+    setting = crew.setting
+    transits = Transits.of(setting, crew.asked.objective, chosen_methods(crew.alone.method))
+    waiting: dict[int, Path] = {}
+    for place, wait_s in enumerate(waits_s):
+        if wait_s > 0.0:
+            first = order.of.index(place)
+            waiting[first] = _hold(crew, order.passes[first], wait_s)
+    with controls.stage("transit"):
+        composed, legs, notes = transits.through(order.passes, silent, controls.stop, waiting)
+    return _flown(crew, number, jobs, composed, legs, order.passes, notes, transits.methods, order.of)
+
+
+def _hold(crew: Crew, collect_pass: CollectPass, wait_s: float) -> Path:
+    """Circles before a pass, on the side where there is room.
+
+    Raises
+    ------
+    InfeasibleError
+        Where there is none on either.
+    """
+    model, level = crew.setting.model, crew.setting.level
+    pose = collect_pass.settling(model.settle_m)
+    zones = keep_out(crew.setting.airspace, level, TRANSIT_MARGIN_M)
+    for circles in holds(pose, wait_s, model):
+        if zones.clear(circles):
+            return circles
+    name = "+".join(collect_pass.regions)
+    raise InfeasibleError(
+        "window", name, f"there is no room to wait {wait_s:.0f} s before it", "Widen its time_window_s.",
+        pose.position,
+    )  # fmt: skip
+
+
+def _flown(
+    crew: Crew,
+    number: int,
+    jobs: Sequence[tuple[Job, int]],
+    composed: Composed,
+    legs: tuple[Leg, ...],
+    passes: tuple[CollectPass, ...],
+    notes: tuple[str, ...],
+    methods: dict[str, str],
+    of: Sequence[int] | None = None,
+) -> Flown:
+    only = [job for job, _ in jobs]
+    spans: dict[int, tuple[float, float]] = {}
+    for index, (each, (from_m, until_m)) in enumerate(zip(passes, composed.passes_m, strict=True)):
+        begin_s, end_s = composed.flight.along(from_m)[1], composed.flight.along(until_m)[1]
+        seen = (
+            [place for place, job in enumerate(only) if job.region.name in each.regions]
+            if of is None
+            else [of[index]]
+        )
+        for place in seen:
+            first_s, last_s = spans.get(place, (math.inf, 0.0))
+            spans[place] = (min(first_s, begin_s), max(last_s, end_s))
+    setting = crew.setting
+    named = tuple(
+        replace(leg, from_name=renamed(leg.from_name, only), to_name=renamed(leg.to_name, only))
+        for leg in legs
+    )
+    return Flown(
+        number,
+        tuple(jobs),
+        composed,
+        named,
+        as_asked(passes, only),
+        notes,
+        tuple(spans[place] for place in range(len(only))),
+        used(composed.flight, setting.model, setting.level),
+        methods,
+    )
+
+
+def answer_of(crew: Crew, flown: Flown, left_out: tuple[LeftOut, ...] = ()) -> Answer:
+    """A flight as the answer of one aircraft."""
+    return Answer(
+        crew.setting, flown.composed, flown.legs, flown.passes, flown.methods, (), flown.notes, left_out
+    )

@@ -1,0 +1,196 @@
+"""A scenario's jobs and crews as the assignment's problem, and what flights have taught of its figures."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planner.fleet.problem import Alternative, Member, Objective, Problem, Service, Target
+from planner.tasks.fleet.crews import Crew, Ways
+from planner.tasks.fleet.jobs import Job
+from planner.vehicle.aircraft import Aircraft
+from planner.wishes import Objective as Weights
+
+Floats = NDArray[np.float64]
+WaysOf = Mapping[tuple[str, int], Ways]
+
+#: A target that need not be seen is worth this many seconds for a priority of one: it is left out where it
+#: does not fit, and not for its cost.
+WORTH_S = 1e5
+
+
+@dataclass(slots=True)
+class Lessons:
+    """What flights took against what was thought, by the number of a crew.
+
+    ``factors`` are of all times in the air, ``spare`` of what one flight may take.
+    """
+
+    factors: dict[int, float] = field(default_factory=dict)
+    spare: dict[int, float] = field(default_factory=dict)
+
+    def learn(self, told: Mapping[int, Sequence[float]]) -> None:
+        """Of each crew's flights by how much they took more than was thought."""
+        for crew, ratios in told.items():
+            self.factors[crew] = self.factor(crew) * sum(ratios) / len(ratios)
+
+    def hurry(self, crew: int, part: float) -> None:
+        """A flight was late: the next ones are thought to take longer."""
+        self.factors[crew] = self.factor(crew) * part
+
+    def tighten(self, crew: int, part: float) -> None:
+        """A flight was over a limit: the next ones are planned with less."""
+        self.spare[crew] = self.spare.get(crew, 1.0) * part
+
+    def factor(self, crew: int) -> float:
+        """Of times in the air."""
+        return self.factors.get(crew, 1.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Node:
+    """One way to do one job: numbers of the job and of its alternative, and the ways they are of."""
+
+    job: int
+    ways: Ways
+    row: int
+
+
+def problem_of(
+    crews: Sequence[Crew],
+    jobs: Sequence[Job],
+    ways: WaysOf,
+    weights: Weights,
+    lessons: Lessons,
+) -> Problem:
+    """The problem of who does which jobs when.
+
+    Parameters
+    ----------
+    ways
+        By a job's name and the number of a crew.
+    """
+    bases, starts, ends = _bases(crews)
+    nodes, targets = _targets(crews, jobs, ways, lessons)
+    members = tuple(
+        _member(crew, number, len(bases), (starts[number], ends[number]), nodes, ways, jobs, lessons)
+        for number, crew in enumerate(crews)
+    )
+    return Problem(
+        bases,
+        targets,
+        members,
+        Objective(
+            last_landing=weights.last_landing,
+            total_time=weights.total_time,
+            priority=weights.priority * WORTH_S,
+        ),
+    )
+
+
+def _bases(crews: Sequence[Crew]) -> tuple[tuple[str, ...], list[int], list[int]]:
+    """Names of all places where flights start and end, and which of them is whose."""
+    known: dict[tuple[float, float], int] = {}
+    names: list[str] = []
+    starts: list[int] = []
+    ends: list[int] = []
+    for crew in crews:
+        for terminal, numbers in zip(crew.ends, (starts, ends), strict=True):
+            if terminal.position not in known:
+                known[terminal.position] = len(names)
+                names.append(terminal.name)
+            numbers.append(known[terminal.position])
+    return tuple(names), starts, ends
+
+
+def _targets(
+    crews: Sequence[Crew], jobs: Sequence[Job], ways: WaysOf, lessons: Lessons
+) -> tuple[list[Node], tuple[Target, ...]]:
+    nodes: list[Node] = []
+    targets = []
+    for number, job in enumerate(jobs):
+        alternatives: list[Alternative] = []
+        distinct: dict[int, tuple[Ways, list[int]]] = {}
+        for crew in range(len(crews)):
+            found = ways.get((job.region.name, crew))
+            if found is not None:
+                distinct.setdefault(id(found), (found, []))[1].append(crew)
+        for found, able in distinct.values():
+            for row, inner_m in enumerate(found.inner_m.tolist()):
+                services = tuple(
+                    _service(crews[crew], crew, inner_m, lessons) if crew in able else None
+                    for crew in range(len(crews))
+                )
+                alternatives.append(Alternative(f"{job.region.name} way {len(alternatives) + 1}", services))
+                nodes.append(Node(number, found, row))
+        region = job.region
+        targets.append(
+            Target(
+                region.name,
+                tuple(alternatives),
+                region.priority * job.share,
+                region.required,
+                region.time_window_s,
+                job.visits,
+                region.revisit_after_s,
+            )
+        )
+    return nodes, tuple(targets)
+
+
+def _service(crew: Crew, number: int, inner_m: float, lessons: Lessons) -> Service:
+    seconds = inner_m / crew.setting.model.airspeed_m_s * lessons.factor(number)
+    energy_wh = 0.0 if crew.power_w is None else seconds * crew.power_w / 3600.0
+    return Service(seconds, seconds * crew.setting.model.airspeed_m_s, energy_wh)
+
+
+def _member(
+    crew: Crew,
+    number: int,
+    base_count: int,
+    own: tuple[int, int],
+    nodes: Sequence[Node],
+    ways: WaysOf,
+    jobs: Sequence[Job],
+    lessons: Lessons,
+) -> Member:
+    seconds = np.full((base_count + len(nodes),) * 2, math.inf)
+    mine = [k for k, node in enumerate(nodes) if ways.get((jobs[node.job].region.name, number)) is node.ways]
+    if mine:
+        entries = np.array([nodes[k].ways.entries[nodes[k].row] for k in mine])
+        exits = np.array([nodes[k].ways.exits[nodes[k].row] for k in mine])
+        between, out, home = crew.seconds(entries, exits)
+        rows = base_count + np.array(mine)
+        seconds[np.ix_(rows, rows)] = between
+        half_s = crew.besides_s / 2.0
+        seconds[own[0], rows] = out + half_s
+        seconds[rows, own[1]] = home + half_s
+    seconds[own[0], own[1]] = 0.0
+    np.fill_diagonal(seconds, 0.0)
+    seconds = seconds * lessons.factor(number)
+    aircraft, spare = crew.setting.model.aircraft, lessons.spare.get(number, 1.0)
+    return Member(
+        aircraft.name,
+        crew.travel(seconds),
+        own[0],
+        (own[1],),
+        max_flight_s=_limit(aircraft.max_flight_time_s, spare),
+        range_m=_limit(aircraft.max_range_m, spare),
+        energy_wh=_limit(aircraft.usable_wh, spare) if crew.power_w is not None else math.inf,
+        waiting_w=crew.power_w or 0.0,
+        trips=trips_of(aircraft),
+        turnaround_s=aircraft.turnaround_s,
+    )
+
+
+def trips_of(aircraft: Aircraft) -> int:
+    """How many flights an aircraft may make: one that must come down elsewhere than it starts makes one."""
+    return aircraft.batteries
+
+
+def _limit(value: float | None, spare: float) -> float:
+    return math.inf if value is None else value * spare

@@ -1,0 +1,305 @@
+"""Rounds of who does what: assigned, flown, put on one clock, and what that teaches fed back."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from planner.coverage.registry import family_of
+from planner.errors import Finding, InfeasibleError
+from planner.fleet.assign import assign
+from planner.fleet.assignment import Assignment, Trip
+from planner.fleet.assignment import LeftOut as Unassigned
+from planner.plan import LeftOut
+from planner.progress import silent
+from planner.scenario import Scenario
+from planner.tasks.fleet.crews import Crew, Ways, crews_of, ways_of
+from planner.tasks.fleet.flights import Flown, Order, in_best_order, in_given_order, in_order, over
+from planner.tasks.fleet.jobs import Job, jobs_of
+from planner.tasks.fleet.placing import Errand, LateError, Sortie, placed
+from planner.tasks.fleet.problem import Lessons, problem_of
+from planner.tasks.methods import chosen_methods
+from planner.tasks.task import Controls
+from planner.tasks.urban import cut_by_obstacles, lanes_cut
+from planner.wishes import Objective, Region, Separation
+
+#: Rounds of assignment and flight, and of those that gave a plan.
+MOST_ROUNDS, ROUNDS = 8, 3
+#: Flights of so few regions are chosen by all that one aircraft has; of more by the order that was assigned.
+FEW = 3
+#: Times thought and flown that are this near teach nothing.
+NEAR = 0.03
+#: A region is cut where it takes so much more than an even share of all work, or than one flight can give.
+MORE_THAN_EVEN, OF_A_FLIGHT = 1.3, 0.8
+#: After a flight over a limit, or late, the next are thought this much the longer besides.
+TIGHTER = 0.97
+
+
+@dataclass(frozen=True, slots=True)
+class FleetAnswer:
+    """What several aircraft are to fly.
+
+    Parameters
+    ----------
+    crews, sorties
+        The aircraft; their flights, by aircraft and in flight order.
+    dropped, left_out, notes
+        As ``Answer`` has them.
+    """
+
+    crews: tuple[Crew, ...]
+    sorties: tuple[Sortie, ...]
+    methods: dict[str, str]
+    dropped: tuple[Finding, ...]
+    left_out: tuple[LeftOut, ...]
+    separation: Separation
+
+
+Key = tuple[int, tuple[tuple[str, int], ...]]
+
+
+def fleet(scenario: Scenario, controls: Controls) -> FleetAnswer:
+    """Who does what, when, and the flights that do it.
+
+    Raises
+    ------
+    InfeasibleError
+        Where a required region cannot be done, with what binds and what would help.
+    """
+    return _Rounds(scenario, controls).best()
+
+
+class _Rounds:
+    """The rounds of one scenario: what is known by crew and job, and what was flown."""
+
+    def __init__(self, scenario: Scenario, controls: Controls) -> None:
+        self._scenario, self._controls = scenario, controls
+        self._separation = scenario.kept_apart
+        self._lessons = Lessons()
+        self._flown: dict[Key, Flown] = {}
+        self._orders: dict[Key, Order] = {}
+        self._given_up: dict[str, Finding] = {}
+        with controls.stage("options"):
+            self._crews = crews_of(scenario)
+            self._parts: dict[str, int] = {}
+            self._spread()
+            self._parts = self._cuts()
+            if self._parts:
+                self._spread()
+
+    def _spread(self) -> None:
+        self._jobs = jobs_of(self._scenario.regions, self._parts)
+        self._ways, self._why = ways_of(self._crews, self._jobs)
+
+    def best(self) -> FleetAnswer:
+        """Of the plans of a few rounds."""
+        found: list[tuple[float, FleetAnswer]] = []
+        failed: InfeasibleError | None = None
+        for number in range(MOST_ROUNDS):
+            self._controls.progress("assign", number / MOST_ROUNDS)
+            jobs = tuple(
+                job
+                for job in self._jobs
+                if job.of not in self._given_up and any(name == job.region.name for name, _ in self._ways)
+            )
+            assigned = self._assigned(jobs)
+            lacking = [each for each in assigned.left_out if each.required]
+            if lacking:
+                if found:
+                    break
+                if not self._cut_more(jobs, lacking):
+                    raise failed or _infeasible(jobs, lacking[0])
+                continue
+            try:
+                sorties, near = self._flight_plan(jobs, assigned)
+            except LateError as late:
+                failed = self._late(late)
+                continue
+            except InfeasibleError as error:
+                if error.constraint != "separation" or found:
+                    raise
+                failed = error
+                self._lessons.hurry(0, 1.0 / TIGHTER)
+                continue
+            if sorties is None:
+                continue
+            found.append((_cost(sorties, self._scenario.objective), self._answer(jobs, assigned, sorties)))
+            if near or len(found) >= ROUNDS or self._controls.enough():
+                break
+        if not found:
+            raise failed or InfeasibleError(
+                "energy", "scenario", "no assignment of the regions keeps within the aircraft's limits",
+                "Raise the limits, or add batteries or aircraft.",
+            )  # fmt: skip
+        return min(found, key=lambda each: each[0])[1]
+
+    def _assigned(self, jobs: Sequence[Job]) -> Assignment:
+        with self._controls.stage("assign"):
+            problem = problem_of(self._crews, jobs, self._ways, self._scenario.objective, self._lessons)
+            return assign(problem, self._scenario.seed, self._controls.stop, silent)
+
+    def _flight_plan(
+        self, jobs: Sequence[Job], assigned: Assignment
+    ) -> tuple[tuple[Sortie, ...] | None, bool]:
+        """The flights of an assignment on one clock, None where one is over a limit; whether as thought."""
+        errands = [self._errand(jobs, trip) for trip in assigned.trips]
+        with self._controls.stage("separation"):
+            sorties = placed(self._crews, errands, self._separation, self._controls)
+        told: dict[int, list[float]] = {}
+        within = True
+        thought = {_key(jobs, trip): trip for trip in assigned.trips}
+        for sortie in sorties:
+            crew = sortie.flown.crew
+            trip = thought[crew, tuple((job.region.name, visit) for job, visit in sortie.flown.jobs)]
+            told.setdefault(crew, []).append(sortie.flown.duration_s / max(trip.duration_s, 1.0))
+            excess = over(self._crews[crew], sortie.flown)
+            if excess:
+                within = False
+                self._lessons.tighten(crew, TIGHTER * excess[0].limit / excess[0].used)
+        self._lessons.learn(told)
+        near = all(abs(ratio - 1.0) <= NEAR for ratios in told.values() for ratio in ratios)
+        return (sorties if within else None), near
+
+    def _errand(self, jobs: Sequence[Job], trip: Trip) -> Errand:
+        key = _key(jobs, trip)
+        done = tuple((jobs[visit.target], visit.number) for visit in trip.visits)
+        crew = self._crews[trip.member]
+        bound = any(
+            job.region.time_window_s is not None or job.region.revisit_after_s > 0.0 for job, _ in done
+        )
+        if bound:
+            if key not in self._orders:
+                with self._controls.stage("routing"):
+                    self._orders[key] = in_order(crew, done, self._controls)
+            return Errand(trip, done, order=self._orders[key])
+        if key not in self._flown:
+            fly = in_best_order if self._wants_all(crew, done) else in_given_order
+            self._flown[key] = fly(crew, trip.member, done, self._controls)
+        return Errand(trip, done, flown=self._flown[key])
+
+    def _wants_all(self, crew: Crew, done: Sequence[tuple[Job, int]]) -> bool:
+        """Whether a flight's regions ask for more than the best pass or sweep over each in turn."""
+        methods = chosen_methods(self._scenario.method)
+        asked = replace(crew.asked, regions=tuple(job.asked for job, _ in done))
+        return (
+            len(done) <= FEW
+            or methods["routing"] != "joint"
+            or methods["coverage"] != "sweeps"
+            or crew.setting.airspace.terrain is not None
+            or lanes_cut(asked)
+            or cut_by_obstacles(asked)
+        )
+
+    def _late(self, late: LateError) -> InfeasibleError:
+        """What is learnt of a window that was missed; a region that need not be seen is given up at last."""
+        job = late.job
+        closes_s = (job.region.time_window_s or (0.0, math.inf))[1]
+        more = late.late_s / max(closes_s, late.late_s) if math.isfinite(closes_s) else 0.0
+        self._lessons.hurry(late.crew, (1.0 + more) / TIGHTER)
+        message = f"is seen {late.late_s:.0f} s after its window closes, as far as was found"
+        relaxation = f"Let time_window_s close {late.late_s:.0f} s later, or add an aircraft."
+        if not job.region.required:
+            self._given_up[job.of] = Finding(job.of, "not-seen-window", message, relaxation, "warning")
+        return InfeasibleError("window", job.of, message, relaxation)
+
+    def _cuts(self) -> dict[str, int]:
+        """In how many parts regions are cut at first."""
+        takes_s = {job.of: _takes_s(job, self._crews, self._ways) for job in self._jobs}
+        even_s = math.fsum(s for s in takes_s.values() if math.isfinite(s)) / len(self._crews)
+        parts = {}
+        for job in self._jobs:
+            time_s = takes_s[job.of]
+            if not math.isfinite(time_s):
+                continue
+            able = [c for c in range(len(self._crews)) if (job.region.name, c) in self._ways]
+            shares = math.ceil(time_s / even_s) if time_s > MORE_THAN_EVEN * even_s and len(able) > 1 else 1
+            most_s = min(_most_s(self._crews[c]) for c in able)
+            flights = math.ceil(time_s / (OF_A_FLIGHT * most_s)) if math.isfinite(most_s) else 1
+            count = min(max(min(shares, len(able)), flights), self._most_parts(job.region))
+            if count > 1:
+                parts[job.of] = count
+        return parts
+
+    def _most_parts(self, region: Region) -> int:
+        """As many as it takes pairs of passes; what is seen more than once is whole."""
+        able = [
+            c
+            for name, c in self._ways
+            for job in self._jobs
+            if (name, region.name) == (job.region.name, job.of)
+        ]
+        if region.revisits > 1 or region.pattern not in ("auto", "lanes") or not able:
+            return 1
+        setting = self._crews[able[0]].setting
+        sensor, height_m = setting.suite.over(
+            region.sensor, region.area, setting.airspace, setting.level.of(region)
+        )
+        return max(family_of(sensor).fewest_passes(region, sensor, height_m)[0], 1)
+
+    def _cut_more(self, jobs: Sequence[Job], lacking: Sequence[Unassigned]) -> bool:
+        """One part more of each region that did not fit; whether there was any."""
+        whole = {region.name: region for region in self._scenario.regions}
+        more = {}
+        for each in lacking:
+            job = jobs[each.target]
+            count = self._parts.get(job.of, 1) + 1
+            if each.limit in ("flight-time", "range", "energy") and count <= self._most_parts(whole[job.of]):
+                more[job.of] = count
+        if not more:
+            return False
+        self._parts = self._parts | more
+        self._spread()
+        return True
+
+    def _answer(self, jobs: Sequence[Job], assigned: Assignment, sorties: tuple[Sortie, ...]) -> FleetAnswer:
+        dropped = (*self._why.values(), *self._given_up.values())
+        left = [LeftOut(f.feature, f.rule.removeprefix("not-seen-")) for f in dropped]
+        for each in assigned.left_out:
+            job = jobs[each.target]
+            margin = each.margin if math.isfinite(each.margin) else None
+            left.append(LeftOut(job.of, each.limit, margin))
+            dropped = (
+                *dropped,
+                Finding(job.of, f"not-seen-{each.limit}", each.message, each.relaxation, "warning"),
+            )
+        unique = {each.roi: each for each in left}
+        methods = chosen_methods(self._scenario.method) | {"fleet": "assign"}
+        return FleetAnswer(self._crews, sorties, methods, dropped, tuple(unique.values()), self._separation)
+
+
+def _key(jobs: Sequence[Job], trip: Trip) -> Key:
+    return trip.member, tuple((jobs[visit.target].region.name, visit.number) for visit in trip.visits)
+
+
+def _cost(sorties: Sequence[Sortie], weights: Objective) -> float:
+    """What the objective says of flights; what they leave out is the assignment's to weigh."""
+    return weights.last_landing * max(each.end_s for each in sorties) + weights.total_time * math.fsum(
+        each.flown.duration_s for each in sorties
+    )
+
+
+def _takes_s(job: Job, crews: Sequence[Crew], ways: Mapping[tuple[str, int], Ways]) -> float:
+    """The least that any crew takes for a job."""
+    times_s = [
+        float(found.inner_m.min()) / crew.setting.model.airspeed_m_s
+        for number, crew in enumerate(crews)
+        if (found := ways.get((job.region.name, number))) is not None
+    ]
+    return min(times_s, default=math.inf)
+
+
+def _most_s(crew: Crew) -> float:
+    """How long one flight of a crew may last."""
+    aircraft = crew.setting.model.aircraft
+    limits = [math.inf if aircraft.max_flight_time_s is None else aircraft.max_flight_time_s]
+    if aircraft.max_range_m is not None:
+        limits.append(aircraft.max_range_m / aircraft.airspeed_m_s)
+    if aircraft.usable_wh is not None and crew.power_w:
+        limits.append(3600.0 * aircraft.usable_wh / crew.power_w)
+    return max(min(limits) - crew.besides_s, 1.0)
+
+
+def _infeasible(jobs: Sequence[Job], lacking: Unassigned) -> InfeasibleError:
+    job = jobs[lacking.target]
+    return InfeasibleError(lacking.limit, job.of, lacking.message, lacking.relaxation)
