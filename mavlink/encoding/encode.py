@@ -67,6 +67,7 @@ def encode(
         No such vehicle, or something the autopilot cannot be told.
     """
     task = task_of(plan, vehicle, autopilot, options)
+    plan = task.plan
     switching = switching_of(task)
     pointing = pointings_of(task)
     first, last = beginning(task), ending(task)

@@ -45,6 +45,8 @@ class EncodeOptions:
         Whether home becomes a rally point too.
     gimbal
         What points the sensor at every collect; None where it is bolted on.
+    sortie
+        Which of its vehicle's flights.
     """
 
     chord_error_m: float = 2.0
@@ -55,6 +57,7 @@ class EncodeOptions:
     home_altitude_m: float = 0.0
     rally_at_home: bool = False
     gimbal: Gimbal | None = None
+    sortie: int = 1
 
     def __post_init__(self) -> None:
         if self.arcs not in get_args(Arcs):

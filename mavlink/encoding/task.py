@@ -122,8 +122,15 @@ class Task:
 def task_of(plan: Plan, name: str | None, autopilot: Autopilot | None, options: EncodeOptions) -> Task:
     """The task of one vehicle; EncodeError where there is nothing to encode."""
     vehicle = _vehicle(plan, name)
-    path = next((path for path in plan.paths if path.vehicle == vehicle.name), None)
-    if path is None or not path.segments or path.length_m <= 0.0:
+    sorties = plan.sorties_of(vehicle.name)
+    if not sorties:
+        raise EncodeError(f"the plan has no path for {vehicle.name!r}")
+    if options.sortie not in sorties:
+        numbers = ", ".join(map(str, sorties))
+        raise EncodeError(f"{vehicle.name!r} has no sortie {options.sortie}, only {numbers}")
+    plan = plan.of(vehicle.name, options.sortie)
+    path = plan.path_of(vehicle.name, options.sortie)
+    if not path.segments or path.length_m <= 0.0:
         raise EncodeError(f"the plan has no path for {vehicle.name!r}")
     collects = plan.collects_of(vehicle.name)
     for collect in collects:

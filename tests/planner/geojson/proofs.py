@@ -111,8 +111,10 @@ PROOFS: dict[tuple[str, str], tuple[Document, Document]] = {
     ("vehicle", "sensors"): (two_aircraft(), two_aircraft(sensors=["eye"])),
     ("vehicle", "batteries"): (vehicle(max_range_m=1000.0), vehicle(max_range_m=1000.0, batteries=4)),
     ("vehicle", "turnaround_s"): (vehicle(batteries=1), vehicle(batteries=1, turnaround_s=60.0)),
-    ("separation", "horizontal_m"): (small(), member("separation", {"horizontal_m": -50.0})),
-    ("separation", "vertical_m"): (small(), member("separation", {"vertical_m": -50.0})),
+    ("separation", "horizontal_m"): (
+        two_aircraft(), two_aircraft() | {"separation": {"horizontal_m": 900.0}},
+    ),
+    ("separation", "vertical_m"): (two_aircraft(), two_aircraft() | {"separation": {"vertical_m": -5.0}}),
     ("sensor", "name"): (small(), sensor(name="other")),
     ("sensor", "type"): (small(), sensor(type="camera")),
     ("sensor", "incidence_deg"): (small(), sensor(incidence_deg=40.0)),
