@@ -2,18 +2,28 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Sequence
-
-from planner.fleet.assignment import Assignment, LeftOut, Status, Trip
+from planner.fleet.answer import trips_of
+from planner.fleet.assignment import Assignment, Status
+from planner.fleet.auto.build import tables
+from planner.fleet.auto.search import search
+from planner.fleet.exact import exact
+from planner.fleet.left_out import left_out_of
 from planner.fleet.problem import Problem
-from planner.fleet.schedule import Excess, Stop, cost_of, fly, stop_at
-from planner.progress import Progress, never, raise_if, silent
-from planner.progress import Stop as Stopped
+from planner.fleet.schedule import cost_of
+from planner.progress import Progress, Stop, never, silent
+
+#: Iterations of the search: so many, and so many more for each job.
+ITERATIONS, PER_JOB = 2_000, 250
 
 
-def assign(problem: Problem, seed: int = 0, stop: Stopped = never, progress: Progress = silent) -> Assignment:
-    """The best assignment found.
+def assign(
+    problem: Problem,
+    seed: int = 0,
+    stop: Stop = never,
+    progress: Progress = silent,
+    iterations: int | None = None,
+) -> Assignment:
+    """The best assignment found: proved so for few targets, by search for many.
 
     Parameters
     ----------
@@ -23,63 +33,25 @@ def assign(problem: Problem, seed: int = 0, stop: Stopped = never, progress: Pro
         The same seed gives the same answer.
     stop, progress
         To be asked between steps, and told.
+    iterations
+        Of the search; by the number of targets when not given.
 
     Raises
     ------
     CancelledError
         When ``stop`` says so.
     """
-    orders: list[list[Stop]] = [[] for _ in problem.members]
-    waiting = sorted(
-        range(len(problem.targets)),
-        key=lambda number: (not problem.targets[number].required, -problem.targets[number].priority),
-    )
-    left: list[int] = []
-    for done, target in enumerate(waiting):
-        raise_if(stop)
-        if not _insert(problem, orders, target):
-            left.append(target)
-        progress("assign", (done + 1) / len(waiting))
-    trips = [
-        trip for member, order in enumerate(orders) if order for trip in [_best(problem, member, order)[0]]
-    ]
-    left_out = tuple(
-        LeftOut(
-            target,
-            problem.targets[target].name,
-            problem.targets[target].required,
-            "reach",
-            math.inf,
-            "",
-            "",
-            f"{problem.targets[target].name} does not fit into any trip",
-            "Allow more aircraft or more time.",
-        )
-        for target in sorted(left)
-    )
-    status: Status = "infeasible" if any(each.required for each in left_out) else "feasible"
-    return Assignment(tuple(trips), left_out, status, cost_of(problem, trips))
-
-
-def _best(problem: Problem, member: int, order: Sequence[Stop]) -> tuple[Trip, tuple[Excess, ...]]:
-    aircraft = problem.members[member]
-    flown = [
-        fly(problem, member, (aircraft.start_base, base), order, aircraft.ready_s)
-        for base in aircraft.end_bases
-    ]
-    return min(flown, key=lambda each: (len(each[1]), each[0].duration_s))
-
-
-def _insert(problem: Problem, orders: list[list[Stop]], target: int) -> bool:
-    best: tuple[float, int, list[Stop]] | None = None
-    for member, order in enumerate(orders):
-        for alternative in range(len(problem.targets[target].alternatives)):
-            for place in range(len(order) + 1):
-                tried = [*order[:place], stop_at(problem, target, alternative), *order[place:]]
-                trip, excesses = _best(problem, member, tried)
-                if not excesses and (best is None or trip.landing_s < best[0]):
-                    best = (trip.landing_s, member, tried)
-    if best is None:
-        return False
-    orders[best[1]] = best[2]
-    return True
+    known = tables(problem)
+    found = exact(known, stop)
+    proved = found is not None
+    if found is None:
+        most = iterations or ITERATIONS + PER_JOB * len(known.jobs.prize)
+        found = search(known, seed, lambda done: done / most, stop, lambda part: progress("assign", part))
+    trips = trips_of(problem, found)
+    left_out = left_out_of(problem, trips)
+    cost = cost_of(problem, trips)
+    status: Status = "optimal" if proved else "feasible"
+    if any(each.required for each in left_out):
+        status = "infeasible"
+    progress("assign", 1.0)
+    return Assignment(trips, left_out, status, cost, cost if proved else None)

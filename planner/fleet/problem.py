@@ -136,12 +136,14 @@ class Member:
 class Objective:
     """Weights of what is minimised; priority collected counts against the rest.
 
-    ``last_landing`` and ``total_time`` per second (time in the air), ``risk`` per unit of risk, ``priority``
-    per unit of priority collected. A required target is worth more than all of them together.
+    ``last_landing``, ``total_time`` (in the air, waiting included) and ``travel_time`` (travel and service,
+    as in equation (19) of Stecz and Gromada 2020) per second, ``risk`` per unit of risk, ``priority`` per
+    unit of priority collected. A required target is worth more than all of them together.
     """
 
     last_landing: float = 0.0
     total_time: float = 1.0
+    travel_time: float = 0.0
     risk: float = 0.0
     priority: float = 0.0
 

@@ -129,9 +129,14 @@ def cost_of(problem: Problem, trips: Sequence[Trip]) -> float:
     return (
         weights.last_landing * max((trip.landing_s for trip in trips), default=0.0)
         + weights.total_time * sum(trip.duration_s for trip in trips)
+        + weights.travel_time * sum(trip.duration_s - _waited_s(trip) for trip in trips)
         + weights.risk * sum(trip.risk for trip in trips)
         - weights.priority * collected
     )
+
+
+def _waited_s(trip: Trip) -> float:
+    return sum(visit.wait_s for visit in trip.visits)
 
 
 def broken(problem: Problem, trips: Sequence[Trip]) -> tuple[str, ...]:
