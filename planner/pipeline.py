@@ -140,6 +140,8 @@ def _judged(
             draft.metrics,
             coverage=verdict.coverage,
             surveys=verdict.surveys,
+            area_seen_m2=verdict.area_seen_m2,
+            importance_collected=verdict.importance_collected,
             planning_time_s=dict(watch.seconds),
             left_out=left_out,
         ),
@@ -190,6 +192,7 @@ def with_bound(
     """The same plan with what no plan over the regions it sees is shorter than, and how far it is above that.
 
     That of several flights is given back as it is: nothing is proven of those.
+    Nor is anything said of a search, which is not to be short.
 
     Parameters
     ----------
@@ -203,13 +206,14 @@ def with_bound(
         Whether the search ends after its share of the work, counted so that the same scenario and plan have
         the same bound on any machine; to its end otherwise.
     """
-    if plan.is_fleet or scenario.is_fleet:
+    bound_m = task_of(scenario.task).bound_m
+    if bound_m is None or plan.is_fleet or scenario.is_fleet:
         return plan
     watch = _Stopwatch(clock)
     route_m = plan.metrics.route_length_m or plan.metrics.length_m
     allowance = Allowance(lines_for_bound(scenario, plan) if share else math.inf, enough)
     with watch.stage("bound"):
-        proved_m = task_of(scenario.task).bound_m(scenario, plan, stop, allowance)
+        proved_m = bound_m(scenario, plan, stop, allowance)
     # What of the route is no mission, the runs of take-off and landing, is as long in every plan.
     runs_m = max(route_m - plan.metrics.length_m, 0.0)
     lower_bound_m = max(proved_m - runs_m, 0.0)

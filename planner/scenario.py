@@ -19,7 +19,7 @@ from planner.route import Terminal
 from planner.sensors.base import Sensor
 from planner.sensors.suite import Suite
 from planner.vehicle.aircraft import Aircraft
-from planner.wishes import DEFAULT_SEPARATION, Method, Objective, Region, Separation
+from planner.wishes import DEFAULT_SEPARATION, Importance, Method, Objective, Region, Separation
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +31,8 @@ class Scenario:
     Where there is terrain ``altitude_reference`` is ``amsl``; see ``planner.geojson.relief``. The flight is
     level, unless ``lowest_amsl_m`` says how far down it may come where it follows the ground.
     ``max_height_m`` is the greatest height over ground of passes that was asked for. ``bases`` are those that
-    aircraft start from and return to by name; one that names none flies from ``start`` to ``end``.
+    aircraft start from and return to by name; one that names none flies from ``start`` to ``end``. In a search
+    the regions are the ground that is searched, and ``importance`` says what it is worth.
     """
 
     name: str
@@ -65,6 +66,7 @@ class Scenario:
     max_height_m: float | None = None
     bases: tuple[Terminal, ...] = ()
     separation: Separation | None = None
+    importance: Importance = field(default_factory=Importance)
 
     def ends_of(self, aircraft: Aircraft) -> tuple[Terminal, Terminal]:
         """Where an aircraft starts, and where it ends."""

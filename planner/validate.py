@@ -12,6 +12,7 @@ from planner.coverage.seen import check_visible
 from planner.errors import Finding, InfeasibleError, ScenarioError
 from planner.geojson import read_scenario
 from planner.scenario import Scenario
+from planner.tasks.search import refuse_unsearchable
 from planner.tasks.setting import Setting, seeing
 from planner.tasks.urban import cut_by_obstacles, lanes_cut, refuse_filled
 
@@ -60,6 +61,8 @@ def unseeable(scenario: Scenario) -> tuple[Finding, ...]:
     Where each can be seen by itself, also what hard zones, terrain and the wind forbid. Of several aircraft
     one that sees a region is enough.
     """
+    if scenario.task == "search":
+        return _unsearchable(scenario)
     if len(scenario.aircraft) > 1:
         return _unseen_by_all(scenario)
     found = []
@@ -113,8 +116,23 @@ def _unseen_by_all(scenario: Scenario) -> tuple[Finding, ...]:
     return tuple(dict.fromkeys(found))
 
 
+def _unsearchable(scenario: Scenario) -> tuple[Finding, ...]:
+    """What forbids a search: nothing to be seen, or no way to its end within the limits."""
+    try:
+        refuse_unsearchable(scenario)
+    except InfeasibleError as error:
+        rule = error.constraint if error.constraint != "wind" else "wind-too-strong"
+        return (Finding(error.feature, rule, error.message, error.relaxation, "error"),)
+    return ()
+
+
 def laborious(scenario: Scenario) -> tuple[Finding, ...]:
-    """What takes more passes than can be planned, or than are planned soon; most often a slip of height."""
+    """What takes more passes than can be planned, or than are planned soon; most often a slip of height.
+
+    A search flies no more of them than it has energy for.
+    """
+    if scenario.task == "search":
+        return ()
     found, passes, narrowest_m = [], 0, math.inf
     level, suite, airspace = scenario.level, scenario.suite, scenario.airspace
     for region in scenario.regions:

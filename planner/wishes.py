@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
+import numpy as np
+from numpy.typing import NDArray
 from shapely.geometry import LineString, MultiPolygon, Polygon
 
 #: How a camera sees a region.
@@ -82,3 +84,44 @@ class Method:
     transit: str = "auto"
     smoothing: str = "auto"
     search: str = "auto"
+
+
+@dataclass(frozen=True, slots=True)
+class ImportancePatch:
+    """Ground a square metre of which is worth ``score`` to be seen; where patches overlap scores add up."""
+
+    name: str
+    area: Polygon | MultiPolygon
+    score: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ImportanceRaster:
+    """Scores of a raster on local cells, by the square metre; the first is the one in the south-west.
+
+    Parameters
+    ----------
+    scores
+        Shape (rows, columns), none negative, 0 where the raster has none.
+    west_m, south_m, cell_m
+        Corner of the first cell, and the length of its edge.
+    """
+
+    name: str
+    scores: NDArray[np.float64]
+    west_m: float
+    south_m: float
+    cell_m: float
+
+
+@dataclass(frozen=True, slots=True)
+class Importance:
+    """What seeing ground is worth; all the same where there are neither patches nor a raster."""
+
+    patches: tuple[ImportancePatch, ...] = ()
+    raster: ImportanceRaster | None = None
+
+    @property
+    def given(self) -> bool:
+        """Whether some ground is worth more than other."""
+        return bool(self.patches) or self.raster is not None

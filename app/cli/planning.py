@@ -160,6 +160,10 @@ def tell_plan(document: dict[str, Any]) -> None:
     """Say in a few lines what a plan is like."""
     metrics = document["metrics"]
     coverage = metrics["coverage"].values()
+    if metrics.get("area_seen_m2") is not None:
+        _tell_search(metrics)
+        _tell_violations(document["violations"])
+        return
     say(
         f"planned: {metrics['length_m'] / 1000:.2f} km, {metrics['duration_s'] / 60:.1f} min "
         f"(the whole flight {metrics['flight_length_m'] / 1000:.2f} km, "
@@ -171,7 +175,22 @@ def tell_plan(document: dict[str, Any]) -> None:
             f"no plan is shorter than {metrics['lower_bound_m'] / 1000:.2f} km: "
             f"this one is at most {metrics['gap']:.1%} from the best"
         )
-    violations = document["violations"]
+    _tell_violations(document["violations"])
+
+
+def _tell_search(metrics: dict[str, Any]) -> None:
+    parts = metrics["coverage"].values()
+    worth, energy_wh = metrics.get("importance_collected"), metrics.get("energy_wh")
+    say(
+        f"searched: {metrics['area_seen_m2'] / 1e6:.3f} km² seen"
+        + (f", {next(iter(parts)):.1%} of the ground" if len(parts) == 1 else "")
+        + ("" if worth is None else f", importance {worth:.6g}")
+        + f", in {metrics['flight_length_m'] / 1000:.2f} km and {metrics['flight_duration_s'] / 60:.1f} min"
+        + ("" if energy_wh is None else f", {energy_wh:.1f} Wh")
+    )
+
+
+def _tell_violations(violations: list[dict[str, Any]]) -> None:
     for violation in violations[:VIOLATIONS_SHOWN]:
         say(f"violation: {violation.get('feature', '')}: {violation.get('message', violation)}")
     if len(violations) > VIOLATIONS_SHOWN:

@@ -31,6 +31,7 @@ from planner.check.kinematics import (
     turn_violations,
 )
 from planner.check.photo_quality import surveyed
+from planner.check.searched import Found, searched
 from planner.check.stretches import Measured
 from planner.check.times import line_s
 from planner.plan import Plan, Surveyed, Violation
@@ -55,6 +56,8 @@ class Verdict:
         What is left of each region that is not covered whole, in the local frame.
     surveys
         What photos give of each region that a camera sees.
+    area_seen_m2, importance_collected
+        Of a search: the ground seen, and what it is worth where that is given.
     """
 
     violations: tuple[Violation, ...]
@@ -63,6 +66,8 @@ class Verdict:
     coverage: dict[str, float]
     unseen: dict[str, Polygon | MultiPolygon]
     surveys: dict[str, Surveyed]
+    area_seen_m2: float | None = None
+    importance_collected: float | None = None
 
 
 def judge(scenario: Scenario, plan: Plan) -> Verdict:
@@ -115,8 +120,15 @@ def judge(scenario: Scenario, plan: Plan) -> Verdict:
     violations += fleet_violations(scenario, plan, scenario.kept_apart)
     coverage, unseen, missed = covered(scenario, plan)
     violations += missed
-    surveys, short = surveyed(scenario, plan)
-    violations += short
+    found: Found | None = None
+    surveys: dict[str, Surveyed] = {}
+    if scenario.task == "search":
+        # A search leaves ground unseen where it has to, and its lanes overlap as they come.
+        violations = [violation for violation in violations if violation.constraint != "coverage"]
+        found = searched(scenario, plan)
+    else:
+        surveys, short = surveyed(scenario, plan)
+        violations += short
     violations += footprint_violations(scenario, plan)
     length_m = math.fsum(lengths_m)
     mission_m = math.fsum(
@@ -130,7 +142,8 @@ def judge(scenario: Scenario, plan: Plan) -> Verdict:
         if off_m > LENGTH_TOLERANCE * max(measured_m, 1.0):
             message = f"metrics say {said_m} m of {what}, the line measures {measured_m:.1f} m"
             violations.append(Violation("length", "metrics", message, off_m, "m"))
-    return Verdict(tuple(violations), length_m, tightest_m, coverage, unseen, surveys)
+    seen = (None, None) if found is None else (found.area_m2, found.importance)
+    return Verdict(tuple(violations), length_m, tightest_m, coverage, unseen, surveys, *seen)
 
 
 def _grounds_m(scenario: Scenario, home_ground_m: float) -> tuple[float, float]:

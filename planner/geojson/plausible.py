@@ -85,7 +85,7 @@ def _times(scenario: Scenario, ground_speed_m_s: float, findings: Findings) -> N
         if isinstance(sensor, CameraSensor):
             swath_m *= 1.0 - sensor.side_overlap
         way_m += region.revisits * region.area.area / swath_m if swath_m > 0.0 else 0.0
-    if way_m / ground_speed_m_s > LONG_S:
+    if way_m / ground_speed_m_s > LONG_S and scenario.task != "search":
         findings.warning(
             "scenario",
             "flight-long",

@@ -22,21 +22,19 @@ from planner.geojson.home import home_amsl_m, kept_clear
 from planner.geojson.plausible import check_plausible
 from planner.geojson.relief import set_on_terrain
 from planner.geojson.rules import check_together
+from planner.geojson.searching import check_search, read_patch, searched, tell_unsearched, with_importance
 from planner.geojson.shutter import at_camera_speed
 from planner.geojson.size import check_size
 from planner.geojson.slots import check_slots
 from planner.route import Terminal
 from planner.scenario import Scenario
 from planner.tasks.registry import TASKS
-from planner.wishes import Region
-
-#: Tasks that scenarios may name and this version does not plan.
-NOT_YET = ("search",)
+from planner.wishes import ImportancePatch, Region
 
 MEMBERS = (
     "type", "features", "name", "bbox", "crs", "vehicles", "sensors", "altitude_m", "min_height_m",
     "max_height_m", "altitude_reference", "terrain", "terrain_following", "wind", "clearance_m", "objective",
-    "task", "method", "seed", "time_budget_s", "separation",
+    "task", "method", "seed", "time_budget_s", "separation", "importance_raster",
 )  # fmt: skip
 
 CRS84 = (
@@ -116,14 +114,7 @@ def _read(document: Any, findings: Findings, terrains: Terrains | None) -> Scena
         named = [raw.name for raw in raws if raw.role == role]
         for extra in named[most:]:
             findings.error(extra, f"several-{role}s", f"is a second {role}", f"Keep one {role}.")
-    for raw in raws:
-        if raw.role == "importance":
-            score = raw.fields.number("score", minimum=0.0)
-            raw.fields.refuse_unknown()
-            said = "is not used by the collect task" + (
-                "" if score is None else f", nor its score of {score:g}"
-            )
-            findings.warning(raw.name, "not-used", said, "Remove it.")
+    patches: list[ImportancePatch] = each("importance", read_patch)
 
     top = Fields("scenario", document, findings)
     top.refuse_unknown(also_known=MEMBERS)
@@ -139,12 +130,10 @@ def _read(document: Any, findings: Findings, terrains: Terrains | None) -> Scena
     if not heights.decided(regions):
         top.number("altitude_m")
     reference: Any = top.choice("altitude_reference", ("amsl", "home", "terrain"), "terrain")
-    task = top.choice("task", (*TASKS, *(name for name in NOT_YET if name not in TASKS)), "collect")
-    if task is not None and task not in TASKS:
-        findings.error(
-            "scenario", "not-supported", f"task {task} is not planned by this version",
-            f"Use one of: {', '.join(TASKS)}.",
-        )  # fmt: skip
+    task = top.choice("task", tuple(TASKS), "collect")
+    if task != "search":
+        tell_unsearched(patches, top, findings)
+    raster_name = top.text("importance_raster", None) if task == "search" else None
     terrain_name = top.text("terrain", None)
     terrain = None if terrain_name is None else find_terrain(terrains, terrain_name)
     if terrain_name is not None and terrain is None:
@@ -166,7 +155,10 @@ def _read(document: Any, findings: Findings, terrains: Terrains | None) -> Scena
     wind = equipment.read_wind(document.get("wind"), findings)
     objective = equipment.read_objective(document.get("objective"), findings)
     method = equipment.read_method(document.get("method"), findings)
-    if not regions and not any(raw.role == "roi" for raw in raws):
+    if task == "search":
+        named = [raw.name for raw in raws if raw.role == "area"]
+        regions = searched(regions, areas, named, patches, findings)
+    elif not regions and not any(raw.role == "roi" for raw in raws):
         findings.error("scenario", "no-region", "has no region of interest", "Add a feature of role roi.")
     separation = read_separation(document.get("separation"), findings)
     if len(aircraft) == 1 and separation is not None:
@@ -204,6 +196,9 @@ def _read(document: Any, findings: Findings, terrains: Terrains | None) -> Scena
         separation=separation if len(aircraft) > 1 else None,
     )
     check_fleet(scenario, bases, findings)
+    if task == "search":
+        raster = None if raster_name is None else find_terrain(terrains, raster_name)
+        scenario = with_importance(scenario, patches, raster_name, raster, findings)
     scenario = with_wishes(scenario)
     tell_unused(scenario, heights, findings)
     if terrain is not None:
@@ -214,6 +209,8 @@ def _read(document: Any, findings: Findings, terrains: Terrains | None) -> Scena
         return None
     scenario = replace(scenario, regions=_at_their_altitudes(scenario.regions, scenario.altitude_m))
     check_together(scenario, findings)
+    if scenario.task == "search":
+        check_search(scenario, findings)
     if not findings.errors:
         scenario = at_camera_speed(scenario, findings)
         check_slots(scenario, findings)

@@ -83,6 +83,8 @@ class Metrics:
     ``energy_wh`` of all phases. ``route_length_m`` is the line over the ground from start to end, without
     turns flown for height; ``lower_bound_m`` what no mission phase over these regions is shorter than,
     threats left out, and ``gap`` by what part of its length this one is longer; None without a bound.
+    Of a search ``area_seen_m2`` is the ground seen of what is searched, each place once, and
+    ``importance_collected`` what that is worth where importance is given; None of other tasks.
     ``photos`` counts those of all cameras, ``photos_mb`` is about what they take to be stored; None where
     there are none on board. ``surveys`` tells by region what they give. Of several aircraft or sorties all
     are sums; ``vehicles`` tells of each aircraft, ``last_landing_s`` when the last is down; empty and None
@@ -99,6 +101,7 @@ class Metrics:
     duration_s: float
     energy_wh: float | None
     coverage: dict[str, float]
+    area_seen_m2: float | None = None
     importance_collected: float | None = None
     planning_time_s: dict[str, float] = field(default_factory=dict)
     lower_bound_m: float | None = None

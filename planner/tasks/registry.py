@@ -16,8 +16,14 @@ def _collect() -> Task:
     return COLLECT
 
 
+def _search() -> Task:
+    from planner.tasks.search import SEARCH
+
+    return SEARCH
+
+
 #: What finds each task.
-TASKS: dict[str, Callable[[], Task]] = {"collect": _collect}
+TASKS: dict[str, Callable[[], Task]] = {"collect": _collect, "search": _search}
 
 
 def register(name: str, task: Task) -> None:

@@ -81,8 +81,8 @@ class Task:
         CancelledError once ``stop`` says so.
     bound_m
         A length that no plan over the regions a plan sees is under; what it takes to look for it is
-        taken off what is allowed.
+        taken off what is allowed. None where the shortest is not what is looked for.
     """
 
     answer: Callable[[Scenario, Controls], Answer]
-    bound_m: Callable[[Scenario, Plan, Stop, Allowance], float]
+    bound_m: Callable[[Scenario, Plan, Stop, Allowance], float] | None

@@ -76,6 +76,9 @@ export interface Metrics {
   lower_bound_m?: number | null;
   gap?: number | null;
   photos?: number | null;
+  /** Of a search: ground seen, each place once, and what that is worth where importance is given. */
+  area_seen_m2?: number | null;
+  importance_collected?: number | null;
 }
 
 export interface PlanRecord {

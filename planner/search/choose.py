@@ -1,0 +1,155 @@
+"""The search patterns of a ground laid, cut to a budget, and ranked by what they are worth."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import uniform_filter
+from shapely.geometry import MultiPolygon, Point, Polygon, box
+from shapely.ops import nearest_points
+
+from planner.progress import Stop, never, raise_if
+from planner.route import Look
+from planner.search.families import patterns
+from planner.search.programme import Pricing, Programme, Sweep, cut_to, seen_worth, thinned_to
+from planner.search.room import LEAST_PASS_M, Room
+from planner.search.swaths import Looking
+from planner.search.values import Worth
+
+Floats = NDArray[np.float64]
+
+#: Headings at which lanes are laid.
+HEADINGS_RAD = np.radians(np.arange(0.0, 180.0, 22.5))
+#: Patterns are thinned out, too, where they have no more passes than this.
+MOST_THINNED = 60
+#: So many of the patterns that see most are thinned out.
+MOST_PATTERNS_THINNED = 16
+#: Ground larger than this many times what the budget sees is searched in part.
+LARGER = 1.3
+#: Strips by the width of the swath: wider ones leave gaps, and reach farther.
+WIDTHS = (1.0, 1.08)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Search:
+    """One search as the choice sees it."""
+
+    ground: Polygon | MultiPolygon
+    worth: Worth
+    looking: Looking
+    room: Room
+    pricing: Pricing
+    stop: Stop = never
+
+    def ranked(self, budget_m: float) -> list[Programme]:
+        """Programmes within a budget of metres through the air, what is worth most first."""
+        found: list[Programme] = []
+        width_m = self.looking.narrowest_m()
+        for ground in self._grounds(budget_m, width_m):
+            for family, sweeps in self._laid(ground, width_m):
+                raise_if(self.stop)
+                found += self._cut(family, sweeps, budget_m, thin=False)
+        found.sort(key=lambda each: (-each.worth, each.cost_m))
+        thinned = [
+            way
+            for each in found[:MOST_PATTERNS_THINNED]
+            for way in self._cut(each.family, each.whole, budget_m, thin=True)
+        ]
+        return sorted(found + thinned, key=lambda each: (-each.worth, each.cost_m))
+
+    def recut(self, programme: Programme, budget_m: float) -> Programme | None:
+        """The same pattern within another budget; None where nothing of it fits."""
+        ways = self._cut(programme.family, programme.whole, budget_m, thin=programme.thinned)
+        return next(iter(ways), None)
+
+    def flyable(self) -> Iterator[tuple[Sweep, ...]]:
+        """Passes over the ground, by pattern, whatever they cost; none where it is blocked."""
+        return (sweeps for _, sweeps in self._laid(self.ground, self.looking.narrowest_m(), (1.0,)))
+
+    def _cut(
+        self, family: str, whole: tuple[Sweep, ...], budget_m: float, *, thin: bool
+    ) -> tuple[Programme, ...]:
+        """A pattern within a budget: its first passes, or those worth most; none where no pass fits."""
+        if not thin:
+            way = cut_to(whole, self.pricing, budget_m)
+        elif 1 < len(whole) <= MOST_THINNED:
+            way = thinned_to(whole, self.pricing, budget_m, self.worth)
+        else:
+            return ()
+        if not way:
+            return ()
+        worth = seen_worth(way, self.worth)
+        return (Programme(family, way, worth, self.pricing.cost_m(way), whole, thin),)
+
+    def _laid(
+        self, ground: Polygon | MultiPolygon, width_m: float, widths: Sequence[float] = WIDTHS
+    ) -> Iterator[tuple[str, tuple[Sweep, ...]]]:
+        """Every pattern as passes that may be flown."""
+        datum = self._datum()
+        for part in widths:
+            for pattern in patterns(ground, part * width_m, HEADINGS_RAD, datum):
+                for look in self.looking.looks:
+                    sweeps = tuple(self._sweeps(pattern.strips, look))
+                    if sweeps:
+                        yield pattern.family, sweeps
+
+    def _sweeps(self, strips: Floats, look: Look) -> Iterator[Sweep]:
+        for first, last in strips:
+            along = last - first
+            length_m = float(np.hypot(*along))
+            if length_m <= 0.0:
+                continue
+            along = along / length_m
+            swath = self.looking.swath(math.atan2(along[1], along[0]), look)
+            aside = -swath.middle_m * np.array([-along[1], along[0]])
+            start = first + aside - swath.run_in_m * along
+            end = last + aside + swath.run_out_m * along
+            if float((end - start) @ along) < max(0.0, swath.run_in_m + swath.run_out_m) + LEAST_PASS_M:
+                continue
+            ways = self.room.flyable((float(start[0]), float(start[1])), (float(end[0]), float(end[1])))
+            for begin, until in ways:
+                sweep = Sweep(begin, until, look, swath)
+                if sweep.length_m > swath.run_in_m + swath.run_out_m:
+                    yield sweep
+
+    def _grounds(self, budget_m: float, width_m: float) -> Sequence[Polygon | MultiPolygon]:
+        """The ground whole, or parts of it where that is far more than can be seen."""
+        seen_m2 = budget_m * width_m
+        if not math.isfinite(seen_m2) or self.ground.area <= LARGER * seen_m2:
+            return (self.ground,)
+        half_m = 0.5 * math.sqrt(seen_m2)
+        found: list[Polygon | MultiPolygon] = []
+        for east_m, north_m in {self._richest(2.0 * half_m), self._nearest(half_m), self._datum()}:
+            window = box(east_m - half_m, north_m - half_m, east_m + half_m, north_m + half_m)
+            part = self.ground.intersection(window)
+            if isinstance(part, Polygon | MultiPolygon) and not part.is_empty:
+                found.append(part)
+        return found or (self.ground,)
+
+    def _datum(self) -> tuple[float, float]:
+        """The middle of what the ground is worth."""
+        scores, centres_m = self.worth.scores, self.worth.centres_m
+        if scores.sum() <= 0.0:
+            middle = self.ground.representative_point()
+            return (middle.x, middle.y)
+        at = (scores[..., None] * centres_m).sum(axis=(0, 1)) / scores.sum()
+        return (float(at[0]), float(at[1]))
+
+    def _richest(self, side_m: float) -> tuple[float, float]:
+        """Middle of the square of a side that is worth most."""
+        cells = max(1, round(side_m / self.worth.cell_m))
+        within = uniform_filter(self.worth.scores, size=cells, mode="constant")
+        row, column = np.unravel_index(int(np.argmax(within)), within.shape)
+        east_m, north_m = self.worth.centres_m[row, column]
+        return (float(east_m), float(north_m))
+
+    def _nearest(self, half_m: float) -> tuple[float, float]:
+        """Middle of the square nearest to the start that has its room on the ground, about."""
+        inner = self.ground.buffer(-half_m)
+        shape = self.ground if inner.is_empty else inner
+        place = nearest_points(shape, Point(self.pricing.start))[0]
+        return (float(place.x), float(place.y))

@@ -1,0 +1,107 @@
+"""Where a search's passes may lie: in the area, out of zones, with room for a turn at either end."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+from shapely.geometry import LineString, MultiPolygon, Point, Polygon, box
+from shapely.geometry.base import BaseGeometry
+
+from planner.airspace.airspace import Airspace, Level
+from planner.airspace.surroundings import surroundings
+from planner.vehicle.model import FlightModel
+from planner.wishes import Objective
+
+Floats = NDArray[np.float64]
+Place = tuple[float, float]
+
+#: Places at which room for a turn is looked for: so many to a radius, but no closer than this.
+STEPS, LEAST_STEP_M = 4.0, 2.0
+#: Where there is no area, lines stay this many radii round the ground, and this far at least.
+ROUND, LEAST_ROUND_M = 8.0, 500.0
+#: A pass is no shorter than this.
+LEAST_PASS_M = 2.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Room:
+    """Where one aircraft may fly straight, and turn.
+
+    Parameters
+    ----------
+    free
+        Where lines may be, margins taken off.
+    turning
+        Where the centre of a turn may be.
+    radius_m, settle_m
+        Of its turns, and straight flight before each pass.
+    """
+
+    free: BaseGeometry
+    turning: BaseGeometry
+    radius_m: float
+    settle_m: float
+
+    @classmethod
+    def of(
+        cls,
+        airspace: Airspace,
+        level: Level,
+        model: FlightModel,
+        objective: Objective,
+        ground: Polygon | MultiPolygon,
+    ) -> Room:
+        """The room at a level over ground and round it; threats that cost anything are kept out of."""
+        around = surroundings(airspace, level, model, objective)
+        free: BaseGeometry = around.area if around.area is not None else Polygon()
+        if around.area is None:
+            reach_m = max(LEAST_ROUND_M, ROUND * model.turn_radius_m)
+            west_m, south_m, east_m, north_m = ground.bounds
+            free = box(west_m - reach_m, south_m - reach_m, east_m + reach_m, north_m + reach_m)
+        soft = around.soft if around.prices is None else around.soft[around.prices > 0.0]
+        discs = [Point(e, n).buffer(r, quad_segs=32) for e, n, r in np.vstack([around.hard, soft]).tolist()]
+        free = shapely.difference(free, shapely.union_all([*around.hard_polygons, *discs]))
+        turning = free.buffer(-model.turn_radius_m)
+        for shape in (free, turning):
+            shapely.prepare(shape)
+        return cls(free, turning, model.turn_radius_m, model.settle_m)
+
+    def flyable(self, start: Place, end: Place) -> list[tuple[Place, Place]]:
+        """The parts of a line that may be flown as passes, in flight order."""
+        length_m = math.dist(start, end)
+        if length_m < LEAST_PASS_M:
+            return []
+        along = np.subtract(end, start) / length_m
+        before = np.asarray(start) - self.settle_m * along
+        clear = shapely.intersection(LineString([tuple(before), end]), self.free)
+        found = []
+        for part in shapely.get_parts(clear):
+            if isinstance(part, LineString) and part.length >= LEAST_PASS_M:
+                ends = np.asarray(part.coords)[[0, -1]] @ along
+                low, high = sorted((ends - before @ along).tolist())
+                found += self._with_turns(before, along, low, high)
+        return sorted(found, key=lambda each: float(np.dot(each[0], along)))
+
+    def _with_turns(
+        self, before: Floats, along: Floats, low_m: float, high_m: float
+    ) -> list[tuple[Place, Place]]:
+        """What of a clear stretch has a turn before its settling run and one behind its end."""
+        step_m = max(self.radius_m / STEPS, LEAST_STEP_M)
+        at_m = np.linspace(low_m, high_m, max(2, math.ceil((high_m - low_m) / step_m) + 1))
+        places = before + at_m[:, None] * along
+        side = self.radius_m * np.array([-along[1], along[0]])
+        turns = np.zeros(len(at_m), dtype=np.bool_)
+        for centres in (places + side, places - side):
+            turns |= shapely.contains_xy(self.turning, centres[:, 0], centres[:, 1])
+        good = np.flatnonzero(turns)
+        if not len(good):
+            return []
+        first_m, last_m = at_m[good[0]] + self.settle_m, at_m[good[-1]]
+        if last_m - first_m < LEAST_PASS_M:
+            return []
+        start, end = before + first_m * along, before + last_m * along
+        return [((float(start[0]), float(start[1])), (float(end[0]), float(end[1])))]

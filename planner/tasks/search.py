@@ -1,0 +1,282 @@
+"""The task ``search``: see as much ground, or importance, as the energy allows, and end at the end."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+import shapely
+from shapely.geometry import MultiPolygon, Polygon
+
+from planner.errors import InfeasibleError
+from planner.metrics import used
+from planner.profile.compose import Composed
+from planner.progress import silent
+from planner.publish import Leg
+from planner.route import Anchor, CollectPass
+from planner.scenario import Scenario
+from planner.search.choose import Search
+from planner.search.programme import Pricing, Programme
+from planner.search.room import Room
+from planner.search.swaths import Looking
+from planner.search.values import Worth, worth_of_ground
+from planner.tasks.flying import Station
+from planner.tasks.methods import chosen_methods
+from planner.tasks.setting import Setting
+from planner.tasks.task import Answer, Controls, Task
+from planner.tasks.transits import Transits
+from planner.vehicle.aircraft import Aircraft
+from planner.vehicle.energy import FlightState
+from planner.vehicle.limits import Use, exceeded
+
+#: Cells of the worth of ground: so many to the swath's width, no more to a side, no finer.
+CELLS_ACROSS, MOST_CELLS, LEAST_CELL_M = 8.0, 160, 0.5
+#: So many of the best programmes are flown, each in so many lengths.
+FLOWN, LENGTHS = 3, 6
+#: A flight that uses this part of what it may is long enough.
+ENOUGH = 0.99
+
+
+@dataclass(frozen=True, slots=True)
+class _Flight:
+    """One programme flown."""
+
+    programme: Programme
+    passes: tuple[CollectPass, ...]
+    composed: Composed
+    legs: tuple[Leg, ...]
+    notes: tuple[str, ...]
+    use: Use
+
+
+def search(scenario: Scenario, controls: Controls) -> Answer:
+    """The flight that sees most, and ends at the end with its reserve."""
+    setting = Setting.of(scenario)
+    methods = chosen_methods(scenario.method) | {"search": "patterns", "coverage": "none", "routing": "none"}
+    transits = Transits.of(setting, scenario.objective, methods)
+    asked = replace(_asked(scenario, setting), stop=controls.stop)
+    spare_m = _spare_m(transits, scenario, controls)
+
+    def fly(programme: Programme) -> _Flight:
+        passes = tuple(asked.looking.collect(s.start, s.end, s.look) for s in programme.sweeps)
+        composed, legs, notes = transits.through(passes, silent, controls.stop)
+        use = used(composed.flight, setting.model, setting.level)
+        return _Flight(programme, passes, composed, legs, notes, use)
+
+    with controls.stage("search"):
+        controls.progress("search", 0.0)
+        ranked = asked.ranked(spare_m)
+        if not ranked:
+            _refuse_blocked(asked, spare_m, setting.model.aircraft)
+    with controls.stage("transit"):
+        best = _best(ranked, asked, spare_m, fly, setting.model.aircraft, controls)
+    methods["search"] = best.programme.family
+    return Answer(setting, best.composed, best.legs, best.passes, methods, (), best.notes)
+
+
+def refuse_unsearchable(scenario: Scenario) -> None:
+    """Refuse a search that sees nothing, or cannot come to its end.
+
+    Raises
+    ------
+    InfeasibleError
+        With the constraint, and of limits with the shortfall.
+    """
+    setting = Setting.of(scenario)
+    transits = Transits.of(setting, scenario.objective, chosen_methods(scenario.method))
+    asked = _asked(scenario, setting)
+    if next(asked.flyable(), None) is None:
+        _refuse_blocked(asked, math.inf, setting.model.aircraft)
+    _spare_m(transits, scenario, None)
+
+
+def _asked(scenario: Scenario, setting: Setting) -> Search:
+    regions = scenario.regions
+    ground = _areal(shapely.union_all([region.area for region in regions]))
+    level = setting.level.of(regions[0])
+    whole = ground if isinstance(ground, Polygon) else ground.convex_hull
+    sensor, height_m = setting.suite.over(regions[0].sensor, _areal(whole), setting.airspace, level)
+    looking = Looking(sensor, height_m, tuple(region.name for region in regions))
+    width_m = looking.narrowest_m()
+    room = Room.of(setting.airspace, level, setting.model, scenario.objective, ground)
+    start, end = (terminal.position for terminal in setting.ends)
+    worth = _worth(scenario, ground, width_m)
+    return Search(ground, worth, looking, room, Pricing(setting.model, start, end))
+
+
+def _areal(shape: object) -> Polygon | MultiPolygon:
+    return shape if isinstance(shape, Polygon | MultiPolygon) else Polygon()
+
+
+def _worth(scenario: Scenario, ground: Polygon | MultiPolygon, width_m: float) -> Worth:
+    """Scores of the ground by cells."""
+    west_m, south_m, east_m, north_m = ground.bounds
+    side_m = max(east_m - west_m, north_m - south_m)
+    cell_m = max(LEAST_CELL_M, side_m / MOST_CELLS, min(width_m / CELLS_ACROSS, side_m / 40.0))
+    plain = worth_of_ground(ground, cell_m)
+    importance = scenario.importance
+    if not importance.given:
+        return plain
+    east, north = plain.centres_m[..., 0], plain.centres_m[..., 1]
+    scores = np.zeros(plain.scores.shape)
+    for patch in importance.patches:
+        shapely.prepare(patch.area)
+        scores += np.where(shapely.contains_xy(patch.area, east, north), patch.score, 0.0)
+    raster = importance.raster
+    if raster is not None:
+        rows, columns = raster.scores.shape
+        row = np.clip(((north - raster.south_m) / raster.cell_m).astype(np.int64), 0, rows - 1)
+        column = np.clip(((east - raster.west_m) / raster.cell_m).astype(np.int64), 0, columns - 1)
+        scores += raster.scores[row, column]
+    return worth_of_ground(ground, cell_m, scores)
+
+
+def _per_m(aircraft: Aircraft, above_sea_m: float) -> dict[str, float]:
+    """What a metre through the air takes of each limit, in level flight."""
+    state = FlightState(aircraft.airspeed_m_s, above_sea_m=above_sea_m)
+    energy_wh = (
+        0.0 if aircraft.power is None else aircraft.power.power_w(state) / aircraft.airspeed_m_s / 3600.0
+    )
+    return {"range": 1.0, "flight-time": 1.0 / aircraft.airspeed_m_s, "energy": energy_wh}
+
+
+def _limits(aircraft: Aircraft, use: Use) -> dict[str, tuple[float, float, str]]:
+    """What is used, what there is, and the unit, of each limit that there is."""
+    rows = {
+        "range": (use.length_m, aircraft.max_range_m, "m"),
+        "flight-time": (use.duration_s, aircraft.max_flight_time_s, "s"),
+        "energy": (use.energy_wh, aircraft.usable_wh, "Wh"),
+    }
+    return {
+        name: (used_, limit, unit)
+        for name, (used_, limit, unit) in rows.items()
+        if used_ is not None and limit is not None
+    }
+
+
+def _spare_m(transits: Transits, scenario: Scenario, controls: Controls | None) -> float:
+    """Metres through the air that limits allow from start to end; inf where nothing limits them.
+
+    Raises
+    ------
+    InfeasibleError
+        Where the flight to the end alone is over a limit, with the shortfall.
+    """
+    setting = transits.setting
+    aircraft, (start, end) = setting.model.aircraft, setting.ends
+    stop = (lambda: False) if controls is None else controls.stop
+    composed, _, _ = transits.by((Station(end.name, Anchor(*end.position)),), silent, stop)
+    use = used(composed.flight, setting.model, setting.level)
+    per_m = _per_m(aircraft, setting.level.amsl_m)
+    for name, (taken, limit, unit) in _limits(aircraft, use).items():
+        if taken > limit:
+            short = taken - limit
+            metres = f", {short / per_m[name]:.0f} m of flight" if unit != "m" and per_m[name] > 0.0 else ""
+            raise InfeasibleError(
+                name,
+                aircraft.name,
+                f"the flight from {start.name} to {end.name} alone takes {taken:.1f} {unit}, there are "
+                f"{limit:.1f} {unit}: {short:.1f} {unit} short{metres}",
+                "Raise the limit, lower the reserve, or end nearer to the start.",
+                end.position,
+            )
+    spare = [
+        (limit - taken) / per_m[name]
+        for name, (taken, limit, _) in _limits(aircraft, use).items()
+        if per_m[name] > 0.0
+    ]
+    return min(spare, default=math.inf) + math.dist(start.position, end.position)
+
+
+def _refuse_blocked(asked: Search, spare_m: float, aircraft: Aircraft) -> None:
+    """Nothing can be seen: because nothing may be flown over it, or because that is too far."""
+    name = asked.looking.names[0]
+    place = asked.ground.representative_point()
+    where = (float(place.x), float(place.y))
+    if next(asked.flyable(), None) is None:
+        raise InfeasibleError(
+            "blocked",
+            name,
+            f"nothing of it can be seen: area, zones and turns of {asked.room.radius_m:.0f} m leave no pass "
+            f"over it from {asked.looking.height_m:.0f} m",
+            "Widen the area, move what blocks it, or fly at another altitude or with tighter turns.",
+            where,
+        )
+    away_m = min(asked.pricing.cost_m(way[:1]) for way in asked.flyable())
+    raise InfeasibleError(
+        "energy",
+        aircraft.name,
+        f"reaches none of the ground and its end: there and back are {away_m:.0f} m, its limits allow "
+        f"{spare_m:.0f} m: {away_m - spare_m:.0f} m short",
+        "Raise the limit, lower the reserve, or start nearer.",
+        where,
+    )
+
+
+def _best(
+    ranked: list[Programme],
+    asked: Search,
+    spare_m: float,
+    fly: Callable[[Programme], _Flight],
+    aircraft: Aircraft,
+    controls: Controls,
+) -> _Flight:
+    """The best programmes flown, each as long as the limits allow; the one that sees most."""
+    best: _Flight | None = None
+    refused: InfeasibleError | None = None
+    flown = 0
+    for programme in ranked:
+        if flown >= FLOWN or (best is not None and controls.enough()):
+            break
+        controls.progress("transit", flown / FLOWN)
+        try:
+            found = _as_long_as_can_be(programme, asked, spare_m, fly, aircraft)
+        except InfeasibleError as error:
+            refused = error
+            continue
+        flown += 1
+        if found is not None and (best is None or found.programme.worth > best.programme.worth):
+            best = found
+    if best is not None:
+        return best
+    if refused is not None:
+        raise refused
+    _refuse_blocked(asked, spare_m, aircraft)
+    raise AssertionError
+
+
+def _as_long_as_can_be(
+    programme: Programme,
+    asked: Search,
+    spare_m: float,
+    fly: Callable[[Programme], _Flight],
+    aircraft: Aircraft,
+) -> _Flight | None:
+    """A programme cut to what limits allow of the flight itself, halving between too long and too short."""
+    best: _Flight | None = None
+    short_m, long_m, budget_m = 0.0, math.inf, spare_m
+    for _ in range(LENGTHS):
+        flight = fly(programme)
+        limits = _limits(aircraft, flight.use).values()
+        part = max((taken / limit for taken, limit, _ in limits), default=0.0)
+        if not exceeded(aircraft, flight.use):
+            if best is None or flight.programme.worth >= best.programme.worth:
+                best = flight
+            short_m = budget_m
+            if part >= ENOUGH or programme.sweeps == programme.whole:
+                break
+        else:
+            long_m = budget_m
+        wanted_m = budget_m * (0.5 * (1.0 + ENOUGH)) / part if part > 0.0 else budget_m
+        inside = short_m < wanted_m < long_m
+        budget_m = wanted_m if inside else 0.5 * (short_m + min(long_m, 2.0 * budget_m))
+        cut = asked.recut(programme, budget_m)
+        if cut is None:
+            break
+        programme = cut
+    return best
+
+
+SEARCH = Task(search, None)
