@@ -31,8 +31,8 @@ class Scenario:
     Where there is terrain ``altitude_reference`` is ``amsl``; see ``planner.geojson.relief``. The flight is
     level, unless ``lowest_amsl_m`` says how far down it may come where it follows the ground.
     ``max_height_m`` is the greatest height over ground of passes that was asked for. ``bases`` are those that
-    aircraft start from and return to by name; one that names none flies from ``start`` to ``end``. In a search
-    the regions are the ground that is searched, and ``importance`` says what it is worth.
+    aircraft start from and return to by name; one that names none flies from ``start`` to ``end``. In a
+    search the regions are the ground that is searched, and ``importance`` says what it is worth.
     """
 
     name: str

@@ -50,9 +50,9 @@ def given(source: str, choice: FileChoice, scenario: str | None, terrain: str | 
     if terrain is not None:
         from dataclasses import replace
 
-        from app.cli.planning import with_terrain
+        from app.cli.planning import with_raster
 
-        asked_or_bare, ground = with_terrain(asked or {}, terrain)
+        asked_or_bare, ground = with_raster(asked or {}, terrain, "terrain")
         asked = None if asked is None else asked_or_bare
         choice = replace(choice, terrain=None if asked is not None else ground.name)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 import time
+from collections.abc import Sequence
 from dataclasses import replace
 from enum import StrEnum
 from pathlib import Path
@@ -91,24 +92,24 @@ def with_choices(document: dict[str, Any], seed: int | None, methods: list[str])
     return chosen
 
 
-def with_terrain(document: dict[str, Any], path: str) -> tuple[dict[str, Any], Terrain]:
-    """A scenario that lies on the raster in a file, and the raster; the file's name is the terrain's."""
+def with_raster(document: dict[str, Any], path: str, member: str) -> tuple[dict[str, Any], Terrain]:
+    """A scenario whose member names the raster in a file, and the raster; the file's name is its own."""
     from app.cli.output import read_bytes
     from app.services.errors import RefusedError
     from app.services.terrain.rasters import read_raster
 
-    name = document.get("terrain") or Path(path).stem
+    name = document.get(member) or Path(path).stem
     try:
         terrain = read_raster(read_bytes(path), Path(path).name, str(name))
     except RefusedError as error:
         raise CommandError(str(error), Exit.BAD_INPUT, error.findings) from error
-    return document | {"terrain": str(name)}, terrain
+    return document | {member: str(name)}, terrain
 
 
 def make(
     document: dict[str, Any],
     time_limit_s: float | None = None,
-    terrain: Terrain | None = None,
+    rasters: Sequence[Terrain] = (),
     bound: Bound = Bound.NONE,
 ) -> dict[str, Any]:
     """Plan a scenario in this process; returns the plan document."""
@@ -120,7 +121,7 @@ def make(
 
     narrator, limit = Narrator(), Deadline(time_limit_s)
     try:
-        scenario = read_valid(document, None if terrain is None else {terrain.name: terrain})
+        scenario = read_valid(document, {raster.name: raster for raster in rasters})
         for warning in scenario.warnings + laborious(scenario):
             say(f"warning: {warning}")
         began_s = time.monotonic()
@@ -211,6 +212,10 @@ def plan(
         str | None,
         typer.Option(help="Elevation raster to plan on: GeoTIFF, DTED or SRTM HGT.", metavar="FILE"),
     ] = None,
+    importance_raster: Annotated[
+        str | None,
+        typer.Option(help="Raster of what seeing a square metre is worth, for a search.", metavar="FILE"),
+    ] = None,
     bound: Annotated[
         Bound,
         typer.Option(
@@ -225,10 +230,12 @@ def plan(
     """
     require_writable(output)
     asked = with_choices(read_document(scenario), seed, method or [])
-    ground = None
-    if terrain is not None:
-        asked, ground = with_terrain(asked, terrain)
-    document = make(asked, time_limit_s, ground, bound)
+    rasters = []
+    for member, path in (("terrain", terrain), ("importance_raster", importance_raster)):
+        if path is not None:
+            asked, raster = with_raster(asked, path, member)
+            rasters.append(raster)
+    document = make(asked, time_limit_s, rasters, bound)
     emit_json(document, output)
     tell_plan(document)
     if as_json and output != "-":

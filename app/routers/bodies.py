@@ -56,6 +56,16 @@ SCENARIO_SCHEMA: dict[str, Any] = {
         "altitude_m": {"type": "number", "minimum": 1},
         "altitude_reference": {"enum": ["amsl", "home", "terrain"], "default": "terrain"},
         "terrain": {"type": "string", "description": "Id of an uploaded elevation raster."},
+        "task": {
+            "enum": ["collect", "search"],
+            "default": "collect",
+            "description": "See every region; or search: see as much ground, or as much importance, as the "
+            "vehicle's energy, range and time allow, and end at the end.",
+        },
+        "importance_raster": {
+            "type": "string",
+            "description": "Of a search: id of an uploaded raster with the worth of seeing a square metre.",
+        },
         "wind": {"type": "object"},
         "clearance_m": {
             "type": "number",

@@ -20,8 +20,8 @@ from planner.geojson.outlines import few_cornered
 from planner.scenario import Scenario
 from planner.wishes import Importance, ImportancePatch, ImportanceRaster, Region
 
-#: A raster's local cells are no finer than this, and no more to a side.
-LEAST_CELL_M, MOST_CELLS = 1.0, 500
+#: A raster's local cells are no finer than this, and of the ground's longer side no fewer and no more.
+LEAST_CELL_M, LEAST_CELLS, MOST_CELLS = 1.0, 100, 500
 #: A square metre is hardly worth more, and sums of what is are exact no longer.
 MOST_SCORE = 1e12
 
@@ -115,8 +115,8 @@ def _local(
         )
         return None
     west_m, south_m, east_m, north_m = ground.bounds
-    finest_m = max(east_m - west_m, north_m - south_m) / MOST_CELLS
-    cell_m = max(LEAST_CELL_M, raster.resolution_m / 2.0, finest_m)
+    side_m = max(east_m - west_m, north_m - south_m)
+    cell_m = max(LEAST_CELL_M, min(raster.resolution_m / 2.0, side_m / LEAST_CELLS), side_m / MOST_CELLS)
     columns = max(1, math.ceil((east_m - west_m) / cell_m - 1e-9))
     rows = max(1, math.ceil((north_m - south_m) / cell_m - 1e-9))
     east = west_m + (np.arange(columns) + 0.5) * cell_m

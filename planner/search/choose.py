@@ -98,22 +98,26 @@ class Search:
                         yield pattern.family, sweeps
 
     def _sweeps(self, strips: Floats, look: Look) -> Iterator[Sweep]:
-        for first, last in strips:
-            along = last - first
-            length_m = float(np.hypot(*along))
-            if length_m <= 0.0:
-                continue
-            along = along / length_m
-            swath = self.looking.swath(math.atan2(along[1], along[0]), look)
-            aside = -swath.middle_m * np.array([-along[1], along[0]])
-            start = first + aside - swath.run_in_m * along
-            end = last + aside + swath.run_out_m * along
-            if float((end - start) @ along) < max(0.0, swath.run_in_m + swath.run_out_m) + LEAST_PASS_M:
-                continue
-            ways = self.room.flyable((float(start[0]), float(start[1])), (float(end[0]), float(end[1])))
+        """The passes that see strips, looking to one side, where they may be flown."""
+        along = strips[:, 1] - strips[:, 0]
+        lengths_m = np.hypot(*along.T)
+        along = along / np.maximum(lengths_m, 1e-9)[:, None]
+        courses = [round(math.atan2(north, east), 9) for east, north in along.tolist()]
+        known = {course: self.looking.swath(course, look) for course in set(courses)}
+        swaths = [known[course] for course in courses]
+        middles_m, ins_m, outs_m = np.array([(s.middle_m, s.run_in_m, s.run_out_m) for s in swaths]).T[
+            :, :, None
+        ]
+        aside = -middles_m * np.stack([-along[:, 1], along[:, 0]], axis=1)
+        lines = np.stack(
+            [strips[:, 0] + aside - ins_m * along, strips[:, 1] + aside + outs_m * along], axis=1
+        )
+        least_m = np.maximum(0.0, ins_m + outs_m)[:, 0] + LEAST_PASS_M
+        long = np.flatnonzero(lengths_m + (ins_m + outs_m)[:, 0] >= least_m)
+        for k, ways in zip(long.tolist(), self.room.flyable(lines[long]), strict=True):
             for begin, until in ways:
-                sweep = Sweep(begin, until, look, swath)
-                if sweep.length_m > swath.run_in_m + swath.run_out_m:
+                sweep = Sweep(begin, until, look, swaths[k])
+                if sweep.length_m >= least_m[k]:
                     yield sweep
 
     def _grounds(self, budget_m: float, width_m: float) -> Sequence[Polygon | MultiPolygon]:

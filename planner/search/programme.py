@@ -18,7 +18,8 @@ from planner.vehicle.model import FlightModel
 
 Floats = NDArray[np.float64]
 Place = tuple[float, float]
-_HALVINGS = 24
+#: Lengths that a last pass is cut to.
+PARTS = 129
 
 
 @dataclass(frozen=True, slots=True)
@@ -174,15 +175,15 @@ def cut_to(sweeps: Sequence[Sweep], pricing: Pricing, budget_m: float) -> tuple[
     if count == len(sweeps):
         return kept
     last = sweeps[count]
-    low, high = 0.0, 1.0
-    for _ in range(_HALVINGS):
-        part = 0.5 * (low + high)
-        tried = last.shortened(max(part * last.length_m, 1e-3))
-        exit_pose = np.array([[*tried.end, tried.course_rad]])
-        cost_m = reached_m[count] + pricing.own_m([tried])[0] + pricing.homeward_m(exit_pose)[0]
-        low, high = (part, high) if cost_m <= budget_m else (low, part)
-    least_m = max(LEAST_PASS_M, last.swath.run_in_m + last.swath.run_out_m + LEAST_PASS_M)
-    return (*kept, last.shortened(low * last.length_m)) if low * last.length_m >= least_m else kept
+    parts = np.linspace(0.0, 1.0, PARTS)
+    ends = np.asarray(last.start) + parts[:, None] * last.length_m * last.along
+    ends_m = pricing.homeward_m(np.column_stack([ends, np.full(PARTS, last.course_rad)]))
+    settled_m = own_m[count] * pricing.model.settle_m / (last.length_m + pricing.model.settle_m)
+    costs_m = reached_m[count] + settled_m + parts * (own_m[count] - settled_m) + ends_m
+    fitting = np.flatnonzero(costs_m <= budget_m)
+    length_m = float(parts[fitting[-1]]) * last.length_m if len(fitting) else 0.0
+    least_m = max(0.0, last.swath.run_in_m + last.swath.run_out_m) + LEAST_PASS_M
+    return (*kept, last.shortened(length_m)) if length_m >= least_m else kept
 
 
 def thinned_to(sweeps: Sequence[Sweep], pricing: Pricing, budget_m: float, worth: Worth) -> tuple[Sweep, ...]:

@@ -70,14 +70,36 @@ class Room:
             shapely.prepare(shape)
         return cls(free, turning, model.turn_radius_m, model.settle_m)
 
-    def flyable(self, start: Place, end: Place) -> list[tuple[Place, Place]]:
-        """The parts of a line that may be flown as passes, in flight order."""
-        length_m = math.dist(start, end)
-        if length_m < LEAST_PASS_M:
-            return []
-        along = np.subtract(end, start) / length_m
-        before = np.asarray(start) - self.settle_m * along
-        clear = shapely.intersection(LineString([tuple(before), end]), self.free)
+    def flyable(self, lines: Floats) -> list[list[tuple[Place, Place]]]:
+        """Of each of several lines (N, 2, 2) the parts that may be flown as passes, in flight order."""
+        lengths_m = np.hypot(*(lines[:, 1] - lines[:, 0]).T)
+        along = (lines[:, 1] - lines[:, 0]) / np.maximum(lengths_m, 1e-9)[:, None]
+        before = lines[:, 0] - self.settle_m * along
+        clear = shapely.covers(self.free, shapely.linestrings(np.stack([before, lines[:, 1]], axis=1)))
+        turns = self._turns(before, along) & self._turns(lines[:, 1], along)
+        whole = np.logical_and(clear, turns)
+        found: list[list[tuple[Place, Place]]] = []
+        for k, (start, end) in enumerate(lines.tolist()):
+            if lengths_m[k] < LEAST_PASS_M:
+                found.append([])
+            elif whole[k]:
+                found.append([(tuple(start), tuple(end))])
+            else:
+                found.append(self._parts(before[k], lines[k, 1], along[k]))
+        return found
+
+    def _turns(self, places: Floats, along: Floats) -> NDArray[np.bool_]:
+        """Where there is room for a turn to either side, flying along."""
+        aside = self.radius_m * np.stack([-along[..., 1], along[..., 0]], axis=-1)
+        left, right = places + aside, places - aside
+        return np.asarray(
+            shapely.contains_xy(self.turning, left[..., 0], left[..., 1])
+            | shapely.contains_xy(self.turning, right[..., 0], right[..., 1])
+        )
+
+    def _parts(self, before: Floats, end: Floats, along: Floats) -> list[tuple[Place, Place]]:
+        """What of a line is clear and has its turns, from the beginning of its settling run on."""
+        clear = shapely.intersection(LineString([tuple(before), tuple(end)]), self.free)
         found = []
         for part in shapely.get_parts(clear):
             if isinstance(part, LineString) and part.length >= LEAST_PASS_M:
@@ -92,12 +114,7 @@ class Room:
         """What of a clear stretch has a turn before its settling run and one behind its end."""
         step_m = max(self.radius_m / STEPS, LEAST_STEP_M)
         at_m = np.linspace(low_m, high_m, max(2, math.ceil((high_m - low_m) / step_m) + 1))
-        places = before + at_m[:, None] * along
-        side = self.radius_m * np.array([-along[1], along[0]])
-        turns = np.zeros(len(at_m), dtype=np.bool_)
-        for centres in (places + side, places - side):
-            turns |= shapely.contains_xy(self.turning, centres[:, 0], centres[:, 1])
-        good = np.flatnonzero(turns)
+        good = np.flatnonzero(self._turns(before + at_m[:, None] * along, along))
         if not len(good):
             return []
         first_m, last_m = at_m[good[0]] + self.settle_m, at_m[good[-1]]

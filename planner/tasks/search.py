@@ -37,6 +37,8 @@ CELLS_ACROSS, MOST_CELLS, LEAST_CELL_M = 8.0, 160, 0.5
 FLOWN, LENGTHS = 3, 6
 #: A flight that uses this part of what it may is long enough.
 ENOUGH = 0.99
+#: Ends no farther apart are one place to what hovers, which flies this far at least.
+HOVERED_M = 5.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -167,7 +169,8 @@ def _spare_m(transits: Transits, scenario: Scenario, controls: Controls | None) 
     setting = transits.setting
     aircraft, (start, end) = setting.model.aircraft, setting.ends
     stop = (lambda: False) if controls is None else controls.stop
-    composed, _, _ = transits.by((Station(end.name, Anchor(*end.position)),), silent, stop)
+    over = Station(end.name, Anchor(*_over_end(scenario, setting)))
+    composed, _, _ = transits.by((over,), silent, stop)
     use = used(composed.flight, setting.model, setting.level)
     per_m = _per_m(aircraft, setting.level.amsl_m)
     for name, (taken, limit, unit) in _limits(aircraft, use).items():
@@ -188,6 +191,16 @@ def _spare_m(transits: Transits, scenario: Scenario, controls: Controls | None) 
         if per_m[name] > 0.0
     ]
     return min(spare, default=math.inf) + math.dist(start.position, end.position)
+
+
+def _over_end(scenario: Scenario, setting: Setting) -> tuple[float, float]:
+    """Where the shortest flight leads: over its end; of what hovers there already a little way off."""
+    (start, end), area = (terminal.position for terminal in setting.ends), scenario.regions[0].area
+    if not setting.model.aircraft.hovers or math.dist(start, end) > HOVERED_M:
+        return end
+    inward = np.subtract(area.representative_point().coords[0], end)
+    east_m, north_m = np.array(end) + inward * min(1.0, HOVERED_M / max(float(np.hypot(*inward)), HOVERED_M))
+    return (float(east_m), float(north_m))
 
 
 def _refuse_blocked(asked: Search, spare_m: float, aircraft: Aircraft) -> None:

@@ -38,6 +38,8 @@ log = structlog.get_logger(__name__)
 
 #: How often the end of a plan that could not be written is tried again, seconds.
 SETTLE_S = 1.0
+#: Members of a scenario that name an uploaded raster.
+RASTERS = ("terrain", "importance_raster")
 
 Task = Callable[..., work.WorkResult]
 BoundTask = Callable[..., work.WorkResult | None]
@@ -138,7 +140,7 @@ class PlanningService:
 
     def _terrain_of(self, document: Mapping[str, Any]) -> tuple[str, ...]:
         """The folder of the rasters, for a scenario that names one."""
-        if document.get("terrain") is None or self._terrain_folder is None:
+        if all(document.get(name) is None for name in RASTERS) or self._terrain_folder is None:
             return ()
         return (str(self._terrain_folder),)
 
@@ -334,8 +336,7 @@ class PlanningService:
             PLANNING_SECONDS.observe(asyncio.get_running_loop().time() - started_s)
 
     async def _attempt(self, scenario: str, pipe: str) -> work.WorkResult:
-        # A text without the word needs no second parsing.
-        document = json.loads(scenario) if '"terrain"' in scenario else {}
+        document = _with_rasters(scenario)
         arguments = (scenario, pipe, *self._terrain_of(document))
         return await attempted(self._pool, self._task, arguments, self._time_limit_s)
 
@@ -363,7 +364,7 @@ class PlanningService:
             scenario, plan = await self._store.documents(plan_id)
         except NotFoundError:
             return True
-        document = json.loads(scenario) if '"terrain"' in scenario else {}
+        document = _with_rasters(scenario)
         arguments = (scenario, plan, wanted_path, *self._terrain_of(document))
         result = await self._pool.run(self._bound_task, arguments, self._time_limit_s)
         if result is not None:
@@ -372,6 +373,11 @@ class PlanningService:
 
     async def _bounded(self, plan_id: str) -> None:
         await self._announce(plan_id)
+
+
+def _with_rasters(scenario: str) -> dict[str, Any]:
+    """A scenario's document where it may name a raster; a text without the word needs no second parsing."""
+    return dict(json.loads(scenario)) if any(f'"{name}"' in scenario for name in RASTERS) else {}
 
 
 def _event_of(record: PlanRecord) -> str:

@@ -50,5 +50,6 @@ def judged(
         Of uploaded rasters: the judge's second argument for a scenario that names one.
     """
     document = read_object(body)
-    folder = () if document.get("terrain") is None or terrain_folder is None else (terrain_folder,)
+    named = any(document.get(name) is not None for name in ("terrain", "importance_raster"))
+    folder = (terrain_folder,) if named and terrain_folder is not None else ()
     return received(body), judge(document, *folder)

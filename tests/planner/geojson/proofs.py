@@ -194,6 +194,9 @@ PROOFS: dict[tuple[str, str], tuple[Document, Document]] = {
     ),
     ("scenario", "clearance_m"): (with_features(block()), with_features(block(), clearance_m=60.0)),
     ("scenario", "task"): (small(), member("task", "search")),
+    ("scenario", "importance_raster"): (
+        member("task", "search"), small(task="search", importance_raster="elsewhere"),
+    ),
     ("scenario", "seed"): (small(), member("seed", 5)),
     ("scenario", "time_budget_s"): (many(1e9), many(1e-3)),
 }  # fmt: skip

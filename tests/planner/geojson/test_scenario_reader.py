@@ -169,7 +169,6 @@ BAD: dict[str, tuple[dict[str, Any], str, str]] = {
         "unknown-sensor",
     ),
     "unknown method": (small(method={"routing": "magic"}), "method", "unknown-value"),
-    "search": (small(task="search"), "scenario", "not-supported"),
     "far apart": (
         small(feature("X", "roi", "Point", [60, 50])),
         "X",

@@ -1,0 +1,98 @@
+"""What a search refuses: each by feature, rule and fix."""
+
+import numpy as np
+import pytest
+
+from planner.airspace.terrain import Terrain
+from planner.errors import ScenarioError
+from planner.geojson import read_scenario
+from planner.validate import findings, read_valid
+from tests.planner.search.searches import LAT_DEG, LON_DEG, WING, document, feature, lonlat, rectangle
+
+
+def rules(asked, terrains=None):
+    """Rules of the errors, by feature."""
+    return {(f.feature, f.rule) for f in findings(asked, terrains) if f.severity == "error"}
+
+
+def raster(values, lon_deg=LON_DEG, lat_deg=LAT_DEG):
+    """A raster of half-kilometre cells from a corner on."""
+    return Terrain("worth", np.array(values, dtype=np.float32), (0.006, 0.0, lon_deg, 0.0, 0.005, lat_deg))
+
+
+WEST = (0, 0, 500, 500)
+
+
+@pytest.mark.parametrize(
+    ("asked", "found"),
+    [
+        (
+            document(
+                rectangle("no_fly", 300, 300, 1400, 1100), rectangle("roi", 500, 400, 1100, 800, name="R")
+            ),
+            ("R", "blocked"),
+        ),
+        (document(vehicle=WING | {"energy_wh": 3}), ("uav", "energy")),
+        (document(vehicle=WING | {"energy_wh": 3, "reserve": 1.5}), ("vehicle uav", "out-of-range")),
+        (document(altitude_m=100, max_height_m=80), ("scenario", "above-ceiling")),
+        (document(rectangle("importance", *WEST, name="I", score=-1)), ("I", "out-of-range")),
+        (document(rectangle("importance", *WEST, name="I", score=float("nan"))), ("I", "not-finite")),
+        (document(rectangle("importance", *WEST, score=0)), ("scenario", "nothing-important")),
+        (document(importance_raster="nowhere"), ("scenario", "unknown-raster")),
+        (document(rectangle("roi", *WEST, name="R", revisits=2)), ("R", "not-supported")),
+    ],
+    ids=["blocked", "energy", "reserve", "ceiling", "negative", "nan", "zero", "raster", "revisits"],
+)
+def test_what_no_search_can_keep_is_refused(asked, found):
+    """Each is an error that names the feature and the rule."""
+    assert found in rules(asked)
+
+
+def test_nothing_to_search_is_refused():
+    """Without area, regions and importance there is no ground."""
+    asked = document()
+    asked["features"] = asked["features"][1:]
+    assert ("scenario", "no-ground") in rules(asked)
+
+
+def test_a_shortfall_is_told_in_energy_and_way():
+    """A search that cannot come to its end says how many watt hours and metres are missing."""
+    far = feature("end", "Point", lonlat(30_000.0, 0.0))
+    asked = document(rectangle("roi", 0, 0, 1200, 900), far)
+    asked["features"] = asked["features"][1:]
+    with pytest.raises(ScenarioError) as caught:
+        read_valid(asked)
+    (finding,) = [f for f in caught.value.findings if f.severity == "error"]
+    used, there, short, metres = (
+        float(word) for word in finding.message.replace(",", " ").replace(":", " ").split() if _number(word)
+    )
+    assert used - there == pytest.approx(short, abs=0.2)
+    # Of a constant 120 W at 16 m/s.
+    assert metres == pytest.approx(short * 3600.0 / 120.0 * 16.0, rel=0.01)
+
+
+def _number(word):
+    return word.replace(".", "", 1).isdigit()
+
+
+@pytest.mark.parametrize(
+    ("terrain", "rule"),
+    [
+        (raster([[1.0, 2.0], [0.5, -3.0]]), "bad-score"),
+        (raster([[1.0, 2.0], [0.5, 3.0]], lon_deg=LON_DEG + 1.0), "raster-outside"),
+    ],
+    ids=["negative", "outside"],
+)
+def test_rasters_of_no_use_are_refused(terrain, rule):
+    """Negative importance, and a raster that lies elsewhere."""
+    assert ("scenario", rule) in rules(document(importance_raster="worth"), {"worth": terrain})
+
+
+def test_a_raster_is_what_the_ground_is_worth():
+    """Scores of the ground's cells are those between the raster's posts."""
+    terrain = raster([[1.0, 1.0, 1.0, 1.0]] * 2 + [[5.0, 5.0, 5.0, 5.0]] * 2)
+    scenario = read_scenario(document(importance_raster="worth"), {"worth": terrain})
+    local = scenario.importance.raster
+    south, north = local.scores[1, 1], local.scores[-2, 1]
+    assert south == pytest.approx(1.0, abs=0.1)
+    assert north > 3.0

@@ -1,0 +1,79 @@
+"""The task search, from GeoJSON to a judged plan."""
+
+import math
+
+import numpy as np
+import pytest
+import shapely
+from shapely.geometry import Polygon
+
+from mavlink.encoding.encode import encode
+from planner.geojson import read_plan, read_scenario, write_plan
+from planner.pipeline import make_plan, with_bound
+from tests.planner.search.searches import COPTER, RADAR, WING, document, lonlat, rectangle
+
+
+def seen_m2(scenario, plan):
+    """Ground of the footprints that the plan publishes, in the area."""
+    prints = [Polygon(scenario.frame.to_local(f.ring)) for f in plan.footprints]
+    return shapely.union_all(prints).intersection(scenario.area).area
+
+
+@pytest.mark.parametrize(
+    ("vehicle", "sensor", "altitude_m"),
+    [(WING, None, 100), (COPTER, None, 100), (WING | {"energy_wh": 40}, RADAR, 150)],
+    ids=["camera", "copter", "radar"],
+)
+def test_a_search_comes_home_with_its_reserve(vehicle, sensor, altitude_m):
+    """The plan keeps every constraint, uses nearly all it may and no more, and says what its prints see."""
+    asked = document(vehicle=vehicle, altitude_m=altitude_m, **({} if sensor is None else {"sensor": sensor}))
+    scenario = read_scenario(asked)
+    plan = make_plan(scenario)
+    assert plan.violations == ()
+    usable_wh = 0.8 * vehicle["energy_wh"]
+    whole = math.isclose(plan.metrics.coverage["area"], 1.0)
+    assert plan.metrics.energy_wh <= usable_wh
+    assert whole or plan.metrics.energy_wh > 0.9 * usable_wh
+    assert plan.metrics.area_seen_m2 == pytest.approx(seen_m2(scenario, plan), rel=1e-3)
+    assert plan.metrics.coverage["area"] == pytest.approx(
+        plan.metrics.area_seen_m2 / scenario.area.area, rel=1e-4
+    )
+    assert plan.metrics.importance_collected is None
+    assert with_bound(scenario, plan) == plan
+    assert read_plan(write_plan(plan)).metrics == plan.metrics
+    assert encode(plan).mission
+
+
+def test_importance_draws_the_search():
+    """Ground that is worth more is seen first, its worth is counted anew, and twice the same plan is made."""
+    patch = rectangle("importance", 800.0, 500.0, 1100.0, 800.0, score=2.5)
+    scenario = read_scenario(document(patch))
+    plan = make_plan(scenario)
+    assert write_plan(make_plan(scenario))["features"] == write_plan(plan)["features"]
+    prints = [Polygon(scenario.frame.to_local(f.ring)) for f in plan.footprints]
+    wanted = scenario.importance.patches[0].area
+    seen = shapely.union_all(prints).intersection(wanted).area
+    assert seen > 0.9 * wanted.area
+    assert plan.metrics.importance_collected == pytest.approx(2.5 * seen, rel=1e-3)
+
+
+def test_zones_are_flown_round():
+    """No pass enters a zone in the ground, nor the flight."""
+    zone = rectangle("no_fly", 500.0, 300.0, 700.0, 600.0)
+    scenario = read_scenario(document(zone))
+    plan = make_plan(scenario)
+    line = shapely.LineString(scenario.frame.to_local([place[:2] for place in plan.paths[0].line]))
+    assert plan.violations == ()
+    assert not line.intersects(scenario.no_fly[0].area)
+
+
+def test_an_end_elsewhere_is_kept():
+    """The flight ends at its end."""
+    scenario = read_scenario(
+        document({"type": "Feature", "geometry": {"type": "Point", "coordinates": lonlat(1050.0, 750.0)},
+                  "properties": {"role": "end"}})
+    )  # fmt: skip
+    plan = make_plan(scenario)
+    last = scenario.frame.to_local(plan.paths[0].line[-1][:2])
+    assert np.hypot(*(last - np.array(scenario.end.position))) < 1.0
+    assert plan.violations == ()
