@@ -1,4 +1,4 @@
-"""Importance on a grid of square cells, whatever it was given as."""
+"""Cells to walk over, and the worth of ground from polygons, points that spread and rasters."""
 
 from __future__ import annotations
 
@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 from shapely import area, box, covers, intersection, points, prepare
 from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
+
+from planner.search.values import Worth
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -32,16 +34,12 @@ class ImportanceGrid:
     blocked
         bool (rows, columns): cells that must not be flown over.
     cell_m
-        Side of a cell.
-    west_m, south_m
-        The grid's south-west corner in the local frame.
+        Edge of a cell.
     """
 
     worth: Floats
     blocked: Bools
     cell_m: float = 1.0
-    west_m: float = 0.0
-    south_m: float = 0.0
 
     def __post_init__(self) -> None:
         if self.worth.ndim != 2 or self.worth.shape != self.blocked.shape or not self.worth.size:
@@ -57,14 +55,6 @@ class ImportanceGrid:
         rows, columns = self.worth.shape
         return rows, columns
 
-    def centres_m(self) -> tuple[Floats, Floats]:
-        """East and north of the centres, each (rows, columns)."""
-        rows, columns = self.shape
-        east = self.west_m + self.cell_m * (np.arange(columns) + 0.5)
-        north = self.south_m + self.cell_m * (np.arange(rows) + 0.5)
-        grid: tuple[Floats, ...] = tuple(np.meshgrid(east, north))
-        return grid[0], grid[1]
-
     def neighbours(self) -> Ints:
         """int64 (cells, 4): the open cells that share an edge with each (row by row), -1 where there is none."""
         rows, columns = self.shape
@@ -78,48 +68,45 @@ class ImportanceGrid:
         beside[self.blocked.reshape(-1)] = -1
         return np.ascontiguousarray(beside)
 
-    def seen(self, fraction: Floats, detection: float = 1.0) -> ImportanceGrid:
-        """The grid after a part of each cell was seen, by a sensor that finds with a probability what it sees."""
-        left = 1.0 - np.clip(fraction, 0.0, 1.0) * detection
-        return replace(self, worth=self.worth * left)
+
+def over(worth: Worth, free: BaseGeometry | None = None) -> ImportanceGrid:
+    """The cells of searched ground, blocked where their middle is not free."""
+    blocked = np.zeros(worth.scores.shape, dtype=np.bool_)
+    if free is not None:
+        prepare(free)
+        blocked = ~covers(free, points(worth.centres_m))
+    return ImportanceGrid(worth.scores * worth.cell_m**2, blocked, worth.cell_m)
 
 
-def framed(outline: BaseGeometry, cell_m: float) -> ImportanceGrid:
-    """A grid of nothing over an outline (metres in the local frame); cells centred outside it are blocked."""
-    west, south, east, north = outline.bounds
-    columns = max(1, math.ceil((east - west) / cell_m - 1e-9))
-    rows = max(1, math.ceil((north - south) / cell_m - 1e-9))
-    empty = ImportanceGrid(
-        np.zeros((rows, columns)), np.zeros((rows, columns), dtype=np.bool_), cell_m, west, south
-    )
-    prepare(outline)
-    return replace(empty, blocked=~covers(outline, points(*empty.centres_m())))
-
-
-def with_polygons(grid: ImportanceGrid, scored: Sequence[tuple[Polygon, float]]) -> ImportanceGrid:
+def with_polygons(worth: Worth, scored: Sequence[tuple[Polygon, float]]) -> Worth:
     """Add polygons of a score per square metre: a cell gets that of the part of it that they cover."""
-    east, north = grid.centres_m()
-    half = 0.5 * grid.cell_m
+    half = 0.5 * worth.cell_m
+    east, north = worth.centres_m[..., 0], worth.centres_m[..., 1]
     cells = box(east - half, north - half, east + half, north + half)
-    worth = grid.worth.copy()
+    scores = worth.scores.copy()
     for polygon, score in scored:
-        worth += score * area(intersection(cells, polygon))
-    return replace(grid, worth=worth)
+        scores += score * area(intersection(cells, polygon)) / worth.cell_m**2
+    return replace(worth, scores=scores)
 
 
-def with_points(grid: ImportanceGrid, weighted: Sequence[tuple[float, float, float, float]]) -> ImportanceGrid:
+def with_points(worth: Worth, weighted: Sequence[tuple[float, float, float, float]]) -> Worth:
     """Add points that spread: each east, north, spread (all metres) and what all of it is worth.
 
     The worth lies about the point as a normal distribution of that standard deviation.
     """
-    east, north = grid.centres_m()
-    worth = grid.worth.copy()
+    east, north = worth.centres_m[..., 0], worth.centres_m[..., 1]
+    scores = worth.scores.copy()
     for at_east, at_north, spread_m, total in weighted:
         bell = np.exp(-0.5 * ((east - at_east) ** 2 + (north - at_north) ** 2) / spread_m**2)
-        worth += total * bell * grid.cell_m**2 / (2.0 * math.pi * spread_m**2)
-    return replace(grid, worth=worth)
+        scores += total * bell / (2.0 * math.pi * spread_m**2)
+    return replace(worth, scores=scores)
 
 
-def with_samples(grid: ImportanceGrid, per_m2: Floats) -> ImportanceGrid:
-    """Add a raster sampled at the centres of the cells, worth a square metre; not a number is nothing."""
-    return replace(grid, worth=grid.worth + np.nan_to_num(per_m2, nan=0.0) * grid.cell_m**2)
+def with_samples(worth: Worth, per_m2: Floats) -> Worth:
+    """Add a raster sampled at the middles of the cells; where it tells nothing, NaN, nothing is added."""
+    return replace(worth, scores=worth.scores + np.nan_to_num(per_m2, nan=0.0))
+
+
+def seen(worth: Worth, fraction: Floats, detection: float = 1.0) -> Worth:
+    """What is left after a part of each cell was seen, by a sensor that finds with a probability what it sees."""
+    return replace(worth, scores=worth.scores * (1.0 - np.clip(fraction, 0.0, 1.0) * detection))
