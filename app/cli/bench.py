@@ -33,6 +33,7 @@ class Benchmark(StrEnum):
     VALIDATE = "validate"
     ORIENTEERING = "orienteering"
     SMOOTHING = "smoothing"
+    IMPORTANCE = "importance"
 
 
 def _options(pairs: list[str]) -> dict[str, Any]:

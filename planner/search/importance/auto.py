@@ -2,8 +2,8 @@
 
 A bound's prices (:mod:`planner.search.importance.bound`) lead a beam search; its walk and those of Snyder et
 al. (2021) are annealed: stretches are taken out and searched through again, moves shift from where they pay
-least to where they pay more. Looks again cost something extra at first, as walks that cross themselves are hard
-to leave; the last annealing goes by what is asked.
+least to where they pay more. Looks again cost something extra at first, as walks that cross themselves are
+hard to leave; the last annealing goes by what is asked.
 """
 
 from __future__ import annotations
@@ -13,11 +13,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from planner.search.importance.anneal_kernels import improve
 from planner.search.importance.bound import bounded
 from planner.search.importance.grid import Floats, ImportanceGrid, Ints
 from planner.search.importance.snyder2021 import snyder2021
 from planner.search.importance.walk import Walk
-from planner.search.importance.walk_kernels import beam, distances, guide, improve
+from planner.search.importance.walk_kernels import beam, distances, guide
 
 #: Width of the beam.
 WIDTH = 200
@@ -40,8 +41,8 @@ class Pay:
     Parameters
     ----------
     detection
-        Probability that a look finds what there is: the k-th look at a cell is worth (1 - detection)^(k - 1) of
-        the first.
+        Probability that a look finds what there is: the k-th look at a cell is worth (1 - detection)^(k - 1)
+        of the first.
     revisit
         Penalty of each look again, in units of worth.
     unspent
@@ -63,7 +64,7 @@ def auto(
     grid: ImportanceGrid,
     base: int,
     battery: int,
-    pay: Pay = Pay(),  # noqa: B008 - frozen
+    pay: Pay = Pay(),
     *,
     seed: int = 0,
     enough: Callable[[], bool] = lambda: False,
@@ -112,7 +113,7 @@ class _Search:
 
     def starts(self) -> list[Ints]:
         grid, base, battery = self._grid, self._base, self._battery
-        prices = bounded(grid, base, battery, self.shy, self._pay.unspent).prices
+        prices = bounded(grid, base, battery, self.shy).prices
         ahead = guide(self._beside, self._away, prices, base, battery)
         again = 1.0 - self._pay.detection
         led = beam(self._beside, self._cell_worth, again, self.shy, ahead, base, battery, WIDTH)
@@ -146,7 +147,5 @@ class _Search:
         again = 1.0 - self._pay.detection
         paid = self._cell_worth[distinct] * (1.0 - again**looks) / self._pay.detection
         return (
-            float(paid.sum())
-            - self._pay.revisit * float((looks - 1).sum())
-            + self._pay.unspent * len(cells)
+            float(paid.sum()) - self._pay.revisit * float((looks - 1).sum()) + self._pay.unspent * len(cells)
         )

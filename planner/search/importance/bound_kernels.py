@@ -12,7 +12,7 @@ Ints = NDArray[np.int64]
 
 @njit(cache=True, nogil=True)
 def dearest(
-    beside: Ints, cells: Ints, away: Ints, price: Floats, move: float, base: int, moves: int, plain: bool
+    beside: Ints, cells: Ints, away: Ints, price: Floats, move: float, base: int, moves: int
 ) -> tuple[float, Ints]:
     """The dearest closed walk of so many moves at most, and how often it is paid in each cell.
 
@@ -28,8 +28,6 @@ def dearest(
         Paid at each visit but one straight back, of the move before the last; at the base nothing is paid.
     move
         Paid for each move.
-    plain
-        Whether turning straight back is paid, too.
 
     Returns
     -------
@@ -67,7 +65,7 @@ def dearest(
                 else:
                     for before in range(4):
                         value = now[index, before]
-                        if plain or before != (k + 2) % 4:
+                        if before != (k + 2) % 4:
                             value += paid
                         if value > most:
                             most, by = value, before
@@ -83,7 +81,7 @@ def dearest(
     here, direction = base, best_direction
     for step in range(best_step, 0, -1):
         by = whence[step, place[here], direction]
-        if here != base and (plain or step == 1 or by != (direction + 2) % 4):
+        if here != base and (step == 1 or by != (direction + 2) % 4):
             visits[here] += 1
         here = beside[here, (direction + 2) % 4]
         direction = by

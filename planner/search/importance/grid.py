@@ -56,14 +56,12 @@ class ImportanceGrid:
         return rows, columns
 
     def neighbours(self) -> Ints:
-        """int64 (cells, 4): the open cells that share an edge with each (row by row), -1 where there is none."""
+        """int64 (cells, 4): open cells that share an edge with each, row by row; -1 where there is none."""
         rows, columns = self.shape
         index = np.arange(rows * columns).reshape(rows, columns)
         padded = np.full((rows + 2, columns + 2), -1, dtype=np.int64)
         padded[1:-1, 1:-1] = np.where(self.blocked, -1, index)
-        found = [
-            padded[1 + north : 1 + north + rows, 1 + east : 1 + east + columns] for north, east in MOVES
-        ]
+        found = [padded[1 + north : 1 + north + rows, 1 + east : 1 + east + columns] for north, east in MOVES]
         beside = np.stack(found, axis=-1).reshape(-1, 4)
         beside[self.blocked.reshape(-1)] = -1
         return np.ascontiguousarray(beside)
@@ -71,10 +69,10 @@ class ImportanceGrid:
 
 def over(worth: Worth, free: BaseGeometry | None = None) -> ImportanceGrid:
     """The cells of searched ground, blocked where their middle is not free."""
-    blocked = np.zeros(worth.scores.shape, dtype=np.bool_)
+    blocked: Bools = np.zeros(worth.scores.shape, dtype=np.bool_)
     if free is not None:
         prepare(free)
-        blocked = ~covers(free, points(worth.centres_m))
+        blocked = np.logical_not(covers(free, points(worth.centres_m)))
     return ImportanceGrid(worth.scores * worth.cell_m**2, blocked, worth.cell_m)
 
 
@@ -108,5 +106,5 @@ def with_samples(worth: Worth, per_m2: Floats) -> Worth:
 
 
 def seen(worth: Worth, fraction: Floats, detection: float = 1.0) -> Worth:
-    """What is left after a part of each cell was seen, by a sensor that finds with a probability what it sees."""
+    """What is left after a part of each cell was seen, by a sensor of a probability of detection."""
     return replace(worth, scores=worth.scores * (1.0 - np.clip(fraction, 0.0, 1.0) * detection))

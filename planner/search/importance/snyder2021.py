@@ -1,13 +1,13 @@
 """Coverage of nonuniform importance as published.
 
-After G. Snyder, S. Shriwastav, D. Morrison-Fogel and Z. Song, "Path Planning for Optimal Coverage of Areas with
-Nonuniform Importance", 2021: Algorithm 1. Where print and text differ, the sense of the text is followed:
+After G. Snyder, S. Shriwastav, D. Morrison-Fogel and Z. Song, "Path Planning for Optimal Coverage of Areas
+with Nonuniform Importance", 2021: Algorithm 1. Where print and text differ, the sense is followed:
 
 - line 6 prints the argmin of the reward map, the text goes to "the target cell of the highest reward": argmax
   (``target="printed"`` takes the argmin among cells not yet seen);
 - line 10 prints B_i > B_target + B_min, yet figure 6 (a) ends with nothing left: at least;
-- Dijkstra's edges are "the reward of the cell" and the path is to maximise it: the length of an edge is how far
-  the reward of the cell that it leads to falls short of the best, and one move;
+- Dijkstra's edges are "the reward of the cell" and the path is to maximise it: the length of an edge is one
+  move and how far the reward of the cell that it leads to falls short of the best;
 - a target refused for the battery ends the exploration, as figure 7's text tells of one that could not be
   afforded (``refused="next"`` tries the next best instead, which the paper does not).
 
@@ -131,7 +131,7 @@ class _Area:
         """Predecessors on the paths of most reward, by Dijkstra's algorithm."""
         rewards = self._rewards(seen)
         lengths = 1.0 + rewards.max() - rewards[self._to]
-        _, before = dijkstra(self._graph(lengths), indices=here, return_predecessors=True)
+        _, before = dijkstra(self._graph(lengths), indices=np.array(here), return_predecessors=True)
         return np.asarray(before, dtype=np.int64)
 
     def homeward(self, seen: Bools, here: int) -> Ints:
@@ -140,7 +140,7 @@ class _Area:
         short = rewards.max() - rewards[self._to]
         lengths = 1.0 + short / (1.0 + short.max() * self._cells)
         shortest = bellman_ford if self._cells <= BELLMAN_FORD_CELLS else dijkstra
-        _, before = shortest(self._graph(lengths), indices=here, return_predecessors=True)
+        _, before = shortest(self._graph(lengths), indices=np.array(here), return_predecessors=True)
         return np.asarray(before, dtype=np.int64)
 
     def _rewards(self, seen: Bools) -> Floats:
