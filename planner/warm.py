@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import sys
 from typing import Any
 
@@ -118,8 +119,9 @@ def compiled() -> int:
     return sum(sum(kernel.stats.cache_misses.values()) for kernel in kernels.values())
 
 
+@functools.cache
 def warm_up() -> None:
-    """Plan a small scenario by each method."""
+    """Plan a small scenario by each method, once in a process."""
     for method in (
         {},
         {"routing": "li2018", "transit": "ssas", "smoothing": "fillet"},
