@@ -11,13 +11,14 @@ import shapely
 from numpy.typing import NDArray
 
 from planner.airspace.surroundings import Surroundings
+from planner.coverage.lanes_kernels import VARIANTS
 from planner.coverage.lines import NO_ROOM_M, cramped_m, judge_lines, poses_of, roomy
 from planner.coverage.merge import GRID_M
 from planner.coverage.strips.alternatives import of_visit
 from planner.coverage.strips.classify import Spans, fits, hull_points, spans_at
 from planner.coverage.strips.neighbourhood import complementary
 from planner.coverage.strips.segments import Neighbourhood
-from planner.coverage.strips.sweeps import VARIANTS, Judge, Side, Sweep, Swept, best_sweeps, sweep_passes
+from planner.coverage.strips.sweeps import Judge, Side, Sweep, Swept, best_sweeps, sweep_passes
 from planner.coverage.ways import Between
 from planner.dubins.kernels import dubins_lengths
 from planner.route import CollectPass, Look

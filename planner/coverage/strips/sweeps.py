@@ -21,6 +21,8 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from planner.coverage import lanes_kernels
+from planner.coverage.lanes_kernels import VARIANTS
 from planner.coverage.merge import MergedRegion
 from planner.coverage.strips import kernels
 from planner.coverage.strips.classify import ROUNDING_M, hull_points, spans_at
@@ -34,8 +36,6 @@ from planner.sensors.strip import strip_on, swaths_m
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-#: Where a sweep begins (left or right half of the lanes) times which way it ends (onward or back).
-VARIANTS = 4
 #: Headings that need this many times the fewest lanes, and more than what is tried exactly, are left out.
 MOST_LANES = 1000
 #: Of the headings that a shape singles out, the ones with the shortest lanes are tried, so many of them.
@@ -233,7 +233,7 @@ def best_sweeps(
     holds = _hold(sweep, angles_rad, counts)
     if not holds.any():
         return _empty()
-    most = max(kernels.EXACT_UP_TO, math.ceil(MOST_LANES_FACTOR * int(counts[holds].min())))
+    most = max(lanes_kernels.EXACT_UP_TO, math.ceil(MOST_LANES_FACTOR * int(counts[holds].min())))
     kept = np.unique(counts[holds & (counts <= most)])
     for count in kept:
         rows = np.flatnonzero(holds & (counts == count))
@@ -304,7 +304,7 @@ def _solve(
     if between is not None:
         before_m, behind_m = between.before_m(entries), between.behind_m(exits)
     problems = (shape[0] * shape[1], *shape[2:])
-    costs, orders = kernels.lane_orders(
+    costs, orders = lanes_kernels.lane_orders(
         entries.reshape(*problems, 3),
         exits.reshape(*problems, 3),
         cost_m.reshape(problems),
@@ -312,6 +312,8 @@ def _solve(
         before_m.reshape(problems),
         behind_m.reshape(problems),
         lanes.onward,
+        lanes.onward,
+        False,
         _strides(sweep, radius_m),
         radius_m,
         discs,
@@ -342,7 +344,7 @@ def _strides(sweep: Sweep, radius_m: float) -> int:
     strip = strip_on(sweep.sensor, sweep.height_m, 0.0, "right")
     swath_m = max(float(strip.swath_m[0]), 1e-3)
     wide_m = 2.0 * (radius_m + float(strip.near_m[0])) + swath_m
-    return min(kernels.STRIDES, math.ceil(wide_m / swath_m) + 1)
+    return min(lanes_kernels.STRIDES, math.ceil(wide_m / swath_m) + 1)
 
 
 def _ways(sweep: Sweep) -> tuple[int, ...]:

@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 from shapely.geometry import Polygon
 
 from planner.airspace.surroundings import Surroundings
+from planner.coverage.lanes_kernels import STRIDES, VARIANTS, lane_orders
 from planner.coverage.lines import NO_ROOM_M, judge_lines, poses_of, roomy
 from planner.coverage.merge import MergedRegion
 from planner.coverage.strips.headings import anchor_rad
 from planner.coverage.survey.gaps import photographed
 from planner.coverage.survey.lanes import STATES, Lanes, Survey, lanes_at
-from planner.coverage.survey.orders_kernels import VARIANTS, lane_orders
 from planner.coverage.ways import Between
 from planner.route import CollectPass
 from planner.sensors.camera_view import seen_on_flat
@@ -33,8 +33,6 @@ SAME_RAD = math.radians(0.01)
 #: estimate tells to be the cheapest.
 MOST_LAID = 6_000
 FEWEST_WAYS = 4
-#: Turns reach this many lanes at most.
-MOST_STRIDES = 12
 #: A trigger is not stopped for less than so many photos.
 LEAST_PHOTOS = 3.0
 
@@ -193,7 +191,7 @@ def _of_count(
     before_m, behind_m = before_m.reshape(shape), behind_m.reshape(shape)
     problems = (shape[0] * shape[1], count, STATES)
     spacing_m = float(survey.frames(angles_rad).spacing_m.min())
-    strides = min(MOST_STRIDES, math.ceil(2.0 * around.radius_m / spacing_m) + 1)
+    strides = min(STRIDES, math.ceil(2.0 * around.radius_m / spacing_m) + 1)
     costs_m, orders = lane_orders(
         entries.reshape(*problems, 3),
         exits.reshape(*problems, 3),
@@ -201,6 +199,9 @@ def _of_count(
         cramped_m.reshape(*problems, 2),
         before_m.reshape(problems),
         behind_m.reshape(problems),
+        np.ones(STATES, dtype=np.bool_),
+        np.arange(STATES) == 0,
+        True,
         strides,
         around.radius_m,
         around.discs,

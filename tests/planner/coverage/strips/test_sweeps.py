@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 from shapely.geometry import LineString, Polygon
 
 from planner.airspace.surroundings import Surroundings
+from planner.coverage import lanes_kernels
 from planner.coverage.strips import kernels
 from planner.coverage.strips.flyable import is_flyable
 from planner.coverage.strips.options import collect_passes, make_options
@@ -146,25 +147,27 @@ def test_best_order_is_the_best_of_every_order(seed: int, lanes: int, states: in
                 for j in range(lane * states, (lane + 1) * states)
             }
         expected = min(expected, *reach.values())
-    turns = kernels.turns_between(entries, exits, own, none, states, max(lanes - 1, 1), radius_m, NO_DISCS)
-    cost, found = kernels.best_order(turns, own, free, free)
+    turns = lanes_kernels.turns_between(
+        entries, exits, own, none, states, max(lanes - 1, 1), radius_m, NO_DISCS
+    )
+    cost, found = lanes_kernels.best_order(turns, own, free, free)
     assert cost == pytest.approx(expected)
     if math.isfinite(cost):
         assert sorted(found // states) == list(range(lanes))
         assert own[found].sum() + sum(turn[a, b] for a, b in itertools.pairwise(found)) == pytest.approx(cost)
-    patterned, _ = kernels.pattern_order(turns, own, free, free)
+    patterned, _ = lanes_kernels.pattern_order(turns, own, free, free, False)
     assert patterned >= cost - 1e-6
 
 
 @pytest.mark.parametrize(("count", "stride"), [(5, 0), (5, 1), (9, 2), (12, 3), (7, 12)])
 def test_racetracks_fly_every_lane_once(count: int, stride: int) -> None:
     """Every pattern is an order of all lanes."""
-    assert sorted(kernels.racetrack(count, stride)) == list(range(count))
+    assert sorted(lanes_kernels.racetrack(count, stride)) == list(range(count))
 
 
 def test_a_racetrack_goes_between_the_halves_of_a_block() -> None:
     """Stride 2 flies blocks of four lanes, jumping two lanes each time."""
-    assert kernels.racetrack(8, 2).tolist() == [0, 2, 1, 3, 4, 6, 5, 7]
+    assert lanes_kernels.racetrack(8, 2).tolist() == [0, 2, 1, 3, 4, 6, 5, 7]
 
 
 def test_racetracks_beat_boustrophedon_where_the_turn_is_wide() -> None:
@@ -178,10 +181,10 @@ def test_racetracks_beat_boustrophedon_where_the_turn_is_wide() -> None:
     exits = np.hstack([lines[:, :, 1].reshape(-1, 2), headings])
     own = np.hypot(*(exits - entries)[:, :2].T)
     free, none = np.zeros(len(own)), np.zeros((len(own), 2))
-    turns = kernels.turns_between(entries, exits, own, none, states, 5, radius_m, NO_DISCS)
+    turns = lanes_kernels.turns_between(entries, exits, own, none, states, 5, radius_m, NO_DISCS)
     common = (turns, own, free, free)
-    neighbours, _ = kernels.best_states(*common, np.arange(6, dtype=np.int64))
-    cost, order = kernels.best_order(*common)
+    neighbours, _ = lanes_kernels.best_states(*common, np.arange(6, dtype=np.int64))
+    cost, order = lanes_kernels.best_order(*common)
     assert cost < 0.98 * neighbours
     assert np.abs(np.diff(order // states)).max() > 1
 
@@ -198,10 +201,10 @@ def test_the_turn_decides_between_boustrophedon_and_racetrack(radius_m: float, o
         for where in ends
     )
     own, free, none = np.full(12, 2000.0), np.zeros(12), np.zeros((12, 2))
-    turns = kernels.turns_between(entries, exits, own, none, 2, lanes - 1, radius_m, NO_DISCS)
+    turns = lanes_kernels.turns_between(entries, exits, own, none, 2, lanes - 1, radius_m, NO_DISCS)
     common = (turns, own, free, free)
-    cost, order = kernels.best_order(*common)
-    neighbours, _ = kernels.best_states(*common, np.arange(lanes, dtype=np.int64))
+    cost, order = lanes_kernels.best_order(*common)
+    neighbours, _ = lanes_kernels.best_states(*common, np.arange(lanes, dtype=np.int64))
     steps = np.abs(np.diff(order // 2))
     if one_by_one:
         assert cost == pytest.approx(neighbours)
@@ -209,7 +212,7 @@ def test_the_turn_decides_between_boustrophedon_and_racetrack(radius_m: float, o
     else:
         assert cost < neighbours - 50.0
         assert steps.max() > 1
-        assert kernels.pattern_order(*common)[0] < neighbours - 50.0
+        assert lanes_kernels.pattern_order(*common, False)[0] < neighbours - 50.0
 
 
 def test_costs_are_what_is_flown() -> None:
