@@ -7,10 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import dijkstra
 
 from planner.coverage.urban.area import UrbanArea
 from planner.coverage.urban.free import FreeSpace
-from planner.coverage.urban.reach_kernels import corner_lengths, join_lengths
+from planner.coverage.urban.reach_kernels import join_lengths
 from planner.coverage.urban.tour_kernels import nearest_first, neighbours, shortest_tour, tour_cost
 from planner.coverage.urban.visibility import Ways, edges_of
 
@@ -54,7 +56,11 @@ class Joins:
             rise_m = cluster.top_m + urban.clearance_m - urban.height_m
             allowed = urban.may_climb_over(cluster.top_m)
             rises.append(np.full(len(edges[-1]), rise_m if allowed else np.inf))
-        between = corner_lengths(ways.starts, ways.towards, ways.lengths)
+        count = len(ways.corners)
+        graph: csr_array[np.float64, tuple[int, int]] = csr_array(
+            (ways.lengths, ways.towards, ways.starts), shape=(count, count)
+        )
+        between = dijkstra(graph) if count else np.empty((0, 0))
         return cls(urban, ways, between, np.vstack(edges), np.concatenate(rises))
 
     def tour(self, lines: Floats, seed: int) -> tuple[float, Floats]:

@@ -22,31 +22,6 @@ TRIED_CORNERS, SEEN_CORNERS = 40, 16
 
 
 @njit(cache=True, nogil=True)
-def corner_lengths(starts: Ints, towards: Ints, lengths: Floats) -> Floats:
-    """Shortest ways between all corners, (N, N)."""
-    count = len(starts) - 1
-    out = np.full((count, count), np.inf)
-    done = np.empty(count, dtype=np.bool_)
-    for source in range(count):
-        best = out[source]
-        best[source] = 0.0
-        done[:] = False
-        for _ in range(count):
-            nearest, least = -1, np.inf
-            for i in range(count):
-                if not done[i] and best[i] < least:
-                    nearest, least = i, best[i]
-            if nearest < 0:
-                break
-            done[nearest] = True
-            for at in range(starts[nearest], starts[nearest + 1]):
-                j = towards[at]
-                if least + lengths[at] < best[j]:
-                    best[j] = least + lengths[at]
-    return out
-
-
-@njit(cache=True, nogil=True)
 def over_length(
     outlines: Floats, rises: Floats, steepest: float, e0: float, n0: float, e1: float, n1: float
 ) -> float:
