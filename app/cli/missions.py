@@ -36,6 +36,7 @@ ChordError = Annotated[
         min=0.1, max=100.0, help="Largest distance between an arc and the lines between its points; else 2 m."
     ),
 ]
+Sortie = Annotated[int, typer.Option(min=1, help="Which of the vehicle's flights in the plan.")]
 Timeout = Annotated[float, typer.Option(min=0.1, help="How long to wait for the vehicle's heartbeat.")]
 Url = Annotated[
     str, typer.Option(help="udpin:host:port, udpout:host:port, tcp:host:port, serial:device:baud or sim:")
@@ -125,6 +126,7 @@ def export(
     gimbal: Gimbal = None,
     arcs: ArcsOption = None,
     chord_error_m: ChordError = None,
+    sortie: Sortie = 1,
     as_json: Json = False,
 ) -> None:
     """Write a plan's mission for other programs.
@@ -143,6 +145,7 @@ def export(
         gimbal,
         arcs=arcs.value if arcs else None,
         chord_error_m=chord_error_m,
+        sortie=sortie,
     )
 
     async def write() -> bytes:
@@ -192,6 +195,7 @@ def upload(
     gimbal: Gimbal = None,
     arcs: ArcsOption = None,
     chord_error_m: ChordError = None,
+    sortie: Sortie = 1,
     timeout_s: Timeout = 10.0,
     as_json: Json = False,
 ) -> None:
@@ -209,7 +213,13 @@ def upload(
     found = given(plan, asked, scenario, terrain)
     names = list(dict.fromkeys(choice.value for choice in part or [PartChoice.MISSION]))
     choice = MissionChoice(
-        vehicle, None, payload, gimbal, arcs=arcs.value if arcs else None, chord_error_m=chord_error_m
+        vehicle,
+        None,
+        payload,
+        gimbal,
+        arcs=arcs.value if arcs else None,
+        chord_error_m=chord_error_m,
+        sortie=sortie,
     )
     stale = None if scenario is None or found.is_mission else _staleness(found.text, scenario)
     report = run_async(_upload(found.text, to, names, choice, override, timeout_s, stale))
@@ -250,11 +260,11 @@ async def _upload(
     timeout_s: float,
     stale: str | None,
 ) -> dict[str, Any]:
-    from app.services.plans.missions import mission_of, plan_of, sent
+    from app.services.plans.missions import flight_of, mission_of, sent
     from app.services.vehicles.connection import connected
     from app.services.vehicles.uploads import judge_upload, new_report, report_json, send_parts
 
-    plan = plan_of(plan_text)
+    plan = flight_of(plan_text, choice)
     async with connected(url, (plan.home[1], plan.home[0], 0.0), timeout_s, signing_here(url)) as client:
         autopilot = client.state.autopilot
         if autopilot != "generic":

@@ -78,6 +78,7 @@ GimbalQuery = Annotated[
         max_length=200,
     ),
 ]
+SortieQuery = Annotated[int, Query(ge=1, description="Which of the vehicle's flights in the plan.")]
 ArcsQuery = Annotated[Arcs | None, Query(description=ARCS_IS)]
 ChordErrorQuery = Annotated[float | None, Query(ge=0.1, le=100.0, description=CHORD_ERROR_IS)]
 
@@ -100,10 +101,12 @@ def _mission_route(form: str, name: str, media_type: str, summary: str, kind: st
         gimbal: GimbalQuery = None,
         arcs: ArcsQuery = None,
         chord_error_m: ChordErrorQuery = None,
+        sortie: SortieQuery = 1,
     ) -> Response:
         """The mission of one vehicle, as a file to save."""
         text = await planning.plan_text(plan_id)
-        choice = MissionChoice(vehicle, autopilot, payload, gimbal, arcs=arcs, chord_error_m=chord_error_m)
+        own = (vehicle, autopilot, payload, gimbal)
+        choice = MissionChoice(*own, arcs=arcs, chord_error_m=chord_error_m, sortie=sortie)
         body = await desk.run("plan", exported, text, choice, form)
         return Response(
             body,

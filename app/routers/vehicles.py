@@ -15,6 +15,7 @@ from app.routers.streams import event_stream, file_stream
 from app.schemas.forwards import ForwardsIn, ForwardsOut
 from app.schemas.missions import ClearedOut, HeldOut, MissionIn, Part, UploadOut
 from app.schemas.preflight import ParametersOut, PreflightIn, PreflightOut
+from app.schemas.together import FleetMissionIn, FleetUploadOut
 from app.schemas.vehicles import (
     AddressIn,
     CommandIn,
@@ -32,6 +33,7 @@ from app.services.plans.missions import MissionChoice
 from app.services.vehicles import signing
 from app.services.vehicles.flight_orders import Wish
 from app.services.vehicles.orders import give_order
+from app.services.vehicles.together import upload_all
 from app.vehicle_deps import ChecksDep, FleetDep, PermitsDep, TransfersDep
 
 router = APIRouter(prefix="/api/v1/vehicles", tags=["vehicles"])
@@ -149,12 +151,42 @@ async def upload(
         body.gimbal,
         arcs=body.arcs,
         chord_error_m=body.chord_error_m,
+        sortie=body.sortie,
     )
     report = await transfers.upload(
         fleet.get(vehicle_id), body.plan_id, body.parts, choice, body.reason if body.override else None
     )
     response.status_code = 202 if report.outcome == "unknown" else 200
     return UploadOut.of(report)
+
+
+@router.post(
+    "/missions",
+    summary="Upload a plan to all of its vehicles",
+    responses=responses(404, 409, 422)
+    | {202: {"model": FleetUploadOut, "description": "The outcome of one is unknown until it comes back."}},
+)
+async def upload_fleet(
+    body: FleetMissionIn, fleet: FleetDep, transfers: TransfersDep, response: Response
+) -> FleetUploadOut:
+    """Each vehicle of the plan is sent its own mission, all at once, and read back; one verdict tells of all.
+
+    Nothing is sent unless every vehicle of the plan has a connected one of its own. A vehicle that is refused
+    holds up no other: what became of each is told by name.
+    """
+    report = await upload_all(
+        fleet,
+        transfers,
+        await transfers.plan_text(body.plan_id),
+        body.plan_id,
+        body.vehicles,
+        body.sorties,
+        list(dict.fromkeys(body.parts)),
+        MissionChoice(None, None, body.payload, body.gimbal),
+        body.reason if body.override else None,
+    )
+    response.status_code = 202 if report.outcome == "unknown" else 200
+    return FleetUploadOut.of(report)
 
 
 @router.get("/{vehicle_id}/mission", summary="Download", responses=responses(404, 409, 422))
@@ -194,6 +226,7 @@ async def preflight(vehicle_id: str, body: PreflightIn, fleet: FleetDep, checks:
         body.gimbal,
         arcs=body.arcs,
         chord_error_m=body.chord_error_m,
+        sortie=body.sortie,
     )
     return PreflightOut.of(await checks.preflight(fleet.get(vehicle_id), body.plan_id, choice))
 

@@ -211,6 +211,7 @@ class HeldMission:
     gimbal: str | None = None
     arcs: Arcs | None = None
     chord_error_m: float | None = None
+    sortie: int = 1
 
 
 @dataclass(frozen=True, slots=True)

@@ -54,6 +54,8 @@ class MissionChoice:
         How arcs are said: ``points``, ``loiter``, or ``auto``; None for that.
     chord_error_m
         Largest distance between an arc and the lines between its points; None for the encoder's own.
+    sortie
+        Which of the vehicle's flights.
     """
 
     vehicle: str | None = None
@@ -63,10 +65,12 @@ class MissionChoice:
     vehicle_type: VehicleType | None = None
     arcs: Arcs | None = None
     chord_error_m: float | None = None
+    sortie: int = 1
 
     def held(self, plan_id: str, plan_vehicle: str) -> HeldMission:
         """What a vehicle of a plan holds, once it holds what is chosen."""
-        return HeldMission(plan_id, plan_vehicle, self.payload, self.gimbal, self.arcs, self.chord_error_m)
+        own = (self.payload, self.gimbal, self.arcs, self.chord_error_m, self.sortie)
+        return HeldMission(plan_id, plan_vehicle, *own)
 
     @classmethod
     def of_held(cls, held: HeldMission) -> MissionChoice:
@@ -78,6 +82,7 @@ class MissionChoice:
             held.gimbal,
             arcs=held.arcs,
             chord_error_m=held.chord_error_m,
+            sortie=held.sortie,
         )
 
 
@@ -92,8 +97,11 @@ def encode_plan(plan: Plan, choice: MissionChoice) -> Mission:
         The payload, the gimbal, or the plan for that autopilot, cannot be encoded.
     """
     vehicle = _vehicle_of(plan, choice.vehicle)
+    if plan.is_fleet:
+        _check_sortie(plan, vehicle, choice.sortie)
     try:
-        options = EncodeOptions(gimbal=None if choice.gimbal is None else parse_gimbal(choice.gimbal))
+        gimbal = None if choice.gimbal is None else parse_gimbal(choice.gimbal)
+        options = EncodeOptions(gimbal=gimbal, sortie=choice.sortie)
         if choice.payload is not None:
             options = replace(options, payload=parse_payload(choice.payload))
         if choice.arcs is not None:
@@ -148,6 +156,27 @@ def plan_of(text: str) -> Plan:
     from planner.geojson import read_plan
 
     return read_plan(read_object(text))
+
+
+def flight_of(text: str, choice: MissionChoice) -> Plan:
+    """The one flight of a plan document's text that is chosen, as a plan of its own.
+
+    Raises
+    ------
+    NotFoundError
+        The plan knows no such vehicle, or no such sortie of it.
+    """
+    plan = plan_of(text)
+    if not plan.is_fleet:
+        return plan
+    vehicle = _vehicle_of(plan, choice.vehicle)
+    _check_sortie(plan, vehicle, choice.sortie)
+    return plan.of(vehicle, choice.sortie)
+
+
+def _check_sortie(plan: Plan, vehicle: str, sortie: int) -> None:
+    if sortie not in plan.sorties_of(vehicle):
+        raise NotFoundError(f"sortie of {vehicle} in the plan numbered", str(sortie))
 
 
 def exported(text: str, choice: MissionChoice, form: str) -> bytes:

@@ -96,6 +96,7 @@ class VehicleRow(Base):
     held_gimbal: Mapped[str | None] = mapped_column(String(200))
     held_arcs: Mapped[str | None] = mapped_column(String(10))
     held_chord_error_m: Mapped[float | None] = mapped_column(Float)
+    held_sortie: Mapped[int | None] = mapped_column(Integer)
     last_plan_id: Mapped[str | None] = mapped_column(String(36))
     last_list_id: Mapped[int | None] = mapped_column(Integer)
     forward: Mapped[list[dict[str, Any]] | None] = mapped_column(JSON)

@@ -42,6 +42,7 @@ class UploadStore:
                 "gimbal": meant.gimbal,
                 "arcs": meant.arcs,
                 "chord_error_m": meant.chord_error_m,
+                "sortie": meant.sortie,
             },
             started_at=now(),
         )
@@ -74,6 +75,7 @@ class UploadStore:
                         row.detail.get("gimbal"),
                         row.detail.get("arcs"),
                         row.detail.get("chord_error_m"),
+                        row.detail.get("sortie") or 1,
                     ),
                     row.override_reason,
                 )

@@ -23,6 +23,7 @@ def _record(row: VehicleRow) -> VehicleRecord:
             row.held_gimbal,
             cast("Arcs | None", row.held_arcs),
             row.held_chord_error_m,
+            row.held_sortie or 1,
         )
     sent = None if row.last_plan_id is None else SentMission(row.last_plan_id, row.last_list_id)
     forward = tuple(ForwardAddress(entry["url"], entry["write"]) for entry in row.forward or ())
@@ -67,6 +68,7 @@ class VehicleStore:
             "held_gimbal": held.gimbal if held else None,
             "held_arcs": held.arcs if held else None,
             "held_chord_error_m": held.chord_error_m if held else None,
+            "held_sortie": held.sortie if held else None,
         }
         async with self._database.writing() as session:
             await session.execute(update(VehicleRow).where(VehicleRow.id == vehicle_id).values(**values))

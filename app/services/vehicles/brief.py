@@ -40,9 +40,14 @@ class Brief:
 
 
 def brief_of(plan_text: str, scenario_text: str, choice: MissionChoice) -> Brief:
-    """Read both, encode the mission, or fit that of a file; raises as ``missions.mission_of``."""
+    """Read both, encode the mission, or fit that of a file; raises as ``missions.mission_of``.
+
+    Of a plan of several flights it is the brief of one.
+    """
     plan, scenario = plan_of(plan_text), read_object(scenario_text)
     mission = sent(mission_of(plan_text, choice))
+    if mission.declared is None:
+        plan = plan.of(mission.vehicle, choice.sortie)
     needs = mission_needs(plan, scenario, mission, choice)
     payload = choice.payload if mission.declared else specified(plan, mission.vehicle, choice.payload)
     paths = tuple(replace(path, line=(), segments=()) for path in plan.paths)

@@ -117,6 +117,10 @@ class Transfers:
                 report.preflight = await _preflight_behind(vehicle, brief, report)
         return report
 
+    async def plan_text(self, plan_id: str) -> str:
+        """The text of a plan; raises where there is none."""
+        return await self._plans.plan_text(plan_id)
+
     async def download(self, vehicle: Vehicle, parts: Sequence[PartName]) -> dict[str, list[dict[str, Any]]]:
         """What a vehicle holds, part by part."""
         async with vehicle.turns.busy("download"):
