@@ -176,7 +176,25 @@ def tell_plan(document: dict[str, Any]) -> None:
             f"no plan is shorter than {metrics['lower_bound_m'] / 1000:.2f} km: "
             f"this one is at most {metrics['gap']:.1%} from the best"
         )
+    tell_fleet(metrics)
     _tell_violations(document["violations"])
+
+
+def tell_fleet(metrics: dict[str, Any]) -> None:
+    """Say who does what of a plan of several flights; nothing of one."""
+    vehicles = metrics.get("vehicles") or {}
+    for name, own in vehicles.items():
+        energy = "" if own["energy_wh"] is None else f", {own['energy_wh']:.0f} Wh"
+        flights = "1 sortie" if own["sorties"] == 1 else f"{own['sorties']} sorties"
+        say(
+            f"{name}: {flights} from {own['take_off_s'] / 60:.1f} to {own['landing_s'] / 60:.1f} min, "
+            f"{own['length_m'] / 1000:.2f} km{energy}, priority {own['priority']:g}"
+        )
+    if vehicles:
+        say(f"the last is down after {metrics['last_landing_s'] / 60:.1f} min")
+        for left in metrics["left_out"]:
+            by = "" if left["margin"] is None else f", by {left['margin']:.1f}"
+            say(f"{left['roi']} is left out: {left['reason']}{by}")
 
 
 def _tell_search(metrics: dict[str, Any]) -> None:

@@ -127,9 +127,16 @@ _mission_route("kmz", "mission.kmz", "application/vnd.google-earth.kmz", "KMZ")
     response_class=Response,
     responses=responses(404, 409) | {200: {"content": {"text/html": {"schema": {"type": "string"}}}}},
 )
-async def report(plan_id: str, planning: PlanningDep, desk: DeskDep) -> Response:
+async def report(
+    plan_id: str,
+    planning: PlanningDep,
+    desk: DeskDep,
+    vehicle: Annotated[
+        str | None, Query(description="Leave out what other vehicles fly.", max_length=200)
+    ] = None,
+) -> Response:
     """Metrics, violations, collects and methods on one page without scripts."""
     record = await planning.get(plan_id)
     plan_text, scenario_text = await planning.plan_text(plan_id), await planning.scenario_text(plan_id)
-    page = await desk.run("plan", write_report, record, plan_text, scenario_text)
+    page = await desk.run("plan", write_report, record, plan_text, scenario_text, vehicle)
     return page_answer(page)

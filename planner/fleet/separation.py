@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -86,14 +86,41 @@ def least_delay_s(placed: Sequence[Track], moving: Track, separation: Separation
     moving
         As it would be flown without a delay.
     """
-    barred = [_barred(track, moving, separation) for track in placed]
-    spans = np.concatenate([span for span in barred if len(span)] or [np.empty((0, 2))])
-    delay_s = 0.0
-    for first_s, last_s in spans[np.argsort(spans[:, 0])].tolist():
-        if first_s > delay_s:
-            break
-        delay_s = max(delay_s, last_s)
-    return delay_s
+    apart = Apart(separation)
+    return apart.first_s([(apart.add(track), 0.0) for track in placed], apart.add(moving), 0.0)
+
+
+class Apart:
+    """Flights by number, and which delays of one behind another bring them near; kept once found."""
+
+    def __init__(self, separation: Separation) -> None:
+        self._separation = separation
+        self._tracks: list[Track] = []
+        self._known: dict[tuple[int, int], Floats] = {}
+
+    def add(self, track: Track) -> int:
+        """The number of a flight, its times from lift-off."""
+        self._tracks.append(track)
+        return len(self._tracks) - 1
+
+    def first_s(self, placed: Sequence[tuple[int, float]], moving: int, from_s: float) -> float:
+        """The first lift-off from a time on that is apart from flights that lift off at theirs."""
+        found = [self._between(number, moving) + start_s for number, start_s in placed]
+        spans = np.concatenate([span for span in found if len(span)] or [np.empty((0, 2))])
+        spans = spans[spans[:, 1] > from_s]
+        first_s = from_s
+        for begin_s, end_s in spans[np.argsort(spans[:, 0])].tolist():
+            if begin_s > first_s:
+                break
+            first_s = max(first_s, end_s)
+        return first_s
+
+    def _between(self, one: int, other: int) -> Floats:
+        if (one, other) not in self._known:
+            found = _barred(self._tracks[one], self._tracks[other], self._separation)
+            self._known[one, other] = found
+            self._known[other, one] = -found[::-1, ::-1]
+        return self._known[one, other]
 
 
 def _barred(track: Track, moving: Track, separation: Separation) -> Floats:
@@ -125,8 +152,7 @@ def _together(delays_s: Floats, apart_s: float) -> Floats:
     gaps = np.flatnonzero(np.diff(ordered) > 2.0 * apart_s)
     firsts = ordered[np.concatenate([[0], gaps + 1])]
     lasts = ordered[np.concatenate([gaps, [len(ordered) - 1]])]
-    spans = np.column_stack([firsts - apart_s, lasts + apart_s])
-    return np.asarray(spans[spans[:, 1] > 0.0])
+    return np.column_stack([firsts - apart_s, lasts + apart_s])
 
 
 def _longest_m(places: Floats) -> float:
@@ -139,8 +165,3 @@ def _steepest_m(places: Floats) -> float:
 
 def _slowest_s(places: Floats) -> float:
     return float(np.diff(places[:, 0]).max(initial=0.0))
-
-
-def placed_at(track: Track, start_s: float) -> Track:
-    """A track on the plan's clock."""
-    return replace(track, places=track.places + np.array([start_s, 0.0, 0.0, 0.0]))

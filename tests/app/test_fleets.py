@@ -31,7 +31,7 @@ async def aircraft(client: httpx.AsyncClient, name: str, kind: str = "fixed_wing
 
 
 async def test_files_are_of_one_vehicle_each(client: httpx.AsyncClient, fleet_plan: str) -> None:
-    """Two missions that differ, none of a vehicle or a sortie that is not there; the plan says who is whose."""
+    """Two missions that differ, none of a vehicle or a sortie that is not there; one report for each."""
     base = f"{PLANS}/{fleet_plan}"
     plan: dict[str, Any] = (await client.get(base + "/plan.geojson")).json()
     assert set(plan["metrics"]["vehicles"]) == {"north", "south"}
@@ -50,8 +50,10 @@ async def test_files_are_of_one_vehicle_each(client: httpx.AsyncClient, fleet_pl
     assert "path of north" in kml
     assert "path of south" not in kml
     report = (await client.get(base + "/report.html")).text
-    assert "north" in report
-    assert "south" in report
+    own = (await client.get(base + "/report.html", params={"vehicle": "south"})).text
+    assert report.count("north") > own.count("north")
+    assert "Who does what" in own
+    check_problem(await client.get(base + "/report.html", params={"vehicle": "west"}), 404)
 
 
 async def test_all_vehicles_are_sent_their_missions_in_one_call(

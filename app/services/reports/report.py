@@ -10,6 +10,7 @@ from typing import Any
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined, Template, select_autoescape
 
+from app.services.errors import NotFoundError
 from app.services.records import FlightRecord, PlanRecord
 from app.services.reports.report_map import draw_map
 from app.services.reports.report_photos import camera_figures, region_qualities
@@ -51,9 +52,28 @@ def _template(name: str) -> Template:
     return environment.get_template(name)
 
 
-def write_report(record: PlanRecord, plan_text: str, scenario_text: str) -> str:
-    """The report of a done plan as one HTML page without scripts or outside parts."""
+def _of_vehicle(plan: dict[str, Any], vehicle: str) -> dict[str, Any]:
+    """A plan without what other vehicles fly."""
+    if vehicle not in {each["name"] for each in plan["vehicles"]}:
+        raise NotFoundError("vehicle in the plan called", vehicle)
+    return plan | {
+        "vehicles": [each for each in plan["vehicles"] if each["name"] == vehicle],
+        "features": [
+            feature
+            for feature in plan["features"]
+            if feature["properties"].get("vehicle", vehicle) == vehicle
+        ],
+    }
+
+
+def write_report(record: PlanRecord, plan_text: str, scenario_text: str, vehicle: str | None = None) -> str:
+    """The report of a done plan as one HTML page without scripts or outside parts.
+
+    With a vehicle what others fly is left out; what is said of the whole stays.
+    """
     plan: dict[str, Any] = json.loads(plan_text)
+    if vehicle is not None:
+        plan = _of_vehicle(plan, vehicle)
     scenario: dict[str, Any] = json.loads(scenario_text)
     by_role: dict[str, list[dict[str, Any]]] = {}
     for feature in plan["features"]:

@@ -29,6 +29,8 @@ from planner.vehicle.limits import Excess, Use, exceeded
 
 #: Windows are kept with this to spare.
 SPARE_S = 0.5
+#: Circles are fitted so often, until they take as long as is to be waited, to so much.
+FITTINGS, WITHIN_S = 4, 0.1
 
 
 @dataclass(frozen=True, slots=True)
@@ -172,9 +174,45 @@ def with_waits(
         apart_s = job.region.revisit_after_s + SPARE_S
         dues.append(Due(start_s, end_s, opens_s, closes_s, held_s, before[-1] if before else None, apart_s))
     when = timing(dues, ready_s)
-    if when.waited_s <= 0.0:
+    if when.worst is not None or when.waited_s <= 0.0:
         return plain, when
-    return _through(crew, number, jobs, order, when.waits_s, controls), when
+    return _waited(crew, number, jobs, order, plain, dues, when, controls)
+
+
+def _waited(
+    crew: Crew,
+    number: int,
+    jobs: Sequence[tuple[Job, int]],
+    order: Order,
+    plain: Flown,
+    dues: Sequence[Due],
+    when: Timing,
+    controls: Controls,
+) -> tuple[Flown, Timing]:
+    """The flight with its circles, made wider or narrower until they take as long as is to be waited."""
+    told_s = list(when.waits_s)
+    flown = _through(crew, number, jobs, order, told_s, controls)
+    for _ in range(FITTINGS):
+        took_s = _waits_of(flown, plain)
+        off_s = max(abs(took - wanted) for took, wanted in zip(took_s, when.waits_s, strict=True))
+        if off_s <= WITHIN_S:
+            break
+        told_s = [
+            told * wanted / took if wanted > 0.0 and took > 0.0 else told
+            for told, wanted, took in zip(told_s, when.waits_s, took_s, strict=True)
+        ]
+        flown = _through(crew, number, jobs, order, told_s, controls)
+    late = [when.start_s + end_s - due.closes_s for (_, end_s), due in zip(flown.spans_s, dues, strict=True)]
+    worst = max(range(len(late)), key=lambda k: late[k])
+    if late[worst] > 0.0:
+        return flown, replace(when, late_s=late[worst], worst=worst)
+    return flown, when
+
+
+def _waits_of(flown: Flown, plain: Flown) -> list[float]:
+    """How long a flight waits before each job, against one that does not wait."""
+    later_s = [a[0] - b[0] for a, b in zip(flown.spans_s, plain.spans_s, strict=True)]
+    return [now - before for now, before in zip(later_s, [0.0, *later_s], strict=False)]
 
 
 def _through(

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+
+import numpy as np
 
 from planner.errors import InfeasibleError
 from planner.fleet.assignment import Trip
-from planner.fleet.separation import Track, least_delay_s, step_m, track_of
+from planner.fleet.separation import Apart, Track, step_m, track_of
 from planner.tasks.fleet.crews import Crew
 from planner.tasks.fleet.flights import SPARE_S, Flown, Order, with_waits
 from planner.tasks.fleet.jobs import Job
@@ -17,6 +19,8 @@ from planner.wishes import Separation
 
 #: So often a flight is put off, its waits made shorter, before there is no room for it.
 MOST_DELAYS = 12
+#: Other orders in which flights are put on the clock.
+ORDERS = 60
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,48 +67,58 @@ class LateError(Exception):
         self.crew, self.job, self.late_s = crew, job, late_s
 
 
-@dataclass(slots=True)
 class _Clock:
     """What is placed so far."""
 
-    separation: Separation
-    tracks: list[Track] = field(default_factory=list)
-    sorties: list[Sortie] = field(default_factory=list)
-    landed_s: dict[int, float] = field(default_factory=dict)
-    flights: dict[int, int] = field(default_factory=dict)
-    visits: dict[str, list[tuple[int, float, float]]] = field(default_factory=dict)
+    def __init__(self, apart: Apart) -> None:
+        self.apart = apart
+        self.sorties: list[Sortie] = []
+        self._placed: list[tuple[int, float]] = []
+        self._landed_s: dict[int, float] = {}
+        self._visits: dict[str, list[tuple[int, float, float]]] = {}
 
     def ready_s(self, crew: int, turnaround_s: float) -> float:
         """When an aircraft may lift off again."""
-        return self.landed_s[crew] + turnaround_s if crew in self.landed_s else 0.0
+        return self._landed_s[crew] + turnaround_s if crew in self._landed_s else 0.0
+
+    def first_s(self, track: int, from_s: float) -> float:
+        """When a flight may lift off for its distance from the others."""
+        return self.apart.first_s(self._placed, track, from_s)
 
     def bounds_s(self, job: Job, visit: int) -> tuple[float, float]:
         """When a job may begin and has to be over: by its window, and by visits of other flights."""
         opens_s, closes_s = job.region.time_window_s or (-math.inf, math.inf)
         opens_s, closes_s = opens_s + SPARE_S, closes_s - SPARE_S
         apart_s = job.region.revisit_after_s + SPARE_S
-        for number, begin_s, end_s in self.visits.get(job.region.name, []):
+        for number, begin_s, end_s in self._visits.get(job.region.name, []):
             if number < visit:
                 opens_s = max(opens_s, end_s + apart_s)
             else:
                 closes_s = min(closes_s, begin_s - apart_s)
         return opens_s, closes_s
 
-    def put(self, errand: Errand, flown: Flown, start_s: float, track: Track) -> None:
+    def put(self, errand: Errand, flown: Flown, start_s: float, track: int) -> None:
         """One flight more."""
         crew = flown.crew
-        self.flights[crew] = self.flights.get(crew, 0) + 1
-        self.sorties.append(Sortie(flown, start_s, self.flights[crew]))
-        self.landed_s[crew] = start_s + flown.duration_s
-        self.tracks.append(track)
+        number = sum(each.flown.crew == crew for each in self.sorties) + 1
+        self.sorties.append(Sortie(flown, start_s, number))
+        self._landed_s[crew] = start_s + flown.duration_s
+        self._placed.append((track, start_s))
         for (job, visit), (begin_s, end_s) in zip(errand.jobs, flown.spans_s, strict=True):
-            self.visits.setdefault(job.region.name, []).append((visit, start_s + begin_s, start_s + end_s))
+            self._visits.setdefault(job.region.name, []).append((visit, start_s + begin_s, start_s + end_s))
+
+    @property
+    def cost_s(self) -> tuple[float, float]:
+        """When the last is down, and how long all have waited."""
+        return max(s.end_s for s in self.sorties), math.fsum(s.start_s for s in self.sorties)
 
 
 def placed(
-    crews: Sequence[Crew], errands: Sequence[Errand], separation: Separation, controls: Controls
+    crews: Sequence[Crew], errands: Sequence[Errand], separation: Separation, controls: Controls, seed: int
 ) -> tuple[Sortie, ...]:
     """All flights on one clock, each as soon as what was placed before it allows.
+
+    Where nothing binds their times several orders of placing them are tried.
 
     Raises
     ------
@@ -113,17 +127,40 @@ def placed(
     InfeasibleError
         ``"separation"``: no delay within its windows keeps a flight apart from the others.
     """
-    clock = _Clock(separation)
-    for errand in sorted(errands, key=lambda each: (each.trip.take_off_s, -each.trip.duration_s)):
-        crew = crews[errand.trip.member]
-        ready_s = clock.ready_s(errand.trip.member, crew.aircraft.turnaround_s)
-        if errand.flown is not None:
-            track = _track(crew, errand.flown, separation)
-            start_s = ready_s + least_delay_s(clock.tracks, track.later(ready_s), separation)
-            clock.put(errand, errand.flown, start_s, track.later(start_s))
-        else:
-            _put_in_order(clock, crew, errand, ready_s, separation, controls)
-    return tuple(sorted(clock.sorties, key=lambda each: (each.flown.crew, each.number)))
+    first = sorted(errands, key=lambda each: (each.trip.take_off_s, -each.trip.duration_s))
+    apart = Apart(separation)
+    tracks = {
+        id(each): apart.add(_track(crews[each.trip.member], each.flown, separation))
+        for each in errands
+        if each.flown is not None
+    }
+    orders = [first]
+    if len(tracks) == len(errands) > 1:
+        rng = np.random.default_rng(seed)
+        orders += [_shuffled(first, rng) for _ in range(ORDERS)]
+    best: _Clock | None = None
+    for order in orders:
+        clock = _Clock(apart)
+        for errand in order:
+            crew = crews[errand.trip.member]
+            ready_s = clock.ready_s(errand.trip.member, crew.aircraft.turnaround_s)
+            if errand.flown is None:
+                _put_in_order(clock, crew, errand, ready_s, separation, controls)
+                continue
+            track = tracks[id(errand)]
+            clock.put(errand, errand.flown, clock.first_s(track, ready_s), track)
+        if best is None or clock.cost_s < best.cost_s:
+            best = clock
+    if best is None:
+        return ()
+    return tuple(sorted(best.sorties, key=lambda each: (each.flown.crew, each.number)))
+
+
+def _shuffled(order: Sequence[Errand], rng: np.random.Generator) -> list[Errand]:
+    """Another order, in which each aircraft's flights come as they do in this one."""
+    members = [errand.trip.member for errand in order]
+    own = {member: iter([e for e in order if e.trip.member == member]) for member in members}
+    return [next(own[members[k]]) for k in rng.permutation(len(members)).tolist()]
 
 
 def _put_in_order(
@@ -143,17 +180,15 @@ def _put_in_order(
         )
         if when.worst is not None:
             raise LateError(errand.trip.member, errand.jobs[when.worst][0], when.late_s)
-        track = _track(crew, flown, separation)
-        delay_s = least_delay_s(clock.tracks, track.later(when.start_s), separation)
-        slack_s = min(
-            closes_s - when.start_s - end_s
-            for (_, closes_s), (_, end_s) in zip(bounds_s, flown.spans_s, strict=True)
+        track = clock.apart.add(_track(crew, flown, separation))
+        start_s = clock.first_s(track, when.start_s)
+        latest_s = min(
+            closes_s - end_s for (_, closes_s), (_, end_s) in zip(bounds_s, flown.spans_s, strict=True)
         )
-        if delay_s <= slack_s:
-            start_s = when.start_s + delay_s
-            clock.put(errand, flown, start_s, track.later(start_s))
+        if start_s <= latest_s:
+            clock.put(errand, flown, start_s, track)
             return
-        ready_s = when.start_s + delay_s
+        ready_s = start_s
     raise InfeasibleError(
         "separation",
         crew.aircraft.name,

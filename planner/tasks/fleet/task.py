@@ -145,7 +145,7 @@ class _Rounds:
         """The flights of an assignment on one clock, None where one is over a limit; whether as thought."""
         errands = [self._errand(jobs, trip) for trip in assigned.trips]
         with self._controls.stage("separation"):
-            sorties = placed(self._crews, errands, self._separation, self._controls)
+            sorties = placed(self._crews, errands, self._separation, self._controls, self._scenario.seed)
         told: dict[int, list[float]] = {}
         within = True
         thought = {_key(jobs, trip): trip for trip in assigned.trips}
