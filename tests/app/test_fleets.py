@@ -10,7 +10,7 @@ import pytest
 from tests.app.small_flight import planned
 from tests.app.test_problems import check_problem
 from tests.app.test_vehicles import connected
-from tests.planner.scenarios import small
+from tests.planner.scenarios import of_two
 
 PLANS, VEHICLES = "/api/v1/plans", "/api/v1/vehicles"
 
@@ -18,9 +18,9 @@ PLANS, VEHICLES = "/api/v1/plans", "/api/v1/vehicles"
 @pytest.fixture
 async def fleet_plan(client: httpx.AsyncClient) -> str:
     """A plan of two aircraft, a region each."""
-    document = small()
-    (one,) = document["vehicles"]
-    document["vehicles"] = [one | {"name": "north"}, one | {"name": "south"}]
+    document = of_two()
+    named = zip(document["vehicles"], ("north", "south"), strict=True)
+    document["vehicles"] = [one | {"name": name} for one, name in named]
     return await planned(client, document)
 
 

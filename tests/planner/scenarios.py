@@ -58,3 +58,13 @@ def small(*more: dict[str, Any], **members: Any) -> dict[str, Any]:
         "altitude_m": 500.0,
     }
     return copy.deepcopy(document | members)
+
+
+def of_two(**members: Any) -> dict[str, Any]:
+    """Two aircraft at one start, and a region on either side of it."""
+    document = small(**members)
+    document["features"][0]["geometry"]["coordinates"] = square(0.02, 0.01, 0.003)
+    document["features"][1]["geometry"]["coordinates"] = square(-0.045, 0.01, 0.003)
+    document["features"][3]["geometry"]["coordinates"] = [-0.012, -0.02]
+    (one,) = document["vehicles"]
+    return document | {"vehicles": [one, one | {"name": "second"}]}

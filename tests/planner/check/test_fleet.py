@@ -14,7 +14,7 @@ from planner.pipeline import make_plan
 from planner.plan import Plan
 from planner.scenario import Scenario
 from planner.wishes import Separation
-from tests.planner.scenarios import small
+from tests.planner.scenarios import of_two
 
 KEPT = Separation(100.0, 30.0)
 
@@ -50,10 +50,7 @@ def test_flights_one_after_the_other_are_never_near() -> None:
 @pytest.fixture(scope="module")
 def two() -> tuple[Scenario, Plan]:
     """A plan of two aircraft, one region each."""
-    document = small()
-    (one,) = document["vehicles"]
-    document["vehicles"] = [one, one | {"name": "second"}]
-    scenario = read_scenario(document)
+    scenario = read_scenario(of_two())
     return scenario, make_plan(scenario)
 
 

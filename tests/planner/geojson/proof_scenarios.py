@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from tests.planner.scenarios import feature, small, square
+from tests.planner.scenarios import feature, of_two, small, square
 
 Document = dict[str, Any]
 
@@ -117,9 +117,9 @@ def based(place: float = -0.03, base: str | None = "B1", **properties: Any) -> D
 
 def two_aircraft(**properties: Any) -> Document:
     """Two aircraft, of which one has more properties."""
-    document = small()
-    (one,) = document["vehicles"]
-    return document | {"vehicles": [one, one | {"name": "other"} | properties]}
+    document = of_two()
+    one, other = document["vehicles"]
+    return document | {"vehicles": [one, other | properties]}
 
 
 def two_sensors(name: str) -> Document:
