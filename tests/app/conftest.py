@@ -77,16 +77,22 @@ def _quiet_logs() -> None:
     configure("error")
 
 
+def settings_in(folder: Path) -> Settings:
+    """Settings of a small service in a folder, which may open what tests make there."""
+    return Settings(
+        database=folder / "plans.db",
+        workers=1,
+        request_workers=2,
+        static_dir=folder,
+        log_level="error",
+        serial_ports=(str(folder / "*"), "/dev/none"),
+    )
+
+
 @pytest.fixture
 def settings(tmp_path: Path) -> Settings:
-    """Settings of a small service that may open what tests make."""
-    return Settings(
-        database=tmp_path / "plans.db",
-        workers=1,
-        static_dir=tmp_path,
-        log_level="error",
-        serial_ports=(str(tmp_path / "*"), "/dev/none"),
-    )
+    """Settings of a small service of the test's own."""
+    return settings_in(tmp_path)
 
 
 @pytest.fixture

@@ -10,20 +10,32 @@ from typing import Any
 
 import httpx
 import pytest
+import pytest_asyncio
 
 from app.main import create_app
 from app.services.store.database import Database, DatabaseInUseError
 from app.settings import Settings
-from tests.app.conftest import pooled_house, serving
+from tests.app.conftest import pooled_house, serving, settings_in
+
+pytestmark = pytest.mark.asyncio(loop_scope="module")
 
 PLANS = "/api/v1/plans"
 
 
-@pytest.fixture
-async def client(settings: Settings) -> AsyncIterator[httpx.AsyncClient]:
-    """A client of a service that plans in processes, which can be killed."""
+@pytest_asyncio.fixture(scope="module", loop_scope="module")
+async def service(
+    tmp_path_factory: pytest.TempPathFactory,
+) -> AsyncIterator[tuple[httpx.AsyncClient, Settings]]:
+    """A service that plans in processes, which can be killed; begun once, as that takes seconds."""
+    settings = settings_in(tmp_path_factory.mktemp("plans"))
     async with serving(create_app(settings, pooled_house)) as client:
-        yield client
+        yield client, settings
+
+
+@pytest.fixture
+def client(service: tuple[httpx.AsyncClient, Settings]) -> httpx.AsyncClient:
+    """A client of that service."""
+    return service[0]
 
 
 def scenario(fake: str = "done", **members: Any) -> dict[str, Any]:
@@ -202,8 +214,9 @@ async def test_plans_survive_a_restart(settings: Settings) -> None:
         await state_of(client, waiting, "done")
 
 
-async def test_second_service_on_a_database_is_refused(client: httpx.AsyncClient, settings: Settings) -> None:
+async def test_second_service_on_a_database_is_refused(service: tuple[httpx.AsyncClient, Settings]) -> None:
     """Two services never share a database file: each would take the other's running plans for dead."""
+    client, settings = service
     assert (await client.get("/health/ready")).json()["checks"]["database"]
     with pytest.raises(DatabaseInUseError):
         await Database(settings.database).open()
@@ -212,12 +225,13 @@ async def test_second_service_on_a_database_is_refused(client: httpx.AsyncClient
 async def test_idempotency_key(client: httpx.AsyncClient) -> None:
     """A key stands for one scenario; posting it again makes no second plan."""
     headers = {"Idempotency-Key": "k"}
+    before = (await client.get(PLANS)).json()["total"]
     first = await client.post(PLANS, json=scenario(), headers=headers)
     again = await client.post(PLANS, json=scenario(), headers=headers)
     other = await client.post(PLANS, json=scenario(seed=1), headers=headers)
     assert first.json()["id"] == again.json()["id"]
     assert other.status_code == 409
-    assert (await client.get(PLANS)).json()["total"] == 1
+    assert (await client.get(PLANS)).json()["total"] == before + 1
 
 
 async def test_full_queue_is_a_429(settings: Settings) -> None:
