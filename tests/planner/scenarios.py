@@ -3,9 +3,15 @@
 from __future__ import annotations
 
 import copy
+import functools
 import json
 from pathlib import Path
 from typing import Any
+
+from planner.geojson import read_scenario
+from planner.pipeline import make_plan
+from planner.plan import Plan
+from planner.scenario import Scenario
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
@@ -14,6 +20,13 @@ def case(number: int) -> dict[str, Any]:
     """One of the paper's four cases."""
     document: dict[str, Any] = json.loads((EXAMPLES / f"sar-case-{number}.geojson").read_text())
     return document
+
+
+@functools.cache
+def planned_case(number: int) -> tuple[Scenario, Plan]:
+    """One of the four as read and planned by ``auto``, once for all tests of a process."""
+    scenario = read_scenario(case(number))
+    return scenario, make_plan(scenario)
 
 
 def square(lon: float, lat: float, size_deg: float) -> list[list[list[float]]]:

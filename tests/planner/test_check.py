@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from functools import lru_cache
 
 import numpy as np
 import pytest
@@ -18,15 +17,9 @@ from planner.pipeline import make_plan
 from planner.plan import Plan
 from planner.scenario import Scenario
 from planner.vehicle.energy import ConstantPower
-from tests.planner.scenarios import case, small
+from tests.planner.scenarios import planned_case, small
 
 GEOD = Geod(ellps="WGS84")
-
-
-@lru_cache(maxsize=8)
-def planned(number: int) -> tuple[Scenario, Plan]:
-    scenario = read_scenario(case(number))
-    return scenario, make_plan(scenario)
 
 
 def constraints(scenario: Scenario, plan: Plan) -> set[str]:
@@ -45,7 +38,7 @@ def shifted(plan: Plan, index: int, north_deg: float) -> Plan:
 @pytest.mark.parametrize("number", [1, 2, 3, 4])
 def test_shared_cases_are_sound(number: int) -> None:
     """Planned by `auto`, each case is seen whole, in limits, and out of every threat."""
-    scenario, plan = planned(number)
+    scenario, plan = planned_case(number)
     assert judge(scenario, plan).violations == ()
     assert all(fraction >= 0.9999 for fraction in plan.metrics.coverage.values())
 
@@ -53,7 +46,7 @@ def test_shared_cases_are_sound(number: int) -> None:
 @pytest.mark.parametrize("number", [1, 2, 3, 4])
 def test_lengths_agree_with_geodesics(number: int) -> None:
     """Metrics, judge and pyproj's geodesics of the published line with its heights agree within 0.1 %."""
-    scenario, plan = planned(number)
+    scenario, plan = planned_case(number)
     lons, lats, altitudes_m = zip(*plan.paths[0].line, strict=True)
     geodesic_m = float(np.hypot(GEOD.line_lengths(lons, lats), np.diff(altitudes_m)).sum())
     assert plan.metrics.flight_length_m == pytest.approx(geodesic_m, rel=1e-3)
@@ -80,14 +73,14 @@ def test_a_kink_between_long_straights_is_a_tight_turn() -> None:
 
 def test_a_tight_turn_is_found() -> None:
     """One vertex moved by four metres is a turn the aircraft cannot fly."""
-    scenario, plan = planned(1)
+    scenario, plan = planned_case(1)
     index = len(plan.paths[0].line) // 2
     assert "turn-radius" in constraints(scenario, shifted(plan, index, 4.0 / 111_000.0))
 
 
 def test_leaving_the_area_is_found() -> None:
     """The same plan in a smaller area has metres outside it."""
-    scenario, plan = planned(1)
+    scenario, plan = planned_case(1)
     assert scenario.area is not None
     small_area = scenario.area.buffer(-800.0)
     assert "area" in constraints(replace(scenario, area=small_area), plan)
@@ -95,7 +88,7 @@ def test_leaving_the_area_is_found() -> None:
 
 def test_zones_on_the_path_are_found() -> None:
     """A hard threat, a no-fly polygon and a soft threat put on the path are each named."""
-    scenario, plan = planned(1)
+    scenario, plan = planned_case(1)
     middle = plan.paths[0].line[len(plan.paths[0].line) // 2]
     east, north = scenario.frame.to_local(middle[:2])
     place = (float(east), float(north))
@@ -114,7 +107,7 @@ def test_zones_on_the_path_are_found() -> None:
 
 def test_a_zone_above_the_flight_does_not_count() -> None:
     """A no-fly zone whose floor is higher than the flight is no violation."""
-    scenario, plan = planned(1)
+    scenario, plan = planned_case(1)
     middle = plan.paths[0].line[len(plan.paths[0].line) // 2]
     place = tuple(float(v) for v in scenario.frame.to_local(middle[:2]))
     zone = NoFlyZone("X", None, (place[0], place[1]), 50.0, floor_m=600.0)
@@ -123,7 +116,7 @@ def test_a_zone_above_the_flight_does_not_count() -> None:
 
 def test_a_missing_pass_leaves_a_region_uncovered() -> None:
     """Without its pass a region is unseen, and the judge says how much of it."""
-    scenario, plan = planned(1)
+    scenario, plan = planned_case(1)
     without = replace(plan, collects=tuple(c for c in plan.collects if c.roi != "R2"))
     verdict = judge(scenario, without)
     assert [v.feature for v in verdict.violations if v.constraint == "coverage"] == ["R2"]
@@ -132,7 +125,7 @@ def test_a_missing_pass_leaves_a_region_uncovered() -> None:
 
 def test_a_pass_beside_the_path_is_found() -> None:
     """A collect that the path does not fly is not believed."""
-    scenario, plan = planned(1)
+    scenario, plan = planned_case(1)
     first = plan.collects[0]
     moved = tuple((lon, lat + 1e-4, alt) for lon, lat, alt in first.line)
     broken = replace(plan, collects=(replace(first, line=(moved[0], moved[1])), *plan.collects[1:]))
@@ -141,7 +134,7 @@ def test_a_pass_beside_the_path_is_found() -> None:
 
 def test_arcs_are_longer_than_their_chords() -> None:
     """After many turns a collect begins metres sooner on the line than arcs tell: sound; far off is not."""
-    scenario, plan = planned(1)
+    scenario, plan = planned_case(1)
 
     def moved(along_m: float) -> Plan:
         later = [c for c in plan.collects if c.start_m > 5000.0]
@@ -161,7 +154,7 @@ def test_arcs_are_longer_than_their_chords() -> None:
 
 def test_limits_of_the_aircraft_are_judged() -> None:
     """Range, flight time and energy that do not suffice are each a violation."""
-    scenario, plan = planned(1)
+    scenario, plan = planned_case(1)
     poor = replace(
         scenario.aircraft[0],
         max_range_m=20_000.0,
@@ -175,14 +168,14 @@ def test_limits_of_the_aircraft_are_judged() -> None:
 
 def test_false_metrics_are_found() -> None:
     """A length that the line does not have is a violation."""
-    scenario, plan = planned(1)
+    scenario, plan = planned_case(1)
     lying = replace(plan, metrics=replace(plan.metrics, length_m=plan.metrics.length_m * 1.01))
     assert constraints(scenario, lying) == {"length"}
 
 
 def test_a_path_that_does_not_begin_at_the_start_is_found() -> None:
     """The start moved by a hundred metres is missed by the path."""
-    scenario, plan = planned(1)
+    scenario, plan = planned_case(1)
     east, north = scenario.start.position
     moved = replace(scenario, start=replace(scenario.start, position=(east + 100.0, north)))
     assert "continuity" in constraints(moved, plan)
@@ -190,7 +183,7 @@ def test_a_path_that_does_not_begin_at_the_start_is_found() -> None:
 
 def test_footprints_of_judge_and_stages_agree() -> None:
     """The judge's footprint, drawn anew, is the published one."""
-    scenario, plan = planned(1)
+    scenario, plan = planned_case(1)
     for collect, published in zip(plan.collects, plan.footprints, strict=True):
         ours = footprint(scenario, collect)
         theirs = Polygon(scenario.frame.to_local(published.ring))

@@ -12,7 +12,7 @@ from planner.geojson import read_plan, read_scenario, write_plan
 from planner.geojson.equipment import METHODS
 from planner.pipeline import make_plan
 from planner.plan import Photos, PlanCamera, PlanWind
-from tests.planner.scenarios import case, feature, small, square
+from tests.planner.scenarios import case, feature, planned_case, small, square
 
 
 def without_times(document: dict[str, object]) -> str:
@@ -74,13 +74,13 @@ def test_turns_by_name_keep_the_hard_constraints() -> None:
 
 def test_same_scenario_same_plan() -> None:
     """Planning twice gives the same bytes but for the times."""
-    first, second = (write_plan(make_plan(read_scenario(case(1)))) for _ in range(2))
+    first, second = (write_plan(plan) for plan in (planned_case(1)[1], make_plan(read_scenario(case(1)))))
     assert without_times(first) == without_times(second)
 
 
 def test_plans_survive_geojson() -> None:
     """Written, serialised, read and written again, a plan is the same document."""
-    document = json.loads(json.dumps(write_plan(make_plan(read_scenario(case(2))))))
+    document = json.loads(json.dumps(write_plan(planned_case(2)[1])))
     again = json.loads(json.dumps(write_plan(read_plan(document))))
     assert again == document
 
@@ -98,7 +98,7 @@ def test_the_wind_of_a_plan_is_its_scenario_s() -> None:
 
 def test_photos_and_cameras_survive_geojson() -> None:
     """What a plan says of cameras, photos and their quality is read back as it was written."""
-    plan = make_plan(read_scenario(case(2)))
+    plan = planned_case(2)[1]
     collect, camera = plan.collects[0], PlanCamera("eye", 0.035, 4.5e-6, 7952, 5304, 0.75, 0.65, 10.0, 0.8)
     photos = Photos(collect.vehicle, collect.seq, "eye", collect.line, 41.5, 1.9)
     seen = replace(plan.footprints[0], gsd_m=0.03, gsd_mean_m=0.025, niirs=7.5, niirs_mean=7.75)
@@ -117,7 +117,7 @@ def test_photos_and_cameras_survive_geojson() -> None:
 
 def test_contract_of_the_plan() -> None:
     """Roles, properties and members are those of the contract; arcs have vertices at most 10 m apart."""
-    document = write_plan(make_plan(read_scenario(case(1))))
+    document = write_plan(planned_case(1)[1])
     by_role: dict[str, list[dict[str, object]]] = {}
     for found in document["features"]:
         by_role.setdefault(found["properties"]["role"], []).append(found["properties"])
@@ -160,7 +160,7 @@ def test_contract_of_the_plan() -> None:
 
 def test_collects_and_transits_make_up_the_path() -> None:
     """Transits and collects end to end are as long as the path, in the order of their numbers."""
-    plan = make_plan(read_scenario(case(3)))
+    plan = planned_case(3)[1]
     total_m = sum(t.length_m for t in plan.transits) + sum(c.end_m - c.start_m for c in plan.collects)
     assert total_m == pytest.approx(plan.metrics.length_m)
     assert [c.seq for c in plan.collects] == list(range(1, len(plan.collects) + 1))

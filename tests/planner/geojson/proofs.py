@@ -164,7 +164,7 @@ PROOFS: dict[tuple[str, str], tuple[Document, Document]] = {
         small(threat(model="radar", intensity_m=3.0, radius_m=700.0), objective={"radar": 0.0}),
     ),
     ("objective", "energy"): (small(CROSSED), small(CROSSED, objective={"energy": 2000.0})),
-    ("objective", "turns"): (case(2), case(2) | {"objective": {"turns": 30.0}}),
+    ("objective", "turns"): (case(1), case(1) | {"objective": {"turns": 30.0}}),
     ("method", "coverage"): (
         of_feature("A", revisits=2),
         of_feature("A", revisits=2) | {"method": {"coverage": "li2018"}},

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import itertools
 import math
 
@@ -19,6 +20,7 @@ from planner.geojson import read_scenario
 from planner.orders_kernels import best_options, best_orders, improve_order
 from planner.route import Anchor, Pose
 from planner.routing.joint import route as joint
+from planner.routing.joint.route import JointRoute
 from planner.scenario import Scenario
 from tests.planner.scenarios import case, feature, small, square
 from tests.planner.stages import greedy, joint_route
@@ -112,6 +114,13 @@ def test_detour_round_one_disc_is_the_shortest(x: float, y: float, r: float) -> 
     assert extra_m == pytest.approx(min(one, ring.length - one) - end, abs=0.05)
 
 
+@functools.cache
+def of_case(number: int) -> tuple[Scenario, JointRoute]:
+    """A shared case, and its joint route."""
+    scenario = read_scenario(case(number))
+    return scenario, joint_route(scenario)
+
+
 def seen_whole(scenario: Scenario, footprints: list[object]) -> bool:
     ground = unary_union(footprints).buffer(1e-6)
     return all(ground.covers(region.area) for region in scenario.regions)
@@ -120,8 +129,8 @@ def seen_whole(scenario: Scenario, footprints: list[object]) -> bool:
 @pytest.mark.parametrize("number", [1, 2, 3, 4])
 def test_joint_routes_see_all_and_enter_nothing(number: int) -> None:
     """On the shared cases the passes see every region, stay inside the area and out of every threat."""
-    scenario = read_scenario(case(number))
-    route = joint_route(scenario).route
+    scenario, found = of_case(number)
+    route = found.route
     assert seen_whole(scenario, [p.footprint for p in route.passes])
     for collect in route.passes:
         line = LineString([collect.start, collect.end])
@@ -134,7 +143,7 @@ def test_joint_routes_see_all_and_enter_nothing(number: int) -> None:
 @pytest.mark.parametrize("number", [1, 2, 3, 4])
 def test_joint_routes_are_shorter_than_greedy_ones(number: int) -> None:
     """With shortest Dubins connections the joint route is at least 4 % shorter than the greedy one."""
-    scenario = read_scenario(case(number))
+    scenario, found = of_case(number)
     radius_m = scenario.aircraft[0].planned_turn_radius_m
 
     def length_m(passes: tuple) -> float:
@@ -144,14 +153,13 @@ def test_joint_routes_are_shorter_than_greedy_ones(number: int) -> None:
         anchors.append(Anchor(*scenario.end.position))
         return sum(shortest_between(a, b, radius_m).length_m for a, b in itertools.pairwise(anchors))
 
-    ours = length_m(joint_route(scenario).route.passes)
+    ours = length_m(found.route.passes)
     assert ours < 0.96 * length_m(greedy(scenario).route.passes)
 
 
 def test_same_scenario_same_route() -> None:
     """Planning twice gives the same passes to the last bit."""
-    scenario = read_scenario(case(1))
-    first = joint_route(scenario)
+    scenario, first = of_case(1)
     assert first.route == joint_route(scenario).route
 
 
