@@ -31,6 +31,7 @@ class Benchmark(StrEnum):
     READS = "reads"
     URBAN = "urban"
     VALIDATE = "validate"
+    SEARCH = "search"
     ORIENTEERING = "orienteering"
     SMOOTHING = "smoothing"
     IMPORTANCE = "importance"
