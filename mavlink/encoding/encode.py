@@ -32,6 +32,8 @@ from planner.plan import LonLat, Plan
 __all__ = ["EncodeError", "EncodeOptions", "Mission", "encode"]
 
 _DEFAULT = EncodeOptions()
+#: Arcs of multirotors this tight are corners: the plan means that they turn on the spot.
+CORNER_M = 2.1
 #: Kept free round a waypoint that lies off the path.
 _MARGIN_M = 20.0
 
@@ -83,6 +85,7 @@ def encode(
         (task.taken_off_m, task.landing_m),
         task.near_m,
         switching.on_delay_m,
+        CORNER_M if task.hovers else 0.0,
     )
     # A plan over the sea knows how high its home lies.
     known_m = task.path.line[0][2] if plan.altitude_reference == "amsl" else 0.0

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
-from mavlink.wire.geometry import LocalMap, arc_points, chord_step_rad, here
+from mavlink.wire.geometry import LocalMap, arc_points, chord_step_rad, here, offset
 from planner.plan import Collect, FlownPath, LonLat, PathSegment
 
 #: Places nearer than this along the path are one; those of a collect win.
@@ -19,6 +19,8 @@ WHOLE_TURN_DEG = 359.9
 _OUTSIDE = 1.06
 #: No arc is cut into chords of more than this, however large the chord error allowed.
 LARGEST_STEP_RAD = math.radians(45.0)
+#: A corner turns by no more than this, a right angle and a little; what turns farther is several.
+MOST_CORNER_DEG = 91.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,6 +59,7 @@ def stops_along(
     between_m: tuple[float, float] = (0.0, math.inf),
     near_m: float = 0.0,
     on_delay_m: Callable[[Collect], float] = lambda _: 0.0,
+    corner_m: float = 0.0,
 ) -> tuple[Stop, ...]:
     """Ends of the straights, points on the arcs, and exactly both ends of each collect, in flight order.
 
@@ -78,6 +81,8 @@ def stops_along(
         Places where nothing happens are left out so near to others: what hovers would stop there.
     on_delay_m
         How far past a collect's beginning its sensor is switched on, at most to its middle.
+    corner_m
+        Arcs of this radius and less are corners: the lines beside them meet in one place.
     """
     altitude = partial(altitude_along, path)
     stops: list[Stop] = []
@@ -103,6 +108,8 @@ def stops_along(
         else:
             stops += [end, replace(late, altitude_m=altitude(late.along_m), off=1)]
     from_m, until_m = between_m
+    corners: list[Stop] = []
+    cut_m: list[float] = []
     for segment in path.segments:
         if segment.start_m < from_m - MERGE_M or segment.start_m > until_m - MERGE_M:
             continue
@@ -121,11 +128,19 @@ def stops_along(
             stops.append(Stop(segment.start_m, here(segment.start), altitude(segment.start_m)))
             stops.append(Stop(end_m, here(segment.end), altitude(end_m), arc=segment))
             continue
+        if segment.radius_m is not None and segment.radius_m <= corner_m:
+            cut_m += [segment.start_m, segment.start_m + segment.length_m]
+            for along_m, place in _corners(segment, local):
+                corners.append(Stop(along_m, here(place), altitude(along_m)))
+            continue
         places = _segment_places(segment, local, chord_error_m)
         for number, place in enumerate(places):
             along_m = segment.start_m + segment.length_m * number / (len(places) - 1)
             if not any(since_m <= along_m <= until_m for since_m, until_m in skipped):
                 stops.append(Stop(along_m, here(place), altitude(along_m)))
+    # Where lines are cut short for an arc nothing happens: they meet behind it.
+    stops = [s for s in stops if s.on or s.off or all(abs(s.along_m - m) > MERGE_M for m in cut_m)]
+    stops += [c for c in corners if not any(since_m <= c.along_m <= to_m for since_m, to_m in skipped)]
     # Turns are left where they are entered: a waypoint there would be behind the aircraft.
     left_m = [s.turns.start_m + s.turns.length_m for s in stops if s.turns is not None]
     begun_m = [from_m, *left_m]
@@ -189,6 +204,21 @@ def _segment_places(segment: PathSegment, local: LocalMap, chord_error_m: float)
     step_rad = chord_step_rad(math.dist(start, centre), chord_error_m, LARGEST_STEP_RAD)
     between = arc_points(start, end, centre, turn_rad, step_rad)
     return [segment.start, *(local.lonlat(point) for point in between), segment.end]
+
+
+def _corners(segment: PathSegment, local: LocalMap) -> Iterator[tuple[float, LonLat]]:
+    """Where the tangents of an arc meet, each part a right angle at most, and how far along."""
+    if segment.centre is None or segment.turn_deg is None or segment.radius_m is None:
+        return
+    count = max(1, math.ceil(segment.turn_deg / MOST_CORNER_DEG))
+    turn_rad = math.radians(segment.turn_deg) * (1.0 if segment.kind == "left" else -1.0)
+    start, centre = local.xy(segment.start), local.xy(segment.centre)
+    from_rad = math.atan2(start[1] - centre[1], start[0] - centre[0])
+    away_m = segment.radius_m / math.cos(turn_rad / (2.0 * count))
+    for number in range(count):
+        part = (number + 0.5) / count
+        place = local.lonlat(offset(centre, from_rad + part * turn_rad, away_m))
+        yield segment.start_m + part * segment.length_m, place
 
 
 def _straight_left_m(path: FlownPath, collect: Collect) -> float:

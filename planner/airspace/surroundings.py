@@ -49,6 +49,8 @@ class Surroundings:
         Polygons that may not be entered.
     radius_m, settle_m
         Turn radius, and straight flight before each collect.
+    stops_m
+        What each pass costs besides, of what brakes for its corners.
     airspeed_m_s, wind
         In a wind, metres over the ground count as metres through the air: time by airspeed.
     ground, level_m
@@ -70,6 +72,7 @@ class Surroundings:
     yields: NDArray[np.bool_] | None = None
     barriers: Floats = field(default_factory=lambda: np.empty((0, COLUMNS)))
     cramped: BaseGeometry | None = None
+    stops_m: float = 0.0
 
     @property
     def discs(self) -> Floats:
@@ -111,6 +114,7 @@ def surroundings(airspace: Airspace, level: Level, model: FlightModel, objective
         yields=priced[:, 3] < INSIDE_FACTOR,
         barriers=polygon_rows(polygons),
         cramped=shapely.union_all([grown(polygon, radius_m) for polygon in polygons]) if polygons else None,
+        stops_m=model.stops_m,
     )
 
 

@@ -50,6 +50,7 @@ def judge_lines(lines: Floats, around: Surroundings) -> tuple[NDArray[np.bool_],
     if around.wind.speed_m_s > 0.0:
         courses_rad = np.arctan2(delta[..., 1], delta[..., 0])
         cost_m = cost_m * still_air_factor(courses_rad, around.airspeed_m_s, around.wind)
+    cost_m = cost_m + around.stops_m
     flat = np.ascontiguousarray(lines).reshape(-1, 2, 2)
     if len(around.hard):
         good &= (inside_m(flat, around.hard) == 0.0).reshape(shape)

@@ -12,6 +12,7 @@ from planner.geojson.power import read_power
 from planner.sensors.base import Sensor
 from planner.sensors.registry import KINDS
 from planner.vehicle.aircraft import (
+    CORNER_RADIUS_M,
     DEFAULT_RESERVE,
     Aircraft,
     turn_radius_from_bank_m,
@@ -19,9 +20,6 @@ from planner.vehicle.aircraft import (
 )
 from planner.vehicle.steadiness import Steadiness, steadiness_of
 from planner.wishes import Method, Objective
-
-#: A multirotor without a stated turn limit rounds its corners with this bank.
-MULTIROTOR_BANK_DEG = 25.0
 
 VEHICLE_TYPES = ("fixed_wing", "multirotor", "vtol")
 AUTOPILOTS = ("ardupilot", "px4")
@@ -147,8 +145,9 @@ def _turn_radius_m(fields: Fields, airspeed_m_s: float | None, kind: str | None)
         radii.append(turn_radius_from_bank_m(airspeed_m_s, bank_deg))
     if load_factor is not None:
         radii.append(turn_radius_from_load_factor_m(airspeed_m_s, load_factor))
-    if not radii and kind == "multirotor":
-        radii.append(turn_radius_from_bank_m(airspeed_m_s, MULTIROTOR_BANK_DEG))
+    if radius_m is None and kind == "multirotor":
+        # How it banks and at which load holds at speed; for its corners it slows down.
+        return CORNER_RADIUS_M
     if not radii:
         if not {"min_turn_radius_m", "max_bank_deg", "max_load_factor"} & set(_given(fields)):
             fields.wrong(

@@ -73,7 +73,7 @@ def compose(
     legs_m.append((begun_m, whole_m - down.turns_m))
     bounds_m = (up.run_m, up.turns_m, whole_m - down.turns_m, whole_m - down.run_m)
     inserted_m = up.inserted_m + math.fsum(leg.inserted_m for leg in between) + down.inserted_m
-    flight = whole_flight(join(*pieces), heights, bounds_m, inserted_m, times, LIFT_OFF_HEIGHT_M)
+    flight = whole_flight(join(*pieces), heights, bounds_m, passes_m, inserted_m, times, LIFT_OFF_HEIGHT_M)
     return Composed(flight, tuple(legs_m), tuple(passes_m))
 
 

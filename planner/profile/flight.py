@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from bisect import bisect_right
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -27,6 +28,8 @@ class Stretch:
         Distance over the ground at which it begins.
     start_altitude_m, end_altitude_m
         Over the flight's datum.
+    collects
+        Whether it is of a pass: missions name both ends of that.
     """
 
     phase: PhaseKind
@@ -35,6 +38,7 @@ class Stretch:
     at_m: float
     start_altitude_m: float
     end_altitude_m: float
+    collects: bool = False
 
     @property
     def ground_m(self) -> float:
@@ -112,6 +116,7 @@ def whole_flight(
     path: Path,
     heights: Heights,
     bounds_m: tuple[float, float, float, float],
+    passes_m: Sequence[tuple[float, float]],
     inserted_m: float,
     times: Times,
     lift_off_m: float,
@@ -122,6 +127,8 @@ def whole_flight(
     ----------
     bounds_m
         Over the ground: where the take-off, the climbing turns, the mission and the descending turns end.
+    passes_m
+        Over the ground: where passes begin and end, in order.
     times
         Seconds that each stretch takes.
     lift_off_m
@@ -140,6 +147,7 @@ def whole_flight(
     stretches += _up(path.start, heights.knots, take_off_m, lift_off_m)
     marks = sorted({at_m for at_m, _ in heights.knots} | {m for m in bounds_m if m < path.length_m})
     jumps = _jumps(heights.knots, path.length_m)
+    begins_m = [begin_m for begin_m, _ in passes_m]
     at_m = 0.0
     for segment in path.segments:
         end_m = at_m + segment.length_m
@@ -151,10 +159,12 @@ def whole_flight(
             kind = next(kind for kind, until_m in kinds if middle_m < until_m)
             while jumps and jumps[0][0] < middle_m:
                 there_m, *both_m = jumps.pop(0)
-                stretches.append(Stretch(kind, pose, None, there_m, *both_m))
+                stretches.append(Stretch(kind, pose, None, there_m, both_m[0], both_m[1]))
             # From within: at a place where it climbs on the spot the height is not one.
             low_m, high_m = heights.at([first_m + 2.0 * SAME_M, last_m - 2.0 * SAME_M])
-            stretches.append(Stretch(kind, pose, piece, first_m, float(low_m), float(high_m)))
+            nearest = bisect_right(begins_m, middle_m) - 1
+            collects = nearest >= 0 and middle_m < passes_m[nearest][1]
+            stretches.append(Stretch(kind, pose, piece, first_m, float(low_m), float(high_m), collects))
         at_m = end_m
     stretches += _down(path.end, heights.knots)
     starts_m, starts_s = [0.0], [0.0]

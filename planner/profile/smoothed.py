@@ -10,31 +10,43 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from itertools import groupby, pairwise
 
 from planner.airspace.values import STILL_AIR, Wind
 from planner.profile.flight import Stretch
-from planner.profile.jerks import HALVINGS, change_m, change_s, chords_of
 from planner.profile.times import spots_s
+from planner.vehicle.jerks import HALVINGS, change_m, change_s, chords_of, corners_of, is_corner
 from planner.vehicle.manners import Manners
 from planner.vehicle.wind import held_speed_m_s
 
 #: Places nearer than this and the distance they are taken up early by are one in a mission.
 ONE_PLACE_M = 0.5
+#: Straights are one where they differ by no more.
+SAME_WAY_RAD = 1e-6
 #: Up to this angle off its way it does not hold its speed in for turning (its cosine is 0.98).
 NO_TURN_RAD = math.acos(0.98)
 
 
 @dataclass(frozen=True, slots=True)
 class _Leg:
-    """A straight between two places of a mission; ``number`` is of its stretch."""
+    """A straight between two places of a mission.
+
+    Parameters
+    ----------
+    number, corner
+        Of its stretch, and of that which is the corner before it.
+    joins
+        Whether it is what a corner adds to the straight beside it.
+    """
 
     number: int
     length_m: float
     angle_rad: float
     most_m_s: float
+    corner: int | None = None
+    joins: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,25 +94,28 @@ def smoothed_times(
     numbered = enumerate(stretches)
     for on_the_spot, run in groupby(numbered, key=lambda pair: pair[1].segment is None):
         if not on_the_spot:
-            legs = [leg for k, s in run for leg in _legs(k, s, airspeed_m_s, manners, wind)]
-            for leg, time_s in zip(legs, _legs_s(legs, manners), strict=True):
-                found[leg.number] += time_s
+            legs = _met([leg for k, s in run for leg in _legs(k, s, airspeed_m_s, manners, wind)])
+            for leg, (turning_s, straight_s) in zip(legs, _legs_s(legs, manners), strict=True):
+                found[leg.number if leg.corner is None else leg.corner] += turning_s
+                found[leg.number] += straight_s
     return found
 
 
-def _legs_s(legs: Sequence[_Leg], manners: Manners) -> list[float]:
-    """Seconds of legs that follow each other, from rest to a stop."""
+def _legs_s(legs: Sequence[_Leg], manners: Manners) -> list[tuple[float, float]]:
+    """Seconds of legs that follow each other, from rest to a stop: turning into each, and along it."""
     braking = Braking(manners.accel_m_s2, manners.jerk_m_s3, manners.corner_m)
     corners = [_corner_m_s(here, behind, braking, manners) for here, behind in pairwise(legs)]
-    found: list[float] = []
+    found: list[tuple[float, float]] = []
     passed_m_s, turn_m = 0.0, 0.0
     for k, leg in enumerate(legs):
         last = k == len(legs) - 1
         end_m_s = 0.0 if last else corners[k]
         # Places are taken up early: only the first leg is the shorter for it.
         length_m = max(leg.length_m - (braking.short_m if k == 0 else 0.0), 0.0)
-        time_s, passed_m_s = _leg_s(length_m, passed_m_s, end_m_s, turn_m, leg.most_m_s, braking)
-        found.append(time_s)
+        turning_s, straight_s, passed_m_s = _leg_s(
+            length_m, passed_m_s, end_m_s, turn_m, leg.most_m_s, braking
+        )
+        found.append((turning_s, straight_s))
         turn_m = 0.0 if last else _turn_m(_turned_rad(leg, legs[k + 1]), braking.short_m)
     return found
 
@@ -108,7 +123,10 @@ def _legs_s(legs: Sequence[_Leg], manners: Manners) -> list[float]:
 def _legs(number: int, stretch: Stretch, airspeed_m_s: float, manners: Manners, wind: Wind) -> list[_Leg]:
     """The straights that a stretch is flown by."""
     segment = stretch.segment
-    if segment is None or stretch.ground_m < manners.corner_m + ONE_PLACE_M:
+    if segment is None:
+        return []
+    corner = segment.kind != "straight" and is_corner(segment.radius_m)
+    if stretch.ground_m < manners.corner_m + ONE_PLACE_M and not corner:
         return []
     rise_m = stretch.end_altitude_m - stretch.start_altitude_m
     rate = manners.climb_m_s if rise_m > 0.0 else manners.sink_m_s
@@ -120,11 +138,39 @@ def _legs(number: int, stretch: Stretch, airspeed_m_s: float, manners: Manners, 
 
     if segment.kind == "straight":
         return [leg(segment.length_m, segment.start.angle_rad)]
+    if corner:
+        count, tangent_m = corners_of(abs(segment.turn_rad), segment.radius_m)
+        angles = [segment.start.angle_rad + segment.turn_rad * k / count for k in range(count + 1)]
+        between = [replace(leg(2.0 * tangent_m, angle), corner=number) for angle in angles[1:-1]]
+        return [
+            replace(leg(tangent_m, angles[0]), joins=True),
+            *between,
+            replace(leg(tangent_m, angles[-1]), joins=True, corner=number),
+        ]
     count = chords_of(abs(segment.turn_rad), segment.radius_m)
     step_rad = segment.turn_rad / count
     chord_m = 2.0 * segment.radius_m * math.sin(0.5 * abs(step_rad))
     first_rad = segment.start.angle_rad + 0.5 * step_rad
     return [leg(chord_m, first_rad + k * step_rad) for k in range(count)]
+
+
+def _met(legs: Sequence[_Leg]) -> list[_Leg]:
+    """Legs with what corners add to the straights beside them."""
+    found: list[_Leg] = []
+    for leg in legs:
+        last = found[-1] if found else None
+        if last is None or not (last.joins or leg.joins) or _turned_rad(last, leg) > SAME_WAY_RAD:
+            found.append(leg)
+            continue
+        kept = last if last.length_m >= leg.length_m else leg
+        found[-1] = replace(
+            kept,
+            length_m=last.length_m + leg.length_m,
+            most_m_s=min(last.most_m_s, leg.most_m_s),
+            corner=last.corner,
+            joins=leg.joins and last.joins,
+        )
+    return found
 
 
 def _turned_rad(leg: _Leg, behind: _Leg) -> float:
@@ -152,8 +198,8 @@ def _turn_m(turned_rad: float, early_m: float) -> float:
 
 def _leg_s(
     length_m: float, from_m_s: float, end_m_s: float, turn_m: float, most_m_s: float, braking: Braking
-) -> tuple[float, float]:
-    """Seconds for a leg, no faster than before while it turns; and the speed it is left at."""
+) -> tuple[float, float, float]:
+    """Seconds of a leg turning, no faster than before, and straight; and the speed it is left at."""
     turn_m = min(turn_m, length_m) if from_m_s > 0.0 else 0.0
     turning_s = turn_m / from_m_s if turn_m > 0.0 else 0.0
     free_m = length_m - turn_m
@@ -166,7 +212,7 @@ def _leg_s(
     low, high = from_m_s, most_m_s
     if needed_m(low) >= free_m:
         left_m_s = min(left_m_s, from_m_s) if from_m_s > 0.0 else left_m_s
-        return turning_s + free_m / (0.5 * (from_m_s + left_m_s)), left_m_s
+        return turning_s, free_m / (0.5 * (from_m_s + left_m_s)), left_m_s
     if needed_m(high) > free_m:
         for _ in range(HALVINGS):
             middle = 0.5 * (low + high)
@@ -174,7 +220,7 @@ def _leg_s(
         high = low
     speeding_s = change_s(from_m_s, high, braking.accel_m_s2, braking.jerk_m_s3)
     cruising_s = (free_m - needed_m(high)) / high
-    return turning_s + speeding_s + cruising_s + braking.time_s(high, end_m_s), min(left_m_s, high)
+    return turning_s, speeding_s + cruising_s + braking.time_s(high, end_m_s), min(left_m_s, high)
 
 
 def _shares_s(together: Sequence[Stretch], manners: Manners) -> list[float]:
@@ -196,7 +242,7 @@ def change_of_height_s(rise_m: float, manners: Manners) -> float:
     rate = manners.climb_m_s if rise_m > 0.0 else manners.sink_m_s
     braking = Braking(manners.vertical_accel_m_s2, manners.jerk_m_s3, manners.height_reached_m)
     length_m = max(abs(rise_m) - manners.height_reached_m, 0.0)
-    return _leg_s(length_m, 0.0, 0.0, 0.0, rate, braking)[0] if length_m > 0.0 else 0.0
+    return _leg_s(length_m, 0.0, 0.0, 0.0, rate, braking)[1] if length_m > 0.0 else 0.0
 
 
 def climb_s(height_m: float, top_m: float, manners: Manners) -> float:
@@ -211,7 +257,7 @@ def climb_s(height_m: float, top_m: float, manners: Manners) -> float:
         return low_s
     braking = Braking(manners.vertical_accel_m_s2, manners.jerk_m_s3, manners.height_reached_m)
     above_m = max(top_m - manners.take_off_below_m - manners.height_reached_m, 0.0)
-    above_s, _ = _leg_s(above_m, slow_m_s, 0.0, 0.0, manners.climb_m_s, braking)
+    _, above_s, _ = _leg_s(above_m, slow_m_s, 0.0, 0.0, manners.climb_m_s, braking)
     return low_s + above_s * (height_m - manners.take_off_below_m) / (top_m - manners.take_off_below_m)
 
 

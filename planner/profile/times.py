@@ -19,9 +19,9 @@ import numpy as np
 from planner.airspace.values import STILL_AIR, Wind
 from planner.dubins.path import Path, Segment
 from planner.profile.flight import Stretch
-from planner.profile.jerks import HALVINGS, change_m, change_s, chords_of
 from planner.vehicle.aircraft import Aircraft
 from planner.vehicle.atmosphere import true_over_equivalent
+from planner.vehicle.jerks import HALVINGS, change_m, change_s, chords_of, corners_of, is_corner
 from planner.vehicle.manners import Manners
 from planner.vehicle.wind import duration_s, held_speed_m_s
 
@@ -100,7 +100,12 @@ def rotor_times(
     stretches: Sequence[Stretch], airspeed_m_s: float, manners: Manners, wind: Wind = STILL_AIR
 ) -> list[float]:
     """Seconds of each stretch flown by what hovers: at rest at both ends of what is flown over the ground."""
-    limits = [_allowed_m_s(s, airspeed_m_s, manners, wind) for s in stretches]
+    named = [s.collects for s in stretches]
+    beside = [any(pair) for pair in zip([False, *named[:-1]], [*named[1:], False], strict=True)]
+    limits = [
+        _allowed_m_s(s, airspeed_m_s, manners, wind, short=short)
+        for s, short in zip(stretches, beside, strict=True)
+    ]
     joints = [0.0, *(min(pair) for pair in pairwise(limits)), 0.0]
     for k, s in enumerate(stretches):
         joints[k + 1] = min(joints[k + 1], _reached_m_s(joints[k], s.ground_m, manners))
@@ -113,8 +118,16 @@ def rotor_times(
     ]
 
 
-def _allowed_m_s(stretch: Stretch, airspeed_m_s: float, manners: Manners, wind: Wind) -> float:
-    """Fastest on a stretch: what the wind, on arcs what their chords, on slopes what the rates allow."""
+def _allowed_m_s(
+    stretch: Stretch, airspeed_m_s: float, manners: Manners, wind: Wind, *, short: bool
+) -> float:
+    """Fastest on a stretch: what the wind, on arcs what their chords, on slopes what the rates allow.
+
+    Parameters
+    ----------
+    short
+        Whether it begins or ends at a place that the mission names.
+    """
     if stretch.segment is None:
         return 0.0
     courses_rad = stretch.segment.start.angle_rad + stretch.segment.turn_rad * _ALONG_ARC
@@ -122,13 +135,14 @@ def _allowed_m_s(stretch: Stretch, airspeed_m_s: float, manners: Manners, wind: 
     allowed = 1.0 / float((1.0 / held_speed_m_s(courses_rad, airspeed_m_s, wind, manners.sharing)).mean())
     if stretch.segment.kind != "straight":
         turn_rad, radius_m = abs(stretch.segment.turn_rad), stretch.segment.radius_m
-        allowed = min(allowed, chord_speed_m_s(turn_rad, radius_m, manners))
+        arc_m_s = corner_speed_m_s if is_corner(radius_m) else chord_speed_m_s
+        allowed = min(allowed, arc_m_s(turn_rad, radius_m, manners, short=short))
     rise_m = stretch.end_altitude_m - stretch.start_altitude_m
     rate = manners.climb_m_s if rise_m > 0.0 else manners.sink_m_s
     return min(allowed, rate * stretch.length_m / abs(rise_m)) if abs(rise_m) > 0.0 else allowed
 
 
-def chord_speed_m_s(turn_rad: float, radius_m: float, manners: Manners) -> float:
+def chord_speed_m_s(turn_rad: float, radius_m: float, manners: Manners, *, short: bool = False) -> float:
     """Speed along an arc that ArduCopter flies from chord to chord, as missions say it.
 
     It flies a chord no faster than from rest to rest, which over short ones its jerk decides: half a chord of
@@ -137,6 +151,22 @@ def chord_speed_m_s(turn_rad: float, radius_m: float, manners: Manners) -> float
     corner_rad = turn_rad / chords_of(turn_rad, radius_m)
     chord_m = 2.0 * radius_m * math.sin(0.5 * corner_rad)
     return float((0.25 * chord_m**2 * manners.jerk_m_s3) ** (1.0 / 3.0))
+
+
+def corner_speed_m_s(turn_rad: float, radius_m: float, manners: Manners, *, short: bool) -> float:
+    """Speed round a corner of ArduCopter's.
+
+    It blends the braking of one leg with the acceleration of the next where both are long, from
+    b = 2 r / sin(θ / 2) before the place, that it passes within WPNAV_RADIUS, at √(2 a b) cos(θ / 2). What
+    lies between such a place and another one as near is flown from rest to rest: half of it, the tangent t,
+    takes it to v with t = √(v³ / j).
+    """
+    count, tangent_m = corners_of(turn_rad, radius_m)
+    half_rad = turn_rad / (2.0 * count)
+    if short or count > 1:
+        return float((tangent_m**2 * manners.jerk_m_s3) ** (1.0 / 3.0))
+    blend_m = 2.0 * radius_m / math.sin(half_rad)
+    return math.sqrt(2.0 * manners.accel_m_s2 * blend_m) * math.cos(half_rad)
 
 
 def _change_s(from_m_s: float, to_m_s: float, manners: Manners) -> float:

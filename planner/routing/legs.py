@@ -96,14 +96,14 @@ class Legs:
         return cost_m
 
     def pass_m(self, collect: CollectPass) -> float:
-        """One pass and the settling before it."""
+        """One pass, the settling before it, and the stops at its corners."""
         cost_m = collect.length_m + self._model.settle_m
         if self._model.wind.speed_m_s > 0.0:
             cost_m *= float(self._model.air_factor(collect.angle_rad))
         if len(self._soft):
             line = np.array([collect.settling(self._model.settle_m).position, collect.end])
             cost_m += risk_m(line, self._soft)
-        return cost_m
+        return cost_m + self._model.stops_m
 
     def tour_m(self, passes: Sequence[CollectPass]) -> float:
         """From the start through all passes to the end."""

@@ -15,6 +15,10 @@ FinishWish = Literal["auto", "land", "return", "loiter"]
 #: Share of the energy kept where a scenario says nothing else.
 DEFAULT_RESERVE = 0.2
 
+#: What hovers turns on the spot, where nothing else is asked of it: its corners are arcs of this radius, as
+#: near as autopilots pass a waypoint (WPNAV_RADIUS, NAV_ACC_RAD), flown as slowly as that asks for.
+CORNER_RADIUS_M = 2.0
+
 #: Planned arcs are this much wider than the aircraft's limit, so that no rounding makes a turn too tight.
 TURN_RADIUS_MARGIN = 1.001
 
@@ -30,7 +34,8 @@ class Aircraft:
     airspeed_m_s
         Cruise airspeed, > 0.
     min_turn_radius_m
-        Tightest turn it flies at that airspeed, in the air mass, > 0.
+        Tightest turn it flies at that airspeed, in the air mass, > 0; of what turns on the spot
+        ``CORNER_RADIUS_M``, flown more slowly.
     energy_wh, max_range_m, max_flight_time_s
         What one flight has; None where not limited.
     reserve
@@ -84,6 +89,11 @@ class Aircraft:
     def hovers(self) -> bool:
         """Whether it flies on rotors alone: at a speed over the ground, its nose along its course."""
         return self.type == "multirotor"
+
+    @property
+    def turns_on_the_spot(self) -> bool:
+        """Whether it brakes for its corners rather than fly round them."""
+        return self.hovers and self.min_turn_radius_m <= CORNER_RADIUS_M
 
     @property
     def usable_wh(self) -> float | None:

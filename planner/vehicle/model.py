@@ -11,6 +11,7 @@ from planner.airspace.values import STILL_AIR, Wind
 from planner.errors import InfeasibleError
 from planner.route import Line
 from planner.vehicle.aircraft import Aircraft
+from planner.vehicle.jerks import change_s
 from planner.vehicle.manners import manners_of
 from planner.vehicle.wind import (
     duration_s,
@@ -71,6 +72,19 @@ class FlightModel:
     def turn_radius_m(self) -> float:
         """Radius of planned arcs over the ground, whatever the direction."""
         return self.aircraft.planned_turn_radius_m
+
+    @property
+    def stop_s(self) -> float:
+        """What stopping for a corner takes longer than flying on; 0 for what flies round its corners."""
+        if not self.aircraft.turns_on_the_spot:
+            return 0.0
+        manners = manners_of(self.aircraft)
+        return change_s(0.0, self.airspeed_m_s, manners.accel_m_s2, manners.jerk_m_s3)
+
+    @property
+    def stops_m(self) -> float:
+        """Metres at cruise that the corners before and behind a pass cost; 0 for what flies round them."""
+        return 2.0 * self.airspeed_m_s * self.stop_s
 
     @property
     def settle_m(self) -> float:

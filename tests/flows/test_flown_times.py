@@ -59,12 +59,14 @@ def mission_end_s(path: FlownPath, track: list[tuple[float, AircraftState]]) -> 
         ("px4", {}),
         ("ardupilot", {"type": "multirotor", "min_turn_radius_m": 60}),
         ("px4", {"type": "multirotor", "min_turn_radius_m": 60}),
+        ("px4", {"type": "multirotor", "min_turn_radius_m": None}),
     ],
 )
 def test_a_whole_flight_takes_as_long_as_planned(autopilot: Autopilot, changes: dict[str, Any]) -> None:
     """From lift-off to disarmed, and up to the end of the mission phase, in still air."""
     document = json.loads(json.dumps(EXAMPLE))
-    document["vehicles"][0] |= {"autopilot": autopilot, "finish": "land"} | changes
+    vehicle_document = document["vehicles"][0] | {"autopilot": autopilot, "finish": "land"} | changes
+    document["vehicles"][0] = {name: value for name, value in vehicle_document.items() if value is not None}
     plan = make_plan(read_scenario(document))
     (path,) = plan.paths
     vehicle = plan.vehicles[0]

@@ -175,8 +175,9 @@ def _posed(
         (start.x, start.y),
         (start.x, start.y),
         span_m=0.0,
-        turn_radius_m=model.turn_radius_m,
+        turn_radius_m=0.0 if model.aircraft.turns_on_the_spot else model.turn_radius_m,
         speed_m_s=model.airspeed_m_s,
+        stop_s=model.stop_s,
     )
     return urban, Joiner.among(urban, free_space(urban))
 

@@ -1,10 +1,14 @@
-"""Changes of speed whose acceleration rises and falls by a jerk, and the chords that arcs are flown by."""
+"""Changes of speed whose acceleration rises and falls by a jerk; what arcs are flown by: chords, corners."""
 
 from __future__ import annotations
 
 import math
 
+from planner.vehicle.aircraft import CORNER_RADIUS_M, TURN_RADIUS_MARGIN
 from planner.vehicle.manners import CHORD_ERROR_M, LARGEST_STEP_RAD
+
+#: A corner turns by no more than this, a right angle and a little; what turns farther is several.
+MOST_CORNER_RAD = math.radians(91.0)
 
 #: Speeds are found to a part in a million.
 HALVINGS = 40
@@ -27,3 +31,14 @@ def chords_of(turn_rad: float, radius_m: float) -> int:
     """How many chords a mission leaves of an arc."""
     step_rad = 2.0 * math.acos(max(1.0 - CHORD_ERROR_M / radius_m, math.cos(0.5 * LARGEST_STEP_RAD)))
     return max(1, math.ceil(turn_rad / step_rad - 1e-9))
+
+
+def is_corner(radius_m: float) -> bool:
+    """Whether an arc is flown as corners: by straights that meet behind it."""
+    return radius_m <= CORNER_RADIUS_M * TURN_RADIUS_MARGIN
+
+
+def corners_of(turn_rad: float, radius_m: float) -> tuple[int, float]:
+    """How many corners such an arc is, and how far each is from where its straights touch it."""
+    count = max(1, math.ceil(turn_rad / MOST_CORNER_RAD))
+    return count, radius_m * math.tan(turn_rad / (2.0 * count))
