@@ -58,7 +58,7 @@ async def test_a_restart_empties_the_mission_and_nothing_is_started(
             body = await until(client, lambda body: body["sent"]["standing"] == "differs")
             assert body["plan_id"] is None
             assert not body["state"]["armed"]
-            async with asyncio.timeout(20):
+            async with asyncio.timeout(60):
                 # It may just be read back once more.
                 while (report := await client.post(place + "/mission", json={"plan_id": plan_id})).is_error:
                     assert report.json()["type"].endswith(":busy"), report.text

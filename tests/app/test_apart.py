@@ -42,7 +42,7 @@ def serving(database: Path) -> Iterator[tuple[str, subprocess.Popen[str]]]:
         finally:
             if process.poll() is None:
                 process.terminate()
-            process.wait(30)
+            process.wait(60)
 
 
 def until(what: Callable[[], Any], within_s: float = 30.0) -> Any:

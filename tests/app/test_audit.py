@@ -30,7 +30,7 @@ async def entries(
     client: httpx.AsyncClient, ready: Callable[[list[dict[str, Any]]], bool], **which: Any
 ) -> list[dict[str, Any]]:
     """Entries, the newest first, once they are as they should be."""
-    async with asyncio.timeout(20):
+    async with asyncio.timeout(60):
         while not ready(found := (await client.get(AUDIT, params=which)).json()["entries"]):
             await asyncio.sleep(0.05)
     return found
@@ -157,7 +157,7 @@ async def test_an_upload_left_by_a_crash_is_resolved(settings: Settings, plan_fi
             assert {entry["outcome"] for entry in found} == {"unknown"}
             assert "may have been carried out" in found[0]["reason"]
             with closing(sqlite3.connect(settings.database)) as database:
-                async with asyncio.timeout(20):
+                async with asyncio.timeout(60):
                     while (rows := database.execute("SELECT outcome FROM uploads").fetchall()) == [
                         ("pending",)
                     ]:

@@ -87,7 +87,7 @@ async def test_forwarded_from_the_start(client: httpx.AsyncClient, tmp_path: Pat
         # A station on TCP reads the same, by another route.
         reader, writer = await asyncio.open_connection("127.0.0.1", int(second["address"].rpartition(":")[2]))
         codec, heard = Codec(), set[str]()
-        async with asyncio.timeout(20):
+        async with asyncio.timeout(60):
             while "HEARTBEAT" not in heard:
                 heard |= {message.name for message in codec.feed(await reader.read(4096))}
         writer.close()

@@ -32,7 +32,7 @@ async def test_a_vehicle_is_served_the_ground_under_it(settings: Settings) -> No
             return [each for each in flying.heard if each.name == "TERRAIN_DATA"]
 
         await ask(50.0, 8.0)
-        async with asyncio.timeout(25):
+        async with asyncio.timeout(60):
             while not answers():
                 await ask(0.01, 0.02)
                 await asyncio.sleep(0.1)

@@ -42,7 +42,7 @@ def full_disk(process: Service) -> Iterator[None]:
 
 def wait_ready(running: Service, status: int) -> dict[str, bool]:
     """The checks of the probe once it answers with a status."""
-    end_s = time.monotonic() + 30
+    end_s = time.monotonic() + 60
     while (answer := running.client.get(READY)).status_code != status:
         assert time.monotonic() < end_s, answer.text
         time.sleep(0.05)
@@ -75,7 +75,7 @@ def test_a_plan_that_cannot_be_written_has_failed(tmp_path: Path) -> None:
         assert running.post("done", wait_s=20)["state"] == "done"
         wait_ready(running, 200)
         with closing(sqlite3.connect(f"file:{tmp_path / 'plans.db'}?mode=ro", uri=True)) as rows:
-            end_s = time.monotonic() + 30
+            end_s = time.monotonic() + 60
             while rows.execute("SELECT state FROM plans ORDER BY number").fetchall()[0] != ("failed",):
                 assert time.monotonic() < end_s
                 time.sleep(0.05)

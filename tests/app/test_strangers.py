@@ -31,7 +31,7 @@ async def aircraft(port: int, system_id: int = 1) -> AsyncIterator[Aircraft]:
 
 async def until(client: httpx.AsyncClient, place: str, ready: Callable[[Any], bool]) -> Any:
     """The vehicle, once it is ready."""
-    async with asyncio.timeout(25):
+    async with asyncio.timeout(60):
         while not ready(body := (await client.get(place)).json()):
             await asyncio.sleep(0.05)
     return body

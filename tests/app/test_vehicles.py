@@ -32,7 +32,7 @@ VEHICLES = "/api/v1/vehicles"
 
 async def until(client: httpx.AsyncClient, path: str, ready: Callable[[Any], bool]) -> Any:
     """What stands at a path once it is ready."""
-    async with asyncio.timeout(25):
+    async with asyncio.timeout(60):
         while not ready(body := (await client.get(path)).json()):
             await asyncio.sleep(0.02)
     return body

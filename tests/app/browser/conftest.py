@@ -29,7 +29,7 @@ CHROMIUM_FLAGS = [
     "--disable-component-update",
     "--disable-sync",
 ]
-START_LIMIT_S = 60.0
+START_LIMIT_S = 120.0
 #: Slower for a good picture: see docs/map.md.
 SPEEDUP = int(os.environ.get("SWATHPLAN_TEST_SPEEDUP", "200"))
 #: The processor draws a quarter of the points where nobody looks; the page's own pixels are as ever.
