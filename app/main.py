@@ -16,6 +16,7 @@ from app import problems
 from app.assembly import assemble, limits_of
 from app.map_files import MapFiles
 from app.routers import (
+    aircraft,
     artefacts,
     audit,
     flights,
@@ -43,6 +44,7 @@ TAGS = [
     {"name": "artefacts", "description": "What a plan gives: GeoJSON, missions, a report."},
     {"name": "scenarios", "description": "Scenarios judged without planning them."},
     {"name": "sensors", "description": "Cameras that scenarios may name."},
+    {"name": "aircraft", "description": "Airframes that scenarios may name."},
     {"name": "terrain", "description": "Elevation rasters for scenarios to lie on."},
     {"name": "vehicles", "description": "Connected vehicles: state, missions, commands."},
     {"name": "flights", "description": "What was flown, and what was seen."},
@@ -76,7 +78,8 @@ def create_app(settings: Settings | None = None, build_house: Callable[[Limits],
             await house.close()
 
     modules = (
-        plans, artefacts, scenarios, sensors, terrain, vehicles, flights, sorties, audit, health, interface,
+        plans, artefacts, scenarios, sensors, aircraft, terrain, vehicles, flights, sorties, audit, health,
+        interface,
     )  # fmt: skip
     app = assemble(
         settings,

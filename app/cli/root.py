@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from app.cli import (
+    aircraft,
     audit,
     bench,
     exchange,
@@ -52,7 +53,10 @@ def _root(
     pass
 
 
-MODULES = (serve, links, planning, missions, exchange, journey, sensors, audit, logs, flown, signing, bench)
+MODULES = (
+    serve, links, planning, missions, exchange, journey, sensors, aircraft, audit, logs, flown,
+    signing, bench,
+)  # fmt: skip
 for module in MODULES:
     module.register(cli)
 

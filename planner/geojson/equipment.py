@@ -18,6 +18,7 @@ from planner.vehicle.aircraft import (
     turn_radius_from_bank_m,
     turn_radius_from_load_factor_m,
 )
+from planner.vehicle.airframes import completed, find_airframe, is_airframe
 from planner.vehicle.steadiness import Steadiness, steadiness_of
 from planner.wishes import Method, Objective
 
@@ -42,7 +43,10 @@ def read_aircraft(raw: Any, index: int, findings: Findings) -> Aircraft | None:
         findings.error("scenario", "bad-value", f"vehicles[{index}] is not an object", "Give an object.")
         return None
     name = raw.get("name")
-    fields = Fields(f"vehicle {name if name else index}", raw, findings)
+    owner = f"vehicle {name if name else index}"
+    raw = _of_model(raw, Fields(owner, raw, findings))
+    fields = Fields(owner, raw, findings)
+    fields.raw("model")
     name = fields.text("name")
     kind: Any = fields.choice("type", VEHICLE_TYPES, "fixed_wing")
     autopilot: Any = fields.choice("autopilot", AUTOPILOTS, "ardupilot")
@@ -50,7 +54,7 @@ def read_aircraft(raw: Any, index: int, findings: Findings) -> Aircraft | None:
     slowest_m_s = fields.number("min_airspeed_m_s", None, above=0.0, maximum=airspeed_m_s or 400.0)
     radius_m = _turn_radius_m(fields, airspeed_m_s, kind)
     max_climb_deg = fields.number("max_climb_deg", 8.0, above=0.0, below=90.0)
-    energy_wh = fields.number("energy_wh", None, above=0.0)
+    energy_wh = _stored_wh(fields)
     power = read_power(fields, findings, kind)
     reserve = fields.number("reserve", DEFAULT_RESERVE, minimum=0.0, below=1.0)
     range_m = fields.number("max_range_m", None, above=0.0)
@@ -94,6 +98,35 @@ def read_aircraft(raw: Any, index: int, findings: Findings) -> Aircraft | None:
     )  # fmt: skip
 
 
+def _of_model(raw: dict[str, Any], fields: Fields) -> dict[str, Any]:
+    """An entry with what it leaves to the airframe that it names."""
+    model = fields.text("model", None)
+    if model is None:
+        return raw
+    try:
+        return completed(raw, find_airframe(model))
+    except KeyError as error:
+        fields.wrong("model", f"is unknown: {error.args[0]}", "Name one of them, or leave model out.")
+        return raw
+
+
+def _stored_wh(fields: Fields) -> float | None:
+    """Energy of the battery: as given, or charge by voltage."""
+    energy_wh = fields.number("energy_wh", None, above=0.0)
+    charge_mah = fields.number("charge_mah", None, above=0.0)
+    voltage_v = fields.number("voltage_v", None, above=0.0)
+    given = [name for name in ("charge_mah", "voltage_v") if name in fields]
+    if given and "energy_wh" in fields:
+        fields.wrong(given[0], "is given beside energy_wh, which says it too", "Keep one of them.")
+        return energy_wh
+    if len(given) == 1:
+        other = "voltage_v" if given == ["charge_mah"] else "charge_mah"
+        fields.wrong(other, f"is missing beside {given[0]}", f"Add {other}.", rule="missing-property")
+    if charge_mah is not None and voltage_v is not None:
+        return charge_mah * voltage_v / 1000.0
+    return energy_wh
+
+
 def _on_board(fields: Fields) -> tuple[str, ...] | None:
     value = fields.raw("sensors")
     if value is None:
@@ -121,6 +154,9 @@ def named_steadiness(raw: Any) -> Steadiness | None:
     """Of the autopilot that an entry of ``vehicles`` names; None where it names none that is known."""
     if not isinstance(raw, Mapping):
         return None
+    model = raw.get("model")
+    if isinstance(model, str) and is_airframe(model):
+        raw = completed(raw, find_airframe(model))
     autopilot: Any = raw.get("autopilot")
     kind: Any = raw.get("type") or "fixed_wing"
     if autopilot not in AUTOPILOTS or kind not in VEHICLE_TYPES:

@@ -88,6 +88,15 @@ PROOFS: dict[tuple[str, str], tuple[Document, Document]] = {
     ("vehicle", "max_load_factor"): (small(), vehicle(max_load_factor=1.02)),
     ("vehicle", "max_climb_deg"): (vehicle(max_climb_deg=8.0), vehicle(max_climb_deg=3.0)),
     ("vehicle", "energy_wh"): (vehicle(cruise_power_w=200.0), vehicle(cruise_power_w=200.0, energy_wh=5.0)),
+    ("vehicle", "charge_mah"): (
+        vehicle(cruise_power_w=200.0, voltage_v=10.0, charge_mah=90_000.0),
+        vehicle(cruise_power_w=200.0, voltage_v=10.0, charge_mah=500.0),
+    ),
+    ("vehicle", "voltage_v"): (
+        vehicle(cruise_power_w=200.0, voltage_v=50.0, charge_mah=9_000.0),
+        vehicle(cruise_power_w=200.0, voltage_v=0.5, charge_mah=9_000.0),
+    ),
+    ("vehicle", "model"): (small(), vehicle(model="Aerosonde")),
     ("vehicle", "reserve"): (
         vehicle(cruise_power_w=200.0, energy_wh=50.0),
         vehicle(cruise_power_w=200.0, energy_wh=50.0, reserve=0.9),
