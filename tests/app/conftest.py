@@ -19,6 +19,7 @@ from app.routers.bodies import EXAMPLE
 from app.services.house import House, Limits
 from app.services.links.keeper import Keeper
 from app.services.plans.work import plan_scenario
+from app.services.vehicles import audit
 from app.services.vehicles.times import LinkTimes
 from app.settings import Settings
 from mavlink.transfer.machine import TransferSettings
@@ -75,6 +76,12 @@ async def serving(app: FastAPI) -> AsyncIterator[httpx.AsyncClient]:
 def _quiet_logs() -> None:
     """Log as the service does, errors alone."""
     configure("error")
+
+
+@pytest.fixture(autouse=True)
+def _patient_audit(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Orders wait for a slow disk: where one is meant that does not answer, the test says how long."""
+    monkeypatch.setattr(audit, "WAIT_S", 60.0)
 
 
 def settings_in(folder: Path) -> Settings:
