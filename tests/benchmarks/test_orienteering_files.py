@@ -118,6 +118,39 @@ def test_row_of_an_oplib_file(tmp_path: Path) -> None:
     assert row["published_best"] is None
 
 
+def test_rows_of_polygons(tmp_path: Path) -> None:
+    """A row for each budget that is published for the turn radius; paths go from start to end."""
+    sheet = {
+        "border": [[-500, -500], [1500, -500], [1500, 500], [-500, 500]],
+        "obstacles": [[[400, -100], [600, -100], [600, 100], [400, 100]]],
+        "start": [0, 0],
+        "end": [1000, 0],
+        "targets": [{"at": [500, 150], "reward": 3}, {"at": [500, -400], "reward": 4}],
+        "published": [
+            {"model": model, "turn_radius": radius, "budget": budget, "reward_best": 3, "reward_mean": 2.5}
+            for model, radius in (("dubins", 60), ("straight", 0))
+            for budget in (1100.0, 1300.0)
+        ],
+    }
+    path = tmp_path / "toy.json"
+    path.write_text(json.dumps(sheet))
+    rows = list(run(path, seconds=0.5, paths=tmp_path, threads=1))
+    assert [(row["model"], row["budget"], row["reward"]) for row in rows] == [
+        ("dubins", 1100.0, 3.0),
+        ("dubins", 1300.0, 4.0),
+    ]
+    assert all((row["published_best"], row["published_mean"]) == (3.0, 2.5) for row in rows)
+    for row in rows:
+        line = np.array(json.loads((tmp_path / f"toy-{int(row['budget'])}.json").read_text()))
+        assert np.hypot(*np.diff(line, axis=0).T).sum() <= row["length"] <= row["budget"]
+        assert (line[0].tolist(), line[-1].tolist()) == ([0.0, 0.0], [1000.0, 0.0])
+    (straight,) = run(path, budget=1100.0, seconds=0.5, turn_radius=0.0, threads=1)
+    assert straight["model"] == "straight"
+    assert straight["length"] < rows[0]["length"]
+    (none,) = run(path, budget=900.0, seconds=0.5, threads=1)
+    assert (none["reward"], none["length"]) == (0.0, None)
+
+
 def test_names_of_budgets() -> None:
     """Whole budgets are named without a fraction."""
     assert (budget_name(1500.0), budget_name(0.5), budget_name(math.pi)) == ("1500", "0.5", repr(math.pi))
