@@ -23,8 +23,8 @@ from planner.fleet.prizes.flyable import Field, dense_points, most_reward
 from planner.fleet.prizes.problem import Prizes
 from planner.fleet.prizes.route import best_route
 
-#: Of the time allowed, what writing the answer may take.
-LAST_S = 0.25
+#: Of the time allowed, the part for what is done once the search was told to stop.
+LAST = 0.1
 #: Points of a path are no further apart.
 STEP = 1.0
 #: Where the file names no turn radius.
@@ -91,7 +91,7 @@ def _oplib_row(
     rewards = problem.scores[places]
     rewards[-1] = 0.0
     prizes = Prizes(problem.distances[np.ix_(places, places)], rewards, limit)
-    until = began + seconds - LAST_S
+    until = began + (1.0 - LAST) * seconds
     found = best_route(prizes, seed, pools=None, threads=threads, stop=lambda: time.perf_counter() >= until)
     route = [int(places[k]) for k in found.order]
     points = [] if problem.points is None else _dense(problem.points[route])
@@ -116,7 +116,7 @@ def _polygons_row(
     problem: PolygonProblem, budget: float, turn_radius: float, seconds: float, threads: int, seed: int
 ) -> tuple[dict[str, Any], list[list[float]]]:
     began = time.perf_counter()
-    until = began + seconds - LAST_S
+    until = began + (1.0 - LAST) * seconds
     field = field_of(problem, turn_radius)
     known = [row for row in problem.published if row.budget == budget and row.turn_radius == turn_radius]
     row: dict[str, Any] = {
