@@ -35,6 +35,7 @@ class Benchmark(StrEnum):
     ORIENTEERING = "orienteering"
     SMOOTHING = "smoothing"
     IMPORTANCE = "importance"
+    VRPTW = "vrptw"
 
 
 def _options(pairs: list[str]) -> dict[str, Any]:

@@ -6,10 +6,11 @@ from planner.fleet.answer import trips_of
 from planner.fleet.assignment import Assignment, Status
 from planner.fleet.auto.build import tables
 from planner.fleet.auto.search import search
+from planner.fleet.bound import lower_bound
 from planner.fleet.exact import exact
 from planner.fleet.left_out import left_out_of
 from planner.fleet.problem import Problem
-from planner.fleet.schedule import cost_of
+from planner.fleet.schedule import cost_of, worth_of_all
 from planner.progress import Progress, Stop, never, silent
 
 #: Iterations of the search: so many, and so many more for each job.
@@ -22,6 +23,8 @@ def assign(
     stop: Stop = never,
     progress: Progress = silent,
     iterations: int | None = None,
+    *,
+    bounded: bool = False,
 ) -> Assignment:
     """The best assignment found: proved so for few targets, by search for many.
 
@@ -35,6 +38,8 @@ def assign(
         To be asked between steps, and told.
     iterations
         Of the search; by the number of targets when not given.
+    bounded
+        Whether to say what no assignment can beat, also where nothing is proved.
 
     Raises
     ------
@@ -53,5 +58,8 @@ def assign(
     status: Status = "optimal" if proved else "feasible"
     if any(each.required for each in left_out):
         status = "infeasible"
+    bound = cost if proved else None
+    if bounded and not proved and status == "feasible":
+        bound = lower_bound(known, stop) - worth_of_all(problem)
     progress("assign", 1.0)
-    return Assignment(trips, left_out, status, cost, cost if proved else None)
+    return Assignment(trips, left_out, status, cost, bound)

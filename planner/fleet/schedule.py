@@ -135,6 +135,11 @@ def cost_of(problem: Problem, trips: Sequence[Trip]) -> float:
     )
 
 
+def worth_of_all(problem: Problem) -> float:
+    """What all targets together are worth in the objective."""
+    return problem.objective.priority * sum(target.priority for target in problem.targets)
+
+
 def _waited_s(trip: Trip) -> float:
     return sum(visit.wait_s for visit in trip.visits)
 

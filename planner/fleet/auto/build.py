@@ -55,8 +55,10 @@ def tables(problem: Problem) -> Tables:
         )
     costs = Costs(
         np.ascontiguousarray(seconds),
+        np.ascontiguousarray(seconds.transpose(0, 2, 1)),
         service,
         np.ascontiguousarray(price),
+        np.ascontiguousarray(price.transpose(0, 2, 1)),
         _limited(problem, nodes, where, "length_m", "range_m"),
         _limited(problem, nodes, where, "energy_wh", "energy_wh"),
     )

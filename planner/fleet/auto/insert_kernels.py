@@ -77,6 +77,8 @@ def best_place(
                 if not service < math.inf:
                     continue
                 early, late = jobs.early[v], jobs.late[v] - service
+                seconds_to, seconds_from = costs.seconds_to[p, v], costs.seconds[p, v]
+                price_to, price_from = costs.price_to[p, v], costs.price[p, v]
                 for i in range(count + ends):
                     a = seq[min(i, count)]
                     if i < count or not free:
@@ -86,16 +88,16 @@ def best_place(
                         b = crew.ends[crew.ends_first[m] + i - count]
                         tail = count + 1
                     i = min(i, count)
-                    price = costs.price[p, a, v] + costs.price[p, v, b]
+                    price = price_to[a] + price_from[b]
                     if count > 0:
-                        price -= costs.price[p, a, seq[i + 1]]
+                        price -= fore[i + 1, 3]
                     if not timed and count > 0 and price >= best:
                         continue
-                    there = costs.seconds[p, a, v]
+                    there = seconds_to[a]
                     if fore[i, 0] + fore[i, 1] + there > late + EPSILON:
                         continue
                     d, e, last = join(fore[i, 0], fore[i, 1], fore[i, 2], there, service, early, late)
-                    onward = costs.seconds[p, v, b]
+                    onward = seconds_from[b]
                     d, e, last = join(d, e, last, onward, back[tail, 0], back[tail, 1], back[tail, 2])
                     if not e <= last + EPSILON:
                         continue
@@ -187,9 +189,11 @@ def cost_of(jobs: Jobs, crew: Crew, weights: Weights, routes: Routes, slope: flo
 def copy_member(source: Routes, target: Routes, crew: Crew, m: int) -> None:
     """Make a member's routes in ``target`` those of ``source``; where its jobs are is not copied."""
     for r in range(crew.first[m], crew.first[m + 1]):
-        n = source.filled[r] + 2
         target.filled[r] = source.filled[r]
-        target.seq[r, :n] = source.seq[r, :n]
-        target.fore[r, :n] = source.fore[r, :n]
-        target.back[r, :n] = source.back[r, :n]
-        target.sums[r] = source.sums[r]
+        for i in range(source.filled[r] + 2):
+            target.seq[r, i] = source.seq[r, i]
+            for k in range(4):
+                target.fore[r, i, k] = source.fore[r, i, k]
+                target.back[r, i, k] = source.back[r, i, k]
+        for k in range(7):
+            target.sums[r, k] = source.sums[r, k]

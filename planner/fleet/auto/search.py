@@ -17,7 +17,7 @@ from planner.progress import Stop
 #: Iterations between two looks at ``stop``.
 CHUNK = 500
 #: Temperatures at the begin and at the end, as parts of what one job costs on average.
-HOT, COLD = 0.3, 0.003
+HOT, COLD = 8.0, 0.05
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +47,7 @@ def empty(tables: Tables) -> Routes:
     first = tables.crew.first
     members = np.repeat(np.arange(len(first) - 1), np.diff(first)).astype(np.int64)
     count, jobs = len(members), len(tables.jobs.prize)
-    shape = (count, jobs + 2, 3)
+    shape = (count, jobs + 2, 4)
     routes = Routes(
         members,
         np.zeros(shape[:2], dtype=np.int64),

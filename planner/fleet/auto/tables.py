@@ -57,12 +57,15 @@ class Costs(NamedTuple):
     """Travel by profile of aircraft, (P, N, N) each: service of the column's node is in all but ``seconds``.
 
     ``price`` is what the objective pays for an arc beside time. ``length`` and ``energy`` have one element
-    where nothing limits them. ``service`` is (P, N), infinite where the profile cannot do the node.
+    where nothing limits them. ``seconds_to`` and ``price_to`` are (P, column, row), so that all that leads to
+    one node lies together. ``service`` is (P, N), infinite where the profile cannot do the node.
     """
 
     seconds: Floats
+    seconds_to: Floats
     service: Floats
     price: Floats
+    price_to: Floats
     length: Floats
     energy: Floats
 
@@ -108,7 +111,8 @@ class Routes(NamedTuple):
     at
         The route of each job, −1 when left out, (J,).
     fore, back
-        Least duration, earliest and latest start of the part up to, and from, each place, (R, L + 2, 3).
+        Least duration, earliest and latest start of the part up to, and from, each place, and the price of
+        the arc that leads to it or from it, (R, L + 2, 4).
     sums
         Duration, landing, price, length, energy of travel and service, seconds in motion, load, (R, 7).
     """

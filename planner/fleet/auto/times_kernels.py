@@ -76,7 +76,8 @@ def forward(jobs: Jobs, costs: Costs, crew: Crew, routes: Routes, r: int, ready:
     for i in range(1, count + 2):
         a, b = seq[i - 1], seq[i]
         leg = costs.seconds[p, a, b]
-        price += costs.price[p, a, b]
+        fore[i, 3] = costs.price[p, a, b]
+        price += fore[i, 3]
         if counts_length:
             length += costs.length[p, a, b]
         if counts_energy:

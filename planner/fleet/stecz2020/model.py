@@ -77,6 +77,7 @@ class Model:
     x: tuple[int, ...]
     missed: dict[int, int]
     penalty: float
+    f: tuple[int, ...]
 
 
 def horizon_s(network: Network) -> float:
@@ -200,6 +201,7 @@ def _segments(
 ) -> Model:
     """(21), (29), (30) and (31), and what is required."""
     by_target: dict[int, list[Segment]] = {}
+    f: list[int] = []
     for segment in network.segments:
         by_target.setdefault(segment.target, []).append(segment)
         k, m = segment.k, segment.m
@@ -207,6 +209,7 @@ def _segments(
             flown = [y[h, i, j] for h in range(len(network.flyers)) if (h, i, j) in y]
             if flown:
                 sensor = rows.variable(0.0, 1.0, whole=True)
+                f.append(sensor)
                 factor = -2.0 if form == "printed" else -1.0
                 most = 1.0 if form == "printed" else 0.0
                 rows.row([*((v, 1.0) for v in flown), (sensor, factor)], -math.inf, most)  # (21)
@@ -230,4 +233,4 @@ def _segments(
         if target in network.required:
             missed[target] = rows.variable(0.0, 1.0, penalty)
             rows.row([*((x[way.k], 1.0) for way in ways), (missed[target], 1.0)], 1.0, math.inf)
-    return Model(rows, y, x, missed, penalty)
+    return Model(rows, y, x, missed, penalty, tuple(f))

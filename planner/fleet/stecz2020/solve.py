@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from scipy.optimize import Bounds, LinearConstraint, milp
@@ -61,19 +62,24 @@ def solve(network: Network, form: Form = "meant", nodes: int = NODES, seconds: f
         fly.
     """
     model = write(network, form)
+    result = run_solver(model, nodes, seconds)
+    if result.x is None:
+        if result.status == 1:
+            raise OutOfBudgetError("routing stecz2020: no answer within its nodes")
+        raise ValueError("equations (20)–(33) have no solution: an aircraft that has to fly cannot")
+    return _read(network, model, result.x, float(result.mip_dual_bound), bool(result.status == 0))
+
+
+def run_solver(model: Model, nodes: int = NODES, seconds: float = math.inf) -> Any:
+    """What HiGHS says of a model, as ``scipy.optimize.milp`` has it."""
     rows = model.rows
-    result = milp(
+    return milp(
         np.array(rows.cost),
         integrality=np.array(rows.whole),
         bounds=Bounds(np.array(rows.low), np.array(rows.high)),
         constraints=LinearConstraint(rows.matrix(), np.array(rows.least), np.array(rows.most)),
         options={"node_limit": nodes, "time_limit": seconds, "mip_rel_gap": 1e-9},
     )
-    if result.x is None:
-        if result.status == 1:
-            raise OutOfBudgetError("routing stecz2020: no answer within its nodes")
-        raise ValueError("equations (20)–(33) have no solution: an aircraft that has to fly cannot")
-    return _read(network, model, result.x, float(result.mip_dual_bound), bool(result.status == 0))
 
 
 def _read(network: Network, model: Model, values: np.ndarray, bound: float, proved: bool) -> Routes:

@@ -10,8 +10,9 @@ import pytest
 
 from planner.fleet.assign import assign
 from planner.fleet.problem import Objective
+from planner.fleet.stecz2020.model import write
 from planner.fleet.stecz2020.network import Flyer, Goal, Network, Segment, Waypoint
-from planner.fleet.stecz2020.solve import assign_stecz2020, solve
+from planner.fleet.stecz2020.solve import assign_stecz2020, run_solver, solve
 from tests.planner.fleet.problems import problem
 
 OBJECTIVES = (
@@ -84,6 +85,17 @@ def test_the_print_lets_a_line_pass_a_segment_by() -> None:
     legs = {frozenset(leg) for leg in itertools.pairwise(line)}
     assert legs >= {frozenset({4, 5}), frozenset({6, 7})}
     assert len(legs & {frozenset({0, 1}), frozenset({2, 3})}) == 1
+
+
+def test_a_segment_needs_its_sensor_in_the_text_alone() -> None:
+    """(21) as printed holds with every sensor off; as meant no segment can be flown then."""
+    printed, meant = write(three_targets(), "printed"), write(three_targets(), "meant")
+    for model in (printed, meant):
+        for sensor in model.f:
+            model.rows.high[sensor] = 0.0
+    result = run_solver(printed)
+    assert sum(result.x[v] for (_, i, j), v in printed.y.items() if {i, j} == {4, 5}) > 0.5
+    assert run_solver(meant).x is None
 
 
 def test_either_direction_of_a_segment() -> None:
