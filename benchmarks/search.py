@@ -2,7 +2,8 @@
 
 ``swathplan bench search --json``. The paper flies its variants at several turn durations; each has a row
 here, and one with the means of all. Times are those of one processor.
-``--option turns_s=[6]`` for some of them.
+``--option turns_s=[6]`` for some of them. ``--option random=200`` plans so many random searches whole, each a
+row with what it uses of what it may, and what the judge says.
 """
 
 from __future__ import annotations
@@ -11,15 +12,25 @@ import time
 from collections.abc import Iterator, Sequence
 from typing import Any
 
+from benchmarks.search_scenarios import random_search
+from planner.errors import PlannerError
+from planner.pipeline import make_plan
 from planner.search.horizon import VARIANTS, energy_horizon
 from planner.search.paper_case import HEADING_RAD, SIDE_M, paper_case
 from planner.search.refine import auto, families
+from planner.validate import read_valid
 
 TURNS_S = (2.0, 4.0, 6.0, 8.0)
 
 
-def run(turns_s: Sequence[float] = TURNS_S, seed: int = 0) -> Iterator[dict[str, Any]]:
-    """A row for ``auto``, one for each variant and turn duration, and one with each variant's means."""
+def run(turns_s: Sequence[float] = TURNS_S, seed: int = 0, random: int = 0) -> Iterator[dict[str, Any]]:
+    """A row for ``auto``, one for each variant and turn duration, and one with each variant's means.
+
+    Or, where so many random searches are asked for, a row for each, and one that counts them.
+    """
+    if random:
+        yield from _random(random, seed)
+        return
     case = paper_case()
     # Kernels are compiled before anything is timed.
     case.seen(case.line(next(families(case))[1])[0])
@@ -76,3 +87,33 @@ def _row(
         "meant_s": None if meant_s is None else round(meant_s, 1),
         "cpu_s": round(cpu_s, 3),
     }
+
+
+def _random(count: int, seed: int) -> Iterator[dict[str, Any]]:
+    """Random searches, planned whole and judged."""
+    home = 0
+    for number in range(count):
+        document = random_search(seed + number)
+        began = time.process_time()
+        row: dict[str, Any] = {"bench": "search", "case": document["name"]}
+        try:
+            scenario = read_valid(document)
+            plan = make_plan(scenario)
+        except PlannerError as error:
+            yield row | {"refused": str(error)}
+            continue
+        metrics, usable_wh = plan.metrics, scenario.aircraft[0].usable_wh
+        kept = not plan.hard_violations and (
+            usable_wh is None or metrics.energy_wh is None or metrics.energy_wh <= usable_wh
+        )
+        home += kept
+        yield row | {
+            "method": plan.methods["search"],
+            "seen": round(metrics.coverage["ground"], 4),
+            "energy_wh": None if metrics.energy_wh is None else round(metrics.energy_wh, 2),
+            "usable_wh": None if usable_wh is None else round(usable_wh, 2),
+            "home": kept,
+            "violations": [violation.constraint for violation in plan.violations],
+            "cpu_s": round(time.process_time() - began, 2),
+        }
+    yield {"bench": "search", "case": "random", "searches": count, "home": home}

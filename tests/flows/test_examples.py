@@ -8,7 +8,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from app.cli.planning import with_terrain
+from app.cli.planning import with_raster
 from planner.geojson import read_plan
 from planner.pipeline import make_plan
 from planner.validate import read_valid
@@ -52,8 +52,10 @@ def test_curl_journey_flies_and_sees(service: str, tmp_path: Path) -> None:
 
 def test_field_survey_follows_its_wish_over_terrain() -> None:
     """Planned over its raster: all seen, no pixel coarser than asked, overlaps kept, every photo in time."""
-    document, terrain = with_terrain(
-        json.loads((EXAMPLES / "field-survey.geojson").read_text()), str(EXAMPLES / "field-survey.tif")
+    document, terrain = with_raster(
+        json.loads((EXAMPLES / "field-survey.geojson").read_text()),
+        str(EXAMPLES / "field-survey.tif"),
+        "terrain",
     )
     plan = make_plan(read_valid(document, {terrain.name: terrain}))
     survey = plan.metrics.surveys["vineyard"]
