@@ -25,6 +25,8 @@ from planner.wishes import Method, Objective
 VEHICLE_TYPES = ("fixed_wing", "multirotor", "vtol")
 AUTOPILOTS = ("ardupilot", "px4")
 
+#: Patterns of search, asked for by name.
+FAMILIES = ("parallel", "creeping", "spiral", "square", "sector")
 #: Ways of coverage whose sweeps come in order.
 OWN_ORDER = ("majeed2019", "boustrophedon-cells", "coverage-alternatives")
 
@@ -33,7 +35,7 @@ METHODS = {
     "routing": ("auto", "joint", "li2018", "li2018-threat-aware"),
     "transit": ("auto", "ssas", "tangent"),
     "smoothing": ("auto", "fillet", "shortcut", "three-arc", "past-target", "short-turn"),
-    "search": ("auto",),
+    "search": ("auto", *FAMILIES),
 }
 
 

@@ -36,7 +36,7 @@ WIDTHS = (1.0, 1.08)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Search:
-    """One search as the choice sees it."""
+    """One search as the choice sees it; of one family alone where that is named."""
 
     ground: Polygon | MultiPolygon
     worth: Worth
@@ -44,6 +44,7 @@ class Search:
     room: Room
     pricing: Pricing
     stop: Stop = never
+    family: str | None = None
 
     def ranked(self, budget_m: float) -> list[Programme]:
         """Programmes within a budget of metres through the air, what is worth most first."""
@@ -92,6 +93,8 @@ class Search:
         datum = self._datum()
         for part in widths:
             for pattern in patterns(ground, part * width_m, HEADINGS_RAD, datum):
+                if self.family not in (None, pattern.family):
+                    continue
                 for look in self.looking.looks:
                     sweeps = tuple(self._sweeps(pattern.strips, look))
                     if sweeps:

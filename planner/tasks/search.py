@@ -106,7 +106,8 @@ def _asked(scenario: Scenario, setting: Setting) -> Search:
     room = Room.of(setting.airspace, level, setting.model, scenario.objective, ground)
     start, end = (terminal.position for terminal in setting.ends)
     worth = _worth(scenario, ground, width_m)
-    return Search(ground, worth, looking, room, Pricing(setting.model, start, end))
+    family = None if scenario.method.search == "auto" else scenario.method.search
+    return Search(ground, worth, looking, room, Pricing(setting.model, start, end), family=family)
 
 
 def _areal(shape: object) -> Polygon | MultiPolygon:

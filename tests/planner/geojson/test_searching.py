@@ -96,3 +96,10 @@ def test_a_raster_is_what_the_ground_is_worth():
     south, north = local.scores[1, 1], local.scores[-2, 1]
     assert south == pytest.approx(1.0, abs=0.1)
     assert north > 3.0
+
+
+@pytest.mark.parametrize("family", ["parallel", "creeping", "spiral", "square", "sector"])
+def test_patterns_may_be_asked_for_by_name(family):
+    """Each is accepted, another is named."""
+    assert read_scenario(document(method={"search": family})).method.search == family
+    assert ("method", "unknown-value") in rules(document(method={"search": "wander"}))

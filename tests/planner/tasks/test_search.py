@@ -58,10 +58,11 @@ def test_importance_draws_the_search():
 
 
 def test_zones_are_flown_round():
-    """No pass enters a zone in the ground, nor the flight."""
+    """No pass enters a zone in the ground, nor the flight, in the pattern asked for by name."""
     zone = rectangle("no_fly", 500.0, 300.0, 700.0, 600.0)
-    scenario = read_scenario(document(zone))
+    scenario = read_scenario(document(zone, method={"search": "spiral"}))
     plan = make_plan(scenario)
+    assert plan.methods["search"] == "spiral"
     line = shapely.LineString(scenario.frame.to_local([place[:2] for place in plan.paths[0].line]))
     assert plan.violations == ()
     assert not line.intersects(scenario.no_fly[0].area)
