@@ -23,6 +23,7 @@ from app.cli.output import (
     require_writable,
     say,
 )
+from app.cli.surveys import tell_surveys
 
 if TYPE_CHECKING:
     from planner.airspace.terrain import Terrain
@@ -176,6 +177,7 @@ def tell_plan(document: dict[str, Any]) -> None:
             f"no plan is shorter than {metrics['lower_bound_m'] / 1000:.2f} km: "
             f"this one is at most {metrics['gap']:.1%} from the best"
         )
+    tell_surveys(document)
     tell_fleet(metrics)
     _tell_violations(document["violations"])
 
@@ -244,6 +246,8 @@ def plan(
 ) -> None:
     """Plan a scenario; the result is plan GeoJSON.
 
+    What the plan is like is said in a few lines on standard error: length and time, of each camera survey
+    height, photos, ground sampled distance and overlaps, of a fleet who does what, and what the judge finds.
     With --json and -o FILE the plan's metrics and violations go to standard output.
     """
     require_writable(output)

@@ -95,12 +95,10 @@ def read_role(name: str, feature: Mapping[str, Any], findings: Findings) -> RawF
     geometry = feature.get("geometry")
     kind = geometry.get("type") if isinstance(geometry, dict) else None
     if not isinstance(geometry, dict) or kind not in GEOMETRIES[role]:
-        findings.error(
-            name,
-            "wrong-geometry",
-            f"has the geometry {kind!r}",
-            f"A feature of role {role} is a {' or '.join(GEOMETRIES[role])}.",
-        )
+        fix = f"A feature of role {role} is a {' or '.join(GEOMETRIES[role])}."
+        if role == "obstacle" and kind == "Point":
+            fix += " A round place to keep out of is a Point of role no_fly with radius_m."
+        findings.error(name, "wrong-geometry", f"has the geometry {kind!r}", fix)
         return None
     return RawFeature(name, role, geometry, fields)
 

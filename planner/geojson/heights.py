@@ -94,6 +94,9 @@ class Heights:
         if not self.choosing(region, wanted):
             if level_m is not None:
                 _check_given(region, wanted, level_m + relief_m, sensor.name, findings)
+                # What follows the ground is judged by the heights it comes to.
+                most_m = level_m if scenario.terrain_following else level_m + relief_m
+                self._check_most(region, most_m, findings)
             return None
         most_m = min([each.height_m for each in wanted], default=math.inf) - relief_m
         if self.max_m is not None:
@@ -115,6 +118,20 @@ class Heights:
             self._refuse(region, wanted, relief_m, level_m, least_m, sensor.name, findings)
             return None
         return max(math.floor(100.0 * min(most_m, HIGHEST_M) + 1e-6) / 100.0, least_m)
+
+    def _check_most(self, region: Region, height_m: float, findings: Findings) -> None:
+        """A given altitude is not above what may be flown."""
+        if self.max_m is None or height_m <= self.max_m * (1.0 + ROUNDING):
+            return
+        whose = "the collection's" if region.altitude_m is None else "its own"
+        findings.error(
+            region.name,
+            "above-ceiling",
+            f"is flown over {height_m:.1f} m above its lowest ground, {whose} altitude_m, and max_height_m is "
+            f"{self.max_m:g}",
+            f"Lower altitude_m by {math.ceil(10.0 * (height_m - self.max_m)) / 10.0:g} m, or leave it out, or "
+            f"give max_height_m {math.ceil(height_m):g} or more.",
+        )
 
     def _refuse(
         self,
@@ -216,19 +233,16 @@ def at_highest(scenario: Scenario, heights: Heights) -> Scenario:
 
 
 def tell_unused(scenario: Scenario, heights: Heights, findings: Findings) -> None:
-    """``min_height_m`` and ``max_height_m`` are for regions whose height is chosen."""
+    """``min_height_m`` is for regions whose height is chosen."""
     asking = any(
         wish is not None
         for region in scenario.regions
         for wish in (region.gsd_m, region.min_niirs, region.min_resolution_m)
     )
-    if asking or not heights.altitude_given:
-        return
-    for name, value in (("min_height_m", heights.min_m), ("max_height_m", heights.max_m)):
-        if value is not None:
-            findings.warning(
-                "scenario",
-                "not-used",
-                f"{name} bounds heights that the planner chooses, and altitude_m decides all of them",
-                f"Leave {name} or altitude_m out, or have a region ask for quality.",
-            )
+    if heights.min_m is not None and heights.altitude_given and not asking:
+        findings.warning(
+            "scenario",
+            "not-used",
+            "min_height_m bounds heights that the planner chooses, and altitude_m decides all of them",
+            "Leave min_height_m or altitude_m out, or have a region ask for quality.",
+        )

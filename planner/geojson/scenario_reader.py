@@ -127,8 +127,14 @@ def _read(document: Any, findings: Findings, terrains: Terrains | None) -> Scena
     ]
     altitude_m = top.number("altitude_m", None, minimum=features.LOWEST_M, maximum=features.HIGHEST_M)
     heights = Heights.read(top)
-    if not heights.decided(regions):
-        top.number("altitude_m")
+    if not heights.decided(regions) and "altitude_m" not in top:
+        top.wrong(
+            "altitude_m",
+            "is missing, and nothing else says how high to fly",
+            "Add altitude_m: a number; or, for the planner to choose the height, gsd_m, min_resolution_m or "
+            "min_niirs of a region, or max_height_m.",
+            "missing-property",
+        )
     reference: Any = top.choice("altitude_reference", ("amsl", "home", "terrain"), "terrain")
     task = top.choice("task", tuple(TASKS), "collect")
     if task != "search":

@@ -17,7 +17,7 @@ from planner.coverage.survey.check import check_camera, check_pattern
 from planner.coverage.survey.figure_target import FIGURES, FigureTarget, figure_target
 from planner.coverage.survey.lanes import Survey
 from planner.coverage.survey.pieces import Pieces, crossed, divided, visits
-from planner.coverage.survey.targets import LaneTarget, refusal
+from planner.coverage.survey.targets import LaneTarget, refusal, surveyed
 from planner.coverage.ways import Division
 from planner.progress import Stop, never
 from planner.sensors.camera import CameraSensor
@@ -80,7 +80,7 @@ class Surveys:
             return tuple(trial.target(each) for each in sets for _ in range(region.revisits))
         pieces = divided(region, trial, whole=division == "whole" or not wide, enough=enough)
         if not math.isfinite(trial.cost_m(pieces)):
-            raise refusal(region, around)
+            raise refusal(region, around, surveyed(region, sensor, height_m))
         return tuple(trial.target(visit) for piece in pieces for visit in visits(piece, trial))
 
     def can_be_flown(
@@ -104,5 +104,5 @@ class Surveys:
         """All of it lane by lane."""
         trial = Pieces(sensor, height_m, around)
         if trial.options(region) is None:
-            raise refusal(region, around)
+            raise refusal(region, around, surveyed(region, sensor, height_m))
         yield trial.target(region)

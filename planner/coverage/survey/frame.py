@@ -32,8 +32,8 @@ class Frames:
     half_m
         How far to either side of a lane all is seen.
     inset_m
-        How far inside a region's edge the outermost lane may run: a spacing at most, and no farther than it
-        sees the edge; where lanes overlap by half or more, than the next one sees it.
+        How far inside a region's edge the outermost lane may run: half a spacing, and no farther than it sees
+        the edge; where lanes overlap by half or more a spacing, and no farther than the next one sees it.
     photos_m, least_m
         Between photos at most, and at least for the camera to take them.
     """
@@ -81,7 +81,8 @@ def frames(camera: CameraSensor, height_m: float, angles_rad: Floats) -> Frames:
         return np.minimum(*(_each(camera, figure, height_m, way_rad) for way_rad in ways))
 
     spacing_m, half_m = lesser(camera.lane_spacing_m), lesser(camera.half_width_m)
-    beside_m = half_m - spacing_m if camera.side_overlap >= TWICE else half_m
+    # What one lane alone sees counts as if the next were as far from it on the other side.
+    beside_m = half_m - spacing_m if camera.side_overlap >= TWICE else np.minimum(half_m, spacing_m / 2.0)
     least_m = -lesser(lambda _, angle_rad: -camera.least_spacing_m(angle_rad))
     photos_m = lesser(camera.photo_spacing_m)
     return Frames(spacing_m, half_m, np.minimum(spacing_m, beside_m), photos_m, least_m)

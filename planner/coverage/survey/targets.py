@@ -8,16 +8,19 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from shapely.geometry import Polygon
 
 from planner.airspace.surroundings import Surroundings
 from planner.coverage.lines import roomy
 from planner.coverage.merge import MergedRegion
 from planner.coverage.survey.headings import MOST_TELLING, headings
+from planner.coverage.survey.lacking import lacking_m
 from planner.coverage.survey.lanes import Survey
 from planner.coverage.survey.options import MOST_LAID, LaneOptions, collect_passes, lane_options
 from planner.coverage.ways import Between
 from planner.errors import InfeasibleError
 from planner.route import CollectPass
+from planner.sensors.camera import CameraSensor
 
 Floats = NDArray[np.float64]
 
@@ -56,7 +59,7 @@ class LaneTarget:
         finer = self.options(self._headings(FINE_STEP_RAD, telling), FINE_ETAS)
         if finer is None:
             if options is None:
-                raise refusal(self.region, self.around)
+                raise refusal(self.region, self.around, self.survey)
             return options
         kept = np.flatnonzero(self._with_room(finer))
         return finer.rows(kept) if len(kept) else options or finer
@@ -94,14 +97,30 @@ class LaneTarget:
         return roomy(options.entries, self.around) & roomy(options.exits, self.around)
 
 
-def refusal(region: MergedRegion, around: Surroundings) -> InfeasibleError:
-    """What to say where every way is forbidden."""
+def surveyed(region: MergedRegion, camera: CameraSensor, height_m: float) -> Survey:
+    """A region as one survey, whatever cuts it."""
+    ground = region.area.convex_hull
+    assert isinstance(ground, Polygon), "regions have an extent"
+    return Survey(ground, ground, camera, height_m)
+
+
+def refusal(region: MergedRegion, around: Surroundings, survey: Survey | None = None) -> InfeasibleError:
+    """What to say where every way is forbidden; of lanes, by how much."""
+    out_m = 0.0 if survey is None else lacking_m(survey, around)
+    message = "no lanes that see it may be flown: they leave the operating area"
+    if len(around.hard) + len(around.hard_polygons) > 0:
+        message += " or enter a hard zone"
+    fix = "enlarge the area round it"
+    if 0.0 < out_m < math.inf:
+        message += f", by {out_m:.0f} m at the best heading"
+        if around.settle_m > 0.0:
+            message += f" with the {around.settle_m:.0f} m flown straight before each (settle_m)"
+        fix += f" by {math.ceil(out_m)} m and room for turns"
+        fix += ", lower settle_m" if around.settle_m > 0.0 else ""
     return InfeasibleError(
         "area",
         region.label,
-        "no lanes that see it may be flown: they leave the operating area"
-        if len(around.hard) + len(around.hard_polygons) == 0
-        else "no lanes that see it may be flown: they leave the operating area or enter a hard zone",
-        "enlarge the area round it, or cut out of it what may not be flown over",
+        message,
+        f"{fix}, or cut out of it what may not be flown over",
         region.centroid,
     )

@@ -174,14 +174,29 @@ def test_over_terrain_quality_is_that_on_the_lowest_ground_and_bounds_that_on_th
     (found,) = refused(document({"gsd_m": 0.018}, terrain="t", min_height_m=60.0), slope)
     value = float(re.findall(r"gsd_m ([\d.e-]+)", found.fix)[0])
     assert value == pytest.approx((60.0 + top_m - low_m) / 5000.0, rel=0.01)
-    (found,) = refused(document({"gsd_m": 0.5}, terrain="t", min_height_m=60.0, max_height_m=90.0), slope)
-    assert found.rule == "heights-too-close"
+    given = document({"gsd_m": 0.5}, terrain="t", min_height_m=60.0, max_height_m=90.0)
+    assert {f.feature: f.rule for f in refused(given, slope)} == {
+        "A": "heights-too-close",
+        "B": "above-ceiling",
+    }
 
 
 def test_bounds_that_decide_nothing_are_told() -> None:
     """With an altitude for everything and no wish."""
-    warnings = read_scenario(document({}, min_height_m=50.0, max_height_m=90.0)).warnings
-    assert [w.rule for w in warnings] == ["not-used", "not-used"]
+    warnings = read_scenario(document({}, min_height_m=50.0, max_height_m=900.0)).warnings
+    assert [w.rule for w in warnings] == ["not-used"]
+
+
+@pytest.mark.parametrize("wishes", [{}, {"altitude_m": 220.0}, {"altitude_m": 220.0, "gsd_m": 0.5}])
+def test_no_altitude_lies_above_the_highest(wishes: Document) -> None:
+    """The collection's 500 m or a region's own: refused with the height that would do, taken with it."""
+    given_m = wishes.get("altitude_m", 500.0)
+    found = [f for f in refused(document(wishes, max_height_m=90.0)) if f.feature == "A"]
+    assert [f.rule for f in found] == ["above-ceiling"]
+    (least_m,) = (float(value) for value in re.findall(r"max_height_m (\d+) or more", found[0].fix))
+    assert least_m == given_m
+    document_then = document(wishes, max_height_m=max(least_m, 500.0))
+    assert heights_m(read_scenario(document_then))["A"] == given_m
 
 
 def test_without_any_height_altitude_is_missing() -> None:
