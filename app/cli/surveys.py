@@ -8,7 +8,7 @@ from app.cli.output import say
 
 
 def tell_surveys(document: dict[str, Any]) -> None:
-    """Say of each region that a camera sees: lanes, photos, height, ground sampled distance, overlaps, time."""
+    """Say of each region that a camera sees: passes, photos, height, size of a pixel, overlaps, time."""
     features = [feature["properties"] | {"at": feature["geometry"]} for feature in document["features"]]
     collects = {(f["vehicle"], f["seq"]): f for f in features if f["role"] == "collect"}
     homes_m = {f["vehicle"]: f["at"]["coordinates"][0][2] for f in features if f["role"] == "path"}
@@ -29,8 +29,8 @@ def tell_surveys(document: dict[str, Any]) -> None:
             + (f", {photos} photos" if photos else "")
             + f" from {height} over home, {_centimetres(survey['gsd_m'])} a pixel at worst"
             + _niirs(survey["niirs"])
-            + f"; overlaps at least {survey['forward_overlap']:.0%} forward, {survey['side_overlap']:.0%} to the"
-            + f" side; {took_s / 60:.1f} min from first to last"
+            + f"; overlaps at least {survey['forward_overlap']:.0%} forward"
+            + f" and {survey['side_overlap']:.0%} to the side; {took_s / 60:.1f} min from first to last"
         )
 
 

@@ -127,10 +127,10 @@ class Heights:
         findings.error(
             region.name,
             "above-ceiling",
-            f"is flown over {height_m:.1f} m above its lowest ground, {whose} altitude_m, and max_height_m is "
+            f"is seen from {height_m:.1f} m over its lowest ground by {whose} altitude_m, and max_height_m is "
             f"{self.max_m:g}",
-            f"Lower altitude_m by {math.ceil(10.0 * (height_m - self.max_m)) / 10.0:g} m, or leave it out, or "
-            f"give max_height_m {math.ceil(height_m):g} or more.",
+            f"Lower altitude_m by {math.ceil(10.0 * (height_m - self.max_m)) / 10.0:g} m, leave it out, or give "
+            f"max_height_m {math.ceil(height_m):g} or more.",
         )
 
     def _refuse(

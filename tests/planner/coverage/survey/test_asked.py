@@ -1,4 +1,4 @@
-"""What is said of areas too small, and plans with less than half overlap: held against the plans themselves."""
+"""What is said of areas too small, and overlaps of less than half: held against the plans themselves."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def field(room_m: float | None, eye: dict[str, Any] | None = None, **vehicle: An
 
 
 def test_an_area_too_small_is_told_how_much_is_lacking() -> None:
-    """What is said is lacking, and a turn, make it flyable; without the turn it may be, with less it is not."""
+    """With what is lacking and room for turns it is flyable, with ten metres less it is not."""
     with pytest.raises(InfeasibleError) as caught:
         make_plan(read_scenario(field(60.0, settle_m=150.0, min_turn_radius_m=40.0)))
     assert "settle_m" in caught.value.message
