@@ -124,13 +124,14 @@ class Heights:
         if self.max_m is None or height_m <= self.max_m * (1.0 + ROUNDING):
             return
         whose = "the collection's" if region.altitude_m is None else "its own"
+        lower_m = math.ceil(10.0 * (height_m - self.max_m)) / 10.0
         findings.error(
             region.name,
             "above-ceiling",
-            f"is seen from {height_m:.1f} m over its lowest ground by {whose} altitude_m, and max_height_m is "
-            f"{self.max_m:g}",
-            f"Lower altitude_m by {math.ceil(10.0 * (height_m - self.max_m)) / 10.0:g} m, leave it out, or give "
-            f"max_height_m {math.ceil(height_m):g} or more.",
+            f"is seen from {height_m:.1f} m over its lowest ground by {whose} altitude_m, and max_height_m "
+            f"is {self.max_m:g}",
+            f"Lower altitude_m by {lower_m:g} m, leave it out, or give max_height_m {math.ceil(height_m):g} "
+            "or more.",
         )
 
     def _refuse(
