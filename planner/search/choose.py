@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 from scipy.ndimage import uniform_filter
 from shapely.geometry import MultiPolygon, Point, Polygon, box
@@ -135,7 +136,27 @@ class Search:
             part = self.ground.intersection(window)
             if isinstance(part, Polygon | MultiPolygon) and not part.is_empty:
                 found.append(part)
-        return found or (self.ground,)
+        return (*found, *self._rich(seen_m2)) or (self.ground,)
+
+    def _rich(self, seen_m2: float) -> list[Polygon | MultiPolygon]:
+        """What is worth most of the ground, as far as can be seen, and to the next lower score."""
+        scores, cell_m = self.worth.scores, self.worth.cell_m
+        levels, counts = np.unique(scores[scores > 0.0], return_counts=True)
+        if len(levels) < 2:
+            return []
+        areas_m2 = counts[::-1].cumsum() * cell_m**2
+        held = int(np.searchsorted(areas_m2, seen_m2, side="right"))
+        found = []
+        for taken in {max(held, 1), held + 1}:
+            if taken >= len(levels):
+                continue
+            rows, columns = np.nonzero(scores >= levels[::-1][taken - 1])
+            west_m, south_m = self.worth.west_m + columns * cell_m, self.worth.south_m + rows * cell_m
+            cells = shapely.box(west_m, south_m, west_m + cell_m, south_m + cell_m)
+            shape = shapely.union_all(cells).simplify(cell_m)
+            if isinstance(shape, Polygon | MultiPolygon) and not shape.is_empty:
+                found.append(shape)
+        return found
 
     def _datum(self) -> tuple[float, float]:
         """The middle of what the ground is worth."""

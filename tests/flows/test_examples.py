@@ -78,3 +78,13 @@ def test_inspection_has_the_quality_that_it_requires() -> None:
     assert (
         30.0 <= min(c.line[0][2] for c in plan.collects) < max(c.line[0][2] for c in plan.collects) <= 120.0
     )
+
+
+def test_the_volcano_is_searched_where_it_is_worth_most() -> None:
+    """The island's plan keeps its reserve, and sees more of what is important than of the ground."""
+    scenario = read_valid(json.loads((EXAMPLES / "island-volcano.geojson").read_text()))
+    plan = make_plan(scenario)
+    worth = sum(patch.score * patch.area.area for patch in scenario.importance.patches)
+    assert plan.violations == ()
+    assert (plan.metrics.energy_wh or 0.0) <= (scenario.aircraft[0].usable_wh or 0.0)
+    assert (plan.metrics.importance_collected or 0.0) > 2.0 * plan.metrics.coverage["island"] * worth
