@@ -156,7 +156,7 @@ def _local(
 
 
 def check_search(scenario: Scenario, findings: Findings) -> None:
-    """Rules of searches: one sensor, one height, no higher than allowed; nothing asked that they ignore."""
+    """Rules of searches: one flight, one sensor, one height; nothing asked that they ignore."""
     regions = scenario.regions
     if scenario.is_fleet:
         findings.error(
@@ -186,15 +186,3 @@ def check_search(scenario: Scenario, findings: Findings) -> None:
                 "with one sensor",
                 "Give all its regions the same, or search them one by one.",
             )
-    over_m = scenario.level.height_m
-    if scenario.terrain is not None:
-        ranges_m = [scenario.terrain.range_over(region.area) for region in regions]
-        over_m = scenario.level.amsl_m - min(low_m for low_m, _ in ranges_m)
-    most_m = scenario.max_height_m
-    if most_m is not None and over_m > most_m + 1e-6:
-        findings.error(
-            "scenario",
-            "above-ceiling",
-            f"is searched from {over_m:.1f} m over the ground, above max_height_m, {most_m:g} m",
-            f"Lower altitude_m by {over_m - most_m:.1f} m, or raise max_height_m.",
-        )

@@ -34,7 +34,7 @@ WEST = (0, 0, 500, 500)
         ),
         (document(vehicle=WING | {"energy_wh": 3}), ("uav", "energy")),
         (document(vehicle=WING | {"energy_wh": 3, "reserve": 1.5}), ("vehicle uav", "out-of-range")),
-        (document(altitude_m=100, max_height_m=80), ("scenario", "above-ceiling")),
+        (document(altitude_m=100, max_height_m=80), ("area", "above-ceiling")),
         (document(rectangle("importance", *WEST, name="I", score=-1)), ("I", "out-of-range")),
         (document(rectangle("importance", *WEST, name="I", score=float("nan"))), ("I", "not-finite")),
         (document(rectangle("importance", *WEST, score=0)), ("scenario", "nothing-important")),
