@@ -36,6 +36,7 @@ class Benchmark(StrEnum):
     SMOOTHING = "smoothing"
     IMPORTANCE = "importance"
     VRPTW = "vrptw"
+    SEPARATION = "separation"
 
 
 def _options(pairs: list[str]) -> dict[str, Any]:

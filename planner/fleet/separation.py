@@ -22,6 +22,8 @@ Floats = NDArray[np.float64]
 
 #: Places of a flight that are looked at lie no further apart than this part of what is kept, within bounds.
 STEP_OF_KEPT, LEAST_STEP_M, MOST_STEP_M = 0.25, 5.0, 50.0
+#: No two of them lie further apart in time, however slowly it is flown.
+MOST_STEP_S = 2.0
 #: Kept besides what is asked for: how well a place at a time is known.
 MARGIN_M, MARGIN_UP_M, MARGIN_S = 5.0, 1.0, 1.0
 
@@ -58,7 +60,7 @@ def track_of(flight: Flight, model: FlightModel, apart_m: float) -> Track:
 
 
 def _places(stretch: Stretch, model: FlightModel, apart_m: float, from_s: float, until_s: float) -> Floats:
-    count = max(2, math.ceil(stretch.length_m / apart_m) + 1)
+    count = max(math.ceil(stretch.length_m / apart_m), math.ceil((until_s - from_s) / MOST_STEP_S), 1) + 1
     parts = np.linspace(0.0, 1.0, count)
     rise_m = stretch.end_altitude_m - stretch.start_altitude_m
     altitudes_m = stretch.start_altitude_m + parts * rise_m

@@ -22,6 +22,7 @@ from planner.tasks.fleet.jobs import Job
 from planner.tasks.setting import Setting, seeing
 from planner.vehicle.aircraft import Aircraft
 from planner.vehicle.energy import FlightState
+from planner.vehicle.manners import manners_of
 
 Floats = NDArray[np.float64]
 
@@ -29,6 +30,8 @@ Floats = NDArray[np.float64]
 STEP_RAD = math.radians(15.0)
 ETAS = np.array([0.0, 1.0])
 SECTORS = 4
+#: No touch-down is thought slower.
+MIN_LAND_M_S = 0.1
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -130,11 +133,12 @@ class Crew:
     @property
     def besides_s(self) -> float:
         """What a flight takes besides its way over the ground, about: climbing and descending on the spot."""
-        height_m = self.setting.level.height_m
-        model = self.setting.model
-        slopes = (climb_slope_rad(model), sink_slope_rad(model))
+        height_m, model = self.setting.level.height_m, self.setting.model
         if model.aircraft.hovers:
-            slopes = (math.radians(30.0), math.radians(30.0))
+            manners = manners_of(model.aircraft)
+            landing_s = manners.land_below_m / max(manners.land_m_s, MIN_LAND_M_S)
+            return height_m / manners.climb_m_s + height_m / manners.sink_m_s + landing_s
+        slopes = (climb_slope_rad(model), sink_slope_rad(model))
         return sum(height_m / math.tan(slope) for slope in slopes) / model.airspeed_m_s / 2.0
 
     def seconds(self, entries: Floats, exits: Floats) -> tuple[Floats, Floats, Floats]:

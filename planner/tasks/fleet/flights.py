@@ -45,6 +45,8 @@ class Flown:
         As ``Answer`` has them, by the names that were asked for.
     spans_s
         Of each job, when it begins and ends.
+    waited_s
+        Of its time in circles.
     """
 
     crew: int
@@ -56,6 +58,7 @@ class Flown:
     spans_s: tuple[tuple[float, float], ...]
     use: Use
     methods: dict[str, str]
+    waited_s: float = 0.0
 
     @property
     def duration_s(self) -> float:
@@ -202,6 +205,7 @@ def _waited(
             for told, wanted, took in zip(told_s, when.waits_s, took_s, strict=True)
         ]
         flown = _through(crew, number, jobs, order, told_s, controls)
+    flown = replace(flown, waited_s=math.fsum(_waits_of(flown, plain)))
     late = [when.start_s + end_s - due.closes_s for (_, end_s), due in zip(flown.spans_s, dues, strict=True)]
     worst = max(range(len(late)), key=lambda k: late[k])
     if late[worst] > 0.0:

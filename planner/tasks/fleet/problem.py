@@ -27,16 +27,18 @@ WORTH_S = 1e5
 class Lessons:
     """What flights took against what was thought, by the number of a crew.
 
-    ``factors`` are of all times in the air, ``spare`` of what one flight may take.
+    ``besides_s`` is what each flight takes more, ``factors`` are of all times in the air once one was late,
+    ``spare`` of what one flight may take.
     """
 
+    besides_s: dict[int, float] = field(default_factory=dict)
     factors: dict[int, float] = field(default_factory=dict)
     spare: dict[int, float] = field(default_factory=dict)
 
-    def learn(self, told: Mapping[int, Sequence[float]]) -> None:
-        """Of each crew's flights by how much they took more than was thought."""
-        for crew, ratios in told.items():
-            self.factors[crew] = self.factor(crew) * sum(ratios) / len(ratios)
+    def learn(self, told_s: Mapping[int, Sequence[float]]) -> None:
+        """By how much each crew's flights took longer than was thought."""
+        for crew, more_s in told_s.items():
+            self.besides_s[crew] = self.besides_s.get(crew, 0.0) + sum(more_s) / len(more_s)
 
     def hurry(self, crew: int, part: float) -> None:
         """A flight was late: the next ones are thought to take longer."""
@@ -166,9 +168,9 @@ def _member(
         between, out, home = crew.seconds(entries, exits)
         rows = base_count + np.array(mine)
         seconds[np.ix_(rows, rows)] = between
-        half_s = crew.besides_s / 2.0
-        seconds[own[0], rows] = out + half_s
-        seconds[rows, own[1]] = home + half_s
+        half_s = (crew.besides_s + lessons.besides_s.get(number, 0.0)) / 2.0
+        seconds[own[0], rows] = np.maximum(out + half_s, 0.0)
+        seconds[rows, own[1]] = np.maximum(home + half_s, 0.0)
     seconds[own[0], own[1]] = 0.0
     np.fill_diagonal(seconds, 0.0)
     seconds = seconds * lessons.factor(number)

@@ -27,7 +27,7 @@ from planner.wishes import Objective, Region, Separation
 #: Rounds of assignment and flight, and of those that gave a plan.
 MOST_ROUNDS, ROUNDS = 8, 3
 #: Flights of so few regions are chosen by all that one aircraft has; of more by the order that was assigned.
-FEW = 3
+FEW = 1
 #: Times thought and flown that are this near teach nothing.
 NEAR = 0.03
 #: A region is cut where it takes so much more than an even share of all work, or than one flight can give.
@@ -147,19 +147,21 @@ class _Rounds:
         with self._controls.stage("separation"):
             sorties = placed(self._crews, errands, self._separation, self._controls, self._scenario.seed)
         told: dict[int, list[float]] = {}
-        within = True
+        within, far = True, 0.0
         thought = {_key(jobs, trip): trip for trip in assigned.trips}
         for sortie in sorties:
             crew = sortie.flown.crew
             trip = thought[crew, tuple((job.region.name, visit) for job, visit in sortie.flown.jobs)]
-            told.setdefault(crew, []).append(sortie.flown.duration_s / max(trip.duration_s, 1.0))
+            waited_s = math.fsum(visit.wait_s for visit in trip.visits)
+            thought_s = trip.duration_s - waited_s
+            told.setdefault(crew, []).append(sortie.flown.duration_s - sortie.flown.waited_s - thought_s)
+            far = max(far, abs(told[crew][-1]) / max(thought_s, 1.0))
             excess = over(self._crews[crew], sortie.flown)
             if excess:
                 within = False
                 self._lessons.tighten(crew, TIGHTER * excess[0].limit / excess[0].used)
         self._lessons.learn(told)
-        near = all(abs(ratio - 1.0) <= NEAR for ratios in told.values() for ratio in ratios)
-        return (sorties if within else None), near
+        return (sorties if within else None), far <= NEAR
 
     def _errand(self, jobs: Sequence[Job], trip: Trip) -> Errand:
         key = _key(jobs, trip)
