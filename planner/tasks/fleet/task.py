@@ -25,7 +25,7 @@ from planner.tasks.urban import cut_by_obstacles, lanes_cut
 from planner.wishes import Objective, Region, Separation
 
 #: Rounds of assignment and flight, and of those that gave a plan.
-MOST_ROUNDS, ROUNDS = 8, 3
+MOST_ROUNDS, ROUNDS = 8, 2
 #: Flights of so few regions are chosen by all that one aircraft has; of more by the order that was assigned.
 FEW = 1
 #: Times thought and flown that are this near teach nothing.
