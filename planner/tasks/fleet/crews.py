@@ -150,12 +150,12 @@ class Crew:
         home = to_end(end, self.around, exits, discs) / speed_m_s
         return between, out, home
 
-    def travel(self, seconds: Floats) -> Travel:
-        """What ways of so many seconds take of everything."""
+    def travel(self, seconds: Floats, power: float) -> Travel:
+        """What ways of so many seconds take of everything, at a mean power by that at cruise."""
         return Travel(
             seconds,
             seconds * self.setting.model.airspeed_m_s,
-            None if self.power_w is None else seconds * (self.power_w / 3600.0),
+            None if self.power_w is None else seconds * (power * self.power_w / 3600.0),
         )
 
 

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from types import MappingProxyType
 
 import numpy as np
 import shapely
@@ -16,6 +17,7 @@ from shapely.geometry.base import BaseGeometry
 from planner.route import CollectPass
 from planner.wishes import Region
 
+NOTHING_SHARED: Mapping[str, float] = MappingProxyType({})
 #: A part is cut where so many halvings have put the line.
 _HALVINGS = 40
 
@@ -49,23 +51,34 @@ class Job:
         return replace(self.region, required=True, revisits=1 if self.visits > 1 else self.region.revisits)
 
 
-def jobs_of(regions: Iterable[Region], parts: dict[str, int]) -> tuple[Job, ...]:
-    """The jobs of some regions, those cut that are named in ``parts``."""
+def jobs_of(
+    regions: Iterable[Region], parts: dict[str, int], shared_m: Mapping[str, float] = NOTHING_SHARED
+) -> tuple[Job, ...]:
+    """The jobs of some regions, those cut that are named in ``parts``.
+
+    ``shared_m`` is how far two parts of a region reach into each other: what photos of both have to see.
+    """
     found: list[Job] = []
     for region in regions:
-        pieces = cut(region, parts.get(region.name, 1))
+        pieces = cut(region, parts.get(region.name, 1), shared_m.get(region.name, 0.0))
         if len(pieces) == 1:
             found.append(Job(region, region.name))
             continue
-        whole_m2 = region.area.area
+        # Lanes beside the cuts, so that those of two parts lie side by side.
+        angle_rad = _along_rad(region)
+        along = region.approach_rad or (angle_rad, angle_rad + math.pi)
         for number, piece in enumerate(pieces, start=1):
-            part = replace(region, name=f"{region.name} {number}/{len(pieces)}", area=piece, axis=None)
-            found.append(Job(part, region.name, piece.area / whole_m2))
+            name = f"{region.name} {number}/{len(pieces)}"
+            part = replace(region, name=name, area=piece, axis=None, approach_rad=along)
+            found.append(Job(part, region.name, 1.0 / len(pieces)))
     return tuple(found)
 
 
-def cut(region: Region, count: int) -> list[Polygon | MultiPolygon]:
-    """A region in so many parts of equal area, cut along its length or along the headings it allows."""
+def cut(region: Region, count: int, shared_m: float = 0.0) -> list[Polygon | MultiPolygon]:
+    """A region in so many parts of equal area, cut along its length or along the headings it allows.
+
+    Each reaches into its neighbours by half of what is shared.
+    """
     if count <= 1:
         return [region.area]
     angle_rad = _along_rad(region)
@@ -74,7 +87,8 @@ def cut(region: Region, count: int) -> list[Polygon | MultiPolygon]:
     marks = [south, *(_mark(turned, k / count) for k in range(1, count)), north]
     pieces = []
     for low, high in pairwise(marks):
-        band = turned.intersection(box(west - 1.0, low, east + 1.0, high))
+        first, last = low - shared_m / 2.0, high + shared_m / 2.0
+        band = turned.intersection(box(west - 1.0, first, east + 1.0, last))
         ground = _ground(affinity.rotate(band, angle_rad, origin=(0.0, 0.0), use_radians=True))
         if not ground.is_empty:
             pieces.append(ground)

@@ -27,11 +27,12 @@ WORTH_S = 1e5
 class Lessons:
     """What flights took against what was thought, by the number of a crew.
 
-    ``besides_s`` is what each flight takes more, ``factors`` are of all times in the air once one was late,
-    ``spare`` of what one flight may take.
+    ``besides_s`` is what each flight takes more, ``power`` the mean power by that at cruise, ``factors`` are
+    of all times in the air once one was late, ``spare`` of what one flight may take.
     """
 
     besides_s: dict[int, float] = field(default_factory=dict)
+    power: dict[int, float] = field(default_factory=dict)
     factors: dict[int, float] = field(default_factory=dict)
     spare: dict[int, float] = field(default_factory=dict)
 
@@ -146,7 +147,9 @@ def _targets(
 
 def _service(crew: Crew, number: int, inner_m: float, lessons: Lessons) -> Service:
     seconds = inner_m / crew.setting.model.airspeed_m_s * lessons.factor(number)
-    energy_wh = 0.0 if crew.power_w is None else seconds * crew.power_w / 3600.0
+    energy_wh = (
+        0.0 if crew.power_w is None else seconds * crew.power_w * lessons.power.get(number, 1.0) / 3600.0
+    )
     return Service(seconds, seconds * crew.setting.model.airspeed_m_s, energy_wh)
 
 
@@ -177,7 +180,7 @@ def _member(
     aircraft, spare = crew.setting.model.aircraft, lessons.spare.get(number, 1.0)
     return Member(
         aircraft.name,
-        crew.travel(seconds),
+        crew.travel(seconds, lessons.power.get(number, 1.0)),
         own[0],
         (own[1],),
         max_flight_s=_limit(aircraft.max_flight_time_s, spare),

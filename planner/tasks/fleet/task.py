@@ -14,6 +14,8 @@ from planner.fleet.assignment import LeftOut as Unassigned
 from planner.plan import LeftOut
 from planner.progress import silent
 from planner.scenario import Scenario
+from planner.sensors.base import Sensor
+from planner.sensors.camera import CameraSensor
 from planner.tasks.fleet.crews import Crew, Ways, crews_of, ways_of
 from planner.tasks.fleet.flights import Flown, Order, in_best_order, in_given_order, in_order, over
 from planner.tasks.fleet.jobs import Job, jobs_of
@@ -33,7 +35,7 @@ NEAR = 0.03
 #: A region is cut where it takes so much more than an even share of all work, or than one flight can give.
 MORE_THAN_EVEN, OF_A_FLIGHT = 1.3, 0.8
 #: After a flight over a limit, or late, the next are thought this much the longer besides.
-TIGHTER = 0.97
+TIGHTER = 0.98
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,13 +91,16 @@ class _Rounds:
                 self._spread()
 
     def _spread(self) -> None:
-        self._jobs = jobs_of(self._scenario.regions, self._parts)
+        named = {region.name: region for region in self._scenario.regions}
+        shared_m = {name: self._shared_m(named[name]) for name in self._parts}
+        self._jobs = jobs_of(self._scenario.regions, self._parts, shared_m)
         self._ways, self._why = ways_of(self._crews, self._jobs)
 
     def best(self) -> FleetAnswer:
         """Of the plans of a few rounds."""
         found: list[tuple[float, FleetAnswer]] = []
         failed: InfeasibleError | None = None
+        least = math.inf
         for number in range(MOST_ROUNDS):
             self._controls.progress("assign", number / MOST_ROUNDS)
             jobs = tuple(
@@ -108,8 +113,11 @@ class _Rounds:
             if lacking:
                 if found:
                     break
+                nearest = min(lacking, key=lambda each: each.margin)
+                if nearest.margin < least or failed is None:
+                    least, failed = nearest.margin, _infeasible(jobs, nearest)
                 if not self._cut_more(jobs, lacking):
-                    raise failed or _infeasible(jobs, lacking[0])
+                    raise failed
                 continue
             try:
                 sorties, near = self._flight_plan(jobs, assigned)
@@ -147,7 +155,8 @@ class _Rounds:
         with self._controls.stage("separation"):
             sorties = placed(self._crews, errands, self._separation, self._controls, self._scenario.seed)
         told: dict[int, list[float]] = {}
-        within, far = True, 0.0
+        tighter: dict[int, float] = {}
+        far = 0.0
         thought = {_key(jobs, trip): trip for trip in assigned.trips}
         for sortie in sorties:
             crew = sortie.flown.crew
@@ -158,10 +167,25 @@ class _Rounds:
             far = max(far, abs(told[crew][-1]) / max(thought_s, 1.0))
             excess = over(self._crews[crew], sortie.flown)
             if excess:
-                within = False
-                self._lessons.tighten(crew, TIGHTER * excess[0].limit / excess[0].used)
+                # Times and powers are learnt; of lengths that is all there is.
+                least = excess[0].limit / excess[0].used if excess[0].constraint == "range" else 1.0
+                tighter[crew] = min(tighter.get(crew, 1.0), TIGHTER * least)
+        for crew, part in tighter.items():
+            self._lessons.tighten(crew, part)
         self._lessons.learn(told)
-        return (sorties if within else None), far <= NEAR
+        self._lessons.power.update(self._powers(sorties))
+        return (None if tighter else sorties), far <= NEAR
+
+    def _powers(self, sorties: Sequence[Sortie]) -> dict[int, float]:
+        """Of each crew the mean power of its flights by that at cruise, the most of any of them."""
+        found: dict[int, float] = {}
+        for sortie in sorties:
+            crew, used_wh = sortie.flown.crew, sortie.flown.use.energy_wh
+            power_w = self._crews[crew].power_w
+            if used_wh is not None and power_w:
+                part = 3600.0 * used_wh / (power_w * sortie.flown.duration_s)
+                found[crew] = max(found.get(crew, 0.0), part)
+        return found
 
     def _errand(self, jobs: Sequence[Job], trip: Trip) -> Errand:
         key = _key(jobs, trip)
@@ -223,21 +247,30 @@ class _Rounds:
                 parts[job.of] = count
         return parts
 
-    def _most_parts(self, region: Region) -> int:
-        """As many as it takes pairs of passes; what is seen more than once is whole."""
-        able = [
-            c
-            for name, c in self._ways
-            for job in self._jobs
-            if (name, region.name) == (job.region.name, job.of)
-        ]
-        if region.revisits > 1 or region.pattern not in ("auto", "lanes") or not able:
-            return 1
+    def _seen_by(self, region: Region) -> tuple[Sensor, float] | None:
+        """The sensor of a region, and its height over the ground; None where nobody sees it."""
+        names = {job.region.name for job in self._jobs if job.of == region.name}
+        able = [crew for name, crew in self._ways if name in names]
+        if not able:
+            return None
         setting = self._crews[able[0]].setting
-        sensor, height_m = setting.suite.over(
-            region.sensor, region.area, setting.airspace, setting.level.of(region)
-        )
+        level = setting.level.of(region)
+        return setting.suite.over(region.sensor, region.area, setting.airspace, level)
+
+    def _most_parts(self, region: Region) -> int:
+        """As many as it takes passes; what is seen more than once is whole."""
+        seen = self._seen_by(region)
+        if seen is None or region.revisits > 1 or region.pattern not in ("auto", "lanes"):
+            return 1
+        sensor, height_m = seen
         return max(family_of(sensor).fewest_passes(region, sensor, height_m)[0], 1)
+
+    def _shared_m(self, region: Region) -> float:
+        """What photos of two parts have to see both, for their overlap."""
+        seen = self._seen_by(region)
+        if seen is None or not isinstance(seen[0], CameraSensor):
+            return 0.0
+        return seen[0].side_overlap * seen[0].swath_m(seen[1])
 
     def _cut_more(self, jobs: Sequence[Job], lacking: Sequence[Unassigned]) -> bool:
         """One part more of each region that did not fit; whether there was any."""
