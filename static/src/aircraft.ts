@@ -10,6 +10,9 @@ import { scenarios } from "./scenario";
 import type { Position, Vehicle } from "./types";
 
 const SVG = "http://www.w3.org/2000/svg";
+/** Four rotors on two arms. */
+const ROTORS = [[8, 8], [26, 8], [8, 26], [26, 26]].map(([x, y]) => `M${(x as number) - 6.500} ${y} a6.500 6.500 0 1 0 13 0 a6.500 6.500 0 1 0 -13 0z`).join("");
+const ARMS = "M7 9.500 9.500 7 27 24.500 24.500 27z M24.500 7 27 9.500 9.500 27 7 24.500z M17 1 20.500 9h-7z";
 const SHAPE = "M17 1.500 19.500 12 33 20v3.500L19.500 20l-.8 8 4.300 3v2L17 31.500 11 33v-2l4.300-3-.8-8L1 23.500V20l13.500-8z";
 
 function symbol(other?: string): HTMLElement {
@@ -51,6 +54,7 @@ function showOthers(map: MapLibreMap): void {
       const marker = known ?? new Marker({ element: symbol(name), rotationAlignment: "map" });
       marker.setLngLat([state.lon_deg as number, state.lat_deg as number]);
       turn(marker, state.heading_deg);
+      shapeLike(marker, state.type);
       tellAge(marker.getElement(), vehicle);
       if (known) continue;
       markers.set(id, marker);
@@ -64,6 +68,15 @@ function showOthers(map: MapLibreMap): void {
     shown = vehicle?.id ?? null;
     draw();
   });
+}
+
+const HOVERS = /rotor|copter|quad|hexa|octo/i;
+
+/** What hovers is drawn as such. */
+function shapeLike(marker: Marker, type: string): void {
+  const path = marker.getElement().querySelector("path");
+  const shape = HOVERS.test(type) && !/vtol/i.test(type) ? ROTORS + ARMS : SHAPE;
+  if (path && path.getAttribute("d") !== shape) path.setAttribute("d", shape);
 }
 
 /** The symbol alone turns; the words beside it stay upright. */
@@ -90,6 +103,7 @@ export function showAircraft(map: MapLibreMap): void {
     const at: Position = [state.lon_deg, state.lat_deg];
     marker.setLngLat(at);
     turn(marker, state.heading_deg);
+    shapeLike(marker, state.type);
     tellAge(marker.getElement(), vehicle);
     if (shownId === null) marker.addTo(map);
     const another = shownId !== null && shownId !== vehicle.id;

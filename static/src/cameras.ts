@@ -39,7 +39,22 @@ export function keepCameras(): void {
   });
 }
 
-export const known = (name: unknown): KnownCamera | undefined => cameras.value.find((camera) => camera.name.toLowerCase() === String(name ?? "").toLowerCase());
+const plain = (text: string): string => text.toLowerCase().replace(/[^a-z0-9]+/g, " ").trim();
+
+/** Cameras whose name has every word of a text. */
+export function like(text: string): KnownCamera[] {
+  const words = plain(text).split(" ");
+  return cameras.value.filter((camera) => words.every((word) => ` ${plain(camera.name)}`.includes(` ${word}`)));
+}
+
+/** The camera of a name, however it is written; the one that is alone in having every word of it. */
+export function known(name: unknown): KnownCamera | undefined {
+  const text = String(name ?? "");
+  const same = cameras.value.find((camera) => plain(camera.name) === plain(text));
+  if (same || plain(text) === "") return same;
+  const found = like(text);
+  return found.length === 1 ? found[0] : undefined;
+}
 
 export interface Optics {
   focal_length_m: number;

@@ -35,6 +35,8 @@ export const TOOLS: Tool[] = [
   { id: "no_fly", label: "No-fly", role: "no_fly", mode: "polygon", properties: {}, hint: POLYGON_HINT },
   { id: "obstacle", label: "Obstacle", role: "obstacle", mode: "polygon", properties: { height_m: 50 }, hint: POLYGON_HINT },
   { id: "area", label: "Area", role: "area", mode: "polygon", properties: {}, hint: POLYGON_HINT },
+  { id: "importance", label: "Importance", role: "importance", mode: "polygon", properties: { score: 1 }, hint: POLYGON_HINT },
+  { id: "base", label: "Base", role: "base", mode: "point", properties: {}, hint: POINT_HINT },
   { id: "start", label: "Start", role: "start", mode: "point", properties: {}, hint: POINT_HINT },
   { id: "end", label: "End", role: "end", mode: "point", properties: {}, hint: POINT_HINT },
 ];

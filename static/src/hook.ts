@@ -1,6 +1,8 @@
 /** What browser tests ask the page: `window.swathplan`. It tells, and looks elsewhere; it changes nothing else. */
 import type { Map as MapLibreMap } from "maplibre-gl";
 import { track } from "./aircraft";
+import { clock_s, flights } from "./crew/clock";
+import { placeAt } from "./crew/flights";
 import { watched } from "./fleet";
 import { flown } from "./flights";
 import { keeping } from "./keeping";
@@ -34,6 +36,8 @@ export interface Hook {
   photos(): number;
   taken(): number;
   seenBy(lon_deg: number, lat_deg: number): number | null;
+  /** Where each aircraft of the plan is at the time chosen. */
+  crew(): { vehicle: string; at: [number, number] }[];
   /** The flight whose seen ground is on the map. */
   flown(): string | null;
 }
@@ -79,6 +83,11 @@ export function installHook(map: MapLibreMap): void {
     photos: () => shots.value.length,
     taken: () => takenShots.value.length,
     seenBy: (lon_deg, lat_deg) => (overlap.value ? countAt(overlap.value, [lon_deg, lat_deg]) : null),
+    crew: () =>
+      flights.value.flatMap((flight) => {
+        const place = clock_s.value === null ? null : placeAt(flight, clock_s.value);
+        return place ? [{ vehicle: flight.vehicle, at: place.at }] : [];
+      }),
     flown: () => flown.value?.flight.id ?? null,
   };
 }

@@ -4,7 +4,7 @@ import { FONT, repaint } from "./map";
 import { CLASSES } from "./survey/overlap";
 import { onThemeChange, palette, type Palette } from "./theme";
 
-export const SOURCES = ["scenario", "plan", "compared", "held", "waypoints", "photos", "taken", "cursor", "seen", "track"] as const;
+export const SOURCES = ["scenario", "plan", "compared", "held", "waypoints", "photos", "taken", "cursor", "crew", "seen", "track"] as const;
 
 export interface Group {
   id: string;
@@ -12,8 +12,8 @@ export interface Group {
   swatch: string;
   colour: keyof Palette;
   layers: string[];
-  /** Listed only while something of it can be on the map. */
-  of?: "photos" | "taken";
+  /** What it is a part of. */
+  of?: "photos";
   /** What its colours stand for. */
   classes?: readonly { label: string; colour: string }[];
 }
@@ -25,7 +25,7 @@ export const GROUPS: Group[] = [
   { id: "radar", label: "Radar threat", swatch: "dashed", colour: "radar", layers: ["radar-fill", "radar-line"] },
   { id: "no_fly", label: "No-fly zone", swatch: "area", colour: "noFly", layers: ["no_fly-fill", "no_fly-line"] },
   { id: "obstacle", label: "Obstacle", swatch: "area", colour: "obstacle", layers: ["obstacle-fill", "obstacle-line"] },
-  { id: "importance", label: "Importance", swatch: "dashed", colour: "importance", layers: ["importance-fill", "importance-line"] },
+  { id: "importance", label: "Importance, the stronger the more", swatch: "area", colour: "importance", layers: ["importance-fill", "importance-line"] },
   { id: "area", label: "Operating area", swatch: "dashed", colour: "area", layers: ["area-line"] },
   { id: "terminal", label: "Start, end, base", swatch: "dot", colour: "terminal", layers: ["terminal"] },
   { id: "footprint", label: "Ground to be seen", swatch: "area", colour: "footprint", layers: ["footprint-fill", "footprint-line"] },
@@ -35,18 +35,19 @@ export const GROUPS: Group[] = [
   { id: "compared", label: "Path compared with", swatch: "line", colour: "area", layers: ["compared-line"] },
   { id: "held", label: "Mission read from the vehicle", swatch: "dashed", colour: "held", layers: ["held-line"] },
   { id: "collect", label: "Collect (sensor on)", swatch: "thick", colour: "collect", layers: ["collect-line", "collect-label"] },
+  { id: "crew", label: "Aircraft at the time chosen", swatch: "dot", colour: "path", layers: ["crew-spot", "crew-symbol"] },
   { id: "photos", of: "photos", label: "Photo, from near", swatch: "dot", colour: "photo", layers: ["photo-place"] },
   { id: "prints", of: "photos", label: "Ground of each photo, from near", swatch: "area", colour: "photo", layers: ["photo-print", "photo-print-one"] },
   { id: "overlap", of: "photos", label: "Photos that see a place", swatch: "none", colour: "photo", layers: ["overlap"], classes: CLASSES },
   { id: "waypoints", label: "Mission items: number, height", swatch: "dot", colour: "path", layers: ["waypoint", "waypoint-label"] },
   { id: "fence", label: "Fence of a mission file", swatch: "dashed", colour: "noFly", layers: ["fence_out-fill", "fence_out-line", "fence_in-line"] },
   { id: "rally", label: "Rally point", swatch: "dot", colour: "terminal", layers: ["rally"] },
-  { id: "taken", of: "taken", label: "Photo taken, its ground from near", swatch: "dot", colour: "trackOn", layers: ["taken-place", "taken-print"] },
+  { id: "taken", label: "Photo taken, its ground from near", swatch: "dot", colour: "trackOn", layers: ["taken-place", "taken-print"] },
   { id: "track", label: "Flown track", swatch: "line", colour: "track", layers: ["track-off"] },
   { id: "trackOn", label: "Flown, sensor on", swatch: "thick", colour: "trackOn", layers: ["track-on"] },
   { id: "seen", label: "Ground really seen", swatch: "area", colour: "seen", layers: ["seen-fill", "seen-line"] },
   { id: "unseen", label: "Not seen in flight", swatch: "area", colour: "uncovered", layers: ["unseen-fill", "unseen-line"] },
-  { id: "assumed", of: "taken", label: "Assumed: no photo reported", swatch: "dashed", colour: "seen", layers: ["assumed-line"] },
+  { id: "assumed", label: "Assumed: no photo reported", swatch: "dashed", colour: "seen", layers: ["assumed-line"] },
   { id: "unknown", label: "Not recorded: seen or not", swatch: "dashed", colour: "area", layers: ["unknown-fill", "unknown-line"] },
   { id: "not_counted", label: "Sensor on, not counted", swatch: "dashed", colour: "uncovered", layers: ["not_counted-line"] },
 ];
@@ -57,6 +58,8 @@ const kindOf = (kind: string): FilterSpecification => ["==", ["get", "kind"], ki
 export const onePhoto = (number: number): FilterSpecification => ["all", ["==", ["get", "kind"], "print"], ["==", ["get", "number"], number]];
 const roleIs = (role: string): FilterSpecification => ["==", ["get", "role"], role];
 
+/** The colour of the aircraft where a plan has several. */
+const ofCrew = (usual: string): ExpressionSpecification => ["coalesce", ["get", "colour"], usual];
 const fenceIs = (kind: string): FilterSpecification => ["all", ["==", ["get", "role"], "fence"], ["==", ["get", "kind"], kind]];
 
 function shape(id: string, source: string, filter: FilterSpecification, colour: string, opacity: number, width: number, dash?: number[]): LayerSpecification[] {
@@ -79,7 +82,8 @@ function layers(c: Palette): LayerSpecification[] {
   ];
   return [
     ...shape("area", "scenario", kindIs("area"), c.area, 0, 1.5, [4, 3]),
-    ...shape("importance", "scenario", kindIs("importance"), c.importance, 0.12, 1, [1, 2]),
+    { id: "importance-fill", type: "fill", source: "scenario", filter: kindIs("importance"), paint: { "fill-color": c.importance, "fill-opacity": ["+", 0.06, ["*", 0.5, ["coalesce", ["get", "weight"], 0.2]]] } },
+    ...shape("importance", "scenario", kindIs("importance"), c.importance, 0, 1, [1, 2]),
     ...shape("seen", "seen", roleIs("seen"), c.seen, 0.22, 1.2),
     ...shape("unknown", "seen", roleIs("unknown"), c.area, 0.3, 1.2, [2, 2]),
     ...shape("assumed", "seen", roleIs("assumed"), c.seen, 0, 1.2, [1, 2]),
@@ -108,12 +112,12 @@ function layers(c: Palette): LayerSpecification[] {
     {
       id: "path-line", type: "line", source: "plan", filter: roleIs("path"),
       layout: { "line-join": "round" },
-      paint: { "line-color": c.path, "line-width": 1.8, "line-opacity": 0.9 },
+      paint: { "line-color": ofCrew(c.path), "line-width": 1.8, "line-opacity": 0.9 },
     },
     {
       id: "collect-line", type: "line", source: "plan", filter: roleIs("collect"),
       layout: { "line-cap": "round" },
-      paint: { "line-color": c.collect, "line-width": 4.5 },
+      paint: { "line-color": ofCrew(c.collect), "line-width": 4.5 },
     },
     { id: "photo-print", type: "line", source: "photos", filter: kindOf("print"), minzoom: 24, paint: { "line-color": c.photo, "line-width": 0.6, "line-opacity": 0.4 } },
     { id: "photo-print-one", type: "line", source: "photos", filter: onePhoto(0), paint: { "line-color": c.photo, "line-width": 3 } },
@@ -124,7 +128,7 @@ function layers(c: Palette): LayerSpecification[] {
     {
       id: "path-arrow", type: "symbol", source: "plan", filter: roleIs("path"),
       layout: { "symbol-placement": "line", "symbol-spacing": 110, "icon-image": "arrow", "icon-size": 1.05, "icon-allow-overlap": true },
-      paint: { "icon-color": c.path, "icon-halo-color": c.halo, "icon-halo-width": 1 },
+      paint: { "icon-color": ofCrew(c.path), "icon-halo-color": c.halo, "icon-halo-width": 1 },
     },
     {
       id: "phase-line", type: "line", source: "plan", filter: roleIs("phase"),
@@ -171,7 +175,7 @@ function layers(c: Palette): LayerSpecification[] {
     {
       id: "collect-label", type: "symbol", source: "plan", filter: roleIs("collect"),
       layout: { "symbol-placement": "line-center", "text-field": ["get", "label"], "text-font": FONT, "text-size": 14, "text-rotation-alignment": "viewport", "text-offset": [0, -1] },
-      paint: { "text-color": c.collect, "text-halo-color": c.halo, "text-halo-width": 2 },
+      paint: { "text-color": ofCrew(c.collect), "text-halo-color": c.halo, "text-halo-width": 2 },
     },
     {
       id: "phase-label", type: "symbol", source: "plan", filter: roleIs("phase"), minzoom: 11,
@@ -185,6 +189,21 @@ function layers(c: Palette): LayerSpecification[] {
         "text-font": FONT, "text-size": 11, "text-max-width": 30, "text-anchor": "top-left", "text-offset": [0.35, 0.2], "symbol-sort-key": ["case", ["get", "current"], 0, 1],
       },
       paint: { "text-color": c.path, "text-halo-color": c.halo, "text-halo-width": 1.6 },
+    },
+    {
+      id: "crew-spot", type: "circle", source: "crew",
+      paint: { "circle-radius": ["case", ["get", "hovers"], 9, 12], "circle-color": ["get", "colour"], "circle-opacity": ["case", ["get", "hovers"], 1, 0.25], "circle-stroke-color": c.halo, "circle-stroke-width": 2 },
+    },
+    {
+      id: "crew-symbol", type: "symbol", source: "crew",
+      layout: {
+        "icon-image": "arrow", "icon-size": ["case", ["get", "hovers"], 1, 1.9], "icon-rotate": ["get", "heading_deg"], "icon-rotation-alignment": "map", "icon-allow-overlap": true,
+        "text-field": ["get", "name"], "text-font": FONT, "text-size": 13, "text-offset": [0, 1.3], "text-anchor": "top", "text-optional": true,
+      },
+      paint: {
+        "icon-color": ["case", ["get", "hovers"], c.halo, ["get", "colour"]], "icon-halo-color": c.halo, "icon-halo-width": 1.5,
+        "text-color": ["get", "colour"], "text-halo-color": c.halo, "text-halo-width": 2,
+      },
     },
     {
       id: "cursor", type: "circle", source: "cursor",

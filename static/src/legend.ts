@@ -3,11 +3,18 @@ import type { Map as MapLibreMap } from "maplibre-gl";
 import { byId, fill, h } from "./dom";
 import { flown } from "./flights";
 import { GROUPS, showGroup, type Group } from "./layers";
-import { open } from "./plans";
+import { watched } from "./fleet";
+import { held } from "./held";
+import { phaseFeatures } from "./phases";
+import { compared, open } from "./plans";
+import { scenarios } from "./scenario";
+import { scenarioFeatures } from "./scenario_view";
+import { debounce, type Signal } from "./signal";
 import { hasPhotos } from "./survey/shots";
 import { onThemeChange, palette } from "./theme";
 
 const NARROW_PX = 1500;
+const QUIET_MS = 50;
 const hidden = new Set<string>();
 
 /** Whether the operator lets a group be seen. */
@@ -18,15 +25,46 @@ function key(classes: NonNullable<Group["classes"]>): HTMLElement {
   return h("div", { class: "classes" }, ...classes.map(({ label, colour }) => h("span", {}, h("span", { class: "block", style: `--c:${colour}`, "aria-hidden": "true" }), label)));
 }
 
+const kindsOf = (features: readonly { properties: Record<string, unknown> | null }[], property: string): Set<string> => new Set(features.map(({ properties }) => String(properties?.[property] ?? "")));
+
+/** The groups of which something is on the map. */
+function present(): Set<string> {
+  const kinds = kindsOf(scenarioFeatures(scenarios.document.value), "kind");
+  const found = new Set([...kinds].map((kind) => (kind === "target" ? "roi" : kind)));
+  const shown = open.value;
+  if (shown) {
+    const roles = kindsOf(shown.plan.features, "role");
+    for (const role of ["footprint", "uncovered", "path", "collect", "fence", "rally"]) if (roles.has(role)) found.add(role);
+    if (phaseFeatures(shown.plan, shown.items).length > 0) found.add("phases");
+    if (shown.items.length > 0) found.add("waypoints");
+    if (hasPhotos(shown)) for (const group of GROUPS) if (group.of === "photos") found.add(group.id);
+    found.add("crew");
+  }
+  if (compared.value) found.add("compared");
+  if (held.value) found.add("held");
+  const now = flown.value;
+  if (now || watched.value?.flight_id) found.add("track").add("trackOn");
+  if (now) {
+    for (const role of kindsOf(now.seen.features, "role")) found.add(role);
+    if (now.photos.length > 0) found.add("taken");
+    if ((now.seen.photos?.assumed ?? 0) === 0) found.delete("assumed");
+  }
+  return found;
+}
+
 export function buildLegend(map: MapLibreMap): void {
-  const there = { photos: false, taken: false };
   const details = h("details", { open: innerWidth > NARROW_PX });
+  let shown = "";
   const draw = (): void => {
     const colours = palette();
+    const there = present();
+    shown = [...there].sort().join();
+    const listed = GROUPS.filter(({ id }) => there.has(id));
     fill(
       details,
       h("summary", {}, "Legend"),
-      ...GROUPS.filter(({ of }) => of === undefined || there[of]).flatMap((group) => [
+      listed.length === 0 ? h("p", { class: "quiet" }, "Nothing is on the map yet.") : null,
+      ...listed.flatMap((group) => [
         h(
           "label",
           {},
@@ -34,10 +72,10 @@ export function buildLegend(map: MapLibreMap): void {
             type: "checkbox",
             checked: !hidden.has(group.id),
             onchange: (event: Event) => {
-              const shown = (event.target as HTMLInputElement).checked;
-              if (shown) hidden.delete(group.id);
+              const ticked = (event.target as HTMLInputElement).checked;
+              if (ticked) hidden.delete(group.id);
               else hidden.add(group.id);
-              showGroup(map, group, shown);
+              showGroup(map, group, ticked);
             },
           }),
           h("span", { class: `swatch ${group.swatch}`, style: `--c:${colours[group.colour]}`, "aria-hidden": "true" }),
@@ -49,12 +87,13 @@ export function buildLegend(map: MapLibreMap): void {
   };
   draw();
   onThemeChange(draw);
-  const note = (of: keyof typeof there, now: boolean): void => {
-    if (there[of] === now) return;
-    there[of] = now;
-    draw();
-  };
-  open.watch((shown) => note("photos", hasPhotos(shown)));
-  flown.watch((now) => note("taken", (now?.photos.length ?? 0) > 0 || (now?.seen.photos?.assumed ?? 0) > 0));
+  const look = debounce(() => [...present()].sort().join() !== shown && draw(), QUIET_MS);
+  for (const signal of [scenarios.document, open, compared, held, flown] as Signal<unknown>[]) signal.watch(look);
+  let flight: string | null = null;
+  watched.watch((vehicle) => {
+    if ((vehicle?.flight_id ?? null) === flight) return;
+    flight = vehicle?.flight_id ?? null;
+    look();
+  });
   byId("legend").append(details);
 }

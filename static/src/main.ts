@@ -6,6 +6,7 @@ import { keepCameras } from "./cameras";
 import { byId } from "./dom";
 import { Drawing } from "./draw";
 import { acceptDrops } from "./drop";
+import { isDark, showCrew } from "./crew/clock";
 import { encoding } from "./encoding";
 import { keepVehicles, watched } from "./fleet";
 import { keepFlights, refreshFlights } from "./flights";
@@ -37,6 +38,7 @@ import { showCursor } from "./survey/cursor";
 import { keepProfile } from "./survey/profile";
 import { showReadout } from "./survey/readout";
 import { showSurvey } from "./survey/view";
+import { onThemeChange, palette } from "./theme";
 import { buildToolbar } from "./toolbar";
 import type { Position } from "./types";
 import { judgement, keepJudging } from "./validation";
@@ -75,6 +77,7 @@ async function start(): Promise<void> {
   showSurvey(map, () => isShown("overlap"));
   showReadout(map);
   showCursor(map);
+  showCrew(map, () => palette().collect);
   keepToTheScenario();
   keepScenarios();
   keepFresh();
@@ -105,10 +108,13 @@ function draw(map: Awaited<ReturnType<typeof createMap>>): void {
     const current = watched.value?.flight_id && watched.value.plan_id === open.value?.record.id ? watched.value.state.mission_current : null;
     setData(map, "waypoints", itemFeatures(open.value?.items ?? [], current));
   };
-  open.watch((shown) => {
-    setData(map, "plan", shown ? [...planFeatures(shown.plan), ...phaseFeatures(shown.plan, shown.items)] : []);
+  const drawPlan = (): void => {
+    const shown = open.value;
+    setData(map, "plan", shown ? [...planFeatures(shown.plan, isDark()), ...phaseFeatures(shown.plan, shown.items)] : []);
     drawItems();
-  });
+  };
+  open.watch(drawPlan);
+  onThemeChange(drawPlan);
   let current: number | null | undefined;
   watched.watch((vehicle) => {
     const now = vehicle?.flight_id ? vehicle.state.mission_current : null;

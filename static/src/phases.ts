@@ -29,7 +29,7 @@ export function phasesOf(plan: PlanCollection): PathPhase[] {
 }
 
 /** In three dimensions, as the plan's distances are. */
-function step_m(a: GeoPosition, b: GeoPosition): number {
+export function step_m(a: GeoPosition, b: GeoPosition): number {
   return Math.hypot(distance_m(a as Position, b as Position), (b[2] ?? 0) - (a[2] ?? 0));
 }
 

@@ -5,6 +5,7 @@ import { encoding, queryOf } from "./encoding";
 import { circleRing } from "./geo";
 import { adoptIfSame, keeping, keepNow } from "./keeping";
 import { itemsOf, type MissionItem } from "./mission";
+import { coloursOf } from "./crew/flights";
 import { attempt, news, report } from "./notices";
 import { scenarios } from "./scenario";
 import { Signal } from "./signal";
@@ -214,11 +215,21 @@ export async function deletePlan(id: string): Promise<void> {
 }
 
 /** Plan features for the map: collects carry the number of their place in flight order. */
-export function planFeatures(plan: PlanCollection): Feature[] {
+export function planFeatures(plan: PlanCollection, dark = false): Feature[] {
+  const colours = coloursOf(plan, dark);
+  return numbered(plan).map((feature) => {
+    const colour = colours.get(String(feature.properties?.["vehicle"] ?? ""));
+    return colour === undefined ? feature : { ...feature, properties: { ...feature.properties, colour } };
+  });
+}
+
+function numbered(plan: PlanCollection): Feature[] {
   const numbers = new Map<Feature, number>();
   const collects = plan.features.filter((feature) => feature.properties?.["role"] === "collect");
   collects.sort((a, b) => Number(a.properties?.["start_m"] ?? 0) - Number(b.properties?.["start_m"] ?? 0));
-  collects.forEach((collect, index) => numbers.set(collect, index + 1));
+  // Each aircraft counts its own.
+  const several = new Set(collects.map((collect) => collect.properties?.["vehicle"])).size > 1;
+  collects.forEach((collect, index) => numbers.set(collect, several ? Number(collect.properties?.["seq"] ?? index + 1) : index + 1));
   const photographed = new Set((plan.cameras ?? []).filter(({ trigger }) => trigger !== "video").map(({ name }) => name));
   // Photos have a source of their own.
   return plan.features.filter((feature) => feature.properties?.["role"] !== "photos").map((feature) => {

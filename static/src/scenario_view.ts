@@ -24,8 +24,10 @@ function outline({ geometry, properties }: ScenarioFeature, radius_m: number): G
 
 /** Shapes and, apart from them, one label point a feature; discs become rings. */
 export function scenarioFeatures(scenario: Scenario): Feature[] {
+  const most = Math.max(...scenario.features.map(({ properties }) => Number(properties["score"] ?? 0)), 0);
   return scenario.features.flatMap((feature) => {
-    const properties = { fid: nameOf(feature), kind: kindOf(feature), name: nameOf(feature), label: false };
+    const weight = most > 0 ? { weight: Number(feature.properties["score"] ?? 0) / most } : {};
+    const properties = { ...weight, fid: nameOf(feature), kind: kindOf(feature), name: nameOf(feature), label: false };
     const radius_m = radiusOf(feature);
     const shape: Feature = { type: "Feature", properties, geometry: outline(feature, radius_m) };
     const at = feature.properties.role === "area" ? null : labelPoint(feature.geometry);

@@ -58,6 +58,16 @@ export interface Problem {
 
 export type PlanState = "queued" | "running" | "done" | "failed" | "cancelled";
 
+export interface VehicleMetrics {
+  length_m: number;
+  duration_s: number;
+  energy_wh: number | null;
+  priority: number;
+  sorties?: number;
+  take_off_s?: number;
+  landing_s?: number;
+}
+
 export interface Metrics {
   length_m: number;
   collection_length_m: number;
@@ -76,6 +86,10 @@ export interface Metrics {
   lower_bound_m?: number | null;
   gap?: number | null;
   photos?: number | null;
+  /** Of each aircraft of a plan of several. */
+  vehicles?: Record<string, VehicleMetrics>;
+  left_out?: { roi: string; reason: string; margin: number | null }[];
+  last_landing_s?: number | null;
   /** Of a search: ground seen, each place once, and what that is worth where importance is given. */
   area_seen_m2?: number | null;
   importance_collected?: number | null;

@@ -52,7 +52,7 @@ export function flightChart(): HTMLElement {
   let chart: uPlot | null = null;
   let columns: [number[], Column, Column] = [[], [], []];
   let flight: string | null = null;
-  let begun_ms = 0;
+  let begun_s = 0;
   const draw = (): void => {
     if (columns[0].length < 2 || box.clientWidth === 0) return;
     chart ??= makeChart(box);
@@ -64,15 +64,17 @@ export function flightChart(): HTMLElement {
     if (!vehicle || vehicle.flight_id === null) return;
     if (vehicle.flight_id !== flight) {
       flight = vehicle.flight_id;
-      begun_ms = performance.now();
+      begun_s = vehicle.state.time_s ?? 0;
       columns = [[], [], []];
     }
-    const { lon_deg, lat_deg, relative_altitude_m } = vehicle.state;
-    if (lon_deg === null || lat_deg === null) return;
+    const { lon_deg, lat_deg, relative_altitude_m, time_s } = vehicle.state;
+    // The aircraft's own clock: a simulated one may be quicker than ours.
+    const flown_s = (time_s ?? NaN) - begun_s;
+    if (lon_deg === null || lat_deg === null || !Number.isFinite(flown_s) || flown_s <= (columns[0].at(-1) ?? -1)) return;
     const path = open.value?.record.id === vehicle.plan_id ? open.value.plan.features.find((f) => f.properties["role"] === "path") : undefined;
     const line = path?.geometry.type === "LineString" ? path.geometry.coordinates : [];
     const at: Position = [lon_deg, lat_deg];
-    columns[0].push((performance.now() - begun_ms) / 1000);
+    columns[0].push(flown_s);
     columns[1].push(relative_altitude_m);
     columns[2].push(line.length > 1 ? offLine_m(at, line) : null);
     if (columns[0].length > MOST_POINTS) columns.forEach((column) => column.splice(0, column.length - MOST_POINTS));

@@ -50,7 +50,7 @@ function headings(text: string): number[] {
 /** What decides which fields there are; the form is built anew when it changes. */
 export function formKey(feature: ScenarioFeature | undefined): string {
   if (!feature) return "";
-  const sensors = feature.properties.role === "roi" ? (scenarios.document.value.sensors ?? []).map((sensor) => String(sensor["name"])) : [];
+  const sensors = feature.properties.role === "roi" ? (scenarios.document.value.sensors ?? []).map((sensor) => `${String(sensor["name"])} ${String(sensor["type"])}`) : [];
   return [...sensors, nameOf(feature), feature.properties.role, feature.geometry.type, String(feature.properties["model"]), String(feature.properties["role_in_doubt"])].join("|");
 }
 
@@ -85,6 +85,25 @@ function roleFields(name: string, role: string, geometryType: string, model: unk
         number("min_resolution_m", "Resolution wanted", "m", { min: 0, placeholder: "any" }),
         number("altitude_m", "Altitude", "m", { min: 0, placeholder: "the flight's" }),
         number("revisits", "Times to be seen", "", { min: 1, max: 50, placeholder: "1" }),
+        number("revisit_after_s", "Apart by at least", "s", { min: 0, placeholder: "0", hint: "Between two times that it is seen" }),
+        textField({
+          id: "f-time_window_s", label: "May be seen between (s)", placeholder: "any time", hint: "Two numbers of seconds after the mission's start, separated by a comma",
+          get: () => get<number[]>("time_window_s")()?.join(", "),
+          set: (text) => scenarios.setProperty(name, "time_window_s", text === undefined ? undefined : headings(text)),
+          refuse: (text) => {
+            const found = headings(text);
+            if (found.length !== 2 || !found.every((value) => value >= 0)) return "Two numbers of seconds, separated by a comma.";
+            return (found[0] as number) < (found[1] as number) ? "" : "It has to open before it closes.";
+          },
+        }),
+        ...((scenarios.document.value.sensors ?? []).some((sensor) => sensor["type"] === "camera")
+          ? [
+              choiceField({
+                id: "f-pattern", label: "Flown as", get: () => get<string>("pattern")() ?? "auto", set: (value) => scenarios.setProperty(name, "pattern", value === "auto" ? undefined : value),
+                choices: [["auto", "auto"], ["lanes", "lanes"], ["crosshatch", "lanes both ways across"], ["orbit", "a circle around it"], ["spiral", "a spiral"], ["look", "one look from beside"]],
+              }),
+            ]
+          : []),
         ...(geometryType === "LineString" ? [number("width_m", "Width", "m", { min: 0, required: true })] : []),
         ...(geometryType === "Point" ? [number("radius_m", "Radius", "m", { min: 0, placeholder: "0" })] : []),
       ];

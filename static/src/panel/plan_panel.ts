@@ -9,11 +9,14 @@ import { readFindings } from "../api";
 import type { PlanRecord, Position, Problem, Violation } from "../types";
 import { metres, number, percent, percentDown, seconds } from "../units";
 import { judgement } from "../validation";
+import { crewBox } from "./crew_box";
 import { comparison } from "./compare";
 import { moreOf } from "./more";
+import { pathsOf } from "../phases";
 import { phaseTable } from "./phase_table";
 import { profileBox } from "./profile_box";
 import { operatingStrip } from "./strip";
+import { leftOut, vehiclesTable } from "./vehicles_table";
 import { surveyBox } from "./survey_box";
 import { waypointList } from "./waypoint_list";
 
@@ -109,7 +112,7 @@ function coverage(fractions: Record<string, number>): HTMLElement {
   return h("table", { class: "coverage" }, h("tbody", {}, ...rows));
 }
 
-function result({ record, plan }: OpenPlan, view: PlanView): HTMLElement {
+function result({ record, plan, items, madeFrom }: OpenPlan, view: PlanView): HTMLElement {
   const m = plan.metrics;
   const planning = Object.entries(m.planning_time_s ?? {});
   return h(
@@ -136,8 +139,10 @@ function result({ record, plan }: OpenPlan, view: PlanView): HTMLElement {
       ],
       "metrics",
     ),
-    phaseTable(plan),
-    operatingStrip(plan),
+    vehiclesTable({ record, plan, items, madeFrom }),
+    leftOut({ record, plan, items, madeFrom }),
+    pathsOf(plan).length > 1 ? section("Parts of each flight", false, phaseTable(plan)) : phaseTable(plan),
+    pathsOf(plan).length > 1 ? null : operatingStrip(plan),
     section("Coverage", true, coverage(m.coverage ?? {})),
     planning.length > 0 ? section("Planning time", false, table(planning.map(([stage, s]) => [stage, seconds(s)]))) : null,
     plan.methods ? section("Methods", false, table(Object.entries(plan.methods))) : null,
@@ -206,5 +211,5 @@ export function planPanel(view: PlanView): HTMLElement {
     fill(box, plan ? result(plan, view) : null);
     beside.hidden = plan === null;
   });
-  return h("div", {}, h("div", { class: "row" }, go), progress(view), stale, box, surveyBox(), profileBox(), waypointList(view.zoomToPlace), beside, earlier());
+  return h("div", {}, h("div", { class: "row" }, go), progress(view), stale, crewBox(), box, surveyBox(), profileBox(), waypointList(view.zoomToPlace), beside, earlier());
 }

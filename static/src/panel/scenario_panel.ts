@@ -205,6 +205,6 @@ export function scenarioPanel(view: View): HTMLElement {
     ),
     features(view),
     keptBox(view),
-    kept(() => settingsKey(scenarios.document.value), () => settingsForm(scenarios.document.value)),
+    kept(() => settingsKey(scenarios.document.value), () => settingsForm()),
   );
 }

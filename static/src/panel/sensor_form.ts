@@ -1,5 +1,5 @@
 /** The sensors on board: a radar or a camera each, the camera from the service's database or by its figures. */
-import { cameras, heightFor_m, known, opticsOf, radars, seenFrom } from "../cameras";
+import { cameras, heightFor_m, known, like, opticsOf, radars, seenFrom } from "../cameras";
 import { button, fill, h, section } from "../dom";
 import { news } from "../notices";
 import { emptyScenario, scenarios } from "../scenario";
@@ -16,6 +16,7 @@ const CAMERA_ALTITUDE_M = 100;
 const FORWARD_OVERLAP = 0.75;
 const SIDE_OVERLAP = 0.65;
 const PERCENT = 100;
+const MOST_LIKE = 6;
 const MILLI = 1000;
 const MICRO = 1_000_000;
 
@@ -142,7 +143,12 @@ function modelField(index: number): Field {
     suggestions: cameras, words: (camera) => `${camera.kind}, ${(camera.focal_length_m * MILLI).toFixed(1)} mm, ${camera.image_px.join(" × ")}`,
     get: () => sensorAt(index)?.["model"] as string | undefined,
     set: (model) => setModel(index, model),
-    refuse: (text) => (text === "" || known(text) || cameras.value.length === 0 ? "" : "The database has no camera of this name: choose one of those shown, or leave this empty and give its figures."),
+    refuse: (text) => {
+      if (text === "" || known(text) || cameras.value.length === 0) return "";
+      const several = like(text);
+      if (several.length > 0) return `Several are called so: ${several.slice(0, MOST_LIKE).map(({ name: called }) => called).join(", ")}${several.length > MOST_LIKE ? " …" : ""}. Say which.`;
+      return "The database has no camera of this name: choose one of those shown, or leave this empty and give its figures.";
+    },
   });
 }
 

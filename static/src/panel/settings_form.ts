@@ -3,7 +3,8 @@ import { h, section } from "../dom";
 import { scenarios } from "../scenario";
 import type { Member, Scenario } from "../types";
 import { choiceField, numberField, tickField, type Field } from "./fields";
-import { choice, member, name, nested, number, top } from "./members";
+import { aircraftKey, aircraftSections } from "./aircraft_form";
+import { nested, top } from "./members";
 import { sensorSections, sensorsKey } from "./sensor_form";
 import { terrainField } from "./terrain_field";
 
@@ -15,32 +16,6 @@ const METHODS: Record<string, readonly string[]> = {
 };
 const WEIGHTS = ["length", "missile", "radar", "energy", "turns"] as const;
 
-function vehicle(index: number): Field[] {
-  return [
-    name("vehicles", index),
-    choice("vehicles", index, "type", "Type", [["fixed_wing", "fixed wing"], "multirotor", ["vtol", "VTOL"]]),
-    choice("vehicles", index, "autopilot", "Autopilot", [["ardupilot", "ArduPilot"], ["px4", "PX4"]]),
-    finish(index),
-    number("vehicles", index, "airspeed_m_s", "Airspeed", "m/s", { required: true }),
-    number("vehicles", index, "settle_m", "Straight before a pass", "m", { placeholder: "its autopilot's", hint: "Straight flight wanted before each pass, so that the aircraft is on its line when the sensor goes on; left empty, as many seconds of it as the autopilot needs: 10 for ArduPlane" }),
-    number("vehicles", index, "min_turn_radius_m", "Least turn radius", "m", { hint: "The widest of turn radius, bank and load factor counts" }),
-    number("vehicles", index, "max_bank_deg", "Greatest bank", "°", { max: 84.9 }),
-    number("vehicles", index, "max_load_factor", "Greatest load factor", "g", { min: 1 }),
-    number("vehicles", index, "max_climb_deg", "Greatest climb", "°", { max: 89, placeholder: "8" }),
-    number("vehicles", index, "max_range_m", "Range", "m", { placeholder: "no limit" }),
-    number("vehicles", index, "max_flight_time_s", "Flight time", "s", { placeholder: "no limit" }),
-    number("vehicles", index, "energy_wh", "Energy", "Wh", { placeholder: "no limit", hint: "Needs the cruise power" }),
-    number("vehicles", index, "cruise_power_w", "Cruise power", "W"),
-  ];
-}
-
-/** Planned with the flight, as its landing or return is part of it. */
-function finish(index: number): Field {
-  const { get, set } = member("vehicles", index, "finish");
-  const choices = [["auto", "return near home, else land"], ["land", "land at the end"], ["return", "return to launch"], ["loiter", "circle at the end"]] as const;
-  return choiceField({ id: `vehicles-${index}-finish`, label: "How its mission ends", choices, get: () => get<string>() ?? "auto", set: (value) => set(value === "auto" ? undefined : value) });
-}
-
 function mission(): Field[] {
   const altitude = top("altitude_m");
   const following = top("terrain_following");
@@ -50,7 +25,12 @@ function mission(): Field[] {
   const seed = top("seed");
   const budget = top("time_budget_s");
   const clearance = top("clearance_m");
+  const task = top("task");
   return [
+    choiceField({
+      id: "s-task", label: "What is to be done", get: () => task.get<string>() ?? "collect", set: (value) => task.set(value === "collect" ? undefined : value),
+      choices: [["collect", "see every region"], ["search", "search: as much as the energy allows"]],
+    }),
     numberField({ id: "s-altitude_m", label: "Altitude", unit: "m", min: 0, placeholder: "by the quality wanted", hint: "Left empty, regions are flown over as high as what they ask for allows", get: () => altitude.get<number>(), set: altitude.set }),
     choiceField({
       id: "s-altitude_reference", label: "Altitude over", get: () => reference.get<string>(), set: reference.set,
@@ -62,8 +42,26 @@ function mission(): Field[] {
     tickField({ id: "s-terrain_following", label: "Follow the ground", hint: "Passes of cameras keep their height over the raster's ground", get: () => following.get<boolean>() ?? false, set: (value) => following.set(value ? true : undefined) }),
     numberField({ id: "s-clearance_m", label: "Clearance", unit: "m", min: 0, placeholder: "the autopilot's", hint: "Kept from zones, hard threats, obstacles and terrain", get: () => clearance.get<number>(), set: clearance.set }),
     ...wind(),
+    ...apart(),
     numberField({ id: "s-seed", label: "Seed", min: 0, placeholder: "0", get: () => seed.get<number>(), set: seed.set }),
     numberField({ id: "s-time_budget_s", label: "Time for planning", unit: "s", min: 0, placeholder: "no limit", get: () => budget.get<number>(), set: budget.set }),
+  ];
+}
+
+/** What aircraft of one plan keep between them. */
+function apart(): Field[] {
+  if ((scenarios.document.value.vehicles?.length ?? 0) < 2) return [];
+  const get = (property: string) => () => (scenarios.document.value["separation"] as Member | undefined)?.[property] as number | undefined;
+  const set = (property: string) => (value: unknown): void =>
+    scenarios.change((draft) => {
+      const target: Member = { ...(draft["separation"] as Member | undefined), [property]: value };
+      for (const key of Object.keys(target)) if (target[key] === undefined) delete target[key];
+      if (Object.keys(target).length === 0) delete draft["separation"];
+      else draft["separation"] = target;
+    });
+  return [
+    numberField({ id: "separation-horizontal_m", label: "Apart, sideways", unit: "m", min: 0, placeholder: "not kept", hint: "Aircraft keep this distance, or the one in height, at every instant", get: get("horizontal_m"), set: set("horizontal_m") }),
+    numberField({ id: "separation-vertical_m", label: "Apart, in height", unit: "m", min: 0, placeholder: "not kept", get: get("vertical_m"), set: set("vertical_m") }),
   ];
 }
 
@@ -103,23 +101,22 @@ function weights(): Field[] {
 
 /** What decides which fields there are. */
 export function settingsKey(scenario: Scenario): string {
-  return `${scenario.vehicles?.length ?? 0}|${sensorsKey(scenario.sensors ?? [])}`;
+  return `${aircraftKey()}|${sensorsKey(scenario.sensors ?? [])}`;
 }
 
-export function settingsForm(scenario: Scenario): Field {
+export function settingsForm(): Field {
   const fields: Field[] = [];
   const plain = (field: Field): HTMLElement => {
     fields.push(field);
     return field.element;
   };
   const grid = (made: Field[]): HTMLElement => h("div", { class: "grid" }, ...made.map(plain));
-  const vehicles = scenario.vehicles ?? [];
   const element = h(
     "div",
     {},
     section("Altitude, ground and wind", true, grid(mission())),
     ...sensorSections(grid, plain),
-    ...vehicles.map((_, index) => section(vehicles.length > 1 ? `Aircraft ${index + 1}` : "Aircraft", false, grid(vehicle(index)))),
+    ...aircraftSections(grid),
     section("Methods", false, grid(methods())),
     section("Weights", false, grid(weights())),
   );

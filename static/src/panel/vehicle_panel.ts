@@ -3,6 +3,7 @@ import { fill, h } from "../dom";
 import { watched } from "../fleet";
 import { flightChart } from "./chart";
 import { commands } from "./commands";
+import { fleetUploadBox } from "./fleet_upload_box";
 import { flightsBox } from "./flights_box";
 import { gauges, kindOf, words } from "./gauges";
 import { holdingBox } from "./holding_box";
@@ -23,5 +24,5 @@ export function vehiclePanel(view: PlanView, planned: () => void, edit: () => vo
     fill(kind, vehicle ? kindOf(vehicle) : "");
   });
   const upload = uploadBox(edit);
-  return h("div", {}, vehicleList(), title, gauges(), upload.controls, commands(), orderedBox(), words(), upload.answers, flightChart(), waypointList(view.zoomToPlace), holdingBox(), flightsBox(planned));
+  return h("div", {}, vehicleList(), title, gauges(), upload.controls, fleetUploadBox(), commands(), orderedBox(), words(), upload.answers, flightChart(), waypointList(view.zoomToPlace), holdingBox(), flightsBox(planned));
 }
