@@ -133,6 +133,7 @@ def warm_up() -> None:
     many = read_scenario(_many())
     with_bound(many, make_plan(many), share=True)
     make_plan(read_scenario(_city("auto", building=False)))
+    make_plan(read_scenario(_city("auto", building=False) | {"task": "search", "method": {}}))
     for coverage in SEQUENCES:
         make_plan(read_scenario(_city(coverage)))
     # The scenario lies at 0° N 0° E.

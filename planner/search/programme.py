@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -87,6 +87,8 @@ class Programme:
         All passes of its pattern.
     thinned
         Whether it was cut by leaving out what is worth least, not what comes last.
+    strips, look
+        What it was laid of: middle lines of ground, (N, 2, 2), seen to one side.
     """
 
     family: str
@@ -94,7 +96,9 @@ class Programme:
     worth: float
     cost_m: float
     whole: tuple[Sweep, ...]
-    thinned: bool = False
+    thinned: bool
+    strips: Floats = field(compare=False)
+    look: Look
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 from shapely.geometry import box
 
-from planner.search.programme import Pricing, Sweep, cut_to, seen_worth, thinned_to
+from planner.search.choose import Search
+from planner.search.programme import Pricing, Programme, Sweep, cut_to, seen_worth, thinned_to
+from planner.search.room import Room
 from planner.search.values import Swath, Worth, worth_of_ground
 from planner.vehicle.aircraft import Aircraft
 from planner.vehicle.model import FlightModel
@@ -14,6 +16,20 @@ from planner.vehicle.model import FlightModel
 MODEL = FlightModel(Aircraft("uav", "fixed_wing", "ardupilot", 16.0, 40.0))
 SWATH = Swath(-30.0, 30.0, -10.0, -10.0)
 PRICING = Pricing(MODEL, (0.0, 0.0), (0.0, 0.0))
+WIDE = box(-5000.0, -5000.0, 5000.0, 5000.0)
+EVERYWHERE = Room(WIDE, WIDE, MODEL.turn_radius_m, 0.0)
+
+
+class Below:
+    """A sensor that sees the same on every course."""
+
+    looks = ("down",)
+
+    def swath(self, _course_rad, _look):
+        """The swath of all tests here."""
+        return SWATH
+
+
 LANES = tuple(
     Sweep((50.0, y), (950.0, y), "down", SWATH) if k % 2 == 0 else Sweep((950.0, y), (50.0, y), "down", SWATH)
     for k, y in enumerate(range(30, 600, 60))
@@ -63,3 +79,18 @@ def test_thinning_leaves_out_what_is_worth_least():
     kept = thinned_to(LANES, PRICING, 5000.0, worth)
     assert PRICING.cost_m(kept) <= 5000.0
     assert seen_worth(kept, worth) == pytest.approx(0.92 * worth.total)
+
+
+def test_refined_strips_see_more():
+    """Strips laid askew over what is worth seeing are turned and moved until they see more of it."""
+    ground = box(0.0, 0.0, 1000.0, 600.0)
+    scores = np.zeros((60, 100))
+    scores[20:34] = 1.0
+    worth = worth_of_ground(ground, 10.0, scores)
+    strips = np.array([[[40.0, 180.0], [960.0, 260.0]], [[960.0, 330.0], [40.0, 250.0]]])
+    asked = Search(ground, worth, Below(), EVERYWHERE, PRICING)
+    sweeps = tuple(Sweep(tuple(a), tuple(b), "down", SWATH) for a, b in strips.tolist())
+    laid = Programme("parallel", sweeps, seen_worth(sweeps, worth), 0.0, sweeps, False, strips, "down")
+    found = asked._refined(laid, 6000.0, 60.0)
+    assert found.worth > 1.1 * laid.worth
+    assert PRICING.cost_m(found.sweeps) <= 6000.0
