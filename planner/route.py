@@ -47,6 +47,8 @@ class CollectPass:
         Ground seen at full resolution.
     photo_spacing_m
         The widest distance between photos that keeps their overlap; None where none are taken.
+    goes_on
+        Whether it is flown on from the pass before it, in one turn, without settling: round a ring.
     """
 
     regions: tuple[str, ...]
@@ -57,6 +59,7 @@ class CollectPass:
     eta: float
     footprint: Polygon
     photo_spacing_m: float | None = None
+    goes_on: bool = False
 
     @property
     def angle_rad(self) -> float:
@@ -75,7 +78,7 @@ class CollectPass:
 
     def settling(self, settle_m: float) -> Pose:
         """Pose where the straight flight before it begins."""
-        scale = settle_m / self.length_m
+        scale = 0.0 if self.goes_on else settle_m / self.length_m
         ahead = self.end[0] - self.start[0], self.end[1] - self.start[1]
         return Pose(self.start[0] - scale * ahead[0], self.start[1] - scale * ahead[1], self.angle_rad)
 

@@ -14,9 +14,12 @@ from planner.check.kinematics import LENGTH_TOLERANCE, MAX_ARC_EDGE_M
 from planner.check.places import PLACE_TOLERANCE_M, lonlat
 from planner.check.stretches import Measured
 from planner.check.times import SPOT_M
-from planner.plan import FlownPath, Plan, Violation
+from planner.plan import Collect, FlownPath, Plan, Violation
 from planner.scenario import Scenario
+from planner.sensors.camera import CameraSensor
 
+#: Patterns that straight down are chords round a place.
+RINGS = {"orbit", "spiral"}
 #: Directions at the ends count as met up to this.
 END_ANGLE_TOLERANCE_RAD = math.radians(1.0)
 
@@ -101,14 +104,21 @@ def collect_violations(
     line: Measured,
     over_ground_m: Callable[[float], float],
     settle_m: float,
+    radius_m: float,
 ) -> Iterator[Violation]:
     """Each collect lies on the path where it says, in its direction, and what is flown before is straight.
+
+    Not between chords of a ring that are flown on within a quarter of a turn.
 
     Parameters
     ----------
     over_ground_m
         Distance over the ground along the line at a distance along it in three dimensions.
+    radius_m
+        Of the tightest turn.
     """
+    quarter_m = 0.5 * math.pi * radius_m * (1.0 + LENGTH_TOLERANCE)
+    ended_m: dict[str, float] = {}
     for collect in plan.collects_of(path.vehicle):
         (east0, north0), (east1, north1) = scenario.frame.to_local([place[:2] for place in collect.line])
         length_m = math.hypot(east1 - east0, north1 - north0)
@@ -133,7 +143,9 @@ def collect_violations(
                 collect.line[0][:2],
             )
         straight_m = _straight_before_m(line, from_m, (east0, north0), along)
-        if straight_m < settle_m - PLACE_TOLERANCE_M:
+        goes_on = start_m - ended_m.get(collect.roi, -math.inf) <= quarter_m and _in_a_ring(scenario, collect)
+        ended_m[collect.roi] = end_m
+        if straight_m < settle_m - PLACE_TOLERANCE_M and not goes_on:
             yield Violation(
                 "settling",
                 collect.roi,
@@ -142,6 +154,14 @@ def collect_violations(
                 "m",
                 collect.line[0][:2],
             )
+
+
+def _in_a_ring(scenario: Scenario, collect: Collect) -> bool:
+    """Whether a collect is one of the chords that a region is flown round by."""
+    sensor = scenario.suite.named(collect.sensor)
+    patterns = [region.pattern for region in scenario.regions if region.name in collect.regions]
+    straight_down = isinstance(sensor, CameraSensor) and sensor.tilt_rad == 0.0
+    return straight_down and bool(patterns) and set(patterns) <= RINGS
 
 
 def _straight_before_m(

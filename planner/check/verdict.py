@@ -113,7 +113,15 @@ def judge(scenario: Scenario, plan: Plan) -> Verdict:
         violations += limit_violations(aircraft, path, lengths_m[-1], whole_s, energy_wh)
         over_ground_m = partial(np.interp, xp=reached_m, fp=over_m)
         measured = Measured(line_m)
-        violations += collect_violations(scenario, plan, path, measured, over_ground_m, aircraft.settle_m)
+        violations += collect_violations(
+            scenario,
+            plan,
+            path,
+            measured,
+            over_ground_m,
+            aircraft.settle_m,
+            aircraft.ground_turn_radius_m,
+        )
         violations += followed_violations(scenario, plan, path)
     scenario, plan = asked, published
     violations += window_violations(scenario, plan)

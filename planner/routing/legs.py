@@ -97,7 +97,7 @@ class Legs:
 
     def pass_m(self, collect: CollectPass) -> float:
         """One pass, the settling before it, and the stops at its corners."""
-        cost_m = collect.length_m + self._model.settle_m
+        cost_m = collect.length_m + (0.0 if collect.goes_on else self._model.settle_m)
         if self._model.wind.speed_m_s > 0.0:
             cost_m *= float(self._model.air_factor(collect.angle_rad))
         if len(self._soft):

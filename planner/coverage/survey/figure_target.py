@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -97,8 +97,12 @@ class FigureTarget:
 
     def passes(self, options: FigureOptions, index: int) -> tuple[CollectPass, ...]:
         """A pass each line."""
-        lines = self.figure.lines(float(options.angles_rad[index]), bool(options.left[index]))
-        return tuple(collect_along(self.region, self.survey, line, 0.5) for line in lines)
+        left = bool(options.left[index])
+        lines = self.figure.lines(float(options.angles_rad[index]), left)
+        return tuple(
+            collect_along(self.region, self.survey, line, 0.5, goes_on=bool(goes_on))
+            for line, goes_on in zip(lines, self.figure.goes_on(left), strict=True)
+        )
 
     def hidden_m(self, passes: Sequence[CollectPass]) -> float:
         """Nothing: what terrain hides hardly depends on the choice."""
@@ -121,14 +125,18 @@ class FigureTarget:
         if isinstance(self.figure, Looks) and not self._looks(angle_rad):
             return None
         lines, around = self.figure.lines(angle_rad, left), self.around
-        good, cost_m = judge_lines(lines[:, None], around)
-        if not good.all():
-            return None
         ahead = lines[:, 1] - lines[:, 0]
         angles_rad = np.arctan2(ahead[:, 1], ahead[:, 0])
         entries, exits = poses_of(lines, angles_rad, around.settle_m)
-        turns_m = dubins_lengths(exits[:-1], entries[1:], around.radius_m)
-        inner_m = float(cost_m.sum() + turns_m.sum())
+        goes_on = self.figure.goes_on(left)
+        entries[goes_on] = poses_of(lines[goes_on], angles_rad[goes_on], 0.0)[0]
+        inner_m = 0.0
+        for some, where in ((~goes_on, around), (goes_on, replace(around, settle_m=0.0))):
+            good, cost_m = judge_lines(lines[some][:, None], where)
+            if not good.all():
+                return None
+            inner_m += float(cost_m.sum())
+        inner_m += float(dubins_lengths(exits[:-1], entries[1:], around.radius_m).sum())
         return entries[0], exits[-1], inner_m + float(cramped_m(entries[:1], exits[-1:], around)[0])
 
     def _looks(self, angle_rad: float) -> bool:
@@ -154,9 +162,9 @@ def figure_target(
     survey = Survey(region.area, region.area, camera, height_m)
     figure: Figure
     if region.pattern == "spiral":
-        figure = spiral(region.area, camera, height_m, around.radius_m, around.settle_m)
+        figure = spiral(region.area, camera, height_m, around.radius_m)
     elif region.pattern == "orbit" and camera.tilt_rad == 0.0:
-        figure = rings(region.area, camera, height_m, around.radius_m, around.settle_m)
+        figure = rings(region.area, camera, height_m, around.radius_m)
     else:
         figure = Looks(region.area, camera, height_m, LOOKS if region.pattern == "orbit" else 1)
         every_rad = np.radians(np.arange(0.0, 360.0, 5.0))

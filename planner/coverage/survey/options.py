@@ -125,13 +125,15 @@ def collect_passes(
     return tuple(collect_along(region, survey, part, eta) for parts in flown for part in parts)
 
 
-def collect_along(region: MergedRegion, survey: Survey, line: Floats, eta: float) -> CollectPass:
+def collect_along(
+    region: MergedRegion, survey: Survey, line: Floats, eta: float, *, goes_on: bool = False
+) -> CollectPass:
     """A pass with photos from end to end of a line, (2, 2)."""
     start, end = ((float(east), float(north)) for east, north in line)
     camera, height_m = survey.camera, survey.height_m
     seen = seen_on_flat(camera, line, height_m)
     apart_m = camera.photo_spacing_m(height_m, math.atan2(end[1] - start[1], end[0] - start[0]))
-    return CollectPass(region.names, camera.name, "down", start, end, eta, seen, apart_m)
+    return CollectPass(region.names, camera.name, "down", start, end, eta, seen, apart_m, goes_on)
 
 
 def is_convex(ground: Polygon) -> bool:

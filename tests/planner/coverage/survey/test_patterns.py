@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -170,3 +171,32 @@ def test_the_judge_finds_nothing_wrong_with_a_pattern(pattern: str) -> None:
     plan = make_plan(read_scenario(document))
     assert plan.violations == ()
     assert plan.metrics.coverage == {"A": 1.0}
+
+
+@pytest.mark.parametrize(("pattern", "radius_m"), [("orbit", 8.0), ("spiral", 8.0), ("orbit", 30.0)])
+def test_rings_are_flown_on_where_an_arc_fits_between_their_chords(pattern: Pattern, radius_m: float) -> None:
+    """A circle of the turn radius touches both chords at their ends; all other chords are turned to."""
+    (passes,) = surveyed(pattern, Point(100.0, -50.0).buffer(150.0), radius_m=radius_m)
+    assert sum(one.goes_on for one in passes) > len(passes) / 2
+    for before, one in pairwise(passes):
+        if not one.goes_on:
+            continue
+        turned_rad = abs(math.remainder(one.angle_rad - before.angle_rad, math.tau))
+        across_m = math.dist(before.end, one.start)
+        assert across_m == pytest.approx(2.0 * radius_m * math.sin(turned_rad / 2.0), rel=1e-6)
+
+
+def test_wings_go_round_a_place_in_one_turn() -> None:
+    """With 100 m of straight flight before each pass, but none before the chords of a ring."""
+    ring = [[0.002 * math.cos(a), 0.002 * math.sin(a)] for a in np.linspace(0.0, math.tau, 25)[:-1]]
+    scenario = small(sensors=[{"name": "eye", "type": "camera", "focal_length_m": 0.02, "pixel_pitch_m": 4e-6,
+                               "image_px": [6000, 4000]}], altitude_m=100.0)  # fmt: skip
+    scenario["features"] = [
+        feature("A", "roi", "Polygon", [[*ring, ring[0]]], pattern="orbit"),
+        feature("start", "start", "Point", [-0.004, -0.004]),
+    ]
+    scenario["vehicles"] = [{"name": "w", "airspeed_m_s": 16.0, "min_turn_radius_m": 37.0, "settle_m": 100.0}]
+    plan = make_plan(read_scenario(scenario))
+    assert plan.violations == ()
+    on_lines_m = sum(collect.end_m - collect.start_m for collect in plan.collects)
+    assert plan.metrics.length_m < 3.0 * on_lines_m
