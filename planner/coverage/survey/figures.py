@@ -187,14 +187,26 @@ def rings(ground: Polygon, camera: CameraSensor, height_m: float, radius_m: floa
     return outer if whole.all() else inner if not whole.any() else Nested(outer, inner)
 
 
-def spiral(ground: Polygon, camera: CameraSensor, height_m: float, radius_m: float) -> Chords:
+def spiral(ground: Polygon, camera: CameraSensor, height_m: float, radius_m: float) -> Chords | Nested:
     """A spiral that sees a disc round the ground: its first turn the edge, its last one the middle."""
     found = _Round.of(ground, camera, height_m, radius_m)
     steps: Floats = np.arange(found.count * found.sectors + 1.0)[::-1]
     if found.inner_m + found.spacing_m > found.middle_m:
         # The last turn comes in too late to see the middle from all sides of it.
         steps = np.concatenate([steps, np.zeros(found.sectors - 1)])
-    return found.chords(found.inner_m + found.spacing_m / found.sectors * steps)
+    apothems_m: Floats = found.inner_m + found.spacing_m / found.sectors * steps
+    whole = apothems_m >= found.least_ring_m
+    if whole.all() or found.sectors == FEWEST_SECTORS:
+        return found.chords(apothems_m)
+    few = replace(found, sectors=FEWEST_SECTORS, corner_m=0.0)
+    from_m = float(apothems_m[whole][-1] if whole.any() else apothems_m[0])
+    # Behind a whole ring no place is farther than a lane spacing from the turn outside.
+    coming: Floats = np.arange(from_m, found.inner_m, -found.spacing_m / FEWEST_SECTORS)
+    every = np.concatenate(
+        [np.full(FEWEST_SECTORS - 1, from_m), coming, np.full(FEWEST_SECTORS, found.inner_m)]
+    )
+    inner = few.chords(every)
+    return Nested(found.chords(apothems_m[whole]), inner) if whole.any() else inner
 
 
 @dataclass(frozen=True, slots=True)

@@ -70,7 +70,9 @@ def test_a_cross_hatch_sees_everything_from_two_sets_of_lanes_across() -> None:
     assert caught.value.constraint == "approach"
 
 
-@pytest.mark.parametrize(("pattern", "radius_m"), [("orbit", 8.0), ("spiral", 8.0), ("orbit", 30.0)])
+@pytest.mark.parametrize(
+    ("pattern", "radius_m"), [("orbit", 8.0), ("spiral", 8.0), ("orbit", 30.0), ("spiral", 25.0)]
+)
 def test_rings_and_spirals_see_all_and_the_middle_from_all_sides(pattern: Pattern, radius_m: float) -> None:
     """Chords round the middle of a disc: every place is seen twice, the middle from every side."""
     disc = Point(100.0, -50.0).buffer(90.0)
