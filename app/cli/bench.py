@@ -37,6 +37,7 @@ class Benchmark(StrEnum):
     IMPORTANCE = "importance"
     VRPTW = "vrptw"
     SEPARATION = "separation"
+    FLEET = "fleet"
 
 
 def _options(pairs: list[str]) -> dict[str, Any]:

@@ -101,13 +101,13 @@ def write(network: Network, form: Form) -> Model:
     worth = {(s.k, s.m): s.priority for s in network.segments}
     y: dict[tuple[int, int, int], int] = {}
     for h, flyer in enumerate(flyers):
-        for i, j in _arcs(network, flyer):
+        for i, j in _arcs(network, flyer, form):
             cost = network.goal.rho * flyer.seconds[i, j] - worth.get((i, j), worth.get((j, i), 0.0))  # (19)
             if flyer.risk is not None:
                 cost += network.goal.risk * flyer.risk[i, j]
             y[h, i, j] = rows.variable(0.0, 1.0, float(cost), whole=True)
     x = tuple(rows.variable(0.0, 1.0, -each.priority, whole=True) for each in network.waypoints)  # (19)
-    t = [rows.variable(0.0, horizon) for _ in waypoints]
+    t = [rows.variable(0.0, min(each.window_s[1], horizon)) for each in network.waypoints]
     for i in waypoints:
         _visits(network, rows, y, x, i)
         opens, closes = network.waypoints[i].window_s
@@ -120,14 +120,28 @@ def write(network: Network, form: Form) -> Model:
     return _segments(network, rows, y, x, form)
 
 
-def _arcs(network: Network, flyer: Flyer) -> list[tuple[int, int]]:
-    """E of one aircraft, without loops, (22)."""
+def _arcs(network: Network, flyer: Flyer, form: Form) -> list[tuple[int, int]]:
+    """E of one aircraft without loops, (22), nor what windows or, as meant, (29) leave no use for."""
     inner = len(network.waypoints)
+    of = {vertex: (s.target, s.alternative) for s in network.segments for vertex in (s.k, s.m)}
+    earliest = [max(each.window_s[0], flyer.ready_s) + each.isr_s for each in network.waypoints]
+    latest = [each.window_s[1] for each in network.waypoints]
+
+    def useful(i: int, j: int) -> bool:
+        begin = flyer.ready_s if i == flyer.start else earliest[i]
+        if begin + flyer.seconds[i, j] > (flyer.land_by_s if j in flyer.ends else latest[j]):
+            return False
+        one, other = of.get(i), of.get(j)
+        return form == "printed" or one is None or other is None or one[0] != other[0] or one == other
+
     sources, targets = [*range(inner), flyer.start], [*range(inner), *flyer.ends]
     return [
         (i, j)
         for i, j in itertools.product(sources, targets)
-        if i != j and not (i == flyer.start and j >= inner) and math.isfinite(flyer.seconds[i, j])
+        if i != j
+        and not (i == flyer.start and j >= inner)
+        and math.isfinite(flyer.seconds[i, j])
+        and useful(i, j)
     ]
 
 

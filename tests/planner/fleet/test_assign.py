@@ -1,8 +1,8 @@
 """``auto`` assignment."""
 
+from benchmarks.fleet_cases import case as problem
 from planner.fleet.assign import assign
 from planner.fleet.schedule import broken
-from tests.planner.fleet.problems import problem
 
 
 def test_the_answer_keeps_every_limit_and_does_each_target_once() -> None:

@@ -6,12 +6,12 @@ import dataclasses
 
 import pytest
 
+from benchmarks.fleet_cases import case as problem
 from planner.fleet.assign import assign
 from planner.fleet.auto.build import tables
 from planner.fleet.bound import lower_bound
 from planner.fleet.problem import Objective
 from planner.fleet.schedule import worth_of_all
-from tests.planner.fleet.problems import problem
 
 
 @pytest.mark.parametrize("seed", range(9))

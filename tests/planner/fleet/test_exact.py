@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 import pytest
 
+from benchmarks.fleet_cases import case as problem
 from planner.fleet.answer import trips_of
 from planner.fleet.assignment import Trip
 from planner.fleet.auto.build import tables
@@ -15,7 +16,6 @@ from planner.fleet.exact import exact
 from planner.fleet.problem import Objective, Problem
 from planner.fleet.schedule import broken, cost_of, fly, stop_at
 from planner.progress import never
-from tests.planner.fleet.problems import problem
 
 OBJECTIVES = (
     Objective(),

@@ -8,12 +8,12 @@ import math
 import numpy as np
 import pytest
 
+from benchmarks.fleet_cases import case as problem
 from planner.fleet.assign import assign
 from planner.fleet.problem import Objective
 from planner.fleet.stecz2020.model import write
 from planner.fleet.stecz2020.network import Flyer, Goal, Network, Segment, Waypoint
 from planner.fleet.stecz2020.solve import assign_stecz2020, run_solver, solve
-from tests.planner.fleet.problems import problem
 
 OBJECTIVES = (
     Objective(total_time=0.0, travel_time=1.0),

@@ -1,4 +1,4 @@
-"""Random assignment problems."""
+"""Random assignment problems of fleets, for the benchmark and for tests."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import numpy as np
 from planner.fleet.problem import Alternative, Member, Objective, Problem, Service, Target, Travel
 
 
-def problem(
+def case(
     seed: int,
     targets: int = 5,
     members: int = 2,
