@@ -19,6 +19,7 @@ class Benchmark(StrEnum):
     """Benchmarks by name."""
 
     SAR = "sar"
+    SAR_SEARCH = "sar-search"
     SCALE = "scale"
     BOUND = "bound"
     LINK = "link"
@@ -111,7 +112,7 @@ def bench(
     given = {"file": file, "budget": budget, "seconds": seconds, "paths": paths}
     options = _options(option or []) | {key: value for key, value in given.items() if value is not None}
     try:
-        module = importlib.import_module(f"benchmarks.{name.value}")
+        module = importlib.import_module(f"benchmarks.{name.value.replace('-', '_')}")
     except ModuleNotFoundError as error:
         raise CommandError(f"{error}; benchmarks run from the source tree with its dev extra") from error
     _accepted(name.value, module.run, options)
