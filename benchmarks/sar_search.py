@@ -3,8 +3,8 @@
 Twenty pinned cases: a last known point with its error, drift with its own, one to four aircraft. Plans are
 judged by places drawn with another seed, many more than they were planned by. Rows: one a case, with the
 probability of success at each quarter of the flight of ours and of the best pattern then, and of each pattern
-in the end; then one over all. ``ahead`` is by how much ours is above every pattern at the quarter where that is
-least.
+in the end; then one over all. ``ahead`` is by how much ours is above every pattern at the quarter where that
+is least.
 """
 
 from __future__ import annotations

@@ -25,8 +25,8 @@ from planner.wishes import Method, Objective
 VEHICLE_TYPES = ("fixed_wing", "multirotor", "vtol")
 AUTOPILOTS = ("ardupilot", "px4")
 
-#: Patterns of search, asked for by name.
-FAMILIES = ("parallel", "creeping", "spiral", "square", "sector")
+#: Patterns of search, and walks over importance, asked for by name.
+FAMILIES = ("parallel", "creeping", "spiral", "square", "sector", "importance", "snyder2021")
 #: Ways of coverage whose sweeps come in order.
 OWN_ORDER = ("majeed2019", "boustrophedon-cells", "coverage-alternatives")
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
@@ -16,6 +16,7 @@ from shapely.ops import nearest_points
 from planner.progress import Stop, never, raise_if
 from planner.route import Look
 from planner.search.families import patterns
+from planner.search.importance.strips import WALKS, walked
 from planner.search.programme import Pricing, Programme, Sweep, cut_to, seen_worth, thinned_to
 from planner.search.room import LEAST_PASS_M, Room
 from planner.search.swaths import Looking
@@ -67,12 +68,15 @@ class Search:
             for laid in self._laid(ground, width_m):
                 raise_if(self.stop)
                 found += self._cut(laid, budget_m, thin=False)
+        for laid in self._walked(budget_m, width_m):
+            found += self._cut(laid, budget_m, thin=False)
         found.sort(key=lambda each: (-each.worth, each.cost_m))
         thinned = [
             way for each in found[:MOST_PATTERNS_THINNED] for way in self._cut(each, budget_m, thin=True)
         ]
         ways = sorted(found + thinned, key=lambda each: (-each.worth, each.cost_m))
-        refined = [self._refined(way, budget_m, width_m) for way in ways[:MOST_REFINED]]
+        best = ways[:MOST_REFINED]
+        refined = [self._refined(way, budget_m, width_m) for way in best if way.family not in WALKS]
         refined.sort(key=lambda each: (-each.worth, each.cost_m))
         # What is estimated to be better may take more when it is flown: both are offered in turn.
         pairs = [each for pair in zip(refined, ways, strict=False) for each in pair]
@@ -101,7 +105,8 @@ class Search:
 
     def flyable(self) -> Iterator[tuple[Sweep, ...]]:
         """Passes over the ground, by pattern, whatever they cost; none where it is blocked."""
-        laid = self._laid(self.ground, self.looking.narrowest_m(), (1.0,))
+        of_all = replace(self, family=None) if self.family in WALKS else self
+        laid = of_all._laid(self.ground, self.looking.narrowest_m(), (1.0,))
         return (each.whole for each in laid)
 
     def _cut(self, laid: Laid | Programme, budget_m: float, *, thin: bool) -> tuple[Programme, ...]:
@@ -131,6 +136,22 @@ class Search:
                     sweeps = tuple(self._sweeps(pattern.strips, look))
                     if sweeps:
                         yield Laid(pattern.family, sweeps, pattern.strips, look)
+
+    def _walked(self, budget_m: float, width_m: float) -> Iterator[Laid]:
+        """Walks over cells of importance; where all ground is worth the same, only if asked for by name."""
+        scores = self.worth.scores[self.worth.scores > 0.0]
+        if self.family is None and (not len(scores) or scores.min() > 0.999 * scores.max()):
+            return
+        name = "importance" if self.family is None else self.family
+        if name not in WALKS:
+            return
+        ends = (self.pricing.start, self.pricing.end)
+        for strips in walked(name, self.worth, width_m, self.room.free, ends, budget_m):
+            raise_if(self.stop)
+            for look in self.looking.looks:
+                sweeps = tuple(self._sweeps(strips, look))
+                if sweeps:
+                    yield Laid(name, sweeps, strips, look)
 
     def _sweeps(self, strips: Floats, look: Look) -> Iterator[Sweep]:
         """The passes that see strips, looking to one side, where they may be flown."""
