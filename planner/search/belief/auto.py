@@ -28,7 +28,7 @@ Bools = NDArray[np.bool_]
 Lines = list[Floats]
 
 #: Places that the plan is judged by, and that lines are searched by.
-PLACES, SEARCHED = 1_200, 300
+PLACES, SEARCHED = 2_048, 256
 #: Times at which success is looked at, and quarters among them.
 TIMES = 24
 #: Shapes that each pattern is tried in.
@@ -36,8 +36,8 @@ SPACINGS, COURSES, SIZES = (0.8, 1.0, 1.25), 4, (0.7, 1.0)
 WIDTH = 16
 #: From, to: pull of what lies about, the distance at which it pulls half in swaths, what being early counts.
 MANNERS = ((0.03, 1.0), (1.0, 8.0), (0.02, 2.0))
-#: Lines planned anew for each aircraft: of each start, and of the best.
-FIRST, ROUNDS = 10, 40
+#: Lines planned anew, of each start and of the best.
+FIRST, ROUNDS = 25, 100
 #: Shapes that are varied, how often, and how many of them are planned anew.
 SHAPES, LAST, VARIED, IMPROVED = 4, 2, 40, 2
 #: A standard pattern is behind by this margin at each quarter, or that counts so much.
@@ -123,6 +123,7 @@ class _Search:
     ) -> None:
         self._target, self._searchers, self._free, self._enough = target, searchers, free, enough
         self._seed, self._some = seed, False
+        self._block = np.random.default_rng(seed + 1)
         self._belief = Belief.drawn(target, PLACES, seed)
         until_s = max(one.until_s for one in searchers)
         self._times = until_s * np.arange(1, TIMES + 1) / TIMES
@@ -142,10 +143,10 @@ class _Search:
         kept = self._shaped() or [self._from_nothing()]
         generator = np.random.default_rng(self._seed)
         best = max(
-            (self._improved(*one, FIRST * len(self._searchers), generator) for one in kept),
+            (self._improved(*one, FIRST, generator) for one in kept),
             key=lambda one: one[0],
         )
-        best = self._improved(*best, ROUNDS * len(self._searchers), generator)
+        best = self._improved(*best, ROUNDS, generator)
         return Found(tuple(best[1]), self._times, self._success(best[1]))
 
     def _from_nothing(self) -> tuple[float, Lines]:
@@ -268,7 +269,9 @@ class _Search:
             datum = self._target.datum_m(0.0)
             away = math.atan2(datum[1] - one.base_m[1], datum[0] - one.base_m[0])
             pose = np.array([*one.base_m, away])
-        some = slice(0, None, max(1, PLACES // SEARCHED))
+        # A line fits the places that it is searched by: others each time.
+        first = SEARCHED * int(self._block.integers(max(1, PLACES // SEARCHED)))
+        some = slice(first, first + SEARCHED)
         weights = (self._belief.weights * left)[some]
         poses, _ = beam_line(
             pose,

@@ -7,6 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import ndtri
+from scipy.stats.qmc import Sobol
 
 Floats = NDArray[np.float64]
 
@@ -70,10 +72,14 @@ class Belief:
 
     @classmethod
     def drawn(cls, target: Target, count: int, seed: int = 0) -> Belief:
-        """As many equally likely places as asked for, by the scenario's seed."""
-        generator = np.random.default_rng(seed)
-        drifts = np.asarray(target.drift_m_s) + target.drift_spread_m_s * generator.normal(size=(count, 2))
-        places = np.asarray(target.last_known_m) + target.spread_m * generator.normal(size=(count, 2))
+        """As many equally likely places as asked for, evenly spread by a Sobol sequence of the seed.
+
+        Counts are best powers of two; runs of places of such a length are evenly spread, too.
+        """
+        power = max(0, math.ceil(math.log2(count)))
+        even = ndtri(Sobol(4, scramble=True, seed=seed).random_base2(power)[:count])
+        drifts = np.asarray(target.drift_m_s) + target.drift_spread_m_s * even[:, 2:]
+        places = np.asarray(target.last_known_m) + target.spread_m * even[:, :2]
         return cls(places + target.elapsed_s * drifts, drifts, np.full(count, 1.0 / count))
 
     def after(self, looks: NDArray[np.int64], detection: float, time_s: float) -> Belief:
