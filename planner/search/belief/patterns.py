@@ -150,7 +150,8 @@ def _corners(name: str, one: Searcher, index: int, count: int, side_m: float, sh
     slice_m = side_m / count
     west_m = -0.5 * side_m + index * slice_m
     if name == "expanding-square":
-        return _square(spacing_m, one.track_m) + np.array([west_m + 0.5 * slice_m, 0.0])
+        about: Floats = _square(spacing_m, one.track_m) + np.array([west_m + 0.5 * slice_m, 0.0])
+        return about
     along = name == "parallel-track"
     long_m, wide_m = (side_m, slice_m) if along or count > 1 else (side_m, side_m)
     if along:

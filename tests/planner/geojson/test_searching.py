@@ -98,7 +98,9 @@ def test_a_raster_is_what_the_ground_is_worth():
     assert north > 3.0
 
 
-@pytest.mark.parametrize("family", ["parallel", "creeping", "spiral", "square", "sector"])
+@pytest.mark.parametrize(
+    "family", ["parallel", "creeping", "spiral", "square", "sector", "importance", "snyder2021"]
+)
 def test_patterns_may_be_asked_for_by_name(family):
     """Each is accepted, another is named."""
     assert read_scenario(document(method={"search": family})).method.search == family

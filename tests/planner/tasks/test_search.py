@@ -57,6 +57,19 @@ def test_importance_draws_the_search():
     assert plan.metrics.importance_collected == pytest.approx(2.5 * seen, rel=1e-3)
 
 
+@pytest.mark.parametrize("name", ["importance", "snyder2021"])
+def test_walks_over_importance_are_flown_by_name(name):
+    """The walk's strips, cut to the energy, keep every constraint; most of what is worth more is seen."""
+    patch = rectangle("importance", 800.0, 500.0, 1100.0, 800.0, score=2.5)
+    scenario = read_scenario(document(patch, method={"search": name}))
+    plan = make_plan(scenario)
+    assert plan.violations == ()
+    assert (
+        write_plan(plan)["metrics"]["importance_collected"]
+        > 0.6 * 2.5 * scenario.importance.patches[0].area.area
+    )
+
+
 def test_zones_are_flown_round():
     """No pass enters a zone in the ground, nor the flight, in the pattern asked for by name."""
     zone = rectangle("no_fly", 500.0, 300.0, 700.0, 600.0)
