@@ -72,7 +72,10 @@ class Search:
             found += self._cut(laid, budget_m, thin=False)
         found.sort(key=lambda each: (-each.worth, each.cost_m))
         thinned = [
-            way for each in found[:MOST_PATTERNS_THINNED] for way in self._cut(each, budget_m, thin=True)
+            way
+            for each in found[:MOST_PATTERNS_THINNED]
+            if each.family != "snyder2021"
+            for way in self._cut(each, budget_m, thin=True)
         ]
         ways = sorted(found + thinned, key=lambda each: (-each.worth, each.cost_m))
         best = ways[:MOST_REFINED]
