@@ -256,8 +256,7 @@ def read_objective(raw: Any, findings: Findings) -> Objective:
     fields = Fields("objective", _object("objective", raw, findings), findings)
     defaults = Objective()
     weights = {
-        name: fields.number(name, getattr(defaults, name), minimum=0.0)
-        for name in ("length", "missile", "radar", "energy", "turns")
+        name: fields.number(name, getattr(defaults, name), minimum=0.0) for name in Objective.__slots__
     }
     fields.refuse_unknown()
     return Objective(**{name: getattr(defaults, name) if w is None else w for name, w in weights.items()})

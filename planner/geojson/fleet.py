@@ -65,8 +65,17 @@ def start_of(
     return None
 
 
-def check_fleet(scenario: Scenario, bases: Sequence[Terminal], findings: Findings) -> None:
+#: Weights of the objective that count among several flights alone.
+OF_FLEETS = ("last_landing", "total_time", "priority")
+
+
+def check_fleet(scenario: Scenario, bases: Sequence[Terminal], objective: Any, findings: Findings) -> None:
     """Bases that nobody uses, sensors on board, and visits that no window leaves the time for."""
+    for name in OF_FLEETS if isinstance(objective, dict) and not scenario.is_fleet else ():
+        if objective.get(name) is not None:
+            findings.warning(
+                "objective", "not-used", f"{name} weighs several flights, and there is one", "Remove it."
+            )
     used = {end.position for end in scenario.terminals()}
     for base in bases:
         if base.position not in used:

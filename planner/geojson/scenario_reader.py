@@ -201,7 +201,7 @@ def _read(document: Any, findings: Findings, terrains: Terrains | None) -> Scena
         bases=tuple(bases) if len(aircraft) > 1 else (),
         separation=separation if len(aircraft) > 1 else None,
     )
-    check_fleet(scenario, bases, findings)
+    check_fleet(scenario, bases, document.get("objective"), findings)
     if task == "search":
         raster = None if raster_name is None else find_terrain(terrains, raster_name)
         scenario = with_importance(scenario, patches, raster_name, raster, findings)

@@ -122,6 +122,13 @@ def two_aircraft(**properties: Any) -> Document:
     return document | {"vehicles": [one, other | properties]}
 
 
+def two_aircraft_optional() -> Document:
+    """Two aircraft, and a region that need not be seen."""
+    document = two_aircraft()
+    document["features"][0]["properties"]["required"] = False
+    return document
+
+
 def two_sensors(name: str) -> Document:
     """Two sensors that look to different sides."""
     document = of_feature("A", sensor=name)

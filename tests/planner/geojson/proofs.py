@@ -29,6 +29,7 @@ from tests.planner.geojson.proof_scenarios import (
     target,
     threat,
     two_aircraft,
+    two_aircraft_optional,
     two_sensors,
     value,
     vehicle,
@@ -174,6 +175,16 @@ PROOFS: dict[tuple[str, str], tuple[Document, Document]] = {
     ),
     ("objective", "energy"): (small(CROSSED), small(CROSSED, objective={"energy": 2000.0})),
     ("objective", "turns"): (case(1), case(1) | {"objective": {"turns": 30.0}}),
+    ("objective", "last_landing"): (
+        two_aircraft(), two_aircraft() | {"objective": {"last_landing": 0.0}},
+    ),
+    ("objective", "total_time"): (
+        two_aircraft() | {"objective": {"total_time": 0.0}},
+        two_aircraft() | {"objective": {"total_time": 50.0}},
+    ),
+    ("objective", "priority"): (
+        two_aircraft_optional(), two_aircraft_optional() | {"objective": {"priority": 0.0}},
+    ),
     ("method", "coverage"): (
         of_feature("A", revisits=2),
         of_feature("A", revisits=2) | {"method": {"coverage": "li2018"}},
