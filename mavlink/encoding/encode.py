@@ -21,6 +21,7 @@ from mavlink.dialects.mission import Mission, home_item, numbered, placed, unpla
 from mavlink.encoding.arcs import circle_item, flown_round, turn_item
 from mavlink.encoding.ends import beginning, ending
 from mavlink.encoding.fence import fence_items
+from mavlink.encoding.holds import hold_item, is_hold, unwound
 from mavlink.encoding.options import EncodeError, EncodeOptions
 from mavlink.encoding.pointing import Pointings, pointings_of
 from mavlink.encoding.stops import MERGE_M, Stop, stops_along
@@ -70,6 +71,8 @@ def encode(
     """
     task = task_of(plan, vehicle, autopilot, options)
     plan = task.plan
+    if task.hovers:
+        task = replace(task, path=unwound(task.path, task.local))
     switching = switching_of(task)
     pointing = pointings_of(task)
     first, last = beginning(task), ending(task)
@@ -130,6 +133,9 @@ def _flight(
         if not ended and collecting == 0 and past_m > (-MERGE_M if begins else MERGE_M):
             ended = True
             items += _before_the_end(task, switching, pointing)
+        if stop.turns is not None and is_hold(task.path, stop.turns):
+            items.append(hold_item(task, stop.turns))
+            continue
         if stop.turns is not None:
             if stop.turns is not task.last_turns or task.vehicle.finish != "loiter":
                 items.append(circle_item(task, stop.turns, Command.NAV_LOITER_TO_ALT))

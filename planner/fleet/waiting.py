@@ -17,8 +17,9 @@ from planner.vehicle.model import FlightModel
 
 #: Circles are so much wider than the tightest turn, so that no rounding makes them too tight.
 EASY_TURN = 1.05
-#: No circle that is waited in is wider than so many of the least.
-WIDEST = 1.9
+#: Circles that are waited in are no wider than so many of the least, the first that there is room for: few
+#: wide ones are held better than many tight ones.
+WIDEST = (4.0, 1.9)
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,17 +91,21 @@ def least_hold_s(model: FlightModel) -> float:
     return model.duration_s(Path((_circle(Pose(0.0, 0.0, 0.0), "left", _radius_m(model), 1),)))
 
 
-def holds(pose: Pose, wait_s: float, model: FlightModel) -> tuple[Path, Path]:
-    """Whole circles back to a pose that take this long, to the left and to the right."""
+def holds(pose: Pose, wait_s: float, model: FlightModel, told_s: float | None = None) -> tuple[Path, ...]:
+    """Whole circles back to a pose that take this long, the fewest first, to the left and to the right.
+
+    As many as for ``wait_s``, as wide as for ``told_s`` where that is given.
+    """
     once_s, radius_m = least_hold_s(model), _radius_m(model)
-    turns = max(1, math.floor(wait_s / once_s))
-    if wait_s / (turns * once_s) > WIDEST:
-        turns += 1
-    wider = max(wait_s / (turns * once_s), 1.0)
-    return (
-        Path((_circle(pose, "left", radius_m * wider, turns),)),
-        Path((_circle(pose, "right", radius_m * wider, turns),)),
-    )
+    found: list[Path] = []
+    for widest in WIDEST:
+        turns = max(1, math.floor(wait_s / once_s / widest))
+        if wait_s / (turns * once_s) > widest:
+            turns += 1
+        wider = max((wait_s if told_s is None else told_s) / (turns * once_s), 1.0)
+        for side in ("left", "right"):
+            found.append(Path((_circle(pose, side, radius_m * wider, turns),)))
+    return tuple(dict.fromkeys(found))
 
 
 def _radius_m(model: FlightModel) -> float:

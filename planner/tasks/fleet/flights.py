@@ -27,7 +27,7 @@ from planner.tasks.task import Answer, Controls
 from planner.tasks.transits import Transits
 from planner.vehicle.limits import Excess, Use, exceeded
 
-#: Windows are kept with this to spare.
+#: Windows are kept with this to spare, half of which the fitting of circles may use.
 SPARE_S = 0.5
 #: Circles are fitted so often, until they take as long as is to be waited, to so much.
 FITTINGS, WITHIN_S = 4, 0.1
@@ -194,7 +194,7 @@ def _waited(
 ) -> tuple[Flown, Timing]:
     """The flight with its circles, made wider or narrower until they take as long as is to be waited."""
     told_s = list(when.waits_s)
-    flown = _through(crew, number, jobs, order, told_s, controls)
+    flown = _through(crew, number, jobs, order, when.waits_s, controls, told_s)
     for _ in range(FITTINGS):
         took_s = _waits_of(flown, plain)
         off_s = max(abs(took - wanted) for took, wanted in zip(took_s, when.waits_s, strict=True))
@@ -204,11 +204,11 @@ def _waited(
             told * wanted / took if wanted > 0.0 and took > 0.0 else told
             for told, wanted, took in zip(told_s, when.waits_s, took_s, strict=True)
         ]
-        flown = _through(crew, number, jobs, order, told_s, controls)
+        flown = _through(crew, number, jobs, order, when.waits_s, controls, told_s)
     flown = replace(flown, waited_s=math.fsum(_waits_of(flown, plain)))
     late = [when.start_s + end_s - due.closes_s for (_, end_s), due in zip(flown.spans_s, dues, strict=True)]
     worst = max(range(len(late)), key=lambda k: late[k])
-    if late[worst] > 0.0:
+    if late[worst] > SPARE_S / 2.0:
         return flown, replace(when, late_s=late[worst], worst=worst)
     return flown, when
 
@@ -226,6 +226,7 @@ def _through(
     order: Order,
     waits_s: Sequence[float],
     controls: Controls,
+    told_s: Sequence[float] | None = None,
 ) -> Flown:
     setting = crew.setting
     transits = Transits.of(setting, crew.asked.objective, chosen_methods(crew.alone.method))
@@ -233,13 +234,14 @@ def _through(
     for place, wait_s in enumerate(waits_s):
         if wait_s > 0.0:
             first = order.of.index(place)
-            waiting[first] = _hold(crew, order.passes[first], wait_s)
+            told = None if told_s is None else told_s[place]
+            waiting[first] = _hold(crew, order.passes[first], wait_s, told)
     with controls.stage("transit"):
         composed, legs, notes = transits.through(order.passes, silent, controls.stop, waiting)
     return _flown(crew, number, jobs, composed, legs, order.passes, notes, transits.methods, order.of)
 
 
-def _hold(crew: Crew, collect_pass: CollectPass, wait_s: float) -> Path:
+def _hold(crew: Crew, collect_pass: CollectPass, wait_s: float, told_s: float | None) -> Path:
     """Circles before a pass, on the side where there is room.
 
     Raises
@@ -250,7 +252,7 @@ def _hold(crew: Crew, collect_pass: CollectPass, wait_s: float) -> Path:
     model, level = crew.setting.model, crew.setting.level
     pose = collect_pass.settling(model.settle_m)
     zones = keep_out(crew.setting.airspace, level, TRANSIT_MARGIN_M)
-    for circles in holds(pose, wait_s, model):
+    for circles in holds(pose, wait_s, model, told_s):
         if zones.clear(circles):
             return circles
     name = "+".join(collect_pass.regions)

@@ -185,7 +185,7 @@ def _put_in_order(
         latest_s = min(
             closes_s - end_s for (_, closes_s), (_, end_s) in zip(bounds_s, flown.spans_s, strict=True)
         )
-        if start_s <= latest_s:
+        if start_s <= latest_s + SPARE_S / 2.0:
             clock.put(errand, flown, start_s, track)
             return
         ready_s = start_s
