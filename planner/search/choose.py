@@ -31,7 +31,7 @@ MOST_THINNED = 60
 #: So many of the patterns that see most are thinned out.
 MOST_PATTERNS_THINNED = 16
 #: So many of the best are refined, by steps of these parts of a swath, for more than this part.
-MOST_REFINED, STEPS, LEAST_GAIN = 4, (0.5, 0.25, 0.12), 1e-4
+MOST_REFINED, STEPS, LEAST_GAIN = 2, (0.5, 0.25, 0.12), 1e-4
 #: Ground larger than this many times what the budget sees is searched in part.
 LARGER = 1.3
 #: Strips by the width of the swath: wider ones leave gaps, and reach farther.

@@ -5,10 +5,14 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
+import rasterio
+from rasterio.transform import from_origin
 
 from app.routers.bodies import EXAMPLE
 from tests.app.cli.conftest import Command, broken
+from tests.planner.search.searches import WING, document
 
 
 def test_plan_from_file_to_file(swathplan: Command, scenario_file: Path, tmp_path: Path) -> None:
@@ -47,3 +51,21 @@ def test_refused_scenario_exits_2_with_every_finding(swathplan: Command, command
     body = json.loads(as_json.out or as_json.err)
     findings = body.get("errors") or body["findings"]
     assert {"harbour", "scenario"} <= {finding["feature"] for finding in findings}
+
+
+def test_a_search_is_told_by_what_it_sees(swathplan: Command, tmp_path: Path) -> None:
+    """Ground seen, importance and energy, on standard error; a raster of importance is a file."""
+    worth = tmp_path / "worth.tif"
+    scores = np.full((8, 8), 2.0, dtype=np.float32)
+    shape = {"driver": "GTiff", "width": 8, "height": 8, "count": 1, "dtype": "float32", "crs": "EPSG:4326"}
+    with rasterio.open(worth, "w", **shape, transform=from_origin(9.99, 47.02, 0.005, 0.005)) as file:
+        file.write(scores, 1)
+    asked = ("plan", "-", "--importance-raster", str(worth), "-o", str(tmp_path / "plan.geojson"), "--json")
+    ended = swathplan(*asked, stdin=json.dumps(document(vehicle=WING | {"energy_wh": 14})))
+    metrics = json.loads(ended.out)["metrics"]
+    assert ended.code == 0
+    assert metrics["importance_collected"] == pytest.approx(2.0 * metrics["area_seen_m2"], rel=0.02)
+    assert "searched: " in ended.err
+    assert "km² seen" in ended.err
+    assert "regions covered" not in ended.err
+    assert swathplan("validate", "-", stdin=json.dumps(document(max_height_m=50))).code == 2
