@@ -89,6 +89,8 @@ class Twins:
         lately = said is not None and self._count - at <= _REMEMBERED
         if lately and said == message:
             return None
+        if len(self._runs) == 1 and (sequence - self._runs[0].last) % _NUMBERS == 1:
+            return self._runs[0]
         near = [
             (ahead, run) for run in self._runs if 0 < (ahead := (sequence - run.last) % _NUMBERS) <= _REACH
         ]

@@ -49,7 +49,11 @@ class UnderWay:
     @property
     def deadline_s(self) -> float:
         """When the first machine is due; infinite without any."""
-        return min([math.inf, *(job.machine.deadline_s for job in self._jobs())])
+        due_s = math.inf if self._transfer is None else self._transfer.machine.deadline_s
+        for queue in self._commands.values():
+            if queue and queue[0].machine.deadline_s < due_s:
+                due_s = queue[0].machine.deadline_s
+        return due_s
 
     async def transfer(
         self, machine: Machine[Outcome], progress: Callable[[Progress], None] | None

@@ -8,9 +8,11 @@ Source: https://mavlink.io/en/guide/serialization.html (frame formats, zero trun
 
 from __future__ import annotations
 
+import contextlib
+import operator
 import re
 import struct
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -56,6 +58,12 @@ class _Layout:
     names: tuple[str, ...]
     known: frozenset[str]
     plain: bool  # numbers only, one a field: packed and unpacked without looking at each
+    every: Callable[[Mapping[str, Value]], Sequence[Any]] | None  # all values in one call, where it is plain
+
+
+def _every(names: tuple[str, ...], plain: bool) -> Callable[[Mapping[str, Value]], Sequence[Any]] | None:
+    # Of one name alone it gives the value itself.
+    return operator.itemgetter(*names) if plain and len(names) > 1 else None
 
 
 def _layout(message_id: int, definition: Any) -> _Layout:
@@ -76,6 +84,7 @@ def _layout(message_id: int, definition: Any) -> _Layout:
             first += 1
             payload = struct.Struct(payload.format + kind)
     names = tuple(field.name for field in fields)
+    plain = all(field.length == 1 and not field.text_bytes for field in fields)
     return _Layout(
         message_id,
         definition.msgname,
@@ -84,7 +93,8 @@ def _layout(message_id: int, definition: Any) -> _Layout:
         tuple(fields),
         names,
         frozenset(names),
-        all(field.length == 1 and not field.text_bytes for field in fields),
+        plain,
+        _every(names, plain),
     )
 
 
@@ -97,6 +107,7 @@ def _extra_layout(definition: Definition) -> _Layout:
         first += max(length, 1)
     crc = int(dialect.x25crc(definition.signature).crc)
     names = tuple(field.name for field in fields)
+    plain = all(field.length == 1 for field in fields)
     return _Layout(
         definition.message_id,
         definition.name,
@@ -105,7 +116,8 @@ def _extra_layout(definition: Definition) -> _Layout:
         tuple(fields),
         names,
         frozenset(names),
-        all(field.length == 1 for field in fields),
+        plain,
+        _every(names, plain),
     )
 
 
@@ -174,15 +186,7 @@ class Codec:
         layout = _BY_NAME.get(message.name)
         if layout is None:
             raise CodecError(f"no message is called {message.name!r} in the dialect")
-        if not layout.known.issuperset(message.fields):
-            unknown = sorted(message.fields.keys() - layout.known)
-            raise CodecError(f"{message.name} has no field {', '.join(unknown)}")
-        flat: list[Any] = []
-        if layout.plain:
-            flat = [message.fields.get(name, 0) for name in layout.names]
-        else:
-            for field in layout.fields:
-                _append(flat, message, field)
+        flat = _flat(message, layout)
         try:
             payload = layout.payload.pack(*flat)
         except (struct.error, OverflowError) as error:
@@ -324,6 +328,23 @@ def frame_end(buffer: bytes | bytearray, start: int) -> int | None:
             return start
         size = _HEADER_V2.size + buffer[start + 1] + _CRC_BYTES + (SIGNATURE_BYTES if flags else 0)
     return start + size if available >= size else None
+
+
+def _flat(message: Message, layout: _Layout) -> Sequence[Any]:
+    """Values in wire order."""
+    if layout.every is not None and len(message.fields) == len(layout.names):
+        # Mission items, by the thousand: all fields are there, or one is unknown.
+        with contextlib.suppress(KeyError):
+            return layout.every(message.fields)
+    if not layout.known.issuperset(message.fields):
+        unknown = sorted(message.fields.keys() - layout.known)
+        raise CodecError(f"{message.name} has no field {', '.join(unknown)}")
+    if layout.plain:
+        return [message.fields.get(name, 0) for name in layout.names]
+    flat: list[Any] = []
+    for field in layout.fields:
+        _append(flat, message, field)
+    return flat
 
 
 def _append(flat: list[Any], message: Message, field: _Field) -> None:

@@ -217,7 +217,7 @@ def test_stabilised_and_spotlight_antennas_do_not_crab() -> None:
         assert not sensor.crabs
         assert float(strip_on(sensor, HEIGHT_M, 0.3, "right").near_m[0]) == still.near_m(HEIGHT_M)
     scenarios = [in_crosswind(20.0, stabilised=steered) for steered in (True, False)]
-    plans: list[Plan] = [with_bound(scenario, make_plan(scenario)) for scenario in scenarios]
+    plans: list[Plan] = [with_bound(each, make_plan(each), share=True) for each in scenarios]
     assert all(plan.metrics.gap is not None for plan in plans)
     assert plans[0].metrics.duration_s < plans[1].metrics.duration_s
 
