@@ -39,6 +39,7 @@ from planner.as_flown.unknown import UnknownPart
 from planner.frames import LocalFrame
 from planner.plan import Plan, PlanCamera
 from planner.sensors.camera import CameraSensor
+from planner.sensors.cameras import hangs_level
 from planner.sensors.suite import Suite
 from planner.wishes import Region
 
@@ -225,12 +226,14 @@ class PhotoJudge:
         if isinstance(sensor, CameraSensor) and sensor.stabilised:
             # What keeps it in line with the course is no part of the airframe's own yaw.
             yaw_rad = np.where(frames.of_camera | np.isnan(frames.course_rad), yaw_rad, frames.course_rad)
-        known = ~(np.isnan(frames.roll_rad) | np.isnan(frames.pitch_rad) | np.isnan(yaw_rad))
+        roll_rad, pitch_rad = frames.roll_rad, frames.pitch_rad
+        if hangs_level(camera.model):
+            # Its gimbal takes off what the airframe rolls and pitches.
+            roll_rad, pitch_rad = (np.where(frames.of_camera, each, 0.0) for each in (roll_rad, pitch_rad))
+        known = ~(np.isnan(roll_rad) | np.isnan(pitch_rad) | np.isnan(yaw_rad))
         high = ~np.isnan(frames.height_m)
         place = np.concatenate([frames.places, frames.height_m[:, None] + self._level_m], axis=1)
-        roll, pitch, yaw = (
-            np.where(known, angle, 0.0) for angle in (frames.roll_rad, frames.pitch_rad, yaw_rad)
-        )
+        roll, pitch, yaw = (np.where(known, angle, 0.0) for angle in (roll_rad, pitch_rad, yaw_rad))
         shots = Shots(place, *axes(camera, roll, pitch, yaw, frames.of_camera))
         tilted = np.arccos(np.clip(-shots.axis[:, 2], -1.0, 1.0)) - math.radians(camera.tilt_deg)
         straight = np.abs(tilted) <= MAX_TURNED_RAD

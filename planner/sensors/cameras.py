@@ -42,9 +42,19 @@ class Camera:
     source: str
 
     @property
+    def gimballed(self) -> bool:
+        """Whether it hangs in a gimbal of its own, which keeps it level: all of DJI's do."""
+        return self.kind == "integrated" or self.name.startswith("DJI ")
+
+    @property
     def spectrum(self) -> Spectrum:
         """Thermal cameras see infrared; near infrared counts as light, by its chip."""
         return "infrared" if self.kind == "thermal" else "visible"
+
+
+def hangs_level(model: str | None) -> bool:
+    """Whether a camera of a model has a gimbal of its own; not where the model is none that is known."""
+    return model is not None and model in CAMERAS and CAMERAS[model].gimballed
 
 
 _Row = tuple[str, Kind, float, float, int, int, float, str]

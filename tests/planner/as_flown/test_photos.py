@@ -249,6 +249,18 @@ def test_a_mount_s_own_attitude_goes_before_the_airframe_s() -> None:
     assert hung.fraction["A"] > 0.9999
 
 
+def test_a_camera_that_comes_in_a_gimbal_is_level_in_it() -> None:
+    """The airframe leans by 25°: bolted on it a camera misses ground, in a gimbal of its own it does not."""
+    scenario, plan = planned()
+    leaning = record(roll_deg=25.0)
+    bolted = judged(leaning)
+    hanging = replace(plan, cameras=(replace(plan.cameras[0], model="DJI Phantom 4 Pro"),))
+    level = sortie_coverage(scenario, hanging, (leaning,))
+    upright = judged(record())
+    assert bolted.fraction["A"] < 0.95
+    assert level.fraction == upright.fraction
+
+
 def test_a_photo_without_attitude_has_that_of_the_track() -> None:
     """Between two places of the record, like the photo's own."""
     one = record(roll_deg=6.0)
