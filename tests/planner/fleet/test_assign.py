@@ -1,6 +1,12 @@
 """``auto`` assignment."""
 
+from dataclasses import replace
+from itertools import pairwise
+
+import pytest
+
 from benchmarks.fleet_cases import case as problem
+from planner.errors import CancelledError
 from planner.fleet.assign import assign
 from planner.fleet.schedule import broken
 
@@ -19,3 +25,54 @@ def test_the_same_seed_gives_the_same_answer() -> None:
     """Nothing but problem and seed decides."""
     given = problem(3, targets=8)
     assert assign(given, seed=4) == assign(given, seed=4)
+
+
+def test_visits_of_one_target_are_apart() -> None:
+    """Each of three visits starts the asked time after the end of the one before, whoever flies it."""
+    given = problem(4, targets=10, windows=0.0)
+    often = tuple(
+        replace(target, visits=3, revisit_after_s=900.0) if number < 2 else target
+        for number, target in enumerate(given.targets)
+    )
+    answer = assign(replace(given, targets=often), iterations=1500)
+    assert broken(replace(given, targets=often), answer.trips) == ()
+    assert answer.left_out == ()
+    for number in range(2):
+        visits = sorted(
+            (visit.start_s, visit.end_s)
+            for trip in answer.trips
+            for visit in trip.visits
+            if visit.target == number
+        )
+        assert len(visits) == 3
+        assert all(later[0] - former[1] >= 900.0 - 1e-6 for former, later in pairwise(visits))
+
+
+def test_work_beyond_one_battery_takes_further_trips() -> None:
+    """What one trip's energy does not suffice for is flown in several, a turnaround apart."""
+    given = problem(6, targets=12, members=1, windows=0.0, energy_wh=700.0)
+    more = replace(given, members=(replace(given.members[0], trips=5, turnaround_s=300.0),))
+    one, several = assign(given, iterations=1500), assign(more, iterations=1500)
+    assert one.status == "infeasible"
+    assert several.status == "feasible"
+    assert broken(more, several.trips) == ()
+    assert len(several.trips) > 1
+    for former, later in pairwise(several.trips):
+        assert later.take_off_s >= former.landing_s + 300.0 - 1e-6
+
+
+def test_what_is_left_out_has_its_limit_and_the_margin_that_would_do() -> None:
+    """Giving the limit its margin makes the target possible, a little less does not."""
+    given = problem(6, targets=1, members=1, windows=0.0, energy_wh=50.0)
+    (left,) = assign(given).left_out
+    assert (left.limit, left.aircraft, left.required) == ("energy", "a0", True)
+    enough = replace(given.members[0], energy_wh=50.0 + left.margin + 1e-6)
+    assert assign(replace(given, members=(enough,))).left_out == ()
+    short = replace(given.members[0], energy_wh=50.0 + left.margin - 1.0)
+    assert assign(replace(given, members=(short,))).status == "infeasible"
+
+
+def test_a_stopped_search_says_so() -> None:
+    """Stop is asked while searching."""
+    with pytest.raises(CancelledError):
+        assign(problem(1, targets=12), stop=lambda: True)
