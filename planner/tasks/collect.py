@@ -29,6 +29,7 @@ from planner.tasks.cells import by_cells
 from planner.tasks.hidden import Sight, hidden_findings, see_hidden
 from planner.tasks.limits import Dropped, within_limits
 from planner.tasks.methods import chosen_methods
+from planner.tasks.prizes import Offer
 from planner.tasks.setting import Setting, seeing
 from planner.tasks.task import NOT_SEEN, Answer, Controls, Task
 from planner.tasks.transits import Transits
@@ -80,6 +81,7 @@ def collect(scenario: Scenario, controls: Controls) -> Answer:
         {region.name: region.priority for region in asked.regions if not region.required},
         setting.model.aircraft,
         (scenario.start.position, scenario.end.position),
+        partial(_offer, asked, setting, scenario.seed) if methods["routing"] == "joint" else None,
     )
     dropped = flight.dropped + tuple(_over(each) for each in left)
     sight = Sight.of(asked.regions, setting.suite, setting.airspace, setting.level)
@@ -95,6 +97,14 @@ def collect(scenario: Scenario, controls: Controls) -> Answer:
         flight.notes,
         _left_out(dropped, left),
     )
+
+
+def _offer(asked: Seeing, setting: Setting, seed: int) -> Offer:
+    """What to leave out, where not all regions can be flown to."""
+    around = asked.surroundings()
+    ends = with_run(setting.ends, setting.level.height_m, setting.model)
+    optional = {region.name: region.priority for region in asked.regions if not region.required}
+    return Offer.of(asked.visible(around).targets, around, ends, optional, seed)
 
 
 def bound_m(scenario: Scenario, plan: Plan, stop: Stop, allowance: Allowance) -> float:

@@ -1,7 +1,9 @@
 """Regions that need not be seen, left out where the aircraft cannot fly to all.
 
-Greedily: the one whose priority is least for the way that leaving it out saves goes first, until the rest is
-within the limits; the rest is planned anew, and what was left out is tried again, the best for its way first.
+By the orienteering form: what brings most priority within a length of route is planned in earnest, and the
+length corrected by what that flight uses, until nothing changes. And greedily: the one whose priority is
+least for the way that leaving it out saves goes first, until the rest is within the limits. What each left
+out is tried again, the best for its way first; the flight that sees more priority is taken.
 """
 
 from __future__ import annotations
@@ -9,17 +11,19 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from typing import Protocol, TypeVar
+from typing import Generic, Protocol, TypeVar
 
 from planner.errors import InfeasibleError
 from planner.route import CollectPass
 from planner.vehicle.aircraft import Aircraft
-from planner.vehicle.limits import Excess, Use, exceeded
+from planner.vehicle.limits import Excess, Use, exceeded, strain
 
 Point = tuple[float, float]
 
 #: So many of those left out are tried again.
 TRIED_AGAIN = 4
+#: Lengths of route tried, and what of one that turned out too long is asked for next.
+LENGTHS, SHORTER = 4, 0.998
 #: Saving less way than this is saving none.
 LEAST_SAVING_M = 1.0
 
@@ -48,12 +52,47 @@ class Dropped:
     worth: float
 
 
+class Kept(Protocol):
+    """What a route of a length may see."""
+
+    @property
+    def left(self) -> frozenset[str]:
+        """Optional regions that it may not."""
+
+    @property
+    def length_m(self) -> float:
+        """Of the route, as estimated."""
+
+
+class Offer(Protocol):
+    """Says what to leave out."""
+
+    def kept(self, length_m: float) -> Kept | None:
+        """What a route of a length sees; None where it sees not all that is required."""
+
+    def whole_m(self) -> float:
+        """Length of a route that sees all, as estimated."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Rest(Generic[F]):
+    """A flight, and what it leaves out."""
+
+    flight: F
+    left: Mapping[str, Dropped]
+
+    def lost(self, optional: Mapping[str, float]) -> float:
+        """Priority of what is left out."""
+        return math.fsum(optional[name] for name in self.left)
+
+
 def within_limits(
     first: F,
     again: Callable[[frozenset[str]], F],
     optional: Mapping[str, float],
     aircraft: Aircraft,
     ends: tuple[Point, Point],
+    offer: Callable[[], Offer] | None = None,
 ) -> tuple[F, tuple[Dropped, ...]]:
     """The flight with as many of the optional regions as the aircraft can fly to.
 
@@ -67,6 +106,8 @@ def within_limits(
         Priority of each region that need not be seen.
     ends
         Start and end of the flight.
+    offer
+        Made where the first flight is over a limit.
 
     Returns
     -------
@@ -78,6 +119,48 @@ def within_limits(
     InfeasibleError
         Where no region is required and none fits.
     """
+    if not exceeded(aircraft, first.use):
+        return first, ()
+    known: dict[frozenset[str], F] = {}
+
+    def once(names: frozenset[str]) -> F:
+        if names not in known:
+            known[names] = again(names)
+        return known[names]
+
+    found: list[_Rest[F]] = []
+    refused: InfeasibleError | None = None
+    try:
+        greedy = _greedily(first, once, optional, aircraft, ends)
+    except InfeasibleError as error:
+        refused = error
+    else:
+        if exceeded(aircraft, greedy.flight.use):
+            return greedy.flight, _listed(greedy, optional)
+        found.append(_tried_again(greedy, once, aircraft))
+    if offer is not None and optional:
+        best = _offered(first, once, optional, aircraft, offer())
+        if best is not None and all(set(best.left) != set(other.left) for other in found):
+            found.append(_tried_again(best, once, aircraft))
+    if not found:
+        assert refused is not None
+        raise refused
+    rest = min(found, key=lambda each: (each.lost(optional), each.flight.use.length_m))
+    return rest.flight, _listed(rest, optional)
+
+
+def _listed(rest: _Rest[F], optional: Mapping[str, float]) -> tuple[Dropped, ...]:
+    return tuple(rest.left[name] for name in optional if name in rest.left)
+
+
+def _greedily(
+    first: F,
+    again: Callable[[frozenset[str]], F],
+    optional: Mapping[str, float],
+    aircraft: Aircraft,
+    ends: tuple[Point, Point],
+) -> _Rest[F]:
+    """What is worth least for its way left out until the rest is within the limits, or is required."""
     flight, left = first, dict[str, Dropped]()
     while exceeded(aircraft, flight.use):
         more = _too_much(flight, {n: p for n, p in optional.items() if n not in left}, aircraft, ends)
@@ -85,9 +168,44 @@ def within_limits(
             break
         left |= {dropped.name: dropped for dropped in more}
         flight = _again(again, frozenset(left), flight, aircraft)
-    for dropped in sorted(left.values(), key=lambda each: (-each.worth, each.name))[:TRIED_AGAIN]:
-        if exceeded(aircraft, flight.use):
+    return _Rest(flight, left)
+
+
+def _offered(
+    first: F,
+    again: Callable[[frozenset[str]], F],
+    optional: Mapping[str, float],
+    aircraft: Aircraft,
+    offer: Offer,
+) -> _Rest[F] | None:
+    """The flight of most priority among those offered that are within the limits; None where none is."""
+    best: _Rest[F] | None = None
+    asked_m = offer.whole_m() / strain(aircraft, first.use)
+    over = exceeded(aircraft, first.use)[0]
+    tried: set[frozenset[str]] = set()
+    for _ in range(LENGTHS):
+        kept = offer.kept(asked_m) if math.isfinite(asked_m) else None
+        if kept is None or kept.left in tried or not _something(first, kept.left):
             break
+        tried.add(kept.left)
+        flight = again(kept.left)
+        used = strain(aircraft, flight.use)
+        if used > 1.0:
+            over = exceeded(aircraft, flight.use)[0]
+            asked_m = SHORTER * kept.length_m / used
+            continue
+        left = {name: Dropped(name, over, optional[name]) for name in kept.left}
+        rest = _Rest(flight, left)
+        if best is None or rest.lost(optional) < best.lost(optional):
+            best = rest
+        asked_m = kept.length_m / used
+    return best
+
+
+def _tried_again(rest: _Rest[F], again: Callable[[frozenset[str]], F], aircraft: Aircraft) -> _Rest[F]:
+    """The same with what fits besides after all, and what the others are truly over by."""
+    flight, left = rest.flight, dict(rest.left)
+    for dropped in sorted(left.values(), key=lambda each: (-each.worth, each.name))[:TRIED_AGAIN]:
         trial = again(frozenset(left) - {dropped.name})
         over = exceeded(aircraft, trial.use)
         if over:
@@ -95,12 +213,17 @@ def within_limits(
         else:
             flight = trial
             del left[dropped.name]
-    return flight, tuple(left[name] for name in optional if name in left)
+    return _Rest(flight, left)
+
+
+def _something(flight: Flight, left: frozenset[str]) -> bool:
+    """Whether anything is flown without some regions."""
+    return any(not set(collect.regions) <= left for collect in flight.passes)
 
 
 def _again(again: Callable[[frozenset[str]], F], left: frozenset[str], flight: F, aircraft: Aircraft) -> F:
     """The flight without some regions; what is said where nothing would be flown then."""
-    if any(not set(collect.regions) <= left for collect in flight.passes):
+    if _something(flight, left):
         return again(left)
     excess = exceeded(aircraft, flight.use)[0]
     raise InfeasibleError(

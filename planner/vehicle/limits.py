@@ -38,14 +38,23 @@ class Excess:
 
 def exceeded(aircraft: Aircraft, use: Use) -> tuple[Excess, ...]:
     """The limits that a flight is over, the one most exceeded first."""
+    found = [each for each in _against(aircraft, use) if each.used > each.limit]
+    return tuple(sorted(found, key=lambda excess: -excess.used / excess.limit))
+
+
+def strain(aircraft: Aircraft, use: Use) -> float:
+    """The greatest part of a limit that a flight uses; over 1 where it is over one, 0 without limits."""
+    return max((each.used / each.limit for each in _against(aircraft, use)), default=0.0)
+
+
+def _against(aircraft: Aircraft, use: Use) -> list[Excess]:
     rows = (
         ("range", use.length_m, aircraft.max_range_m, "m"),
         ("flight-time", use.duration_s, aircraft.max_flight_time_s, "s"),
         ("energy", use.energy_wh, aircraft.usable_wh, "Wh"),
     )
-    found = [
+    return [
         Excess(constraint, used, limit, unit)
         for constraint, used, limit, unit in rows
-        if used is not None and limit is not None and used > limit
+        if used is not None and limit is not None
     ]
-    return tuple(sorted(found, key=lambda excess: -excess.used / excess.limit))

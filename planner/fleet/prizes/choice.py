@@ -100,6 +100,7 @@ def best_choice(
     threads: int = 1,
     stop: Stop = never,
     flown: Flown | None = None,
+    effort: Effort = EFFORT,
 ) -> Gathered:
     """The route of most reward found, the shorter of two that bring as much.
 
@@ -108,6 +109,8 @@ def best_choice(
     flown
         Routes somewhat over the budget are sought, too, and count where what they truly take is within it;
         the cost of what is found is then the true one.
+    effort
+        What a pool takes.
 
     Others are those of ``pools.bred``.
 
@@ -120,7 +123,14 @@ def best_choice(
     if least[0, -1] > choices.budget:
         raise ValueError("the way from start to end is over the budget")
     breed = ChoiceBreed(
-        choices, least, nearest_places(least), mean_reward(choices.rewards), 0.0, choices.budget, flown
+        choices,
+        least,
+        nearest_places(least),
+        mean_reward(choices.rewards),
+        0.0,
+        choices.budget,
+        flown,
+        effort,
     )
     home = (0, len(choices.rewards) - 1)
     some = breed.annealed(as_row(home, len(choices.rewards)), 2, FIRST, HOT, seeded(seed))
@@ -143,11 +153,7 @@ class ChoiceBreed:
     per_way: float
     budget: float
     flown: Flown | None
-
-    @property
-    def effort(self) -> Effort:
-        """What a pool takes."""
-        return EFFORT
+    effort: Effort
 
     def annealed(self, order: Ints, size: int, steps: int, hot: float, state: State) -> Gathered:
         """The best route seen on the way from one."""

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from planner.fleet.prizes.choice import Choices, Flown, best_choice
+from planner.fleet.prizes.exact import MOST_PLACES, exact_route
 
 PLACES, WAYS = 6, 2
 
@@ -44,6 +45,9 @@ def test_small_problems_are_solved(seed: int) -> None:
             if cost <= choices.budget:
                 best = max(best, (float(choices.rewards[list(middle)].sum()), -cost))
     assert (found.reward, -found.cost) == pytest.approx(best)
+    proved = exact_route(choices)
+    assert (proved.reward, -proved.cost) == pytest.approx(best)
+    assert _cheapest(choices, proved.order) == pytest.approx(proved.cost)
     assert found.cost == pytest.approx(_cheapest(choices, found.order))
     assert choices.cost(found.order) == pytest.approx(found.cost)
 
@@ -64,5 +68,10 @@ def test_refused() -> None:
         best_choice(Choices(np.ones((3, 3, 1, 1)), np.ones(3), 0.5), 0)
     with pytest.raises(ValueError, match="places"):
         Choices(np.ones((3, 3, 2, 1)), np.ones(3), 1.0)
+    with pytest.raises(ValueError, match="over the budget"):
+        exact_route(Choices(np.ones((3, 3, 1, 1)), np.ones(3), 0.5))
+    many = MOST_PLACES + 3
+    with pytest.raises(ValueError, match="too many"):
+        exact_route(Choices(np.ones((many, many, 1, 1)), np.ones(many), 9.0))
     with pytest.raises(ValueError, match="numbers"):
         Choices(np.ones((3, 3, 1, 1)), np.array([0.0, np.inf, 0.0]), 1.0)
