@@ -51,7 +51,21 @@ SCENARIO_SCHEMA: dict[str, Any] = {
                 },
             },
         },
-        "vehicles": {"type": "array", "items": {"type": "object"}, "minItems": 1},
+        "vehicles": {
+            "type": "array",
+            "items": {"type": "object"},
+            "minItems": 1,
+            "description": "Of several each has a name of its own, and may have the sensors on board, a base, "
+            "and batteries with turnaround_s between flights.",
+        },
+        "separation": {
+            "type": "object",
+            "description": "What several vehicles keep from each other at every instant: one of the two.",
+            "properties": {
+                "horizontal_m": {"type": "number", "minimum": 0, "default": 100},
+                "vertical_m": {"type": "number", "minimum": 0, "default": 30},
+            },
+        },
         "sensors": {"type": "array", "items": {"type": "object"}, "minItems": 1},
         "altitude_m": {"type": "number", "minimum": 1},
         "altitude_reference": {"enum": ["amsl", "home", "terrain"], "default": "terrain"},
