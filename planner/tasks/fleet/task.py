@@ -119,6 +119,9 @@ class _Rounds:
                 if not self._cut_more(jobs, lacking):
                     raise failed
                 continue
+            if not assigned.trips:
+                failed = failed or self._nothing_flown(jobs, assigned)
+                break
             try:
                 sorties, near = self._flight_plan(jobs, assigned)
             except LateError as late:
@@ -141,6 +144,14 @@ class _Rounds:
                 "Raise the limits, or add batteries or aircraft.",
             )  # fmt: skip
         return min(found, key=lambda each: each[0])[1]
+
+    def _nothing_flown(self, jobs: Sequence[Job], assigned: Assignment) -> InfeasibleError:
+        """What is said where no region is required, and none fits."""
+        if assigned.left_out:
+            return _infeasible(jobs, min(assigned.left_out, key=lambda each: each.margin))
+        why = [*self._why.values(), *self._given_up.values()]
+        told = why[0].message if why else "there is nothing to be seen"
+        return InfeasibleError("swath", "scenario", f"no region can be seen: {told}", "see the findings")
 
     def _assigned(self, jobs: Sequence[Job]) -> Assignment:
         with self._controls.stage("assign"):

@@ -154,6 +154,18 @@ def test_an_aircraft_that_its_energy_does_not_bring_home_is_named() -> None:
     assert caught.value.feature in ("A", "B")
 
 
+def test_where_no_optional_region_fits_that_is_said() -> None:
+    """Nothing is flown; the nearest region and its limit are named."""
+    document = of_two()
+    for vehicle, feature in zip(document["vehicles"], document["features"], strict=False):
+        vehicle["max_flight_time_s"] = 100.0
+        feature["properties"]["required"] = False
+    with pytest.raises(InfeasibleError) as caught:
+        make_plan(read_scenario(document))
+    assert caught.value.constraint == "flight-time"
+    assert caught.value.feature in ("A", "B")
+
+
 @pytest.mark.parametrize("seed", [1, 7])
 def test_random_fleets_are_kept_apart(seed: int) -> None:
     """A sample of ``bench separation``."""
