@@ -55,8 +55,8 @@ SCENARIO_SCHEMA: dict[str, Any] = {
             "type": "array",
             "items": {"type": "object"},
             "minItems": 1,
-            "description": "Of several each has a name of its own, and may have the sensors on board, a base, "
-            "and batteries with turnaround_s between flights.",
+            "description": "Of several each has a name of its own, and may have sensors (those on board), a "
+            "base, and batteries with turnaround_s between flights.",
         },
         "separation": {
             "type": "object",
