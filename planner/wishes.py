@@ -77,13 +77,14 @@ class Objective:
 
 @dataclass(frozen=True, slots=True)
 class Method:
-    """The algorithm of each stage, by name."""
+    """The algorithm of each stage, by name; ``directions`` is L of ``transit`` ``milp``."""
 
     coverage: str = "auto"
     routing: str = "auto"
     transit: str = "auto"
     smoothing: str = "auto"
     search: str = "auto"
+    directions: int = 4
 
 
 @dataclass(frozen=True, slots=True)

@@ -35,6 +35,7 @@ class Benchmark(StrEnum):
     SEARCH = "search"
     ORIENTEERING = "orienteering"
     SMOOTHING = "smoothing"
+    MILP = "milp"
     IMPORTANCE = "importance"
     VRPTW = "vrptw"
     SEPARATION = "separation"

@@ -30,10 +30,13 @@ FAMILIES = ("parallel", "creeping", "spiral", "square", "sector", "importance", 
 #: Ways of coverage whose sweeps come in order.
 OWN_ORDER = ("majeed2019", "boustrophedon-cells", "coverage-alternatives")
 
+#: Of a disc's linearisation in ``transit`` ``milp``: a 124-gon then.
+MOST_DIRECTIONS = 32
+
 METHODS = {
     "coverage": ("auto", "li2018", *OWN_ORDER),
     "routing": ("auto", "joint", "li2018", "li2018-threat-aware"),
-    "transit": ("auto", "ssas", "tangent"),
+    "transit": ("auto", "ssas", "tangent", "milp", "milp-length"),
     "smoothing": ("auto", "fillet", "shortcut", "three-arc", "past-target", "short-turn"),
     "search": ("auto", *FAMILIES),
 }
@@ -268,6 +271,11 @@ def read_method(raw: Any, findings: Findings) -> Method:
         return Method()
     fields = Fields("method", _object("method", raw, findings), findings)
     chosen = {stage: fields.choice(stage, names, "auto") or "auto" for stage, names in METHODS.items()}
+    directions = fields.integer("directions", Method().directions, minimum=2)
+    if directions > MOST_DIRECTIONS:
+        fields.wrong(
+            "directions", f"is {directions}, must be ≤ {MOST_DIRECTIONS}", "Give fewer.", rule="out-of-range"
+        )
     fields.refuse_unknown()
     if chosen["coverage"] in OWN_ORDER and chosen["routing"] != "auto":
         findings.error(
@@ -276,7 +284,7 @@ def read_method(raw: Any, findings: Findings) -> Method:
             f"coverage {chosen['coverage']} has an order of its own, routing {chosen['routing']} another",
             "Leave routing out.",
         )
-    return Method(**chosen)
+    return Method(**chosen, directions=directions)
 
 
 def listed(document: Mapping[str, Any], name: str, findings: Findings) -> list[Any]:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 from types import MappingProxyType
 from typing import cast
 
@@ -17,12 +18,17 @@ from planner.progress import Progress, Stop
 from planner.publish import Leg
 from planner.route import Anchor, CollectPass
 from planner.tasks.flying import Connector, FlightLevels, Station, fly_whole
+from planner.tasks.methods import GOALS
 from planner.tasks.setting import Setting
 from planner.transit import ssas_connector
+from planner.transit.milp import connector as milp_connector
 from planner.transit.refine import Risk, connect_by_cost
 from planner.wishes import Objective
 
 NO_HOLDS: Mapping[int, Path] = MappingProxyType({})
+
+#: A line round zones, of which some can be kept out of altogether.
+_Lines = Callable[[Anchor, Anchor, KeepOut, KeepOut, Stop], Path]
 
 
 def _line(collect: CollectPass) -> Path:
@@ -100,34 +106,71 @@ class Transits:
         def tangent(start: Anchor, goal: Anchor, zones: KeepOut) -> Path:
             return connect_by_cost(start, goal, zones, radius_m, self.risk, stop)
 
-        if self.methods["transit"] != "ssas":
+        name = self.methods["transit"]
+        lines = self._milp if name in GOALS else self._ssas
+        if name == "tangent":
             return {"tangent": tangent}
 
-        def ssas(start: Anchor, goal: Anchor, zones: KeepOut) -> Path:
-            return self._ssas(start, goal, zones, tangent, stop)
+        @cache
+        def named(start: Anchor, goal: Anchor, zones: KeepOut) -> Path:
+            return self._worth_it(start, goal, zones, lines, tangent, stop)
 
-        return {"ssas": ssas, "tangent": tangent}
+        return {name: named, "tangent": tangent}
 
-    def _ssas(self, start: Anchor, goal: Anchor, zones: KeepOut, other: Connector, stop: Stop) -> Path:
-        """SSAS's line; none where it leads through threats and costs more than another."""
+    def _worth_it(
+        self, start: Anchor, goal: Anchor, zones: KeepOut, lines: _Lines, other: Connector, stop: Stop
+    ) -> Path:
+        """A method's line; none where it leads through threats and costs more than another."""
         threats, height_m = self.setting.airspace.threats, self.setting.level.lowest.height_m
+        avoided = ssas_connector.avoidable(start, goal, threats, self.objective, height_m, zones)
         try:
-            path, _ = ssas_connector.connect(
-                start,
-                goal,
-                threats=threats,
-                objective=self.objective,
-                height_m=height_m,
-                keep_out=zones,
-                radius_m=self.setting.model.turn_radius_m,
-                smoothing=cast(RoundingMethod, self.methods["smoothing"]),
-                stop=stop,
-            )
+            path = lines(start, goal, zones, avoided, stop)
         except InfeasibleError as error:
             raise InfeasibleError(
                 error.constraint, error.feature, f"in no way ({error.message})", error.relaxation
             ) from error
-        avoided = ssas_connector.avoidable(start, goal, threats, self.objective, height_m, zones)
         if not avoided.clear(path) and self.risk.cost_m(other(start, goal, zones)) < self.risk.cost_m(path):
             raise InfeasibleError("transit", "threats", "through threats only", "Use transit tangent.")
         return path
+
+    def _ssas(self, start: Anchor, goal: Anchor, zones: KeepOut, avoided: KeepOut, stop: Stop) -> Path:
+        path, _ = ssas_connector.connect(
+            start,
+            goal,
+            threats=self.setting.airspace.threats,
+            objective=self.objective,
+            height_m=self.setting.level.lowest.height_m,
+            keep_out=zones,
+            radius_m=self.setting.model.turn_radius_m,
+            smoothing=self._smoothing,
+            stop=stop,
+        )
+        return path
+
+    def _milp(self, start: Anchor, goal: Anchor, zones: KeepOut, avoided: KeepOut, stop: Stop) -> Path:
+        """Round all that can be kept out of; where that is proven or found to be no way, round hard zones."""
+        hard = zones.without([disc.name for disc in zones.discs if not disc.hard])
+        try:
+            return self._program(start, goal, avoided, stop)
+        except InfeasibleError:
+            if avoided == hard:
+                raise
+        return self._program(start, goal, hard, stop)
+
+    def _program(self, start: Anchor, goal: Anchor, kept: KeepOut, stop: Stop) -> Path:
+        path, _ = milp_connector.connect(
+            start,
+            goal,
+            kept,
+            self.setting.model.turn_radius_m,
+            self.setting.model.airspeed_m_s,
+            GOALS[self.methods["transit"]],
+            directions=int(self.methods["directions"]),
+            smoothing=self._smoothing,
+            stop=stop,
+        )
+        return path
+
+    @property
+    def _smoothing(self) -> RoundingMethod:
+        return cast(RoundingMethod, self.methods["smoothing"])

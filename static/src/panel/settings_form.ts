@@ -11,7 +11,7 @@ import { terrainField } from "./terrain_field";
 const METHODS: Record<string, readonly string[]> = {
   coverage: ["auto", "li2018", "majeed2019", "boustrophedon-cells", "coverage-alternatives"],
   routing: ["auto", "joint", "li2018", "li2018-threat-aware"],
-  transit: ["auto", "ssas", "tangent"],
+  transit: ["auto", "ssas", "tangent", "milp", "milp-length"],
   smoothing: ["auto", "fillet", "shortcut", "three-arc", "past-target", "short-turn"],
 };
 const WEIGHTS = ["length", "missile", "radar", "energy", "turns"] as const;

@@ -194,6 +194,10 @@ PROOFS: dict[tuple[str, str], tuple[Document, Document]] = {
     ("method", "smoothing"): (
         small(CROSSED, method=SSAS), small(CROSSED, method=SSAS | {"smoothing": "shortcut"}),
     ),
+    ("method", "directions"): (
+        small(CROSSED, method={"transit": "milp-length", "directions": 2}),
+        small(CROSSED, method={"transit": "milp-length", "directions": 3}),
+    ),
     ("method", "search"): (small(), member("method", {"search": "belief"})),
     ("scenario", "name"): (small(), member("name", "other")),
     ("scenario", "bbox"): (small(), member("bbox", [0.0, 0.0, 0.01, 0.01])),
