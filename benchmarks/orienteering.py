@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from shapely.geometry import Polygon
 
 from benchmarks.orienteering_files import OplibProblem, PolygonProblem, budget_name, read
+from planner.fleet.prizes.bound import reward_bound
 from planner.fleet.prizes.flyable import Field, dense_points, most_reward
 from planner.fleet.prizes.problem import Prizes
 from planner.fleet.prizes.route import best_route
@@ -39,6 +40,7 @@ def run(
     threads: int = 2,
     seed: int = 1,
     turn_radius: float | None = None,
+    bound: bool = False,
 ) -> Iterator[dict[str, Any]]:
     """A row for each budget of the file, or for the one asked for.
 
@@ -52,6 +54,9 @@ def run(
         That search side by side.
     turn_radius
         Among polygons; the widest that the file has figures for where not given, 0 for straight flight.
+    bound
+        OPLib's files: also what no route brings more than, by ``planner.fleet.prizes.bound``; its time is not
+        among the seconds.
     """
     path = Path(file)
     problem = read(path)
@@ -61,7 +66,7 @@ def run(
     if isinstance(problem, OplibProblem):
         # Kernels are loaded first, so that no problem's time is that of a compiler.
         best_route(Prizes(1.0 - np.eye(4), np.arange(4.0), 2.0), 0)
-        row, points = _oplib_row(problem, budget, seconds, threads, seed)
+        row, points = _oplib_row(problem, budget, seconds, threads, seed, bound)
         yield _told(path, row, points, folder)
         return
     if turn_radius is None:
@@ -81,7 +86,7 @@ def _told(path: Path, row: dict[str, Any], points: list[list[float]], folder: Pa
 
 
 def _oplib_row(
-    problem: OplibProblem, budget: float | None, seconds: float, threads: int, seed: int
+    problem: OplibProblem, budget: float | None, seconds: float, threads: int, seed: int, bound: bool
 ) -> tuple[dict[str, Any], list[list[float]]]:
     began = time.perf_counter()
     limit = problem.limit if budget is None else budget
@@ -109,6 +114,8 @@ def _oplib_row(
         "visited": len(set(route)),
         "route": [node + 1 for node in route],
     }
+    if bound:
+        row["bound"] = reward_bound(prizes)
     return row, points
 
 

@@ -11,6 +11,8 @@ from numba.core.dispatcher import Dispatcher
 
 from planner.airspace.terrain import Terrain
 from planner.coverage.urban.methods import SEQUENCES
+from planner.fleet.prizes.choice import Choices, best_choice
+from planner.fleet.prizes.exact import exact_route
 from planner.geojson import read_scenario
 from planner.pipeline import make_plan, with_bound
 
@@ -136,6 +138,10 @@ def warm_up() -> None:
     make_plan(read_scenario(_city("auto", building=False) | {"task": "search", "method": {}}))
     for coverage in SEQUENCES:
         make_plan(read_scenario(_city(coverage)))
+    # What is left out where a limit is exceeded.
+    few = Choices(np.ones((4, 4, 2, 2)), np.array([0.0, 1.0, 1.0, 0.0]), 2.5)
+    exact_route(few)
+    best_choice(few, 0)
     # The scenario lies at 0° N 0° E.
     plain = Terrain("plain", np.zeros((21, 21), dtype=np.float32), (0.1, 0.0, -1.0, 0.0, -0.1, 1.0))
     make_plan(read_scenario(_SCENARIO | {"terrain": "plain"}, {"plain": plain}))

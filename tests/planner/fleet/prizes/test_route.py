@@ -7,6 +7,7 @@ import itertools
 import numpy as np
 import pytest
 
+from planner.fleet.prizes.bound import reward_bound
 from planner.fleet.prizes.draw_kernels import draw, seeded
 from planner.fleet.prizes.problem import Prizes
 from planner.fleet.prizes.route import best_route
@@ -56,6 +57,15 @@ def test_small_problems_are_solved(seed: int, symmetric: bool, closed: bool) -> 
     steps = itertools.pairwise(found.order)
     assert found.cost == pytest.approx(sum(prizes.costs[a, b] for a, b in steps))
     assert found.cost == pytest.approx(cost)
+    assert reward <= reward_bound(prizes) <= prizes.rewards.sum() * (1.0 + 2e-6)
+
+
+def test_no_budget_brings_nothing() -> None:
+    """A bound without any way is what is had without any."""
+    east = np.array([0.0, 10.0, 20.0, 30.0, 40.0, 0.0])
+    costs = np.abs(east[:, None] - east[None])
+    bound = reward_bound(Prizes(costs, np.array([0.0, 1.0, 1.0, 1.0, 1.0, 0.0]), 0.0))
+    assert bound == pytest.approx(0.0, abs=1e-4)
 
 
 def test_same_seed_same_route() -> None:
@@ -83,6 +93,8 @@ def test_refused() -> None:
     costs = np.ones((3, 3))
     with pytest.raises(ValueError, match="over the budget"):
         best_route(Prizes(costs, np.ones(3), 0.5), 0)
+    with pytest.raises(ValueError, match="no route"):
+        reward_bound(Prizes(costs, np.ones(3), 0.5))
     with pytest.raises(ValueError, match="places"):
         Prizes(costs, np.ones(2), 1.0)
     with pytest.raises(ValueError, match="numbers"):
