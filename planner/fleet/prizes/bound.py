@@ -8,8 +8,8 @@ relaxation only adds routes, so that its optimum bounds them all.
 from __future__ import annotations
 
 import numpy as np
-from scipy.optimize import linprog
-from scipy.sparse import coo_array, vstack
+from scipy.optimize import Bounds, LinearConstraint, milp
+from scipy.sparse import csr_array
 
 from planner.errors import PlannerError
 from planner.fleet.prizes.problem import Prizes
@@ -37,20 +37,22 @@ def reward_bound(prizes: Prizes) -> float:
     if steps == 0:
         raise ValueError("no route is within the budget")
     columns, ones = np.arange(steps), np.ones(steps)
-    inner = np.arange(1, count - 1)
-    out = coo_array((ones, (leaving, columns)), shape=(count, steps)).tocsr()
-    into = coo_array((ones, (arriving, columns)), shape=(count, steps)).tocsr()
-    balance = (out - into).tocsr()
+    out = csr_array((ones, (leaving, columns)), shape=(count, steps))
+    into = csr_array((ones, (arriving, columns)), shape=(count, steps))
+    balance = csr_array(out - into)
     wanted = np.zeros(count)
     wanted[0], wanted[-1] = 1.0, -1.0
-    once = into[inner]
-    way = coo_array(prizes.costs[leaving, arriving][None, :])
-    limits = np.concatenate([np.ones(len(inner)), [prizes.budget]])
+    way = prizes.costs[leaving, arriving][None, :]
     gained = np.where(arriving < count - 1, np.maximum(prizes.rewards[arriving], 0.0), 0.0)
-    found = linprog(
-        -gained, A_ub=vstack([once, way]).tocsr(), b_ub=limits, A_eq=balance, b_eq=wanted,
-        bounds=(0.0, 1.0), method="highs",
-    )  # fmt: skip
+    found = milp(
+        -gained,
+        constraints=[
+            LinearConstraint(balance, wanted, wanted),
+            LinearConstraint(into, -np.inf, 1.0),
+            LinearConstraint(way, -np.inf, prizes.budget),
+        ],
+        bounds=Bounds(0.0, 1.0),
+    )
     if found.status == 2:
         raise ValueError("no route is within the budget")
     if found.status != 0:
