@@ -98,6 +98,7 @@ class Scenario:
         """Whether more is asked than one flight of one aircraft at any time."""
         return (
             len(self.aircraft) > 1
+            or self.method.routing == "stecz2020"
             or any(aircraft.batteries > 1 for aircraft in self.aircraft)
             or any(region.time_window_s is not None for region in self.regions)
             or any(region.revisit_after_s > 0.0 for region in self.regions)

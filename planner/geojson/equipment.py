@@ -35,7 +35,7 @@ MOST_DIRECTIONS = 32
 
 METHODS = {
     "coverage": ("auto", "li2018", *OWN_ORDER),
-    "routing": ("auto", "joint", "li2018", "li2018-threat-aware"),
+    "routing": ("auto", "joint", "li2018", "li2018-threat-aware", "stecz2020"),
     "transit": ("auto", "ssas", "tangent", "milp", "milp-length"),
     "smoothing": ("auto", "fillet", "shortcut", "three-arc", "past-target", "short-turn"),
     "search": ("auto", *FAMILIES),

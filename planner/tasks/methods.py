@@ -35,6 +35,9 @@ def chosen_methods(method: Method) -> dict[str, str]:
     if method.routing == "auto" and method.coverage == "li2018":
         # Asking for the paper's neighbourhoods by name means the paper's choice among them.
         chosen["routing"] = "li2018"
+    if chosen["routing"] == "stecz2020":
+        # The model says who does what in which order; the passes of a flight are chosen as ever.
+        chosen["routing"] = AUTO["routing"]
     if chosen["routing"] != "joint":
         # The paper's choices are among the paper's neighbourhoods.
         chosen["coverage"] = "li2018"

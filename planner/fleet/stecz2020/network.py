@@ -15,6 +15,10 @@ import numpy as np
 from planner.fleet.problem import FloatArray, Problem
 
 
+class UnsuitedError(ValueError):
+    """The model has no words for the problem, or no solution whatever is left out."""
+
+
 @dataclass(frozen=True, slots=True)
 class Waypoint:
     """w_i: earliest and latest arrival e and d, priority p_i, time of recognition T_i^ISR at it."""
@@ -94,15 +98,19 @@ def network_of(problem: Problem) -> Network:
 
     Raises
     ------
-    ValueError
+    UnsuitedError
         Where the model has no words for the problem: revisits, or several trips of one aircraft.
     """
     for target in problem.targets:
         if target.visits > 1:
-            raise ValueError(f"{target.name}: the model knows one visit of each target, not {target.visits}")
+            raise UnsuitedError(
+                f"{target.name}: the model knows one visit of each target, not {target.visits}"
+            )
     for member in problem.members:
         if member.trips > 1:
-            raise ValueError(f"{member.name}: the model knows one trip of each aircraft, not {member.trips}")
+            raise UnsuitedError(
+                f"{member.name}: the model knows one trip of each aircraft, not {member.trips}"
+            )
     waypoints: list[Waypoint] = []
     segments: list[Segment] = []
     for number, target in enumerate(problem.targets):

@@ -15,11 +15,11 @@ from planner.fleet.left_out import left_out_of
 from planner.fleet.problem import Problem
 from planner.fleet.schedule import cost_of, fly, stop_at
 from planner.fleet.stecz2020.model import Form, Model, write
-from planner.fleet.stecz2020.network import Network, network_of
+from planner.fleet.stecz2020.network import Network, UnsuitedError, network_of
 from planner.progress import Progress, Stop, never, raise_if, silent
 
 #: Nodes of branch and bound after which the best so far is the answer.
-NODES = 200_000
+NODES = 5_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +57,7 @@ def solve(network: Network, form: Form = "meant", nodes: int = NODES, seconds: f
     ------
     OutOfBudgetError
         When nodes or seconds ended before any answer was found.
-    ValueError
+    UnsuitedError
         When the model has no solution whatever is left out: printed (23) sends out an aircraft that cannot
         fly.
     """
@@ -66,7 +66,7 @@ def solve(network: Network, form: Form = "meant", nodes: int = NODES, seconds: f
     if result.x is None:
         if result.status == 1:
             raise OutOfBudgetError("routing stecz2020: no answer within its nodes")
-        raise ValueError("equations (20)–(33) have no solution: an aircraft that has to fly cannot")
+        raise UnsuitedError("equations (20)–(33) have no solution: an aircraft that has to fly cannot")
     return _read(network, model, result.x, float(result.mip_dual_bound), bool(result.status == 0))
 
 
@@ -113,7 +113,7 @@ def assign_stecz2020(
     ------
     CancelledError
         When ``stop`` says so before the solver starts or after it ended; HiGHS itself is not interrupted.
-    OutOfBudgetError, ValueError
+    OutOfBudgetError, UnsuitedError
         See ``solve`` and ``network_of``.
     """
     raise_if(stop)

@@ -11,6 +11,8 @@ from planner.errors import Finding, InfeasibleError
 from planner.fleet.assign import assign
 from planner.fleet.assignment import Assignment, Trip
 from planner.fleet.assignment import LeftOut as Unassigned
+from planner.fleet.stecz2020.network import UnsuitedError
+from planner.fleet.stecz2020.solve import assign_stecz2020
 from planner.plan import LeftOut
 from planner.progress import silent
 from planner.scenario import Scenario
@@ -156,7 +158,16 @@ class _Rounds:
     def _assigned(self, jobs: Sequence[Job]) -> Assignment:
         with self._controls.stage("assign"):
             problem = problem_of(self._crews, jobs, self._ways, self._scenario.objective, self._lessons)
-            return assign(problem, self._scenario.seed, self._controls.stop, silent)
+            if self._scenario.method.routing != "stecz2020":
+                return assign(problem, self._scenario.seed, self._controls.stop, silent)
+            try:
+                return assign_stecz2020(problem, stop=self._controls.stop)
+            except UnsuitedError as error:
+                message = f"routing stecz2020: {error}"
+                raise InfeasibleError("method", "scenario", message, "Use routing auto.") from error
+
+    def _by(self) -> str:
+        return "stecz2020" if self._scenario.method.routing == "stecz2020" else "assign"
 
     def _flight_plan(
         self, jobs: Sequence[Job], assigned: Assignment
@@ -310,7 +321,7 @@ class _Rounds:
                 Finding(job.of, f"not-seen-{each.limit}", each.message, each.relaxation, "warning"),
             )
         unique = {each.roi: each for each in left}
-        methods = chosen_methods(self._scenario.method) | {"fleet": "assign"}
+        methods = chosen_methods(self._scenario.method) | {"fleet": self._by()}
         return FleetAnswer(self._crews, sorties, methods, dropped, tuple(unique.values()), self._separation)
 
 

@@ -10,7 +10,7 @@ import { terrainField } from "./terrain_field";
 
 const METHODS: Record<string, readonly string[]> = {
   coverage: ["auto", "li2018", "majeed2019", "boustrophedon-cells", "coverage-alternatives"],
-  routing: ["auto", "joint", "li2018", "li2018-threat-aware"],
+  routing: ["auto", "joint", "li2018", "li2018-threat-aware", "stecz2020"],
   transit: ["auto", "ssas", "tangent", "milp", "milp-length"],
   smoothing: ["auto", "fillet", "shortcut", "three-arc", "past-target", "short-turn"],
 };

@@ -1,0 +1,35 @@
+"""``routing: stecz2020`` end to end: the printed model says who does what."""
+
+from __future__ import annotations
+
+import pytest
+
+from planner.errors import InfeasibleError
+from planner.geojson import read_scenario
+from planner.pipeline import make_plan
+from tests.planner.scenarios import of_two
+
+
+def test_the_model_shares_regions_out_among_aircraft() -> None:
+    """Two aircraft see both regions of a scenario by the model's assignment, and no limit is broken."""
+    document = of_two() | {"method": {"routing": "stecz2020"}}
+    plan = make_plan(read_scenario(document))
+    assert plan.hard_violations == ()
+    assert min(plan.metrics.coverage.values()) == 1.0
+
+
+def test_one_aircraft_is_the_printed_case() -> None:
+    """The model serves one aircraft alone."""
+    document = of_two() | {"method": {"routing": "stecz2020"}}
+    document["vehicles"] = document["vehicles"][:1]
+    plan = make_plan(read_scenario(document))
+    assert plan.hard_violations == ()
+    assert min(plan.metrics.coverage.values()) == 1.0
+
+
+def test_batteries_to_change_are_no_words_of_the_model() -> None:
+    """What it cannot say is refused by name, with the fix."""
+    document = of_two() | {"method": {"routing": "stecz2020"}}
+    document["vehicles"][0]["batteries"] = 2
+    with pytest.raises(InfeasibleError, match=r"one trip.*Use routing auto"):
+        make_plan(read_scenario(document))
