@@ -25,7 +25,7 @@ from planner.fleet.prizes.problem import Prizes
 from planner.fleet.prizes.route import best_route
 
 #: Of the time allowed, the part for what is done once the search was told to stop.
-LAST = 0.1
+LAST = 0.15
 #: Points of a path are no further apart.
 STEP = 1.0
 #: Where the file names no turn radius.
