@@ -30,7 +30,7 @@ async def test_it_is_flown_paused_and_resumed(
     """A multirotor takes a multirotor's plan: held as meant, paused in its mode, flown to its landing."""
     scenario = with_multirotor(autopilot)
     record = (await client.post("/api/v1/plans", json=scenario, params={"wait": 60})).json()
-    vehicle = await connected(client, f"sim:?speedup=500&type=multirotor&airspeed=20&autopilot={autopilot}")
+    vehicle = await connected(client, f"sim:?speedup=100&type=multirotor&airspeed=20&autopilot={autopilot}")
     assert (await client.get(vehicle)).json()["state"]["type"] == "multirotor"
     report = (await client.post(vehicle + "/mission", json={"plan_id": record["id"]})).json()
     assert report["verified"], report
