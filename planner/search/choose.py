@@ -31,7 +31,9 @@ MOST_THINNED = 60
 #: So many of the patterns that see most are thinned out.
 MOST_PATTERNS_THINNED = 16
 #: So many of the best are refined, by steps of these parts of a swath, for more than this part.
-MOST_REFINED, STEPS, LEAST_GAIN = 2, (0.5, 0.25, 0.12), 1e-4
+MOST_REFINED, STEPS, LEAST_GAIN = 4, (0.5, 0.25, 0.12), 1e-4
+#: So many parts, the largest, are searched of what is worth most.
+MOST_PARTS = 12
 #: Ground larger than this many times what the budget sees is searched in part.
 LARGER = 1.3
 #: Strips by the width of the swath: wider ones leave gaps, and reach farther.
@@ -195,22 +197,25 @@ class Search:
 
     def _rich(self, seen_m2: float) -> list[Polygon | MultiPolygon]:
         """What is worth most of the ground, as far as can be seen, and to the next lower score."""
-        scores, cell_m = self.worth.scores, self.worth.cell_m
+        cell_m = self.worth.cell_m
+        # Steps of a hundredth: noise is no reason to search here and not beside.
+        scores = np.round(100.0 * self.worth.scores / max(float(self.worth.scores.max()), 1e-300))
         levels, counts = np.unique(scores[scores > 0.0], return_counts=True)
         if len(levels) < 2:
             return []
         areas_m2 = counts[::-1].cumsum() * cell_m**2
         held = int(np.searchsorted(areas_m2, seen_m2, side="right"))
-        found = []
+        found: list[Polygon | MultiPolygon] = []
         for taken in {max(held, 1), held + 1}:
             if taken >= len(levels):
                 continue
             rows, columns = np.nonzero(scores >= levels[::-1][taken - 1])
             west_m, south_m = self.worth.west_m + columns * cell_m, self.worth.south_m + rows * cell_m
             cells = shapely.box(west_m, south_m, west_m + cell_m, south_m + cell_m)
-            shape = shapely.union_all(cells).simplify(cell_m)
-            if isinstance(shape, Polygon | MultiPolygon) and not shape.is_empty:
-                found.append(shape)
+            parts = shapely.get_parts(shapely.union_all(cells).simplify(cell_m))
+            large = sorted((part for part in parts if part.area > self.looking.narrowest_m() ** 2), key=_size)
+            if large:
+                found.append(MultiPolygon(large[-MOST_PARTS:]))
         return found
 
     def _datum(self) -> tuple[float, float]:
@@ -236,6 +241,10 @@ class Search:
         shape = self.ground if inner.is_empty else inner
         place = nearest_points(shape, Point(self.pricing.start))[0]
         return (float(place.x), float(place.y))
+
+
+def _size(part: Polygon) -> float:
+    return float(part.area)
 
 
 def _moves(strips: Floats, part: float, width_m: float) -> Iterator[Floats]:

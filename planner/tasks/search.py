@@ -34,7 +34,7 @@ from planner.vehicle.limits import Use, exceeded
 #: Cells of the worth of ground: so many to the swath's width, no more to a side, no finer.
 CELLS_ACROSS, MOST_CELLS, LEAST_CELL_M = 8.0, 160, 0.5
 #: So many of the best programmes are flown, each in so many lengths.
-FLOWN, LENGTHS = 4, 6
+FLOWN, LENGTHS = 6, 6
 #: A flight that uses this part of what it may is long enough; more than the other is not flown: the judge
 #: reckons by the vertices of the published line, by a thousandth or so another way.
 ENOUGH, MOST = 0.99, 0.997

@@ -64,7 +64,7 @@ def test_a_search_is_told_by_what_it_sees(swathplan: Command, tmp_path: Path) ->
     ended = swathplan(*asked, stdin=json.dumps(document(vehicle=WING | {"energy_wh": 14})))
     metrics = json.loads(ended.out)["metrics"]
     assert ended.code == 0
-    assert metrics["importance_collected"] == pytest.approx(2.0 * metrics["area_seen_m2"], rel=0.02)
+    assert metrics["importance_collected"] == pytest.approx(2.0 * metrics["area_seen_m2"], rel=0.05)
     assert "searched: " in ended.err
     assert "km² seen" in ended.err
     assert "regions covered" not in ended.err
