@@ -87,4 +87,4 @@ def test_the_volcano_is_searched_where_it_is_worth_most() -> None:
     worth = sum(patch.score * patch.area.area for patch in scenario.importance.patches)
     assert plan.violations == ()
     assert (plan.metrics.energy_wh or 0.0) <= (scenario.aircraft[0].usable_wh or 0.0)
-    assert (plan.metrics.importance_collected or 0.0) > 2.0 * plan.metrics.coverage["island"] * worth
+    assert (plan.metrics.importance_collected or 0.0) > 1.5 * plan.metrics.coverage["island"] * worth
