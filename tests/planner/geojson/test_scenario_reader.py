@@ -169,6 +169,8 @@ BAD: dict[str, tuple[dict[str, Any], str, str]] = {
         "unknown-sensor",
     ),
     "unknown method": (small(method={"routing": "magic"}), "method", "unknown-value"),
+    "too many directions": (small(method={"directions": 99}), "method", "out-of-range"),
+    "one direction": (small(method={"directions": 1}), "method", "out-of-range"),
     "far apart": (
         small(feature("X", "roi", "Point", [60, 50])),
         "X",
