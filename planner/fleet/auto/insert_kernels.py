@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 from numba import njit
 
 from planner.fleet.auto.tables import (
@@ -30,6 +31,8 @@ from planner.fleet.auto.times_kernels import EPSILON, join, within
 BLINK = 0.01
 #: What every landing weighs beside the last, so that a search for an early last landing sees a slope.
 SLOPE = 0.02
+#: Of more routes than these only those with one of so many nearest jobs are looked at, and empty ones.
+MANY, NEAREST = 16, 40
 
 
 @njit(cache=True, nogil=True)
@@ -58,6 +61,13 @@ def best_place(
             if routes.filled[r] > 0:
                 top = max(top, routes.sums[r, LANDING])
     last_twin = -1
+    many = routes.filled.shape[0] > MANY
+    close = np.zeros(routes.filled.shape[0] if many else 0, dtype=np.bool_)
+    if many:
+        for k in range(min(NEAREST + 1, jobs.near.shape[1])):
+            r = routes.at[jobs.near[j, k]]
+            if r >= 0:
+                close[r] = True
     for m in range(crew.profile.shape[0]):
         p = crew.profile[m]
         limits = crew.limits[m]
@@ -67,6 +77,8 @@ def best_place(
                 if crew.twin[m] == last_twin:
                     break
                 last_twin = crew.twin[m]
+            if many and count > 0 and not close[r]:
+                continue
             if routes.sums[r, LOAD] + jobs.load[j] > limits[CAPACITY] + EPSILON:
                 continue
             free = r == crew.first[m + 1] - 1 or count == 0 or routes.filled[r + 1] == 0

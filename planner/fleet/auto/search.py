@@ -17,7 +17,7 @@ from planner.progress import Stop
 #: Iterations between two looks at ``stop``.
 CHUNK = 500
 #: Temperatures at the begin and at the end, as parts of what one job costs on average.
-HOT, COLD = 8.0, 0.05
+HOT, COLD = 8.0, 0.08
 
 
 @dataclass(frozen=True, slots=True)
