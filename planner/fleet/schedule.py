@@ -9,7 +9,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from planner.fleet.assignment import Limit, Trip, Visit
 from planner.fleet.problem import FloatArray, Problem
@@ -164,7 +164,11 @@ def _broken_of(problem: Problem, member: int, trips: Sequence[Trip]) -> list[str
     found = [f"{aircraft.name}: {len(trips)} trips, not {aircraft.trips}"] * (len(trips) > aircraft.trips)
     base, ready_s = aircraft.start_base, aircraft.ready_s
     for trip in trips:
-        stops = [stop_at(problem, visit.target, visit.alternative) for visit in trip.visits]
+        # A visit may wait for its turn after another of its target: no start is moved forward.
+        stops = []
+        for visit in trip.visits:
+            own = stop_at(problem, visit.target, visit.alternative, visit.number)
+            stops.append(replace(own, window_s=(max(own.window_s[0], visit.start_s), own.window_s[1])))
         flown, excesses = fly(problem, member, (trip.start_base, trip.end_base), stops, trip.take_off_s)
         found += [f"{aircraft.name}: {excess.limit} by {excess.margin:.6g}" for excess in excesses]
         if trip.start_base != base or trip.end_base not in aircraft.end_bases:
