@@ -18,7 +18,8 @@ from numba import njit
 from numpy.typing import NDArray
 
 from planner.fleet.prizes.draw_kernels import State, draw
-from planner.fleet.prizes.route_kernels import BLINK, DISLIKE, LIKE, NO_WAY, SLACK, WHIM
+from planner.fleet.prizes.route_kernels import BLINK, DISLIKE, LIKE, NO_WAY, WHIM
+from planner.fleet.prizes.shorten_kernels import SLACK
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
