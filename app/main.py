@@ -34,8 +34,8 @@ from app.services.limits import Limits
 from app.settings import Settings
 from app.version import VERSION
 
-DESCRIPTION = """Plans how an aircraft sees regions of interest with a side-looking sensor, among threats, and
-puts the mission into an ArduPilot or PX4 vehicle.
+DESCRIPTION = """Plans how one aircraft or several see regions of interest, or search ground, with cameras and
+side-looking radars, among threats and zones, and puts the missions into ArduPilot and PX4 vehicles.
 
 Geometry is RFC 7946 GeoJSON. Every error is an RFC 9457 problem document."""
 
@@ -43,9 +43,12 @@ TAGS = [
     {"name": "plans", "description": "Scenarios become plans."},
     {"name": "artefacts", "description": "What a plan gives: GeoJSON, missions, a report."},
     {"name": "scenarios", "description": "Scenarios judged without planning them."},
-    {"name": "sensors", "description": "Cameras that scenarios may name."},
+    {"name": "sensors", "description": "Cameras and radars that scenarios may name."},
     {"name": "aircraft", "description": "Airframes that scenarios may name."},
-    {"name": "terrain", "description": "Elevation rasters for scenarios to lie on."},
+    {
+        "name": "terrain",
+        "description": "Rasters: of elevation, for scenarios to lie on, and of importance, for searches.",
+    },
     {"name": "vehicles", "description": "Connected vehicles: state, missions, commands."},
     {"name": "flights", "description": "What was flown, and what was seen."},
     {"name": "audit", "description": "What was ordered of vehicles, and what became of it."},

@@ -1,1 +1,1 @@
-"""Plans missions for side-looking sensors: regions, threats and an aircraft in, a checked plan out."""
+"""Plans missions for cameras and side-looking radars: regions and aircraft in, a checked plan out."""

@@ -162,13 +162,14 @@ def tell_plan(document: dict[str, Any]) -> None:
     """Say in a few lines what a plan is like."""
     metrics = document["metrics"]
     coverage = metrics["coverage"].values()
+    flight = "all flights together" if metrics.get("vehicles") else "the whole flight"
     if metrics.get("area_seen_m2") is not None:
         _tell_search(metrics)
         _tell_violations(document["violations"])
         return
     say(
         f"planned: {metrics['length_m'] / 1000:.2f} km, {metrics['duration_s'] / 60:.1f} min "
-        f"(the whole flight {metrics['flight_length_m'] / 1000:.2f} km, "
+        f"({flight} {metrics['flight_length_m'] / 1000:.2f} km, "
         f"{metrics['flight_duration_s'] / 60:.1f} min), collecting {metrics['duty_cycle']:.0%} of the way, "
         f"{sum(fraction >= 0.9999 for fraction in coverage)} of {len(coverage)} regions covered"
     )
@@ -190,7 +191,7 @@ def tell_fleet(metrics: dict[str, Any]) -> None:
         flights = "1 sortie" if own["sorties"] == 1 else f"{own['sorties']} sorties"
         say(
             f"{name}: {flights} from {own['take_off_s'] / 60:.1f} to {own['landing_s'] / 60:.1f} min, "
-            f"{own['length_m'] / 1000:.2f} km{energy}, priority {own['priority']:g}"
+            f"{own['length_m'] / 1000:.2f} km{energy}, priority {round(own['priority'], 3):g}"
         )
     if vehicles:
         say(f"the last is down after {metrics['last_landing_s'] / 60:.1f} min")
@@ -205,7 +206,7 @@ def _tell_search(metrics: dict[str, Any]) -> None:
     say(
         f"searched: {metrics['area_seen_m2'] / 1e6:.3f} km² seen"
         + (f", {next(iter(parts)):.1%} of the ground" if len(parts) == 1 else "")
-        + ("" if worth is None else f", importance {worth:.6g}")
+        + ("" if worth is None else f", importance {worth:,.{0 if worth >= 100.0 else 3}f}")
         + f", in {metrics['flight_length_m'] / 1000:.2f} km and {metrics['flight_duration_s'] / 60:.1f} min"
         + ("" if energy_wh is None else f", {energy_wh:.1f} Wh")
     )

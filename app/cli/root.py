@@ -26,7 +26,8 @@ from app.cli.output import CommandError, Exit, fail
 
 cli = typer.Typer(
     name="swathplan",
-    help="Plan how an aircraft sees regions with a side-looking sensor, and put the mission into it.\n\n"
+    help="Plan how one aircraft or several see regions, or search ground, with cameras and side-looking "
+    "radars, and put the missions into them.\n\n"
     "Commands read - as standard input, write results to standard output or -o, tell messages on standard "
     "error, and exit with 0 (done), 1 (failed) or 2 (bad usage or input).",
     no_args_is_help=True,

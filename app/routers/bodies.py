@@ -15,7 +15,7 @@ SCENARIO_SCHEMA: dict[str, Any] = {
     "description": "A GeoJSON FeatureCollection (RFC 7946); each feature says its part by `properties.role`. "
     "Vehicles, sensors and wishes are foreign members of the collection.",
     "type": "object",
-    "required": ["type", "features", "vehicles", "sensors", "altitude_m"],
+    "required": ["type", "features", "vehicles", "sensors"],
     "properties": {
         "type": {"const": "FeatureCollection"},
         "name": {"type": "string"},
@@ -67,9 +67,17 @@ SCENARIO_SCHEMA: dict[str, Any] = {
             },
         },
         "sensors": {"type": "array", "items": {"type": "object"}, "minItems": 1},
-        "altitude_m": {"type": "number", "minimum": 1},
+        "altitude_m": {
+            "type": "number",
+            "minimum": 1,
+            "description": "Absent: the planner chooses heights by gsd_m, min_resolution_m or min_niirs of "
+            "the regions, or up to max_height_m.",
+        },
+        "min_height_m": {"type": "number", "description": "Over ground, of heights that are chosen."},
+        "max_height_m": {"type": "number", "description": "Over ground: no pass is higher."},
         "altitude_reference": {"enum": ["amsl", "home", "terrain"], "default": "terrain"},
         "terrain": {"type": "string", "description": "Id of an uploaded elevation raster."},
+        "terrain_following": {"type": "boolean", "default": False},
         "task": {
             "enum": ["collect", "search"],
             "default": "collect",
