@@ -314,12 +314,15 @@ def assemble(
         chart, model, airspace, suite, composed, legs, passes
     )
     flight, begin = composed.flight, composed.flight.path.start
-    heading_deg = chart.frame.true_heading_deg(*begin.position, begin.angle_rad)
+    aloft = ends[0].over_home_m is not None
+    heading_deg = None if aloft else chart.frame.true_heading_deg(*begin.position, begin.angle_rad)
     path = flown_path(flight, model, metrics.energy_wh, chart.lonlats, chart.straight_edge_m, heading_deg)
-    home, end = chart.lonlats([terminal.position for terminal in ends])
+    level_m = chart.level.altitude_m
+    value = vehicle_value(model.aircraft, finish_of(model.aircraft, *ends))
+    home, end = chart.lonlats([ends[0].ground, ends[1].position])
     return Plan(
         name=name,
-        vehicles=(vehicle_value(model.aircraft, finish_of(model.aircraft, *ends)),),
+        vehicles=(replace(value, home_altitude_m=level_m - chart.level.height_m) if aloft else value,),
         altitude_m=chart.level.altitude_m,
         altitude_reference=chart.level.reference,
         home=home,

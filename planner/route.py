@@ -117,6 +117,10 @@ class Terminal:
     ----------
     run_m, runs_rad
         Flown straight from a start before anything else, and the directions of it to choose among.
+    over_home_m
+        Height over home of an aircraft that is in the air already; None on the ground.
+    home
+        Where it took off, if not here.
     """
 
     name: str
@@ -124,6 +128,13 @@ class Terminal:
     angle_rad: float | None = None
     run_m: float = 0.0
     runs_rad: tuple[float, ...] = ()
+    over_home_m: float | None = None
+    home: Point | None = None
+
+    @property
+    def ground(self) -> Point:
+        """Where it took off, or takes off."""
+        return self.position if self.home is None else self.home
 
     def after_run(self, angle_rad: float) -> tuple[float, float, float]:
         """Where a run in a direction ends, and that direction."""

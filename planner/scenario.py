@@ -71,16 +71,26 @@ class Scenario:
     def ends_of(self, aircraft: Aircraft) -> tuple[Terminal, Terminal]:
         """Where an aircraft starts, and where it ends."""
         base = next((base for base in self.bases if base.name == aircraft.base), None)
-        return (self.start, self.end) if base is None else (base, Terminal(base.name, base.position))
+        ends = (self.start, self.end) if base is None else (base, Terminal(base.name, base.position))
+        if aircraft.aloft is None:
+            return ends
+        aloft = aircraft.aloft
+        place: tuple[float, float] = tuple(self.frame.to_local((aloft.lon_deg, aloft.lat_deg)).tolist())
+        angle_rad = None
+        if aloft.heading_deg is not None:
+            angle_rad = self.frame.angle_rad(*place, aloft.heading_deg)
+        return replace(
+            ends[0], position=place, angle_rad=angle_rad, over_home_m=aloft.height_m, home=ends[0].ground
+        ), ends[1]
 
     def of_one(self, aircraft: Aircraft) -> Scenario:
         """What one of several aircraft may be asked: the regions its sensors see, from its own ends.
 
         Each region names its sensor: another may be the first on board.
         """
-        if len(self.aircraft) == 1:
-            return self
         start, end = self.ends_of(aircraft)
+        if len(self.aircraft) == 1:
+            return self if aircraft.aloft is None else replace(self, start=start, end=end)
         asked = [(region, self.sensor_for(region).name) for region in self.regions]
         regions = tuple(replace(region, sensor=name) for region, name in asked if aircraft.carries(name))
         suite = self.suite.aboard(aircraft, self.level.amsl_m)

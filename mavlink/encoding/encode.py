@@ -91,7 +91,7 @@ def encode(
         CORNER_M if task.hovers else 0.0,
     )
     # A plan over the sea knows how high its home lies.
-    known_m = task.path.line[0][2] if plan.altitude_reference == "amsl" else 0.0
+    known_m = task.home_altitude_m if plan.altitude_reference == "amsl" else 0.0
     home_m = options.home_altitude_m or known_m
     home = [home_item(plan.home, home_m)] if task.dialect.home_row else []
     flight = _flight(task, stops, switching, pointing)

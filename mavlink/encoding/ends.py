@@ -30,10 +30,12 @@ class End:
 
 
 def beginning(task: Task) -> End:
-    """Take-off, and cruise speed."""
+    """Take-off, and cruise speed; the speed alone where the plan begins in the air."""
     kind = _GROUND_SPEED if task.hovers else _AIRSPEED
     speed_m_s = round(task.vehicle.airspeed_m_s, 3)
     speed = unplaced(Command.DO_CHANGE_SPEED, (kind, speed_m_s, _KEEP_THROTTLE, 0.0))
+    if task.path.phase("take_off") is None:
+        return End((speed,))
     return End((_takeoff(task), speed))
 
 

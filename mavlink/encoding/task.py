@@ -83,7 +83,13 @@ class Task:
 
     def over_home_m(self, altitude_m: float) -> float:
         """An altitude of the plan over home, where its path begins."""
-        return altitude_m - self.path.line[0][2]
+        return altitude_m - self.home_altitude_m
+
+    @property
+    def home_altitude_m(self) -> float:
+        """Of home over the plan's datum: where the path begins, unless that is in the air."""
+        aloft_m = self.vehicle.home_altitude_m
+        return self.path.line[0][2] if aloft_m is None else aloft_m
 
     def phase_end_m(self, kind: PhaseKind) -> float:
         """Where a phase ends along the path; its beginning where there is no such phase."""
@@ -147,7 +153,7 @@ def task_of(plan: Plan, name: str | None, autopilot: Autopilot | None, options: 
         local,
         room_of(plan.fence, local),
     )
-    if path.phase("take_off") is None:
+    if path.phase("take_off") is None and vehicle.home_altitude_m is None:
         raise EncodeError("the plan's path has no take-off: plan again")
     if not task.altitude_over_home_m > 0.0:
         raise EncodeError(f"the plan's altitude is {task.altitude_over_home_m:g} m over home")

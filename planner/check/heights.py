@@ -58,7 +58,8 @@ def ground_violations(
     Parameters
     ----------
     grounds_m
-        Altitude of the ground at its first and its last place, over the plan's datum.
+        Altitude at its first place, of the ground or of an aircraft in the air, and of the ground at its
+        last, over the plan's datum.
     """
     ends = [("begins", 0, grounds_m[0])]
     if vehicle.finish == "land":

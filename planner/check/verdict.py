@@ -99,7 +99,7 @@ def judge(scenario: Scenario, plan: Plan) -> Verdict:
         violations += place_violations(scenario, path, line_m, altitudes_m - home_ground_m)
         violations += clearance_violations(scenario, plan, path, line_m)
         violations += slope_violations(path, vehicle, line_m, altitudes_m)
-        violations += ground_violations(path, vehicle, altitudes_m, _grounds_m(scenario, home_ground_m))
+        violations += ground_violations(path, vehicle, altitudes_m, _begins_m(scenario, home_ground_m))
         violations += level_violations(scenario, plan.collects_of(vehicle.name))
         violations += altitude_violations(scenario, plan.collects_of(vehicle.name))
         violations += phase_violations(path)
@@ -152,6 +152,13 @@ def judge(scenario: Scenario, plan: Plan) -> Verdict:
             violations.append(Violation("length", "metrics", message, off_m, "m"))
     seen = (None, None) if found is None else (found.area_m2, found.importance)
     return Verdict(tuple(violations), length_m, tightest_m, coverage, unseen, surveys, *seen)
+
+
+def _begins_m(scenario: Scenario, home_ground_m: float) -> tuple[float, float]:
+    """Altitudes that the path begins and ends at: of the ground, or of an aircraft that is in the air."""
+    first_m, last_m = _grounds_m(scenario, home_ground_m)
+    aloft_m = scenario.start.over_home_m
+    return (first_m if aloft_m is None else home_ground_m + aloft_m, last_m)
 
 
 def _grounds_m(scenario: Scenario, home_ground_m: float) -> tuple[float, float]:

@@ -15,6 +15,7 @@ from planner.vehicle.aircraft import (
     CORNER_RADIUS_M,
     DEFAULT_RESERVE,
     Aircraft,
+    Aloft,
     turn_radius_from_bank_m,
     turn_radius_from_load_factor_m,
 )
@@ -22,6 +23,8 @@ from planner.vehicle.airframes import completed, find_airframe, is_airframe
 from planner.vehicle.steadiness import Steadiness, steadiness_of
 from planner.wishes import Method, Objective
 
+#: No aircraft is thought higher over its home.
+HIGHEST_ALOFT_M = 30_000.0
 VEHICLE_TYPES = ("fixed_wing", "multirotor", "vtol")
 AUTOPILOTS = ("ardupilot", "px4")
 
@@ -73,6 +76,7 @@ def read_aircraft(raw: Any, index: int, findings: Findings) -> Aircraft | None:
     turnaround_s = fields.number("turnaround_s", 0.0, minimum=0.0)
     if batteries == 1:
         fields.unused("turnaround_s", "is the time between flights, and it has one battery")
+    aloft = _aloft(fields, owner, kind, findings)
     finish: Any = fields.choice("finish", ("auto", "land", "return", "loiter"), "auto")
     if "reserve" in fields and energy_wh is None:
         fields.wrong("reserve", "is a part of energy_wh, which is missing", "Add energy_wh or remove it.")
@@ -99,8 +103,35 @@ def read_aircraft(raw: Any, index: int, findings: Findings) -> Aircraft | None:
     return Aircraft(
         name, kind, autopilot, airspeed_m_s, radius_m, max_climb_deg, energy_wh, power, range_m, time_s,
         settle_m, base, reserve=reserve, finish=finish,
-        min_airspeed_m_s=slowest_m_s, sensors=sensors, batteries=batteries, turnaround_s=turnaround_s or 0.0,
+        min_airspeed_m_s=slowest_m_s, sensors=sensors, batteries=batteries, turnaround_s=turnaround_s or 0.0, aloft=aloft,
     )  # fmt: skip
+
+
+def _aloft(fields: Fields, owner: str, kind: str | None, findings: Findings) -> Aloft | None:
+    """Where an aircraft is that flies already."""
+    raw = fields.raw("in_flight")
+    if raw is None:
+        return None
+    if not isinstance(raw, dict):
+        fields.wrong("in_flight", f"is {raw!r}", "Give lon_deg, lat_deg, height_m over home and heading_deg.")
+        return None
+    place = Fields(f"{owner} in_flight", raw, findings)
+    lon_deg = place.number("lon_deg", minimum=-180.0, maximum=180.0)
+    lat_deg = place.number("lat_deg", minimum=-90.0, maximum=90.0)
+    height_m = place.number("height_m", above=0.0, maximum=HIGHEST_ALOFT_M)
+    heading_deg = place.number("heading_deg", None, minimum=0.0, maximum=360.0)
+    place.refuse_unknown()
+    if heading_deg is None and kind != "multirotor":
+        place.wrong(
+            "heading_deg",
+            "is missing: what flies on wings goes on where it is heading",
+            "Add heading_deg, clockwise from true north.",
+            "missing-property",
+        )
+        return None
+    if lon_deg is None or lat_deg is None or height_m is None:
+        return None
+    return Aloft(lon_deg, lat_deg, height_m, heading_deg)
 
 
 def _of_model(raw: dict[str, Any], fields: Fields) -> dict[str, Any]:

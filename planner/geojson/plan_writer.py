@@ -123,10 +123,13 @@ def write_plan(plan: Plan) -> dict[str, Any]:
 
 
 def _vehicle(vehicle: PlanVehicle) -> dict[str, Any]:
-    """Its places only where they are not the plan's."""
+    """Its places only where they are not the plan's; the altitude of home only of one that is in the air."""
     places = {name: getattr(vehicle, name) for name in ("home", "end")}
     given = {name: list(_lonlat(place)) for name, place in places.items() if place is not None}
-    return {name: value for name, value in asdict(vehicle).items() if name not in places} | given
+    written = {name: value for name, value in asdict(vehicle).items() if name not in places} | given
+    if vehicle.home_altitude_m is None:
+        del written["home_altitude_m"]
+    return written
 
 
 def _metrics(metrics: Metrics) -> dict[str, Any]:

@@ -13,6 +13,8 @@ class PlanVehicle:
     """What the mission needs to know of the aircraft.
 
     ``home`` is where it takes off and ``end`` where it finishes; None where the plan's own are.
+    ``home_altitude_m`` is the altitude of home over the plan's datum where the path begins in the air; None
+    where it begins on the ground, at home.
     """
 
     name: str
@@ -24,6 +26,7 @@ class PlanVehicle:
     finish: Finish = "land"
     home: LonLat | None = None
     end: LonLat | None = None
+    home_altitude_m: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

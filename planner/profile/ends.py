@@ -75,8 +75,10 @@ def up(start: Terminal, ground_m: float, goal: Anchor, model: FlightModel, aroun
 
 
 def with_run(ends: tuple[Terminal, Terminal], top_m: float, model: FlightModel) -> tuple[Terminal, Terminal]:
-    """Both ends, the start with the run that a flight to a height over it begins with."""
+    """Both ends, the start with the run that a flight to a height over it begins with; none in the air."""
     start, end = ends
+    if start.over_home_m is not None:
+        return ends
     foot = foot_up(start, 0.0, top_m, model)
     return replace(start, run_m=foot.run_m, runs_rad=_runs_rad(foot)), end
 

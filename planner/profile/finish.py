@@ -21,4 +21,4 @@ def finish_of(aircraft: Aircraft, start: Terminal, end: Terminal) -> Finish:
         return aircraft.finish
     if aircraft.autopilot == "px4" and aircraft.type != "multirotor":
         return "land"
-    return "return" if math.dist(start.position, end.position) <= NEAR_HOME_M else "land"
+    return "return" if math.dist(start.ground, end.position) <= NEAR_HOME_M else "land"

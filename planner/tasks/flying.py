@@ -199,20 +199,26 @@ def fly_whole(
     first, goal, top = stations[0], stations[0].arrive, levels.at(stations[0].altitude_m)
     first_m, last_m = passes[0][1].knots[0][1], passes[-1][1].knots[-1][1]
     climb_m = top.level.height_m / math.tan(climb_slope_rad(model))
-    rising = made(
-        lambda connector: up(
-            start,
-            top.home_ground_m,
-            goal,
-            model,
-            _topped(
-                layers.around(top, top.ground, connector, lambda path: cut(path, 0.0, climb_m)),
-                first_m,
-                start.position,
-                following,
-            ),
+    if start.over_home_m is None:
+        rising = made(
+            lambda connector: up(
+                start,
+                top.home_ground_m,
+                goal,
+                model,
+                _topped(
+                    layers.around(top, top.ground, connector, lambda path: cut(path, 0.0, climb_m)),
+                    first_m,
+                    start.position,
+                    following,
+                ),
+            )
         )
-    )
+    else:
+        # In the air already: on from there as from one pass to the next.
+        here, from_m = Anchor(*start.position, start.angle_rad), levels.home_ground_m + start.over_home_m
+        leg = made(partial(_changed, here, goal, (from_m, first_m), model, layers))
+        rising = Rise(leg.path, leg.heights, 0.0, 0.0, leg.inserted_m)
     rising = _settled(rising, first)
     if following is not None:
         rising = following.over_rise(rising, first_m)
@@ -240,7 +246,7 @@ def fly_whole(
     falling = made(
         lambda connector: down(
             end,
-            start.position,
+            start.ground,
             grounds_m,
             origin,
             model,

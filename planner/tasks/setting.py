@@ -62,7 +62,7 @@ class Setting:
         if scenario.wind.speed_m_s > 0.0:
             suite = suite.in_wind(model.drift, scenario.wind.toward_rad)
         altitudes_m = {r.name: r.altitude_m for r in scenario.regions if r.altitude_m is not None}
-        ends = (scenario.start, scenario.end)
+        ends = scenario.ends_of(scenario.aircraft[0])
         over_m = {r.name: r.over_ground_m for r in scenario.regions if r.over_ground_m is not None}
         following = None
         if scenario.terrain is not None and over_m:
@@ -80,7 +80,7 @@ class Setting:
 def _flown_over(scenario: Scenario, model: FlightModel) -> BaseGeometry:
     """Ground that a flight which follows it lies over, with room for turns and ways round."""
     places: list[BaseGeometry] = [region.area for region in scenario.regions]
-    places += [Point(end.position) for end in (scenario.start, scenario.end)]
+    places += [Point(end.position) for end in scenario.ends_of(model.aircraft)]
     reach_m = max(LEAST_ROUND_M, TURNS_ROUND * model.turn_radius_m)
     hull: BaseGeometry = union_all(places).convex_hull.buffer(reach_m)
     return hull

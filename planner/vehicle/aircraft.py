@@ -24,6 +24,19 @@ TURN_RADIUS_MARGIN = 1.001
 
 
 @dataclass(frozen=True, slots=True)
+class Aloft:
+    """Where an aircraft is that is in the air already: degrees, metres over home; its course from true north.
+
+    What hovers may go on in any direction: ``heading_deg`` is None then.
+    """
+
+    lon_deg: float
+    lat_deg: float
+    height_m: float
+    heading_deg: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class Aircraft:
     """One vehicle of the scenario.
 
@@ -59,6 +72,8 @@ class Aircraft:
         Names of those on board; None for all.
     batteries, turnaround_s
         How many flights it can make, each with all of its energy, and the time between two of them.
+    aloft
+        Where it is if it flies already; None on the ground.
     """
 
     name: str
@@ -84,6 +99,7 @@ class Aircraft:
     def carries(self, sensor: str) -> bool:
         """Whether a sensor is on board."""
         return self.sensors is None or sensor in self.sensors
+    aloft: Aloft | None = None
 
     @property
     def hovers(self) -> bool:
