@@ -40,6 +40,7 @@ class Benchmark(StrEnum):
     VRPTW = "vrptw"
     SEPARATION = "separation"
     FLEET = "fleet"
+    REPLAN = "replan"
 
 
 def _options(pairs: list[str]) -> dict[str, Any]:

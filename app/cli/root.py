@@ -18,6 +18,7 @@ from app.cli import (
     logs,
     missions,
     planning,
+    replanning,
     sensors,
     serve,
     signing,
@@ -55,7 +56,7 @@ def _root(
 
 
 MODULES = (
-    serve, links, planning, missions, exchange, journey, sensors, aircraft, audit, logs, flown,
+    serve, links, planning, replanning, missions, exchange, journey, sensors, aircraft, audit, logs, flown,
     signing, bench,
 )  # fmt: skip
 for module in MODULES:

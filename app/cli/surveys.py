@@ -12,6 +12,8 @@ def tell_surveys(document: dict[str, Any]) -> None:
     features = [feature["properties"] | {"at": feature["geometry"]} for feature in document["features"]]
     collects = {(f["vehicle"], f["seq"]): f for f in features if f["role"] == "collect"}
     homes_m = {f["vehicle"]: f["at"]["coordinates"][0][2] for f in features if f["role"] == "path"}
+    # Flights that begin in the air say how high their home is.
+    homes_m |= {v["name"]: v["home_altitude_m"] for v in document["vehicles"] if "home_altitude_m" in v}
     counts = {(f["vehicle"], f["seq"]): f["count"] for f in features if f["role"] == "photos"}
     for roi, survey in (document["metrics"].get("surveys") or {}).items():
         own = {key: f for key, f in collects.items() if roi in f["rois"]}

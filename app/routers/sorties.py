@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Query, Response
+from fastapi import APIRouter, Header, Query, Response
 
 from app.deps import FlightsDep, PlanningDep, SettingsDep
 from app.problems import responses
 from app.schemas.plans import PlanOut
+from app.schemas.replans import ReplanIn
 from app.services.documents import write_json
 
 router = APIRouter(prefix="/api/v1/plans/{plan_id}", tags=["flights"])
@@ -78,6 +79,41 @@ async def refly(
     Ground of which nobody knows is planned, too: send the onboard logs first. 409 when nothing is left.
     """
     record = await planning.submit(await flights.plan_refly(plan_id))
+    if wait > 0 and not record.ended:
+        record = await planning.wait(record.id, min(wait, settings.max_wait_s))
+    response.headers["Location"] = f"/api/v1/plans/{record.id}"
+    return PlanOut.of(record)
+
+
+@router.post(
+    "/replan", status_code=202, summary="Plan anew in flight", responses=responses(404, 409, 422, 429)
+)
+async def replan(
+    plan_id: str,
+    body: ReplanIn,
+    flights: FlightsDep,
+    planning: PlanningDep,
+    settings: SettingsDep,
+    response: Response,
+    wait: Annotated[float, Query(ge=0, description="Seconds to hold the answer for the plan's end.")] = 0.0,
+    idempotency_key: Annotated[
+        str | None,
+        Header(
+            max_length=200,
+            description="As of posting a scenario. From records of flights the same call asks for another "
+            "plan a second later: say where the aircraft are to have the same one again.",
+        ),
+    ] = None,
+) -> PlanOut:
+    """A new plan from where the aircraft are: what is left, with what came in, moved or is gone.
+
+    Where they are and what has been seen comes from the body, else from their flights of this plan as they
+    are recorded, else from the plan at `at_s`. Aircraft on the ground start from there. The new plan's
+    flights begin in the air (`in_flight` of its scenario's vehicles), without a take-off; limits count what
+    has been used. Nothing is sent to a vehicle: upload it like any plan, in flight the items are replaced in
+    place and read back.
+    """
+    record = await planning.submit(await flights.replan(plan_id, body.asked()), idempotency_key)
     if wait > 0 and not record.ended:
         record = await planning.wait(record.id, min(wait, settings.max_wait_s))
     response.headers["Location"] = f"/api/v1/plans/{record.id}"

@@ -50,7 +50,8 @@ def terminal_violations(
     ends = [(scenario.start, line_m[0], flown[0])]
     circles_at_end = path.vehicle in circling
     if not circles_at_end:
-        last = replace(scenario.start, position=scenario.start.ground, angle_rad=None) if path.vehicle in returning else scenario.end
+        home = replace(scenario.start, position=scenario.start.ground, angle_rad=None)
+        last = home if path.vehicle in returning else scenario.end
         ends.append((last, line_m[-1], flown[-1]))
     else:
         yield from _passed_over(scenario, LineString(line_m))

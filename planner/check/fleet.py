@@ -142,6 +142,14 @@ def _batteries(scenario: Scenario, plan: Plan) -> Iterator[Violation]:
                 float(more),
                 "",
             )
+        if aircraft.aloft is not None and paths and paths[0].start_s > TIME_TOLERANCE_S:
+            yield Violation(
+                "take-off",
+                aircraft.name,
+                f"flies already, and is to begin {paths[0].start_s:.1f} s later",
+                paths[0].start_s,
+                "s",
+            )
         for one, other in itertools.pairwise(paths):
             short_s = one.end_s + aircraft.turnaround_s - other.start_s
             if short_s > TIME_TOLERANCE_S:

@@ -87,6 +87,12 @@ def read_aircraft(raw: Any, index: int, findings: Findings) -> Aircraft | None:
             "Add power, or cruise_power_w for a constant one; or leave energy_wh out.",
             rule="no-power-model",
         )
+    if aloft is not None and batteries not in (None, 1):
+        fields.wrong(
+            "batteries",
+            f"is {batteries}, but it flies already: what is left is one flight",
+            "Set batteries to 1, and plan further flights when it has landed.",
+        )
     fields.refuse_unknown()
     if name is None or airspeed_m_s is None or radius_m is None or max_climb_deg is None or settle_m is None:
         return None
@@ -103,7 +109,8 @@ def read_aircraft(raw: Any, index: int, findings: Findings) -> Aircraft | None:
     return Aircraft(
         name, kind, autopilot, airspeed_m_s, radius_m, max_climb_deg, energy_wh, power, range_m, time_s,
         settle_m, base, reserve=reserve, finish=finish,
-        min_airspeed_m_s=slowest_m_s, sensors=sensors, batteries=batteries, turnaround_s=turnaround_s or 0.0, aloft=aloft,
+        min_airspeed_m_s=slowest_m_s, sensors=sensors, batteries=batteries, turnaround_s=turnaround_s or 0.0,
+        aloft=aloft,
     )  # fmt: skip
 
 
@@ -115,7 +122,7 @@ def _aloft(fields: Fields, owner: str, kind: str | None, findings: Findings) -> 
     if not isinstance(raw, dict):
         fields.wrong("in_flight", f"is {raw!r}", "Give lon_deg, lat_deg, height_m over home and heading_deg.")
         return None
-    place = Fields(f"{owner} in_flight", raw, findings)
+    place = Fields(f"in_flight of {owner}", raw, findings)
     lon_deg = place.number("lon_deg", minimum=-180.0, maximum=180.0)
     lat_deg = place.number("lat_deg", minimum=-90.0, maximum=90.0)
     height_m = place.number("height_m", above=0.0, maximum=HIGHEST_ALOFT_M)

@@ -216,8 +216,8 @@ def fly_whole(
         )
     else:
         # In the air already: on from there as from one pass to the next.
-        here, from_m = Anchor(*start.position, start.angle_rad), levels.home_ground_m + start.over_home_m
-        leg = made(partial(_changed, here, goal, (from_m, first_m), model, layers))
+        aloft, from_m = Anchor(*start.position, start.angle_rad), levels.home_ground_m + start.over_home_m
+        leg = made(partial(_changed, aloft, goal, (from_m, first_m), model, layers))
         rising = Rise(leg.path, leg.heights, 0.0, 0.0, leg.inserted_m)
     rising = _settled(rising, first)
     if following is not None:

@@ -99,6 +99,7 @@ class Aircraft:
     def carries(self, sensor: str) -> bool:
         """Whether a sensor is on board."""
         return self.sensors is None or sensor in self.sensors
+
     aloft: Aloft | None = None
 
     @property

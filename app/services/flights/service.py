@@ -16,6 +16,7 @@ from app.services.flights.photos import photos_of, spacing_of, switched_by_photo
 from app.services.flights.seen import Flown, Sortie, coverage_of, refly_of, report_of
 from app.services.flights.track_json import track_geojson
 from app.services.plans.planning import PlanningService
+from app.services.plans.replanning import Asked, replan_of
 from app.services.records import FlightEvent, FlightRecord, TrackSample
 from app.services.store.flights import FlightStore
 
@@ -101,6 +102,23 @@ class FlightService:
     async def plan_refly(self, plan_id: str) -> dict[str, Any]:
         """The scenario of what no flight of a plan saw; raises as ``plan_coverage`` and ``refly``."""
         return await self._desk.run("flight", refly_of, await self._sortie(plan_id), None, None)
+
+    async def replan(self, plan_id: str, asked: Asked) -> dict[str, Any]:
+        """The scenario of what is left of a plan while it is flown.
+
+        Raises
+        ------
+        NotFoundError
+            There is no such plan.
+        ConflictError
+            It is not done, nobody says where its aircraft are, or nothing is left.
+        RefusedError
+            What is told has no place in its scenario.
+        """
+        await self._planning.get(plan_id)
+        records = await self._store.of_plan(plan_id)
+        sortie = await self._flown(plan_id, records, "the plan has been deleted")
+        return await self._desk.run("flight", replan_of, sortie, asked)
 
     async def fill(self, flight_id: str, name: str, data: bytes) -> dict[str, Any]:
         """Fill gaps of a flight's record from a log; sent again, there is nothing left to fill.

@@ -197,7 +197,12 @@ def judge_upload(
     if "mission" in parts and state.type not in ("other", mission.vehicle_type):
         message = f"the plan is for a {mission.vehicle_type}, the vehicle is a {state.type}"
         dangers.append(Finding("vehicle", "vehicle-type", message, "plan for this vehicle, or override"))
-    if is_flying(state):
+    aloft = any(v.name == mission.vehicle and v.home_altitude_m is not None for v in plan.vehicles)
+    if aloft and "mission" in parts and not is_flying(state):
+        message = "the plan begins in the air, and the vehicle is on the ground: it has no take-off"
+        dangers.append(Finding("vehicle", "vehicle-on-ground", message, "plan from the ground, or override"))
+    # A plan made to begin in the air is meant to be taken up in flight.
+    if is_flying(state) and not (aloft and set(parts) == {"mission"}):
         message = "the vehicle is in flight and would follow the new mission at once"
         dangers.append(Finding("vehicle", "vehicle-flying", message, "wait until it has landed, or override"))
     if dangers and override is None:

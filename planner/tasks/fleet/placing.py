@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,6 +15,7 @@ from planner.tasks.fleet.crews import Crew
 from planner.tasks.fleet.flights import SPARE_S, Flown, Order, with_waits
 from planner.tasks.fleet.jobs import Job
 from planner.tasks.task import Controls
+from planner.vehicle.aircraft import Aircraft
 from planner.wishes import Separation
 
 #: So often a flight is put off, its waits made shorter, before there is no room for it.
@@ -127,33 +128,69 @@ def placed(
     InfeasibleError
         ``"separation"``: no delay within its windows keeps a flight apart from the others.
     """
-    first = sorted(errands, key=lambda each: (each.trip.take_off_s, -each.trip.duration_s))
+    first = sorted(
+        errands,
+        key=lambda each: (
+            crews[each.trip.member].aircraft.aloft is None,
+            each.trip.take_off_s,
+            -each.trip.duration_s,
+        ),
+    )
     apart = Apart(separation)
     tracks = {
         id(each): apart.add(_track(crews[each.trip.member], each.flown, separation))
         for each in errands
         if each.flown is not None
     }
+    if not errands:
+        return ()
     orders = [first]
     if len(tracks) == len(errands) > 1:
         rng = np.random.default_rng(seed)
         orders += [_shuffled(first, rng) for _ in range(ORDERS)]
     best: _Clock | None = None
     for order in orders:
-        clock = _Clock(apart)
-        for errand in order:
-            crew = crews[errand.trip.member]
-            ready_s = clock.ready_s(errand.trip.member, crew.aircraft.turnaround_s)
-            if errand.flown is None:
-                _put_in_order(clock, crew, errand, ready_s, separation, controls)
-                continue
-            track = tracks[id(errand)]
-            clock.put(errand, errand.flown, clock.first_s(track, ready_s), track)
-        if best is None or clock.cost_s < best.cost_s:
+        clock = _in_turn(apart, order, crews, tracks, separation, controls)
+        if clock is not None and (best is None or clock.cost_s < best.cost_s):
             best = clock
     if best is None:
-        return ()
+        raise _too_near([crews[each.trip.member].aircraft for each in first], separation)
     return tuple(sorted(best.sorties, key=lambda each: (each.flown.crew, each.number)))
+
+
+def _in_turn(
+    apart: Apart,
+    order: Sequence[Errand],
+    crews: Sequence[Crew],
+    tracks: Mapping[int, int],
+    separation: Separation,
+    controls: Controls,
+) -> _Clock | None:
+    """All flights placed in an order; None where one that flies already would have to wait on the ground."""
+    clock = _Clock(apart)
+    for errand in order:
+        crew = crews[errand.trip.member]
+        ready_s = clock.ready_s(errand.trip.member, crew.aircraft.turnaround_s)
+        if errand.flown is None:
+            _put_in_order(clock, crew, errand, ready_s, separation, controls)
+            continue
+        track = tracks[id(errand)]
+        start_s = clock.first_s(track, ready_s)
+        if crew.aircraft.aloft is not None and start_s > 0.0:
+            return None
+        clock.put(errand, errand.flown, start_s, track)
+    return clock
+
+
+def _too_near(flying: Sequence[Aircraft], separation: Separation) -> InfeasibleError:
+    aloft = "+".join(dict.fromkeys(aircraft.name for aircraft in flying if aircraft.aloft is not None))
+    return InfeasibleError(
+        "separation",
+        aloft,
+        f"fly already, and their new lines come nearer to each other than {separation.horizontal_m:g} m, or "
+        f"{separation.vertical_m:g} m of height",
+        "Lower separation, hold one of them where it is, or give them heights of their own.",
+    )
 
 
 def _shuffled(order: Sequence[Errand], rng: np.random.Generator) -> list[Errand]:

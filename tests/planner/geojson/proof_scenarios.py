@@ -37,6 +37,15 @@ def vehicle(document: Document | None = None, **properties: Any) -> Document:
     return of_member("vehicles", document, **properties)
 
 
+def aloft(**place: Any) -> Document:
+    """Its aircraft in the air over its start."""
+    document = small()
+    (start,) = (f for f in document["features"] if f["properties"]["role"] == "start")
+    lon_deg, lat_deg = start["geometry"]["coordinates"][:2]
+    here = {"lon_deg": lon_deg, "lat_deg": lat_deg, "height_m": 300.0, "heading_deg": 90.0}
+    return vehicle(document, in_flight=here | place)
+
+
 def sensor(document: Document | None = None, **properties: Any) -> Document:
     return of_member("sensors", document, **properties)
 

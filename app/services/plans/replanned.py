@@ -1,0 +1,277 @@
+"""What is left of a scenario while it is being flown: the scenario that a new plan is made of."""
+
+from __future__ import annotations
+
+import copy
+import itertools
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from shapely import union_all
+from shapely.geometry import Polygon
+from shapely.geometry.base import BaseGeometry
+
+from app.services.errors import ConflictError, RefusedError
+from app.services.flights.as_flown import SLIVER_M, SLIVER_M2
+from planner.errors import Finding
+from planner.geojson.geometry import areal, written
+from planner.plan import Plan
+from planner.scenario import Scenario
+
+#: Corners of what is left lie on a grid, so that written places round to no other shape.
+GRID_M = 0.1
+#: So much of a region unseen counts as all of it: it is asked for as it was.
+WHOLE = 0.999
+#: Properties of a region that no longer hold for what is left of it.
+OF_THE_WHOLE = frozenset({"width_m", "radius_m"})
+#: Of energy that a reserve is part of, at least; less is none to fly on.
+LEAST_WH = 1e-6
+
+
+@dataclass(frozen=True, slots=True)
+class Now:
+    """Where an aircraft is, and what it has used: degrees, metres over home, course from true north.
+
+    ``energy_left_wh`` is what its battery holds; None where that is not known.
+    """
+
+    lon_deg: float
+    lat_deg: float
+    height_m: float
+    heading_deg: float | None
+    flown_m: float = 0.0
+    flown_s: float = 0.0
+    energy_left_wh: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Changes:
+    """What is other than it was.
+
+    Parameters
+    ----------
+    features
+        GeoJSON features that come in, or take the place of those of the same id.
+    removed
+        Ids of features that are no longer.
+    lost
+        Names of aircraft that fly no more.
+    members
+        Members of the collection that are other now, such as ``wind``.
+    """
+
+    features: Sequence[Mapping[str, Any]] = ()
+    removed: Sequence[str] = ()
+    lost: Sequence[str] = ()
+    members: Mapping[str, Any] = field(default_factory=dict)
+
+
+def seen_by_plan(scenario: Scenario, plan: Plan, at_s: float) -> dict[str, BaseGeometry]:
+    """The ground that a plan has seen up to a time of its own, by region."""
+    done: dict[str, list[BaseGeometry]] = {}
+    for collect in plan.collects:
+        if collect.end_s > at_s:
+            continue
+        shapes = [
+            Polygon(scenario.frame.to_local(f.ring), [scenario.frame.to_local(hole) for hole in f.holes])
+            for f in plan.footprints
+            if (f.vehicle, f.seq) == (collect.vehicle, collect.seq)
+        ]
+        for name in collect.regions:
+            done.setdefault(name, []).extend(shapes)
+    return {name: union_all(shapes) for name, shapes in done.items()}
+
+
+def where_planned(scenario: Scenario, plan: Plan, at_s: float) -> dict[str, Now]:
+    """Where a plan has its aircraft at a time of its own; those on the ground then are left out."""
+    found: dict[str, Now] = {}
+    home_m = scenario.level.altitude_m - scenario.level.height_m
+    for path in plan.paths:
+        if not path.start_s < at_s < path.start_s + path.duration_s:
+            continue
+        own = plan.of(path.vehicle, path.sortie)
+        marks = {(phase.start_s, phase.start_m) for phase in own.paths[0].phases}
+        marks |= {(collect.start_s, collect.start_m) for collect in own.collects}
+        knots = sorted(marks | {(path.duration_s, path.length_m)})
+        since_s = at_s - path.start_s
+        (s0, m0), (s1, m1) = next(
+            (a, b) for a, b in itertools.pairwise(knots) if a[0] <= since_s <= b[0] and b[0] > a[0]
+        )
+        along_m = m0 + (m1 - m0) * (since_s - s0) / (s1 - s0)
+        lon_deg, lat_deg, altitude_m, heading_deg = _on(scenario, path.line, along_m)
+        left_wh = None
+        share = since_s / path.duration_s
+        aircraft = next(a for a in scenario.aircraft if a.name == path.vehicle)
+        if aircraft.energy_wh is not None and path.energy_wh is not None:
+            left_wh = aircraft.energy_wh - share * path.energy_wh
+        height_m = altitude_m - home_m
+        if height_m <= 0.0:
+            continue
+        found[path.vehicle] = Now(lon_deg, lat_deg, height_m, heading_deg, along_m, since_s, left_wh)
+    return found
+
+
+def _on(
+    scenario: Scenario, line: Sequence[tuple[float, float, float]], along_m: float
+) -> tuple[float, float, float, float]:
+    """A place of a line by the distance along it, in three dimensions, and the course there."""
+    places = scenario.frame.to_local([place[:2] for place in line])
+    reached_m = 0.0
+    for k in range(len(line) - 1):
+        east_m, north_m = (places[k + 1] - places[k]).tolist()
+        step_m = math.hypot(east_m, north_m, line[k + 1][2] - line[k][2])
+        if reached_m + step_m >= along_m or k == len(line) - 2:
+            part = min(max((along_m - reached_m) / step_m, 0.0), 1.0) if step_m > 0.0 else 0.0
+            here = places[k] + part * (places[k + 1] - places[k])
+            lon_deg, lat_deg = (float(value) for value in scenario.frame.to_wgs84(here))
+            course_deg = scenario.frame.true_heading_deg(
+                float(here[0]), float(here[1]), math.atan2(north_m, east_m)
+            )
+            return lon_deg, lat_deg, line[k][2] + part * (line[k + 1][2] - line[k][2]), course_deg
+        reached_m += step_m
+    raise ValueError("a line has two places")
+
+
+def replanned(
+    document: Mapping[str, Any],
+    scenario: Scenario,
+    now: Mapping[str, Now],
+    seen: Mapping[str, BaseGeometry],
+    at_s: float,
+    changes: Changes,
+) -> dict[str, Any]:
+    """The scenario that is left.
+
+    Parameters
+    ----------
+    document, scenario
+        As it was asked, and as it was read.
+    now
+        Where the aircraft are that fly, by name; the others start from the ground.
+    seen
+        The ground seen of each region, in the scenario's frame.
+    at_s
+        Seconds since the mission's start: windows count from now on.
+
+    Raises
+    ------
+    RefusedError
+        A name that is none of the scenario's, or no aircraft is left.
+    ConflictError
+        Nothing is left to be seen.
+    """
+    _check_names(document, scenario, now, changes)
+    made = copy.deepcopy(dict(document))
+    made["name"] = f"{document.get('name') or 'flight'}-replan"
+    made.update(copy.deepcopy(dict(changes.members)))
+    coming = {_name(feature): feature for feature in changes.features}
+    features: list[dict[str, Any]] = []
+    for feature in made["features"]:
+        name = _name(feature)
+        if name in changes.removed or name in coming:
+            continue
+        if feature["properties"].get("role") == "roi":
+            features += _left(feature, name, scenario, seen, at_s)
+        else:
+            features.append(feature)
+    made["features"] = features + [copy.deepcopy(dict(feature)) for feature in coming.values()]
+    if made.get("task", "collect") == "collect" and not any(
+        feature["properties"].get("role") == "roi" for feature in made["features"]
+    ):
+        raise ConflictError("nothing is left to be seen")
+    made["vehicles"] = [
+        _flying(vehicle, now.get(str(vehicle.get("name"))))
+        for vehicle in made.get("vehicles", [])
+        if vehicle.get("name") not in changes.lost
+    ]
+    if not made["vehicles"]:
+        raise RefusedError(
+            "no aircraft is left",
+            (Finding("lost", "no-aircraft", "names every aircraft", "Leave one that flies."),),
+        )
+    return made
+
+
+def _left(
+    feature: dict[str, Any],
+    name: str,
+    scenario: Scenario,
+    seen: Mapping[str, BaseGeometry],
+    at_s: float,
+) -> list[dict[str, Any]]:
+    """What of a region is still to be seen, as one feature; none where all of it has been."""
+    feature = _later(feature, at_s)
+    region = next((region for region in scenario.regions if region.name == name), None)
+    if region is None or name not in seen or region.revisits > 1:
+        return [feature]
+    # Outlines of what was flown are frayed: what is left of each is its hull within the region.
+    hulls = [
+        part.convex_hull.buffer(SLIVER_M, join_style="mitre").intersection(region.area)
+        for part in _polygons(region.area.difference(seen[name]))
+        if part.area >= SLIVER_M2 and not part.buffer(-SLIVER_M).is_empty
+    ]
+    left = areal(union_all(hulls, grid_size=GRID_M))
+    if left.is_empty:
+        return []
+    if left.area >= WHOLE * region.area.area:
+        return [feature]
+    properties = {k: v for k, v in feature["properties"].items() if k not in OF_THE_WHOLE}
+    return [feature | {"geometry": written(left, scenario.frame), "properties": properties}]
+
+
+def _later(feature: dict[str, Any], at_s: float) -> dict[str, Any]:
+    """A region whose window counts from a later time."""
+    window_s = feature["properties"].get("time_window_s")
+    if window_s is None or at_s <= 0.0:
+        return feature
+    opens_s, closes_s = (max(float(value) - at_s, 0.0) for value in window_s)
+    return feature | {"properties": feature["properties"] | {"time_window_s": [opens_s, closes_s]}}
+
+
+def _flying(vehicle: dict[str, Any], now: Now | None) -> dict[str, Any]:
+    """An aircraft where it is, with what is left of its limits."""
+    if now is None:
+        return vehicle
+    made = dict(vehicle)
+    place = {"lon_deg": now.lon_deg, "lat_deg": now.lat_deg, "height_m": round(now.height_m, 3)}
+    if now.heading_deg is not None:
+        place["heading_deg"] = round(now.heading_deg % 360.0, 6)
+    made["in_flight"] = place
+    for name, used in (("max_range_m", now.flown_m), ("max_flight_time_s", now.flown_s)):
+        if name in made:
+            made[name] = max(made[name] - used, LEAST_WH)
+    if made.get("energy_wh") is not None and now.energy_left_wh is not None:
+        kept_wh = made["energy_wh"] * made.get("reserve", 0.2)
+        made["energy_wh"] = max(now.energy_left_wh, LEAST_WH)
+        made["reserve"] = min(kept_wh / made["energy_wh"], 0.999999)
+    for name in ("batteries", "turnaround_s"):
+        made.pop(name, None)
+    return made
+
+
+def _check_names(
+    document: Mapping[str, Any], scenario: Scenario, now: Mapping[str, Now], changes: Changes
+) -> None:
+    names = {_name(feature) for feature in document["features"]}
+    crew = {aircraft.name for aircraft in scenario.aircraft}
+    found = [
+        Finding(name, "unknown-feature", "is no feature of the scenario", "Name one of its features.")
+        for name in changes.removed
+        if name not in names
+    ]
+    found += [
+        Finding(name, "unknown-vehicle", "is no vehicle of the scenario", f"Use: {', '.join(sorted(crew))}.")
+        for name in {*now, *changes.lost} - crew
+    ]
+    if found:
+        raise RefusedError("the changes name what is not there", tuple(found))
+
+
+def _name(feature: Mapping[str, Any]) -> str:
+    return str(feature.get("id", feature.get("properties", {}).get("name")))
+
+
+def _polygons(shape: BaseGeometry) -> Iterable[Polygon]:
+    return [part for part in getattr(shape, "geoms", [shape]) if isinstance(part, Polygon)]

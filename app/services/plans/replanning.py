@@ -1,0 +1,190 @@
+"""What is left of a plan while it is flown, from what is told, recorded, or planned up to a time."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from shapely import union_all
+from shapely.geometry.base import BaseGeometry
+
+from app.services.documents import read_object
+from app.services.errors import ConflictError, RefusedError
+from app.services.flights.seen import Sortie, judged
+from app.services.plans.missions import plan_of
+from app.services.plans.replanned import Changes, Now, replanned, seen_by_plan, where_planned
+from app.services.records import FlightRecord, TrackSample
+from planner.errors import Finding
+from planner.geojson import read_scenario
+from planner.geojson.fields import Findings
+from planner.geojson.geometry import area
+from planner.plan import Plan
+from planner.scenario import Scenario
+
+
+@dataclass(frozen=True, slots=True)
+class Told:
+    """What a client says of one aircraft; None is taken from its record, or from the plan."""
+
+    lon_deg: float | None = None
+    lat_deg: float | None = None
+    height_m: float | None = None
+    heading_deg: float | None = None
+    energy_left_wh: float | None = None
+    flown_m: float | None = None
+    flown_s: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Asked:
+    """What to plan anew.
+
+    Parameters
+    ----------
+    at_s
+        Seconds of the plan's own clock: where aircraft are that nobody tells of, and what is seen by then.
+        None where that is told, or recorded.
+    vehicles
+        By name.
+    seen
+        GeoJSON areas that have been seen, of any region; None to take them from records, or from the plan.
+    """
+
+    at_s: float | None
+    vehicles: Mapping[str, Told]
+    seen: Sequence[Mapping[str, Any]] | None
+    changes: Changes
+
+
+def replan_of(sortie: Sortie, asked: Asked) -> dict[str, Any]:
+    """The scenario to post.
+
+    Parameters
+    ----------
+    sortie
+        The plan, and its flights as far as they are recorded.
+
+    Raises
+    ------
+    ConflictError
+        Nobody says where the aircraft are, or nothing is left to be seen.
+    RefusedError
+        What is told of has no place in the scenario.
+    """
+    document = read_object(sortie.scenario_text)
+    scenario, plan = read_scenario(document, sortie.terrain), plan_of(sortie.plan_text)
+    return left_of(document, scenario, plan, asked, sortie)
+
+
+def left_of(
+    document: Mapping[str, Any], scenario: Scenario, plan: Plan, asked: Asked, sortie: Sortie | None = None
+) -> dict[str, Any]:
+    """The scenario that is left of one; raises as ``replan_of``.
+
+    Parameters
+    ----------
+    sortie
+        Recorded flights of the plan; None without any.
+    """
+    flights = () if sortie is None else sortie.flights
+    planned = {} if asked.at_s is None else where_planned(scenario, plan, asked.at_s)
+    flying = [flown for flown in flights if flown.record.state == "flying" and flown.samples]
+    recorded = {_name(f.record, scenario): _recorded(f.samples) for f in flying}
+    now = {**planned, **recorded}
+    for name, told in asked.vehicles.items():
+        now[name] = _told(name, told, now.get(name))
+    now = {name: place for name, place in now.items() if name not in asked.changes.lost}
+    low = [name for name, place in now.items() if not place.height_m > 0.0]
+    if low:
+        raise RefusedError(
+            "the height of an aircraft is not known",
+            tuple(
+                Finding(n, "no-height", "has no height over home on record", "Tell height_m.") for n in low
+            ),
+        )
+    if not now and asked.at_s is None:
+        raise ConflictError(
+            "none of the plan's aircraft is on a recorded flight of it: say where they are (vehicles), or at"
+            " which time of the plan (at_s)"
+        )
+    at_s = asked.at_s if asked.at_s is not None else max((n.flown_s for n in now.values()), default=0.0)
+    if asked.seen is not None:
+        ground = union_all([_area(shape, scenario, k) for k, shape in enumerate(asked.seen)])
+        seen: Mapping[str, BaseGeometry] = {region.name: ground for region in scenario.regions}
+    elif sortie is not None and (flying or (flights and asked.at_s is None)):
+        seen = judged(sortie, scenario, plan).seen
+    else:
+        seen = seen_by_plan(scenario, plan, at_s)
+    return replanned(document, scenario, now, seen, at_s, asked.changes)
+
+
+def _name(record: FlightRecord, scenario: Scenario) -> str:
+    """Which of the scenario's aircraft flew it."""
+    return record.plan_vehicle or scenario.aircraft[0].name
+
+
+def _recorded(samples: Sequence[TrackSample]) -> Now:
+    """Where the record has it last; without a height it stays to be told."""
+    first, last = samples[0], samples[-1]
+    flown_m = math.fsum(_apart_m(one, other) for one, other in itertools.pairwise(samples))
+    return Now(
+        last.lon_deg,
+        last.lat_deg,
+        math.nan if last.altitude_home_m is None else last.altitude_home_m,
+        _course_deg(samples),
+        flown_m,
+        last.time_s - first.time_s,
+    )
+
+
+def _course_deg(samples: Sequence[TrackSample]) -> float | None:
+    """Over the ground: of the last places far enough apart to tell; else where the nose points."""
+    last = samples[-1]
+    for sample in reversed(samples[:-1]):
+        if _apart_m(sample, last) >= 5.0:
+            north = last.lat_deg - sample.lat_deg
+            east = (last.lon_deg - sample.lon_deg) * math.cos(math.radians(last.lat_deg))
+            return math.degrees(math.atan2(east, north)) % 360.0
+    return last.heading_deg
+
+
+def _apart_m(one: TrackSample, other: TrackSample) -> float:
+    north_m = (other.lat_deg - one.lat_deg) * 111_195.0
+    east_m = (other.lon_deg - one.lon_deg) * 111_195.0 * math.cos(math.radians(one.lat_deg))
+    up_m = (other.altitude_home_m or 0.0) - (one.altitude_home_m or 0.0)
+    return math.hypot(north_m, east_m, up_m)
+
+
+def _told(name: str, told: Told, known: Now | None) -> Now:
+    """What is told, and what is known besides."""
+    given = {key: value for key in Told.__slots__ if (value := getattr(told, key)) is not None}
+    missing = [key for key in ("lon_deg", "lat_deg", "height_m") if known is None and key not in given]
+    if missing:
+        raise RefusedError(
+            f"where {name} is was not told",
+            tuple(
+                Finding(name, "missing-property", f"{key} is missing, and nobody recorded it", f"Add {key}.")
+                for key in missing
+            ),
+        )
+    if known is None:
+        return Now(**{"heading_deg": None, **given})
+    return replace(known, **given)
+
+
+def _area(shape: Mapping[str, Any], scenario: Scenario, number: int) -> BaseGeometry:
+    findings = Findings()
+    owner = f"seen[{number}]"
+    geometry = shape.get("geometry", shape) if shape.get("type") == "Feature" else shape
+    if geometry.get("type") not in ("Polygon", "MultiPolygon"):
+        findings.error(
+            owner, "bad-geometry", f"is a {geometry.get('type')}", "Give a Polygon or MultiPolygon."
+        )
+        raise RefusedError("what was seen cannot be read", findings.errors)
+    found = area(owner, geometry, scenario.frame, findings)
+    if found is None or findings.errors:
+        raise RefusedError("what was seen cannot be read", findings.errors)
+    return found
