@@ -178,6 +178,7 @@ def _fleet_plan(scenario: Scenario, controls: Controls, watch: _Stopwatch) -> Pl
         home, end = whole.lonlats([scenario.start.position, scenario.end.position])
         warnings = tuple(str(finding) for finding in found.dropped) + draft.warnings
         draft = replace(draft, home=home, end=end, methods=found.methods, warnings=warnings)
+        draft = replace(draft, metrics=replace(draft.metrics, assignment=found.assigned))
     return _judged(scenario, draft, whole, found.dropped, found.left_out, controls, watch)
 
 

@@ -195,6 +195,7 @@ def tell_fleet(metrics: dict[str, Any]) -> None:
         )
     if vehicles:
         say(f"the last is down after {metrics['last_landing_s'] / 60:.1f} min")
+        _tell_assigned(metrics.get("assignment"))
         for left in metrics["left_out"]:
             by = "" if left["margin"] is None else f", by {left['margin']:.1f}"
             say(f"{left['roi']} is left out: {left['reason']}{by}")
@@ -289,3 +290,11 @@ def register(cli: typer.Typer) -> None:
     """Add the commands."""
     cli.command()(plan)
     cli.command()(validate)
+
+
+def _tell_assigned(told: dict[str, Any] | None) -> None:
+    if told is not None and told["gap"] is not None:
+        say(
+            f"who does what, by {told['method']}, is {told['status']}: by the times thought no other is "
+            f"better by more than {told['gap']:.1%}"
+        )

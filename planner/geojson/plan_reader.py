@@ -8,6 +8,7 @@ from typing import Any, NoReturn
 from planner.errors import Finding, ScenarioError
 from planner.geojson.sheet import joined
 from planner.plan import (
+    Assigned,
     Collect,
     Fence,
     FlownPath,
@@ -215,7 +216,9 @@ def _metrics(p: Mapping[str, Any]) -> Metrics:
     surveys = {name: Surveyed(**each) for name, each in p.get("surveys", {}).items()}
     left_out = tuple(LeftOut(**each) for each in p.get("left_out", ()))
     vehicles = {name: VehicleMetrics(**each) for name, each in p.get("vehicles", {}).items()}
-    return Metrics(**{**p, "left_out": left_out, "surveys": surveys, "vehicles": vehicles})
+    told = None if p.get("assignment") is None else Assigned(**p["assignment"])
+    read = {"left_out": left_out, "surveys": surveys, "vehicles": vehicles, "assignment": told}
+    return Metrics(**{**p, **read})
 
 
 def _vehicle(v: Mapping[str, Any]) -> PlanVehicle:

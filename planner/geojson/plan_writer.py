@@ -136,7 +136,7 @@ def _metrics(metrics: Metrics) -> dict[str, Any]:
     """What only several flights have is left out of one."""
     written = asdict(metrics)
     if not metrics.vehicles:
-        del written["vehicles"], written["last_landing_s"]
+        del written["vehicles"], written["last_landing_s"], written["assignment"]
     return written
 
 

@@ -75,6 +75,27 @@ class VehicleMetrics:
 
 
 @dataclass(frozen=True, slots=True)
+class Assigned:
+    """How good the choice of who does what is, over the ways and times of travel that it was made by.
+
+    Parameters
+    ----------
+    method, status
+        ``assign`` or ``stecz2020``; ``optimal`` when proved best among them, else ``feasible``.
+    objective_s
+        Weighed last landing and time in the air, and what of the priority is left out.
+    lower_bound_s, gap
+        No assignment has less; by what part of the objective this one may be above the best. None unknown.
+    """
+
+    method: str
+    status: str
+    objective_s: float
+    lower_bound_s: float | None
+    gap: float | None
+
+
+@dataclass(frozen=True, slots=True)
 class Metrics:
     """What the plan costs and gives.
 
@@ -87,8 +108,8 @@ class Metrics:
     ``importance_collected`` what that is worth where importance is given; None of other tasks.
     ``photos`` counts those of all cameras, ``photos_mb`` is about what they take to be stored; None where
     there are none on board. ``surveys`` tells by region what they give. Of several aircraft or sorties all
-    are sums; ``vehicles`` tells of each aircraft, ``last_landing_s`` when the last is down; empty and None
-    for one flight.
+    are sums; ``vehicles`` tells of each aircraft, ``last_landing_s`` when the last is down, ``assignment``
+    how good it is; empty and None for one flight.
     """
 
     length_m: float
@@ -115,3 +136,4 @@ class Metrics:
     surveys: dict[str, Surveyed] = field(default_factory=dict)
     vehicles: dict[str, VehicleMetrics] = field(default_factory=dict)
     last_landing_s: float | None = None
+    assignment: Assigned | None = None

@@ -20,6 +20,8 @@ from planner.progress import Progress, Stop, never, raise_if, silent
 
 #: Nodes of branch and bound after which the best so far is the answer.
 NODES = 5_000
+#: Segments times aircraft that a whole problem may have: beyond them the solver takes minutes.
+MOST_FLIGHTS = 100
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,6 +120,12 @@ def assign_stecz2020(
     """
     raise_if(stop)
     network = network_of(problem)
+    flights = len(network.segments) * len(network.flyers)
+    if flights > MOST_FLIGHTS:
+        raise UnsuitedError(
+            f"{len(network.segments)} segments for {len(network.flyers)} aircraft are {flights} choices, "
+            f"more than the {MOST_FLIGHTS} that the model is solved for"
+        )
     found = solve(network, form, nodes, seconds)
     raise_if(stop)
     trips = tuple(_trip(problem, network, member, line) for member, line in enumerate(found.lines) if line)

@@ -11,9 +11,10 @@ from planner.errors import Finding, InfeasibleError
 from planner.fleet.assign import assign
 from planner.fleet.assignment import Assignment, Trip
 from planner.fleet.assignment import LeftOut as Unassigned
+from planner.fleet.problem import Problem
 from planner.fleet.stecz2020.network import UnsuitedError
 from planner.fleet.stecz2020.solve import assign_stecz2020
-from planner.plan import LeftOut
+from planner.plan import Assigned, LeftOut
 from planner.progress import silent
 from planner.scenario import Scenario
 from planner.sensors.base import Sensor
@@ -23,6 +24,7 @@ from planner.tasks.fleet.flights import Flown, Order, in_best_order, in_given_or
 from planner.tasks.fleet.jobs import Job, jobs_of
 from planner.tasks.fleet.placing import Errand, LateError, Sortie, placed
 from planner.tasks.fleet.problem import Lessons, problem_of
+from planner.tasks.fleet.told import told_of
 from planner.tasks.methods import chosen_methods
 from planner.tasks.task import Controls
 from planner.tasks.urban import cut_by_obstacles, lanes_cut
@@ -48,8 +50,10 @@ class FleetAnswer:
     ----------
     crews, sorties
         The aircraft; their flights, by aircraft and in flight order.
-    dropped, left_out, notes
+    dropped, left_out
         As ``Answer`` has them.
+    assigned
+        How good it is that these do this.
     """
 
     crews: tuple[Crew, ...]
@@ -58,6 +62,7 @@ class FleetAnswer:
     dropped: tuple[Finding, ...]
     left_out: tuple[LeftOut, ...]
     separation: Separation
+    assigned: Assigned
 
 
 Key = tuple[int, tuple[tuple[str, int], ...]]
@@ -110,7 +115,8 @@ class _Rounds:
                 for job in self._jobs
                 if job.of not in self._given_up and any(name == job.region.name for name, _ in self._ways)
             )
-            assigned = self._assigned(jobs)
+            problem = problem_of(self._crews, jobs, self._ways, self._scenario.objective, self._lessons)
+            assigned = self._assigned(problem)
             lacking = [each for each in assigned.left_out if each.required]
             if lacking:
                 if found:
@@ -137,7 +143,9 @@ class _Rounds:
                 continue
             if sorties is None:
                 continue
-            found.append((_cost(sorties, self._scenario.objective), self._answer(jobs, assigned, sorties)))
+            found.append(
+                (_cost(sorties, self._scenario.objective), self._answer(jobs, problem, assigned, sorties))
+            )
             if near or len(found) >= ROUNDS or self._controls.enough():
                 break
         if not found:
@@ -155,9 +163,8 @@ class _Rounds:
         told = why[0].message if why else "there is nothing to be seen"
         return InfeasibleError("swath", "scenario", f"no region can be seen: {told}", "see the findings")
 
-    def _assigned(self, jobs: Sequence[Job]) -> Assignment:
+    def _assigned(self, problem: Problem) -> Assignment:
         with self._controls.stage("assign"):
-            problem = problem_of(self._crews, jobs, self._ways, self._scenario.objective, self._lessons)
             if self._scenario.method.routing != "stecz2020":
                 return assign(problem, self._scenario.seed, self._controls.stop, silent)
             try:
@@ -309,7 +316,9 @@ class _Rounds:
         self._spread()
         return True
 
-    def _answer(self, jobs: Sequence[Job], assigned: Assignment, sorties: tuple[Sortie, ...]) -> FleetAnswer:
+    def _answer(
+        self, jobs: Sequence[Job], problem: Problem, assigned: Assignment, sorties: tuple[Sortie, ...]
+    ) -> FleetAnswer:
         dropped = (*self._why.values(), *self._given_up.values())
         left = [LeftOut(f.feature, f.rule.removeprefix("not-seen-")) for f in dropped]
         for each in assigned.left_out:
@@ -321,8 +330,11 @@ class _Rounds:
                 Finding(job.of, f"not-seen-{each.limit}", each.message, each.relaxation, "warning"),
             )
         unique = {each.roi: each for each in left}
+        told = told_of(problem, assigned, self._by(), self._controls.stop)
         methods = chosen_methods(self._scenario.method) | {"fleet": self._by()}
-        return FleetAnswer(self._crews, sorties, methods, dropped, tuple(unique.values()), self._separation)
+        return FleetAnswer(
+            self._crews, sorties, methods, dropped, tuple(unique.values()), self._separation, told
+        )
 
 
 def _key(jobs: Sequence[Job], trip: Trip) -> Key:

@@ -33,3 +33,26 @@ def test_batteries_to_change_are_no_words_of_the_model() -> None:
     document["vehicles"][0]["batteries"] = 2
     with pytest.raises(InfeasibleError, match=r"one trip.*Use routing auto"):
         make_plan(read_scenario(document))
+
+
+def test_model_and_auto_agree_and_say_how_good_they_are() -> None:
+    """Both prove the same objective through ``make_plan``, which is no less than its bound."""
+    ours = make_plan(read_scenario(of_two())).metrics.assignment
+    model = make_plan(read_scenario(of_two() | {"method": {"routing": "stecz2020"}})).metrics.assignment
+    assert ours is not None
+    assert model is not None
+    assert (ours.method, model.method, ours.status, model.status) == (
+        "assign", "stecz2020", "optimal", "optimal",
+    )  # fmt: skip
+    assert model.objective_s == pytest.approx(ours.objective_s, abs=0.5)
+    assert model.lower_bound_s == pytest.approx(model.objective_s, abs=0.5)
+    assert ours.gap == 0.0
+
+
+def test_more_than_the_model_is_solved_for_is_refused() -> None:
+    """Its limit is named, with the fix."""
+    document = of_two() | {"method": {"routing": "stecz2020"}}
+    first = document["vehicles"][0]
+    document["vehicles"] = [first | {"name": f"aircraft {k}"} for k in range(13)]
+    with pytest.raises(InfeasibleError, match=r"more than the 100.*Use routing auto"):
+        make_plan(read_scenario(document))

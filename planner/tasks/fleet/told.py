@@ -1,0 +1,35 @@
+"""What is said of an assignment: its objective, and what none has less of."""
+
+from __future__ import annotations
+
+from planner.fleet.assignment import Assignment
+from planner.fleet.auto.build import tables
+from planner.fleet.bound import lower_bound
+from planner.fleet.problem import Problem
+from planner.fleet.schedule import worth_of_all
+from planner.plan import Assigned
+from planner.progress import Stop, never
+
+#: Of more targets no bound is looked for: it would take longer than a second.
+MOST_TARGETS = 30
+
+
+def told_of(problem: Problem, assigned: Assignment, method: str, stop: Stop = never) -> Assigned:
+    """What is said of an assignment of a problem.
+
+    Raises
+    ------
+    CancelledError
+        When ``stop`` says so.
+    """
+    worth = worth_of_all(problem)
+    objective_s = float(assigned.cost + worth)
+    bound_s = None if assigned.bound is None else float(assigned.bound + worth)
+    if bound_s is None and len(problem.targets) <= MOST_TARGETS:
+        bound_s = float(lower_bound(tables(problem), stop))
+    if bound_s is None or objective_s <= 0.0:
+        return Assigned(method, assigned.status, round(objective_s, 3), bound_s, None)
+    # Sums of large worths lose their last digits.
+    bound_s = min(max(bound_s, 0.0), objective_s)
+    gap = round(1.0 - bound_s / objective_s, 6)
+    return Assigned(method, assigned.status, round(objective_s, 3), round(bound_s, 3), gap)
