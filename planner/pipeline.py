@@ -78,7 +78,7 @@ def make_plan(
     watch = _Stopwatch(clock)
     enough = _budget(clock, scenario.time_budget_s)
     controls = Controls(progress, stop, enough, watch.stage)
-    if scenario.task == "collect" and scenario.is_fleet:
+    if scenario.task in ("collect", "search") and scenario.is_fleet:
         return _fleet_plan(scenario, controls, watch)
     answer = task_of(scenario.task).answer(scenario, controls)
     setting = answer.setting
@@ -154,9 +154,10 @@ def _fleet_plan(scenario: Scenario, controls: Controls, watch: _Stopwatch) -> Pl
     """The plan of several flights."""
     # Here: one flight needs no search for routes of many.
     from planner.tasks.fleet.flights import answer_of
+    from planner.tasks.fleet.search import search_together
     from planner.tasks.fleet.task import fleet
 
-    found = fleet(scenario, controls)
+    found = (search_together if scenario.task == "search" else fleet)(scenario, controls)
     whole = Chart(scenario.frame, scenario.level)
     with watch.stage("publish"):
         parts = []

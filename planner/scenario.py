@@ -86,17 +86,24 @@ class Scenario:
     def of_one(self, aircraft: Aircraft) -> Scenario:
         """What one of several aircraft may be asked: the regions its sensors see, from its own ends.
 
-        Each region names its sensor: another may be the first on board.
+        Each region names its sensor: another may be the first on board. Ground searched with no sensor named
+        is searched with the first on board.
         """
         start, end = self.ends_of(aircraft)
         if len(self.aircraft) == 1:
             return self if aircraft.aloft is None else replace(self, start=start, end=end)
-        asked = [(region, self.sensor_for(region).name) for region in self.regions]
+        asked = [(region, self._sensor_aboard(region, aircraft)) for region in self.regions]
         regions = tuple(replace(region, sensor=name) for region, name in asked if aircraft.carries(name))
         suite = self.suite.aboard(aircraft, self.level.amsl_m)
         return replace(
             self, aircraft=(aircraft,), sensors=suite.sensors, regions=regions, start=start, end=end, bases=()
         )
+
+    def _sensor_aboard(self, region: Region, aircraft: Aircraft) -> str:
+        aboard = (sensor.name for sensor in self.sensors if aircraft.carries(sensor.name))
+        first = next(aboard, None)
+        searched_with_any = self.task == "search" and region.sensor is None
+        return first if searched_with_any and first is not None else self.sensor_for(region).name
 
     @property
     def kept_apart(self) -> Separation:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable
-from typing import Any
+from dataclasses import replace
+from typing import Any, Literal
 
 from planner.airspace.terrain import Terrains
 from planner.coverage.registry import family_of
@@ -117,7 +118,15 @@ def _unseen_by_all(scenario: Scenario) -> tuple[Finding, ...]:
 
 
 def _unsearchable(scenario: Scenario) -> tuple[Finding, ...]:
-    """What forbids a search: nothing to be seen, or no way to its end within the limits."""
+    """What forbids a search: nothing to be seen, or no way to its end within the limits.
+
+    Of several aircraft one that searches is enough: what keeps others at home is a warning.
+    """
+    if len(scenario.aircraft) > 1:
+        alone = [scenario.of_one(aircraft) for aircraft in scenario.aircraft]
+        said = [_unsearchable(one) for one in alone if one.regions]
+        severity: Literal["error", "warning"] = "error" if all(said) else "warning"
+        return tuple(dict.fromkeys(replace(each, severity=severity) for own in said for each in own))
     try:
         refuse_unsearchable(scenario)
     except InfeasibleError as error:

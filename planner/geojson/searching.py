@@ -156,26 +156,28 @@ def _local(
 
 
 def check_search(scenario: Scenario, findings: Findings) -> None:
-    """Rules of searches: one flight, one sensor, one height; nothing asked that they ignore."""
+    """Rules of searches: one sensor, one height; nothing asked that they ignore."""
     regions = scenario.regions
-    if scenario.is_fleet:
+    if scenario.method.routing == "stecz2020":
         findings.error(
             "scenario",
             "not-supported",
-            "asks for more than one flight of one aircraft at any time, which no search is planned for yet",
-            "Send one scenario a vehicle, without time_window_s, revisit_after_s and batteries.",
+            "asks for the routing stecz2020, which assigns regions; a search shares its ground out",
+            "Leave method.routing out.",
         )
     for region in regions:
         wishes = {
             "approach_deg": region.approach_rad is not None,
             "revisits": region.revisits > 1,
             "pattern": region.pattern != "auto",
+            "time_window_s": region.time_window_s is not None,
+            "revisit_after_s": region.revisit_after_s > 0.0,
         }
         for wish in (wish for wish, asked in wishes.items() if asked):
             findings.error(
                 region.name,
                 "not-supported",
-                f"has {wish}; a search sees ground once, in directions of its own",
+                f"has {wish}; a search sees ground once, when and in directions as it comes",
                 f"Leave {wish} out, or collect it.",
             )
         if region.sensor != regions[0].sensor or region.altitude_m != regions[0].altitude_m:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
 from shapely.geometry import MultiPolygon, Polygon
+from shapely.geometry.base import BaseGeometry
 
 from planner.errors import InfeasibleError
 from planner.metrics import used
@@ -54,28 +55,81 @@ class _Flight:
     use: Use
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Sought:
+    """One aircraft's search, ranked and not yet flown.
+
+    ``spare_m`` is what its limits allow, metres through the air.
+    """
+
+    setting: Setting
+    transits: Transits
+    asked: Search
+    spare_m: float
+    ranked: tuple[Programme, ...]
+
+
 def search(scenario: Scenario, controls: Controls) -> Answer:
     """The flight that sees most, and ends at the end with its reserve."""
+    return answer_to(sought(scenario, controls), controls)
+
+
+def reach_m2(scenario: Scenario, controls: Controls) -> float:
+    """Ground that an aircraft sees at most, flying straight for as long as its limits allow.
+
+    Raises
+    ------
+    InfeasibleError
+        Where it cannot come to its end, or sees nothing.
+    """
+    setting = Setting.of(scenario)
+    asked = _asked(scenario, setting)
+    if next(asked.flyable(), None) is None:
+        _refuse_blocked(asked, math.inf, setting.model.aircraft)
+    transits = Transits.of(setting, scenario.objective, chosen_methods(scenario.method))
+    return _spare_m(transits, scenario, controls) * asked.looking.narrowest_m()
+
+
+def sought(scenario: Scenario, controls: Controls) -> Sought:
+    """What one aircraft may fly, that which sees most first.
+
+    Raises
+    ------
+    InfeasibleError
+        Where it can see nothing, or not come to its end.
+    """
     setting = Setting.of(scenario)
     methods = chosen_methods(scenario.method) | {"search": "patterns", "coverage": "none", "routing": "none"}
     transits = Transits.of(setting, scenario.objective, methods)
     asked = replace(_asked(scenario, setting), stop=controls.stop)
     spare_m = _spare_m(transits, scenario, controls)
-
-    def fly(programme: Programme) -> _Flight:
-        passes = tuple(asked.looking.collect(s.start, s.end, s.look) for s in programme.sweeps)
-        composed, legs, notes = transits.through(passes, silent, controls.stop)
-        use = used(composed.flight, setting.model, setting.level)
-        return _Flight(programme, passes, composed, legs, notes, use)
-
     with controls.stage("search"):
         controls.progress("search", 0.0)
         ranked = asked.ranked(spare_m)
         if not ranked:
             _refuse_blocked(asked, spare_m, setting.model.aircraft)
+    return Sought(setting, transits, asked, spare_m, tuple(ranked))
+
+
+def answer_to(one: Sought, controls: Controls) -> Answer:
+    """The best of what was ranked, flown as long as the limits allow.
+
+    Raises
+    ------
+    InfeasibleError
+        Where none of it can be flown.
+    """
+    setting, asked = one.setting, one.asked
+
+    def fly(programme: Programme) -> _Flight:
+        passes = tuple(asked.looking.collect(s.start, s.end, s.look) for s in programme.sweeps)
+        composed, legs, notes = one.transits.through(passes, silent, controls.stop)
+        use = used(composed.flight, setting.model, setting.level)
+        return _Flight(programme, passes, composed, legs, notes, use)
+
     with controls.stage("transit"):
-        best = _best(ranked, asked, spare_m, fly, setting.model.aircraft, controls)
-    methods["search"] = best.programme.family
+        best = _best(one.ranked, asked, one.spare_m, fly, setting.model.aircraft, controls)
+    methods = one.transits.methods | {"search": best.programme.family}
     return Answer(setting, best.composed, best.legs, best.passes, methods, (), best.notes)
 
 
@@ -97,28 +151,33 @@ def refuse_unsearchable(scenario: Scenario) -> None:
 
 def _asked(scenario: Scenario, setting: Setting) -> Search:
     regions = scenario.regions
-    ground = _areal(shapely.union_all([region.area for region in regions]))
+    ground = ground_of(shapely.union_all([region.area for region in regions]))
     level = setting.level.of(regions[0])
     whole = ground if isinstance(ground, Polygon) else ground.convex_hull
-    sensor, height_m = setting.suite.over(regions[0].sensor, _areal(whole), setting.airspace, level)
+    sensor, height_m = setting.suite.over(regions[0].sensor, ground_of(whole), setting.airspace, level)
     looking = Looking(sensor, height_m, tuple(region.name for region in regions))
     width_m = looking.narrowest_m()
     room = Room.of(setting.airspace, level, setting.model, scenario.objective, ground)
     start, end = (terminal.position for terminal in setting.ends)
-    worth = _worth(scenario, ground, width_m)
+    worth = worth_of(scenario, ground, _cell_m(ground, width_m))
     family = None if scenario.method.search == "auto" else scenario.method.search
     return Search(ground, worth, looking, room, Pricing(setting.model, start, end), family=family)
 
 
-def _areal(shape: object) -> Polygon | MultiPolygon:
-    return shape if isinstance(shape, Polygon | MultiPolygon) else Polygon()
+def ground_of(shape: BaseGeometry) -> Polygon | MultiPolygon:
+    """What of a shape has an area."""
+    parts = [p for p in shapely.get_parts(shape).tolist() if isinstance(p, Polygon) and p.area > 0.0]
+    return parts[0] if len(parts) == 1 else MultiPolygon(parts)
 
 
-def _worth(scenario: Scenario, ground: Polygon | MultiPolygon, width_m: float) -> Worth:
-    """Scores of the ground by cells."""
+def _cell_m(ground: Polygon | MultiPolygon, width_m: float) -> float:
     west_m, south_m, east_m, north_m = ground.bounds
     side_m = max(east_m - west_m, north_m - south_m)
-    cell_m = max(LEAST_CELL_M, side_m / MOST_CELLS, min(width_m / CELLS_ACROSS, side_m / 40.0))
+    return max(LEAST_CELL_M, side_m / MOST_CELLS, min(width_m / CELLS_ACROSS, side_m / 40.0))
+
+
+def worth_of(scenario: Scenario, ground: Polygon | MultiPolygon, cell_m: float) -> Worth:
+    """Scores of the ground by cells."""
     plain = worth_of_ground(ground, cell_m)
     importance = scenario.importance
     if not importance.given:
@@ -231,7 +290,7 @@ def _refuse_blocked(asked: Search, spare_m: float, aircraft: Aircraft) -> None:
 
 
 def _best(
-    ranked: list[Programme],
+    ranked: Sequence[Programme],
     asked: Search,
     spare_m: float,
     fly: Callable[[Programme], _Flight],

@@ -53,7 +53,7 @@ class FleetAnswer:
     dropped, left_out
         As ``Answer`` has them.
     assigned
-        How good it is that these do this.
+        How good it is that these do this; None where nothing was assigned.
     """
 
     crews: tuple[Crew, ...]
@@ -62,7 +62,7 @@ class FleetAnswer:
     dropped: tuple[Finding, ...]
     left_out: tuple[LeftOut, ...]
     separation: Separation
-    assigned: Assigned
+    assigned: Assigned | None = None
 
 
 Key = tuple[int, tuple[tuple[str, int], ...]]

@@ -1,0 +1,180 @@
+"""The task ``search`` for several aircraft or batteries: the ground shared out, each part searched by one."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+from shapely import affinity
+from shapely.geometry import MultiPolygon, Polygon, box
+
+from planner.errors import Finding, InfeasibleError
+from planner.fleet.assignment import Trip
+from planner.metrics import used
+from planner.scenario import Scenario
+from planner.search.values import Worth
+from planner.tasks.fleet.crews import Crew
+from planner.tasks.fleet.flights import Flown
+from planner.tasks.fleet.placing import Errand, placed
+from planner.tasks.fleet.task import FleetAnswer
+from planner.tasks.search import answer_to, ground_of, reach_m2, sought, worth_of
+from planner.tasks.task import Answer, Controls
+
+#: Ends nearer to each other than this part of the ground's width say nothing of which part is whose.
+APART = 0.1
+#: The worth of ground is added up by cells, so many across all bands.
+CELLS = 200
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class _Share:
+    """One flight to come: whose it is, which of its aircraft's, and how much ground it sees at most."""
+
+    crew: int
+    number: int
+    reach_m2: float
+
+
+def search_together(scenario: Scenario, controls: Controls) -> FleetAnswer:
+    """Who searches which part of the ground, and the flights that do it.
+
+    The ground is cut into bands, each worth the more the more of it its flight can see. A flight that can do
+    nothing in its band is left out, and the ground shared out anew.
+
+    Raises
+    ------
+    InfeasibleError
+        Where no aircraft can search anything.
+    """
+    crews = tuple(
+        Crew.of(scenario, aircraft) for aircraft in scenario.aircraft if scenario.of_one(aircraft).regions
+    )
+    dropped: list[Finding] = []
+    shares: list[_Share] = []
+    refused: InfeasibleError | None = None
+    with controls.stage("options"):
+        for index, crew in enumerate(crews):
+            try:
+                seen_m2 = reach_m2(crew.alone, controls)
+            except InfeasibleError as error:
+                refused = error
+                dropped.append(_stays(crew, error))
+                continue
+            shares += [_Share(index, number, seen_m2) for number in range(crew.aircraft.batteries)]
+    answers: dict[_Share, Answer] = {}
+    while shares and not answers:
+        parts = shared_out(scenario, crews, shares)
+        for share, part in zip(shares, parts, strict=True):
+            crew = crews[share.crew]
+            alone = _within(crew.alone, part)
+            try:
+                if not alone.regions:
+                    raise InfeasibleError("blocked", crew.aircraft.name, "has no ground left to search", "")
+                answers[share] = answer_to(sought(alone, controls), controls)
+            except InfeasibleError as error:
+                refused = error
+                shares = [each for each in shares if each != share]
+                dropped.append(_stays(crew, error))
+                answers = {}
+                break
+    if not answers:
+        raise refused or InfeasibleError(
+            "sensor", "scenario", "no aircraft has a sensor on board to search with",
+            "Add a sensor to the sensors of a vehicle.",
+        )  # fmt: skip
+    flown = {share: _flown(crews[share.crew], share, answer) for share, answer in answers.items()}
+    errands = [Errand(_trip(share, flown[share]), (), flown[share]) for share in answers]
+    separation = scenario.kept_apart
+    with controls.stage("separation"):
+        sorties = placed(crews, errands, separation, controls, scenario.seed)
+    families = dict.fromkeys(answer.methods["search"] for answer in answers.values())
+    methods = next(iter(answers.values())).methods | {"search": "+".join(families)}
+    return FleetAnswer(crews, sorties, methods, tuple(dict.fromkeys(dropped)), (), separation)
+
+
+def shared_out(
+    scenario: Scenario, crews: Sequence[Crew], shares: Sequence[_Share]
+) -> list[Polygon | MultiPolygon]:
+    """The ground in bands, worth as much as each flight can see of it, one for each in turn.
+
+    Bands lie one beside the other as the aircraft's bases do; where all start at one place they run along
+    the ground's length.
+    """
+    ground = ground_of(shapely.union_all([region.area for region in scenario.regions]))
+    if len(shares) == 1:
+        return [ground]
+    bases = np.array([crews[share.crew].setting.ends[0].position for share in shares])
+    angle_rad = _stacked_rad(ground, bases)
+    across = np.array([math.cos(angle_rad), math.sin(angle_rad)])
+    # Those of one place in the order given: of one aircraft one beside the other.
+    order = np.lexsort((np.arange(len(shares)), np.round(bases @ across, 3)))
+    # What can see all of it has as much as any other that can.
+    sizes_m2 = np.minimum([share.reach_m2 for share in shares], ground.area)[order]
+    ends = np.cumsum(sizes_m2)[:-1] / sizes_m2.sum()
+    turned = affinity.rotate(ground, -angle_rad, origin=(0.0, 0.0), use_radians=True)
+    west, south, east, north = turned.bounds
+    inner = _marks(worth_of(scenario, ground, (east - west) / CELLS), across, ends)
+    marks = [west, *np.clip(inner, west, east).tolist(), east]
+    found: list[Polygon | MultiPolygon] = [ground] * len(shares)
+    for place, (low, high) in zip(order.tolist(), pairwise(marks), strict=True):
+        band = turned.intersection(box(low, south - 1.0, high, north + 1.0))
+        found[place] = ground_of(affinity.rotate(band, angle_rad, origin=(0.0, 0.0), use_radians=True))
+    return found
+
+
+def _marks(worth: Worth, across: Floats, ends: Floats) -> Floats:
+    """Distances along a direction before which these parts of all worth lie."""
+    scores = worth.scores.ravel()
+    along_m = worth.centres_m.reshape(-1, 2) @ across
+    order = np.argsort(along_m, kind="stable")
+    before = np.cumsum(scores[order]) / scores.sum()
+    return np.interp(ends, before, along_m[order])
+
+
+def _stacked_rad(ground: Polygon | MultiPolygon, bases: Floats) -> float:
+    """The direction in which bands follow each other."""
+    west, south, east, north = ground.bounds
+    off = bases - bases.mean(axis=0)
+    if float(np.hypot(*off.T).max()) > APART * math.hypot(east - west, north - south):
+        _, _, ways = np.linalg.svd(off)
+        return math.atan2(ways[0, 1], ways[0, 0])
+    corners = shapely.get_coordinates(shapely.minimum_rotated_rectangle(ground))[:3]
+    sides = np.diff(corners, axis=0)
+    shortest = sides[int(np.argmin(np.hypot(*sides.T)))]
+    return math.atan2(shortest[1], shortest[0])
+
+
+def _within(alone: Scenario, part: Polygon | MultiPolygon) -> Scenario:
+    """What an aircraft is asked of its part of the ground."""
+    cut = [(region, ground_of(region.area.intersection(part))) for region in alone.regions]
+    regions = tuple(replace(region, area=area) for region, area in cut if not area.is_empty)
+    return replace(alone, regions=regions)
+
+
+def _stays(crew: Crew, error: InfeasibleError) -> Finding:
+    said = f"does not search: {error.feature} {error.message}"
+    return Finding(crew.aircraft.name, f"not-flown-{error.constraint}", said, error.relaxation, "warning")
+
+
+def _flown(crew: Crew, share: _Share, answer: Answer) -> Flown:
+    setting = crew.setting
+    use = used(answer.composed.flight, setting.model, setting.level)
+    return Flown(
+        share.crew, (), answer.composed, answer.legs, answer.passes, answer.notes, (), use, answer.methods
+    )
+
+
+def _trip(share: _Share, flown: Flown) -> Trip:
+    # Of the times of a search nothing is asked: an aircraft's flights follow each other in their order.
+    begin_s = float(share.number)
+    use = flown.use
+    return Trip(
+        share.crew, share.crew, share.crew, begin_s, begin_s + flown.duration_s, (),
+        use.length_m, use.energy_wh or 0.0, 0.0,
+    )  # fmt: skip
