@@ -88,3 +88,21 @@ def test_the_volcano_is_searched_where_it_is_worth_most() -> None:
     assert plan.violations == ()
     assert (plan.metrics.energy_wh or 0.0) <= (scenario.aircraft[0].usable_wh or 0.0)
     assert (plan.metrics.importance_collected or 0.0) > 1.5 * plan.metrics.coverage["island"] * worth
+
+
+def test_two_aircraft_search_the_fire_front() -> None:
+    """Each keeps its reserve and has a share; both together see more of the front than of the rest."""
+    scenario = read_valid(json.loads((EXAMPLES / "fire-front.geojson").read_text()))
+    plan = make_plan(scenario)
+    assert plan.violations == ()
+    assert set(plan.metrics.vehicles) == {"north", "south"}
+    for aircraft in scenario.aircraft:
+        assert aircraft.usable_wh is not None
+        used_wh = plan.metrics.vehicles[aircraft.name].energy_wh
+        assert used_wh is not None
+        assert 0.5 * aircraft.usable_wh < used_wh <= aircraft.usable_wh
+    seen_m2, worth = plan.metrics.area_seen_m2, plan.metrics.importance_collected
+    assert seen_m2 is not None
+    assert worth is not None
+    # A square metre of the front is worth 5, of the village 3, of the rest 0.3 or nothing.
+    assert worth > 3.0 * seen_m2
