@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -63,6 +65,22 @@ def _fleet() -> dict[str, Any]:
     }
 
 
+@contextmanager
+def connected(service: Service, *names: str) -> Iterator[None]:
+    """Simulated vehicles of these names, for as long as they are needed."""
+    path = service.address + "/api/v1/vehicles"
+    ids = []
+    try:
+        for name in names:
+            answer = httpx.post(path, json={"name": name, "url": "sim:?speedup=50"}, timeout=60.0)
+            answer.raise_for_status()
+            ids.append(answer.json()["id"])
+        yield
+    finally:
+        for vehicle in ids:
+            httpx.delete(f"{path}/{vehicle}", timeout=60.0).raise_for_status()
+
+
 def test_all_aircraft_are_where_the_plan_has_them(page: Page, service: Service, tmp_path: Path) -> None:
     """At the time a pass begins, its aircraft is at its first end; one upload is sent to all."""
     path = tmp_path / "fleet.geojson"
@@ -87,13 +105,11 @@ def test_all_aircraft_are_where_the_plan_has_them(page: Page, service: Service, 
     names = page.locator("#vehicles th.crew").all_inner_texts()
     assert sorted(names) == ["blue", "red"]
 
-    # A vehicle for each of them, by their names: chosen without being asked.
-    for name in ("red", "blue"):
-        url = "sim:?speedup=50"
-        httpx.post(service.address + "/api/v1/vehicles", json={"name": name, "url": url}).raise_for_status()
-    page.get_by_role("tab", name="Fly").click()
-    expect(page.locator("#upload-all")).to_be_enabled(timeout=30_000)
-    page.click("#upload-all")
-    page.wait_for_selector("#fleet-result", timeout=90_000)
-    assert page.get_attribute("#fleet-result", "data-outcome") == "accepted"
-    assert page.get_attribute("#fleet-result", "data-verified") == "true"
+    # A vehicle for each of them, by their names: chosen without being asked. Others share the service.
+    with connected(service, "red", "blue"):
+        page.get_by_role("tab", name="Fly").click()
+        expect(page.locator("#upload-all")).to_be_enabled(timeout=30_000)
+        page.click("#upload-all")
+        page.wait_for_selector("#fleet-result", timeout=90_000)
+        assert page.get_attribute("#fleet-result", "data-outcome") == "accepted"
+        assert page.get_attribute("#fleet-result", "data-verified") == "true"

@@ -169,7 +169,7 @@ def test_the_gaps_of_a_flight_are_planned(page: Page, planned: str) -> None:
     """One button makes a plan of what a flight did not see, or the service's words why there is none."""
     page.get_by_role("tab", name="Fly").click()
     # Another scenario was on the page meanwhile: what was seen of this one is asked for again.
-    page.locator("#flights button", has_text="ended").first.click()
+    page.locator("#flights button", has_text="ended").first.click(timeout=120_000)
     page.click("#refly")
     expect(page.get_by_role("dialog")).to_contain_text("stays as it is until the new plan is uploaded")
     page.click("#dialog-go")
