@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -114,11 +114,14 @@ class Crew:
         targets = asked.visible(self.around).targets
         coarse = [target.coarse(STEP_RAD, ETAS) for target in targets]
         first = coarse[0]
-        if len(coarse) == 1:
-            return _best(first.entries, first.exits, first.inner_m)
         # Of a divided region the parts follow each other as they come; the ways differ in their ends.
         inner_m, exits = self._on(first, coarse[1:])
-        return _best(first.entries, exits, inner_m)
+        found = _best(first.entries, exits, inner_m)
+        if not len(found.inner_m):
+            raise InfeasibleError(
+                "transit", job.of, "no line leads from one of its parts to the next", "Draw them as regions."
+            )
+        return found
 
     def _on(self, first: Options, others: Sequence[Options]) -> tuple[Floats, Floats]:
         """From each option of a first target through all others: what it costs, and where it ends."""
@@ -202,12 +205,37 @@ def ways_of(
             ways = known[key]
             if isinstance(ways, InfeasibleError):
                 refused = ways
-            elif len(ways.inner_m):
+            else:
                 found[job.region.name, number] = ways
         if refused is not None and not any(name == job.region.name for name, _ in found):
             if job.region.required:
                 raise refused
-            why[job.region.name] = Finding(
-                job.of, f"not-seen-{refused.constraint}", refused.message, refused.relaxation, "warning"
-            )
+            why[job.region.name] = not_seen(job, refused)
     return found, why
+
+
+def not_seen(job: Job, refused: InfeasibleError) -> Finding:
+    """What is said of a region that is left out for a reason."""
+    rule = f"not-seen-{refused.constraint}"
+    return Finding(job.of, rule, refused.message, refused.relaxation, "warning")
+
+
+def takes_s(job: Job, crews: Sequence[Crew], ways: Mapping[tuple[str, int], Ways]) -> float:
+    """The least that any crew takes for a job."""
+    times_s = [
+        float(found.inner_m.min()) / crew.setting.model.airspeed_m_s
+        for number, crew in enumerate(crews)
+        if (found := ways.get((job.region.name, number))) is not None
+    ]
+    return min(times_s, default=math.inf)
+
+
+def most_s(crew: Crew) -> float:
+    """How long one flight of a crew may last."""
+    aircraft = crew.setting.model.aircraft
+    limits = [math.inf if aircraft.max_flight_time_s is None else aircraft.max_flight_time_s]
+    if aircraft.max_range_m is not None:
+        limits.append(aircraft.max_range_m / aircraft.airspeed_m_s)
+    if aircraft.usable_wh is not None and crew.power_w:
+        limits.append(3600.0 * aircraft.usable_wh / crew.power_w)
+    return max(min(limits) - crew.besides_s, 1.0)

@@ -16,12 +16,16 @@ from planner.tasks.fleet.flights import SPARE_S, Flown, Order, with_waits
 from planner.tasks.fleet.jobs import Job
 from planner.tasks.task import Controls
 from planner.vehicle.aircraft import Aircraft
-from planner.wishes import Separation
+from planner.wishes import Objective, Separation
 
 #: So often a flight is put off, its waits made shorter, before there is no room for it.
 MOST_DELAYS = 12
 #: Other orders in which flights are put on the clock.
 ORDERS = 60
+#: So often a flight that found no room among the others is put on the clock before them.
+MOST_FIRST = 4
+#: The constraint of a flight that others leave no room for within its windows.
+CROWDED = "separation"
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,11 +65,19 @@ class Sortie:
 
 
 class LateError(Exception):
-    """A window that a flight does not keep, and by how much."""
+    """A window that a flight does not keep, by how much, and whether others are in its way."""
 
-    def __init__(self, crew: int, job: Job, late_s: float) -> None:
+    def __init__(self, crew: int, job: Job, late_s: float, *, crowded: bool = False) -> None:
         super().__init__(crew, job.of, late_s)
-        self.crew, self.job, self.late_s = crew, job, late_s
+        self.crew, self.job, self.late_s, self.crowded = crew, job, late_s, crowded
+
+
+class _CrowdedError(Exception):
+    """A flight that others leave no time for."""
+
+    def __init__(self, errand: Errand, why: LateError | InfeasibleError) -> None:
+        super().__init__(why)
+        self.errand, self.why = errand, why
 
 
 class _Clock:
@@ -127,6 +139,7 @@ def placed(
         Where a window is not kept.
     InfeasibleError
         ``"separation"``: no delay within its windows keeps a flight apart from the others.
+        ``"window"``: there is no room to wait in.
     """
     first = sorted(
         errands,
@@ -149,8 +162,18 @@ def placed(
         rng = np.random.default_rng(seed)
         orders += [_shuffled(first, rng) for _ in range(ORDERS)]
     best: _Clock | None = None
-    for order in orders:
-        clock = _in_turn(apart, order, crews, tracks, separation, controls)
+    tried: list[list[int]] = []
+    while orders:
+        order = orders.pop(0)
+        tried.append([id(each) for each in order])
+        try:
+            clock = _in_turn(apart, order, crews, tracks, separation, controls)
+        except _CrowdedError as crowded:
+            sooner = _sooner(crews, order, crowded.errand)
+            if [id(each) for each in sooner] in tried or len(tried) > MOST_FIRST:
+                raise crowded.why from None
+            orders.append(sooner)
+            continue
         if clock is not None and (best is None or clock.cost_s < best.cost_s):
             best = clock
     if best is None:
@@ -172,7 +195,12 @@ def _in_turn(
         crew = crews[errand.trip.member]
         ready_s = clock.ready_s(errand.trip.member, crew.aircraft.turnaround_s)
         if errand.flown is None:
-            _put_in_order(clock, crew, errand, ready_s, separation, controls)
+            try:
+                _put_in_order(clock, crew, errand, ready_s, separation, controls)
+            except (LateError, InfeasibleError) as refused:
+                if refused.crowded if isinstance(refused, LateError) else refused.constraint == CROWDED:
+                    raise _CrowdedError(errand, refused) from refused
+                raise
             continue
         track = tracks[id(errand)]
         start_s = clock.first_s(track, ready_s)
@@ -193,6 +221,14 @@ def _too_near(flying: Sequence[Aircraft], separation: Separation) -> InfeasibleE
     )
 
 
+def _sooner(crews: Sequence[Crew], order: Sequence[Errand], errand: Errand) -> list[Errand]:
+    """The order with a flight, and those that its aircraft makes before it, ahead of all on the ground."""
+    place = next(k for k, each in enumerate(order) if each is errand)
+    own = [each for each in order[: place + 1] if each.trip.member == errand.trip.member]
+    others = [each for each in order if not any(each is one for one in own)]
+    return sorted(own + others, key=lambda each: crews[each.trip.member].aircraft.aloft is None)
+
+
 def _shuffled(order: Sequence[Errand], rng: np.random.Generator) -> list[Errand]:
     """Another order, in which each aircraft's flights come as they do in this one."""
     members = [errand.trip.member for errand in order]
@@ -211,12 +247,13 @@ def _put_in_order(
     if errand.order is None:
         raise ValueError("a flight without an order has no order to keep")
     bounds_s = [clock.bounds_s(job, visit) for job, visit in errand.jobs]
-    for _ in range(MOST_DELAYS):
+    for delays in range(MOST_DELAYS):
         flown, when = with_waits(
             crew, errand.trip.member, errand.jobs, errand.order, bounds_s, ready_s, controls
         )
         if when.worst is not None:
-            raise LateError(errand.trip.member, errand.jobs[when.worst][0], when.late_s)
+            job = errand.jobs[when.worst][0]
+            raise LateError(errand.trip.member, job, when.late_s, crowded=delays > 0 or job.visits > 1)
         track = clock.apart.add(_track(crew, flown, separation))
         start_s = clock.first_s(track, when.start_s)
         latest_s = min(
@@ -227,7 +264,7 @@ def _put_in_order(
             return
         ready_s = start_s
     raise InfeasibleError(
-        "separation",
+        CROWDED,
         crew.aircraft.name,
         f"cannot be kept {separation.horizontal_m:g} m, or {separation.vertical_m:g} m of height, from the "
         "others within its windows",
@@ -237,3 +274,22 @@ def _put_in_order(
 
 def _track(crew: Crew, flown: Flown, separation: Separation) -> Track:
     return track_of(flown.composed.flight, crew.setting.model, step_m(separation))
+
+
+def cost_of(sorties: Sequence[Sortie], weights: Objective) -> float:
+    """What the objective says of flights; what they leave out is the assignment's to weigh."""
+    return weights.last_landing * max(each.end_s for each in sorties) + weights.total_time * math.fsum(
+        each.flown.duration_s for each in sorties
+    )
+
+
+def powers_of(crews: Sequence[Crew], sorties: Sequence[Sortie]) -> dict[int, float]:
+    """Of each crew the mean power of its flights by that at cruise, the most of any of them."""
+    found: dict[int, float] = {}
+    for sortie in sorties:
+        crew, used_wh = sortie.flown.crew, sortie.flown.use.energy_wh
+        power_w = crews[crew].power_w
+        if used_wh is not None and power_w:
+            part = 3600.0 * used_wh / (power_w * sortie.flown.duration_s)
+            found[crew] = max(found.get(crew, 0.0), part)
+    return found

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from planner.coverage.registry import family_of
@@ -19,16 +19,17 @@ from planner.progress import silent
 from planner.scenario import Scenario
 from planner.sensors.base import Sensor
 from planner.sensors.camera import CameraSensor
-from planner.tasks.fleet.crews import Crew, Ways, crews_of, ways_of
+from planner.tasks.fleet.barred import BarredError, barred, infeasible
+from planner.tasks.fleet.crews import Crew, crews_of, most_s, not_seen, takes_s, ways_of
 from planner.tasks.fleet.flights import Flown, Order, in_best_order, in_given_order, in_order, over
 from planner.tasks.fleet.jobs import Job, jobs_of
-from planner.tasks.fleet.placing import Errand, LateError, Sortie, placed
+from planner.tasks.fleet.placing import CROWDED, Errand, LateError, Sortie, cost_of, placed, powers_of
 from planner.tasks.fleet.problem import Lessons, problem_of
 from planner.tasks.fleet.told import told_of
 from planner.tasks.methods import chosen_methods
 from planner.tasks.task import Controls
 from planner.tasks.urban import cut_by_obstacles, lanes_cut
-from planner.wishes import Objective, Region, Separation
+from planner.wishes import Region, Separation
 
 #: Rounds of assignment and flight, and of those that gave a plan.
 MOST_ROUNDS, ROUNDS = 8, 2
@@ -89,6 +90,7 @@ class _Rounds:
         self._flown: dict[Key, Flown] = {}
         self._orders: dict[Key, Order] = {}
         self._given_up: dict[str, Finding] = {}
+        self._barred: set[tuple[str, int]] = set()
         with controls.stage("options"):
             self._crews = crews_of(scenario)
             self._parts: dict[str, int] = {}
@@ -101,7 +103,8 @@ class _Rounds:
         named = {region.name: region for region in self._scenario.regions}
         shared_m = {name: self._shared_m(named[name]) for name in self._parts}
         self._jobs = jobs_of(self._scenario.regions, self._parts, shared_m)
-        self._ways, self._why = ways_of(self._crews, self._jobs)
+        ways, self._why = ways_of(self._crews, self._jobs)
+        self._ways = {key: found for key, found in ways.items() if key not in self._barred}
 
     def best(self) -> FleetAnswer:
         """Of the plans of a few rounds."""
@@ -110,20 +113,19 @@ class _Rounds:
         least = math.inf
         for number in range(MOST_ROUNDS):
             self._controls.progress("assign", number / MOST_ROUNDS)
-            jobs = tuple(
-                job
-                for job in self._jobs
-                if job.of not in self._given_up and any(name == job.region.name for name, _ in self._ways)
-            )
-            problem = problem_of(self._crews, jobs, self._ways, self._scenario.objective, self._lessons)
-            assigned = self._assigned(problem)
+            try:
+                jobs, problem, assigned, errands = self._next()
+            except InfeasibleError:
+                if found:
+                    break
+                raise
             lacking = [each for each in assigned.left_out if each.required]
             if lacking:
                 if found:
                     break
                 nearest = min(lacking, key=lambda each: each.margin)
                 if nearest.margin < least or failed is None:
-                    least, failed = nearest.margin, _infeasible(jobs, nearest)
+                    least, failed = nearest.margin, infeasible(jobs, nearest)
                 if not self._cut_more(jobs, lacking):
                     raise failed
                 continue
@@ -131,20 +133,19 @@ class _Rounds:
                 failed = failed or self._nothing_flown(jobs, assigned)
                 break
             try:
-                sorties, near = self._flight_plan(jobs, assigned)
+                sorties, near = self._flight_plan(jobs, assigned, errands)
             except LateError as late:
                 failed = self._late(late)
                 continue
             except InfeasibleError as error:
-                if error.constraint != "separation" or found:
-                    raise
-                failed = error
-                self._lessons.hurry(0, 1.0 / TIGHTER)
+                if found:
+                    break
+                failed = self._refused(error)
                 continue
             if sorties is None:
                 continue
             found.append(
-                (_cost(sorties, self._scenario.objective), self._answer(jobs, problem, assigned, sorties))
+                (cost_of(sorties, self._scenario.objective), self._answer(jobs, problem, assigned, sorties))
             )
             if near or len(found) >= ROUNDS or self._controls.enough():
                 break
@@ -155,13 +156,72 @@ class _Rounds:
             )  # fmt: skip
         return min(found, key=lambda each: each[0])[1]
 
+    def _refused(self, error: InfeasibleError) -> InfeasibleError:
+        """What is learnt of a flight that there is no room for; raised where that is no help."""
+        if error.constraint == CROWDED:
+            self._lessons.hurry(0, 1.0 / TIGHTER)
+            return error
+        named = {job.region.name: job for job in self._jobs}
+        asked = [named[name] for name in error.feature.split("+") if name in named]
+        if error.constraint != "window" or not asked or any(job.region.required for job in asked):
+            raise error
+        for job in asked:
+            self._given_up[job.of] = not_seen(job, error)
+        return error
+
     def _nothing_flown(self, jobs: Sequence[Job], assigned: Assignment) -> InfeasibleError:
         """What is said where no region is required, and none fits."""
         if assigned.left_out:
-            return _infeasible(jobs, min(assigned.left_out, key=lambda each: each.margin))
+            return infeasible(jobs, min(assigned.left_out, key=lambda each: each.margin))
         why = [*self._why.values(), *self._given_up.values()]
         told = why[0].message if why else "there is nothing to be seen"
         return InfeasibleError("swath", "scenario", f"no region can be seen: {told}", "see the findings")
+
+    def _next(self) -> tuple[tuple[Job, ...], Problem, Assignment, list[Errand]]:
+        """The next assignment, all flights of which can be flown.
+
+        Raises
+        ------
+        InfeasibleError
+            Where no flight leads to a required region.
+        """
+        while True:
+            jobs = tuple(
+                job
+                for job in self._jobs
+                if job.of not in self._given_up and any(name == job.region.name for name, _ in self._ways)
+            )
+            problem = problem_of(self._crews, jobs, self._ways, self._scenario.objective, self._lessons)
+            assigned = self._assigned(problem)
+            if any(each.required for each in assigned.left_out):
+                return jobs, problem, assigned, []
+            try:
+                errands = [self._errand(jobs, trip) for trip in assigned.trips]
+                return jobs, problem, assigned, errands
+            except BarredError as refused:
+                self._bar(refused)
+
+    def _bar(self, refused: BarredError) -> None:
+        """What an aircraft cannot fly to is for others; what none can is given up, unless it is required."""
+        found = barred(self._crews[refused.crew], refused, self._controls)
+        optional = [job for job, _ in refused.jobs if not job.region.required]
+        if not found and optional:
+            least = min(optional, key=lambda job: job.region.priority)
+            self._given_up[least.of] = not_seen(least, refused.why)
+            return
+        if not found:
+            raise refused.why
+        for job, _ in refused.jobs:
+            name, key = job.region.name, (job.region.name, refused.crew)
+            if name not in found:
+                continue
+            self._barred.add(key)
+            self._ways.pop(key, None)
+            if any(other == name for other, _ in self._ways):
+                continue
+            if job.region.required:
+                raise found[name]
+            self._given_up[job.of] = not_seen(job, found[name])
 
     def _assigned(self, problem: Problem) -> Assignment:
         with self._controls.stage("assign"):
@@ -177,10 +237,9 @@ class _Rounds:
         return "stecz2020" if self._scenario.method.routing == "stecz2020" else "assign"
 
     def _flight_plan(
-        self, jobs: Sequence[Job], assigned: Assignment
+        self, jobs: Sequence[Job], assigned: Assignment, errands: Sequence[Errand]
     ) -> tuple[tuple[Sortie, ...] | None, bool]:
         """The flights of an assignment on one clock, None where one is over a limit; whether as thought."""
-        errands = [self._errand(jobs, trip) for trip in assigned.trips]
         with self._controls.stage("separation"):
             sorties = placed(self._crews, errands, self._separation, self._controls, self._scenario.seed)
         told: dict[int, list[float]] = {}
@@ -202,24 +261,21 @@ class _Rounds:
         for crew, part in tighter.items():
             self._lessons.tighten(crew, part)
         self._lessons.learn(told)
-        self._lessons.power.update(self._powers(sorties))
+        self._lessons.power.update(powers_of(self._crews, sorties))
         return (None if tighter else sorties), far <= NEAR
-
-    def _powers(self, sorties: Sequence[Sortie]) -> dict[int, float]:
-        """Of each crew the mean power of its flights by that at cruise, the most of any of them."""
-        found: dict[int, float] = {}
-        for sortie in sorties:
-            crew, used_wh = sortie.flown.crew, sortie.flown.use.energy_wh
-            power_w = self._crews[crew].power_w
-            if used_wh is not None and power_w:
-                part = 3600.0 * used_wh / (power_w * sortie.flown.duration_s)
-                found[crew] = max(found.get(crew, 0.0), part)
-        return found
 
     def _errand(self, jobs: Sequence[Job], trip: Trip) -> Errand:
         key = _key(jobs, trip)
         done = tuple((jobs[visit.target], visit.number) for visit in trip.visits)
         crew = self._crews[trip.member]
+        try:
+            return self._flown_or_ordered(crew, trip, done, key)
+        except InfeasibleError as error:
+            raise BarredError(trip.member, done, error) from error
+
+    def _flown_or_ordered(
+        self, crew: Crew, trip: Trip, done: tuple[tuple[Job, int], ...], key: Key
+    ) -> Errand:
         bound = any(
             job.region.time_window_s is not None or job.region.revisit_after_s > 0.0 for job, _ in done
         )
@@ -254,23 +310,24 @@ class _Rounds:
         self._lessons.hurry(late.crew, (1.0 + more) / TIGHTER)
         message = f"is seen {late.late_s:.0f} s after its window closes, as far as was found"
         relaxation = f"Let time_window_s close {late.late_s:.0f} s later, or add an aircraft."
+        error = InfeasibleError("window", job.of, message, relaxation)
         if not job.region.required:
-            self._given_up[job.of] = Finding(job.of, "not-seen-window", message, relaxation, "warning")
-        return InfeasibleError("window", job.of, message, relaxation)
+            self._given_up[job.of] = not_seen(job, error)
+        return error
 
     def _cuts(self) -> dict[str, int]:
         """In how many parts regions are cut at first."""
-        takes_s = {job.of: _takes_s(job, self._crews, self._ways) for job in self._jobs}
-        even_s = math.fsum(s for s in takes_s.values() if math.isfinite(s)) / len(self._crews)
+        times_s = {job.of: takes_s(job, self._crews, self._ways) for job in self._jobs}
+        even_s = math.fsum(s for s in times_s.values() if math.isfinite(s)) / len(self._crews)
         parts = {}
         for job in self._jobs:
-            time_s = takes_s[job.of]
+            time_s = times_s[job.of]
             if not math.isfinite(time_s):
                 continue
             able = [c for c in range(len(self._crews)) if (job.region.name, c) in self._ways]
             shares = math.ceil(time_s / even_s) if time_s > MORE_THAN_EVEN * even_s and len(able) > 1 else 1
-            most_s = min(_most_s(self._crews[c]) for c in able)
-            flights = math.ceil(time_s / (OF_A_FLIGHT * most_s)) if math.isfinite(most_s) else 1
+            flight_s = min(most_s(self._crews[c]) for c in able)
+            flights = math.ceil(time_s / (OF_A_FLIGHT * flight_s)) if math.isfinite(flight_s) else 1
             count = min(max(min(shares, len(able)), flights), self._most_parts(job.region))
             if count > 1:
                 parts[job.of] = count
@@ -339,36 +396,3 @@ class _Rounds:
 
 def _key(jobs: Sequence[Job], trip: Trip) -> Key:
     return trip.member, tuple((jobs[visit.target].region.name, visit.number) for visit in trip.visits)
-
-
-def _cost(sorties: Sequence[Sortie], weights: Objective) -> float:
-    """What the objective says of flights; what they leave out is the assignment's to weigh."""
-    return weights.last_landing * max(each.end_s for each in sorties) + weights.total_time * math.fsum(
-        each.flown.duration_s for each in sorties
-    )
-
-
-def _takes_s(job: Job, crews: Sequence[Crew], ways: Mapping[tuple[str, int], Ways]) -> float:
-    """The least that any crew takes for a job."""
-    times_s = [
-        float(found.inner_m.min()) / crew.setting.model.airspeed_m_s
-        for number, crew in enumerate(crews)
-        if (found := ways.get((job.region.name, number))) is not None
-    ]
-    return min(times_s, default=math.inf)
-
-
-def _most_s(crew: Crew) -> float:
-    """How long one flight of a crew may last."""
-    aircraft = crew.setting.model.aircraft
-    limits = [math.inf if aircraft.max_flight_time_s is None else aircraft.max_flight_time_s]
-    if aircraft.max_range_m is not None:
-        limits.append(aircraft.max_range_m / aircraft.airspeed_m_s)
-    if aircraft.usable_wh is not None and crew.power_w:
-        limits.append(3600.0 * aircraft.usable_wh / crew.power_w)
-    return max(min(limits) - crew.besides_s, 1.0)
-
-
-def _infeasible(jobs: Sequence[Job], lacking: Unassigned) -> InfeasibleError:
-    job = jobs[lacking.target]
-    return InfeasibleError(lacking.limit, job.of, lacking.message, lacking.relaxation)
