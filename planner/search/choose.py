@@ -36,6 +36,8 @@ MOST_REFINED, STEPS, LEAST_GAIN = 4, (0.5, 0.25, 0.12), 1e-4
 MOST_PARTS = 12
 #: Ground larger than this many times what the budget sees is searched in part.
 LARGER = 1.3
+#: Passes made as long as need be are longer by this.
+ROUNDING_M = 1e-6
 #: Strips by the width of the swath: wider ones leave gaps, and reach farther.
 WIDTHS = (1.0, 1.08)
 
@@ -174,6 +176,12 @@ class Search:
             [strips[:, 0] + aside - ins_m * along, strips[:, 1] + aside + outs_m * along], axis=1
         )
         least_m = np.maximum(0.0, ins_m + outs_m)[:, 0] + LEAST_PASS_M
+        short_m = least_m - lengths_m - (ins_m + outs_m)[:, 0]
+        if len(strips) and short_m.min() > 0.0:
+            # Ground shorter than a frame is seen by the shortest pass over its middle.
+            longer = (0.5 * short_m[:, None] + ROUNDING_M) * along
+            lines = lines + np.stack([-longer, longer], axis=1)
+            lengths_m = lengths_m + short_m + 2.0 * ROUNDING_M
         long = np.flatnonzero(lengths_m + (ins_m + outs_m)[:, 0] >= least_m)
         for k, ways in zip(long.tolist(), self.room.flyable(lines[long]), strict=True):
             for begin, until in ways:

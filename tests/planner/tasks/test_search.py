@@ -81,6 +81,19 @@ def test_zones_are_flown_round():
     assert not line.intersects(scenario.no_fly[0].area)
 
 
+@pytest.mark.parametrize("side_m", [2.0, 30.0, 70.0])
+@pytest.mark.parametrize("vehicle", [WING, COPTER], ids=["wing", "copter"])
+def test_ground_smaller_than_a_frame_is_seen(vehicle, side_m):
+    """Ground shorter than what one photo sees is not blocked: a short pass over it sees all."""
+    patch = rectangle("roi", 600.0, 400.0, 600.0 + side_m, 400.0 + side_m)
+    scenario = read_scenario(document(patch, vehicle=vehicle))
+    plan = make_plan(scenario)
+    assert plan.violations == ()
+    prints = shapely.union_all([Polygon(scenario.frame.to_local(f.ring)) for f in plan.footprints])
+    ground = scenario.regions[0].area
+    assert prints.intersection(ground).area == pytest.approx(ground.area, rel=1e-3)
+
+
 def test_an_end_elsewhere_is_kept():
     """The flight ends at its end."""
     scenario = read_scenario(
