@@ -17,7 +17,7 @@ _FIXES: dict[Limit, str] = {
     "flight-time": "Give {aircraft} {margin} more time in the air.",
     "range": "Give {aircraft} {margin} more range.",
     "energy": "Give {aircraft} {margin} more energy, or a base nearer by.",
-    "revisit": "Ask for its visits {margin} nearer to each other, or give it a longer window.",
+    "revisit": "Ask for fewer visits, or nearer to each other, or give it a longer window.",
     "not-worth": "Give it more priority, or require it.",
 }
 

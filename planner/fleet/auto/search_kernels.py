@@ -221,6 +221,9 @@ def improve(
                     n += 1
         if revisited:
             for k in range(n):
+                # What is tried again behind a visit that stays keeps the time that one leaves it.
+                if jobs.after[out[k]] >= 0 and work.at[jobs.after[out[k]]] >= 0:
+                    continue
                 for v in range(jobs.first[out[k]], jobs.first[out[k] + 1]):
                     jobs.early[v], jobs.late[v] = windows[0, v], windows[1, v]
         kept = True

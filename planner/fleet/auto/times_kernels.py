@@ -45,6 +45,9 @@ def join(
     d1: float, e1: float, l1: float, leg: float, d2: float, e2: float, l2: float
 ) -> tuple[float, float, float]:
     """One part of two, ``leg`` seconds apart; its latest start is before its earliest where it cannot be."""
+    if e1 > l1 + EPSILON or e2 > l2 + EPSILON:
+        # A part that cannot be makes no whole: waiting before it would hide that.
+        return d1 + d2 + leg, math.inf, -math.inf
     delta = d1 + leg
     wait = max(0.0, e2 - delta - l1)
     return d1 + d2 + leg + wait, max(e2 - delta, e1) - wait, min(l2 - delta, l1)

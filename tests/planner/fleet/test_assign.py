@@ -48,6 +48,28 @@ def test_visits_of_one_target_are_apart() -> None:
         assert all(later[0] - former[1] >= 900.0 - 1e-6 for former, later in pairwise(visits))
 
 
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("revisits", [1, 3])
+def test_windows_too_short_for_what_they_ask_are_left_out(seed: int, revisits: int) -> None:
+    """A window that is over before a visit can be, or the last of three, is never kept by waiting."""
+    given = problem(seed, targets=5, windows=0.0)
+    asked = []
+    for number, target in enumerate(given.targets):
+        service_s = max(s.service_s for way in target.alternatives for s in way.services if s is not None)
+        apart_s = 200.0 if revisits > 1 else 0.0
+        # For some targets what they ask for fits, for others it does not, by less than one visit.
+        short_s = (0.2 + 0.2 * number) * service_s if number % 2 else -300.0
+        window_s = (4000.0, 4000.0 + revisits * service_s + (revisits - 1) * apart_s - short_s)
+        asked.append(replace(target, window_s=window_s, visits=revisits, revisit_after_s=apart_s))
+    tight = replace(given, targets=tuple(asked))
+    answer = assign(tight, iterations=1500)
+    assert broken(tight, answer.trips) == ()
+    done = [visit.target for trip in answer.trips for visit in trip.visits]
+    left = {each.target for each in answer.left_out}
+    assert all(done.count(number) == revisits for number in range(5) if number not in left)
+    assert left
+
+
 def test_work_beyond_one_battery_takes_further_trips() -> None:
     """What one trip's energy does not suffice for is flown in several, a turnaround apart."""
     given = problem(6, targets=12, members=1, windows=0.0, energy_wh=700.0)
