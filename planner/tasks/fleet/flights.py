@@ -228,7 +228,13 @@ def _through(
     controls: Controls,
     told_s: Sequence[float] | None = None,
 ) -> Flown:
-    setting = crew.setting
+    # Of a part of a region, too, passes are at the altitude that its region asks for.
+    named = [job.region for job, _ in jobs]
+    setting = replace(
+        crew.setting,
+        altitudes_m={each.name: each.altitude_m for each in named if each.altitude_m is not None},
+        over_ground_m={each.name: each.over_ground_m for each in named if each.over_ground_m is not None},
+    )
     transits = Transits.of(setting, crew.asked.objective, chosen_methods(crew.alone.method))
     waiting: dict[int, Path] = {}
     for place, wait_s in enumerate(waits_s):

@@ -75,3 +75,16 @@ def test_a_flight_that_others_would_make_late_goes_first(required: bool) -> None
     assert plan.hard_violations == ()
     spans = sorted((path.start_s, path.end_s) for path in plan.paths)
     assert all(a[1] <= b[0] for a, b in pairwise(spans))
+
+
+def test_parts_of_a_region_are_seen_from_its_altitude() -> None:
+    """A region shared out among aircraft that see others from elsewhere keeps its own altitude."""
+    low = place(0, 900, "low", "roi", altitude_m=100)
+    sides = [(-300, 700), (300, 700), (300, 1100), (-300, 1100), (-300, 700)]
+    ring = [place(e, n, "", "")["geometry"]["coordinates"] for e, n in sides]
+    low["geometry"] = {"type": "Polygon", "coordinates": [ring]}
+    high = [place(e, 500, f"high {e}", "roi", radius_m=10) for e in (-800, 800)]
+    plan = make_plan(read_scenario(scenario([low, *high])))
+    assert len({collect.vehicle for collect in plan.collects if collect.roi == "low"}) == 2
+    assert plan.hard_violations == ()
+    assert plan.metrics.coverage == pytest.approx(dict.fromkeys(plan.metrics.coverage, 1.0), abs=1e-6)
