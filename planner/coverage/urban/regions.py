@@ -137,6 +137,13 @@ def _posed(
         max(camera.run_in_m(height_m, float(course)), camera.run_out_m(height_m, float(course)))
         for course in COURSES_RAD
     ]
+    if max(runs_m) >= 0.0:
+        raise InfeasibleError(
+            "overlap",
+            region.name,
+            f"from {height_m:.0f} m sweeps with {camera.name} begin before what they see, for its overlap",
+            "less forward_overlap, a greater height or a smaller tilt_deg",
+        )
     turn_m = model.turn_radius_m + model.settle_m
     safe_m = airspace.clearance_m + TRANSIT_MARGIN_M + turn_m
     area: BaseGeometry = part
@@ -168,7 +175,7 @@ def _posed(
         max(outlines, key=lambda piece: piece.area),
         buildings,
         width_m,
-        2.0 * max(-max(runs_m), 0.0),
+        -2.0 * max(runs_m),
         height_m,
         math.inf,
         safe_m,
