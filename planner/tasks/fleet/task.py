@@ -389,6 +389,9 @@ class _Rounds:
         unique = {each.roi: each for each in left}
         told = told_of(problem, assigned, self._by(), self._controls.stop)
         methods = chosen_methods(self._scenario.method) | {"fleet": self._by()}
+        if self._by() != "assign":
+            # Who does what, and in which order, is the routing that was asked for.
+            methods["routing"] = self._by()
         return FleetAnswer(
             self._crews, sorties, methods, dropped, tuple(unique.values()), self._separation, told
         )
