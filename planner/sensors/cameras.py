@@ -8,9 +8,9 @@ is the width over the columns. A camera with lenses to change stands once for ea
 from __future__ import annotations
 
 from dataclasses import dataclass
-from difflib import get_close_matches
 from typing import Literal
 
+from planner.named import named
 from planner.sensors.optics import Optics
 from planner.sensors.quality import Spectrum
 
@@ -139,10 +139,4 @@ def find_camera(name: str) -> Camera:
     KeyError
         None is called so; its argument says which come near.
     """
-    known = {each.casefold(): each for each in CAMERAS}
-    found = known.get(name.casefold())
-    if found is None:
-        near = [known[each] for each in get_close_matches(name.casefold(), known, n=3, cutoff=0.5)]
-        hint = f"; near it: {', '.join(near)}" if near else "; `swathplan sensors` lists them"
-        raise KeyError(f"no camera is called {name!r}{hint}")
-    return CAMERAS[found]
+    return named(CAMERAS, name, "camera", "swathplan sensors")

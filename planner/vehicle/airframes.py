@@ -12,9 +12,9 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from difflib import get_close_matches
 from typing import Any
 
+from planner.named import named
 from planner.vehicle.energy import SEA_LEVEL_DENSITY_KG_M3, STANDARD_GRAVITY_M_S2
 
 #: Drag over dynamic pressure of a multirotor of a kilogram, and efficiency of its motors and controllers.
@@ -146,13 +146,7 @@ def find_airframe(name: str) -> Airframe:
     KeyError
         None is called so; its argument says which come near.
     """
-    known = {each.casefold(): each for each in AIRFRAMES}
-    found = known.get(name.casefold())
-    if found is None:
-        near = [known[each] for each in get_close_matches(name.casefold(), known, n=3, cutoff=0.5)]
-        hint = f"; near it: {', '.join(near)}" if near else "; `swathplan aircraft` lists them"
-        raise KeyError(f"no airframe is called {name!r}{hint}")
-    return AIRFRAMES[found]
+    return named(AIRFRAMES, name, "airframe", "swathplan aircraft")
 
 
 def completed(entry: Mapping[str, Any], airframe: Airframe) -> dict[str, Any]:

@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
+from pyproj import Geod
 from shapely import union_all
 from shapely.geometry.base import BaseGeometry
 
@@ -23,6 +24,10 @@ from planner.geojson.fields import Findings
 from planner.geojson.geometry import area
 from planner.plan import Plan
 from planner.scenario import Scenario
+
+GEOD = Geod(ellps="WGS84")
+#: The course is told by places this far apart.
+TELLING_M = 5.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -144,18 +149,16 @@ def _course_deg(samples: Sequence[TrackSample]) -> float | None:
     """Over the ground: of the last places far enough apart to tell; else where the nose points."""
     last = samples[-1]
     for sample in reversed(samples[:-1]):
-        if _apart_m(sample, last) >= 5.0:
-            north = last.lat_deg - sample.lat_deg
-            east = (last.lon_deg - sample.lon_deg) * math.cos(math.radians(last.lat_deg))
-            return math.degrees(math.atan2(east, north)) % 360.0
+        bearing_deg, _, apart_m = GEOD.inv(sample.lon_deg, sample.lat_deg, last.lon_deg, last.lat_deg)
+        if apart_m >= TELLING_M:
+            return float(bearing_deg) % 360.0
     return last.heading_deg
 
 
 def _apart_m(one: TrackSample, other: TrackSample) -> float:
-    north_m = (other.lat_deg - one.lat_deg) * 111_195.0
-    east_m = (other.lon_deg - one.lon_deg) * 111_195.0 * math.cos(math.radians(one.lat_deg))
+    """In three dimensions."""
     up_m = (other.altitude_home_m or 0.0) - (one.altitude_home_m or 0.0)
-    return math.hypot(north_m, east_m, up_m)
+    return math.hypot(GEOD.inv(one.lon_deg, one.lat_deg, other.lon_deg, other.lat_deg)[2], up_m)
 
 
 def _told(name: str, told: Told, known: Now | None) -> Now:

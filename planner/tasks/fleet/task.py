@@ -8,19 +8,16 @@ from dataclasses import dataclass, replace
 
 from planner.coverage.registry import family_of
 from planner.errors import Finding, InfeasibleError
-from planner.fleet.assign import assign
 from planner.fleet.assignment import Assignment, Trip
 from planner.fleet.assignment import LeftOut as Unassigned
 from planner.fleet.problem import Problem
-from planner.fleet.stecz2020.network import UnsuitedError
-from planner.fleet.stecz2020.solve import assign_stecz2020
 from planner.plan import Assigned, LeftOut
-from planner.progress import silent
 from planner.scenario import Scenario
 from planner.sensors.base import Sensor
 from planner.sensors.camera import CameraSensor
 from planner.tasks.fleet.barred import BarredError, barred, infeasible
 from planner.tasks.fleet.crews import Crew, crews_of, most_s, not_seen, takes_s, ways_of
+from planner.tasks.fleet.deciding import decided, decided_by, methods_of
 from planner.tasks.fleet.flights import Flown, Order, in_best_order, in_given_order, in_order, over
 from planner.tasks.fleet.jobs import Job, jobs_of
 from planner.tasks.fleet.placing import CROWDED, Errand, LateError, Sortie, cost_of, placed, powers_of
@@ -192,7 +189,7 @@ class _Rounds:
                 if job.of not in self._given_up and any(name == job.region.name for name, _ in self._ways)
             )
             problem = problem_of(self._crews, jobs, self._ways, self._scenario.objective, self._lessons)
-            assigned = self._assigned(problem)
+            assigned = decided(problem, self._scenario.method, self._scenario.seed, self._controls)
             if any(each.required for each in assigned.left_out):
                 return jobs, problem, assigned, []
             try:
@@ -222,19 +219,6 @@ class _Rounds:
             if job.region.required:
                 raise found[name]
             self._given_up[job.of] = not_seen(job, found[name])
-
-    def _assigned(self, problem: Problem) -> Assignment:
-        with self._controls.stage("assign"):
-            if self._scenario.method.routing != "stecz2020":
-                return assign(problem, self._scenario.seed, self._controls.stop, silent)
-            try:
-                return assign_stecz2020(problem, stop=self._controls.stop)
-            except UnsuitedError as error:
-                message = f"routing stecz2020: {error}"
-                raise InfeasibleError("method", "scenario", message, "Use routing auto.") from error
-
-    def _by(self) -> str:
-        return "stecz2020" if self._scenario.method.routing == "stecz2020" else "assign"
 
     def _flight_plan(
         self, jobs: Sequence[Job], assigned: Assignment, errands: Sequence[Errand]
@@ -387,11 +371,8 @@ class _Rounds:
                 Finding(job.of, f"not-seen-{each.limit}", each.message, each.relaxation, "warning"),
             )
         unique = {each.roi: each for each in left}
-        told = told_of(problem, assigned, self._by(), self._controls.stop)
-        methods = chosen_methods(self._scenario.method) | {"fleet": self._by()}
-        if self._by() != "assign":
-            # Who does what, and in which order, is the routing that was asked for.
-            methods["routing"] = self._by()
+        told = told_of(problem, assigned, decided_by(self._scenario.method), self._controls.stop)
+        methods = methods_of(self._scenario.method)
         return FleetAnswer(
             self._crews, sorties, methods, dropped, tuple(unique.values()), self._separation, told
         )

@@ -129,5 +129,5 @@ export function aircraftSections(grid: (made: Field[]) => HTMLElement): HTMLElem
       count > 1 ? h("div", { class: "row" }, button("Take this aircraft away", () => gone(index), { class: "danger" })) : null,
     ),
   );
-  return [...parts, h("div", { class: "row" }, button("Add an aircraft", add, { id: "add-aircraft", title: "Like the last one, under another name; then Save, or Plan" }))];
+  return [...parts, h("div", { class: "row" }, button("Add an aircraft", add, { id: "add-aircraft", title: "Like the last one, under another name" }))];
 }

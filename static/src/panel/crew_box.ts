@@ -2,6 +2,7 @@
 import { clock_s, flights, isDark } from "../crew/clock";
 import { coloursOf, doing, placeAt, type Flight } from "../crew/flights";
 import { button, fill, h, section } from "../dom";
+import { distance_m } from "../geo";
 import { PHASE_WORDS } from "../phases";
 import { open } from "../plans";
 import { scenarios } from "../scenario";
@@ -11,7 +12,6 @@ import { metres, number, seconds } from "../units";
 const SVG = "http://www.w3.org/2000/svg";
 const WIDTH = 1000;
 const ROW = 26;
-const LABEL = 0;
 const FRAME_MS = 80;
 /** A whole plan is played in so long. */
 const PLAY_S = 40;
@@ -59,19 +59,19 @@ function row(flight: Flight, index: number, scale: number, colour: string, asked
   ];
 }
 
-function ticks(end_s: number, height: number): SVGElement[] {
-  const step_s = [60, 120, 300, 600, 900, 1800, 3600, 7200].find((step) => end_s / step <= 7) ?? 14_400;
-  const made: SVGElement[] = [];
-  for (let at_s = 0; at_s <= end_s; at_s += step_s) {
-    made.push(svg("line", { x1: (at_s / end_s) * WIDTH, x2: (at_s / end_s) * WIDTH, y1: 0, y2: height, class: "tick" }));
-  }
-  return made;
+/** Round times across the chart, not too many. */
+function marks(end_s: number): { every_s: number; at_s: number[] } {
+  const every_s = [60, 120, 300, 600, 900, 1800, 3600, 7200].find((step) => end_s / step <= 7) ?? 14_400;
+  return { every_s, at_s: Array.from({ length: Math.floor(end_s / every_s) + 1 }, (_, index) => index * every_s) };
 }
 
+const ticks = (end_s: number, height: number): SVGElement[] =>
+  marks(end_s).at_s.map((at_s) => svg("line", { x1: (at_s / end_s) * WIDTH, x2: (at_s / end_s) * WIDTH, y1: 0, y2: height, class: "tick" }));
+
 function tickWords(end_s: number): HTMLElement {
-  const step_s = [60, 120, 300, 600, 900, 1800, 3600, 7200].find((step) => end_s / step <= 7) ?? 14_400;
-  const words: HTMLElement[] = [];
-  for (let at_s = 0; at_s <= end_s; at_s += step_s) words.push(h("span", { style: `left:${((at_s / end_s) * 100).toFixed(2)}%` }, step_s < 3600 && end_s < 3600 ? `${Math.round(at_s / 60)} min` : clockWords(at_s).slice(0, -3)));
+  const { every_s, at_s: all } = marks(end_s);
+  const minutes = every_s < 3600 && end_s < 3600;
+  const words = all.map((at_s) => h("span", { style: `left:${((at_s / end_s) * 100).toFixed(2)}%` }, minutes ? `${Math.round(at_s / 60)} min` : clockWords(at_s).slice(0, -3)));
   return h("div", { class: "hours", "aria-hidden": "true" }, ...words);
 }
 
@@ -88,8 +88,7 @@ function nearest(all: Flight[], at_s: number): string {
     for (let j = i + 1; j < places.length; j += 1) {
       const [a, b] = [places[i], places[j]];
       if (!a || !b) continue;
-      const [dy, dx] = [(b.at[1] - a.at[1]) * 111_195, (b.at[0] - a.at[0]) * 111_195 * Math.cos((a.at[1] * Math.PI) / 180)];
-      const off_m = Math.hypot(dx, dy);
+      const off_m = distance_m(a.at, b.at);
       const up_m = a.altitude_m !== null && b.altitude_m !== null ? Math.abs(a.altitude_m - b.altitude_m) : null;
       if (!best || off_m < best.off_m) best = { off_m, words: `Nearest: ${a.name} and ${b.name}, ${metres(off_m)} apart${up_m === null ? "" : `, ${number(up_m, 0, "m")} in height`}.` };
     }
@@ -146,7 +145,7 @@ export function crewBox(): HTMLElement {
     const height = all.length * ROW;
     const asked = windows();
     const usual = palette().collect;
-    const figure = svg("svg", { viewBox: `${LABEL} 0 ${WIDTH} ${height}`, preserveAspectRatio: "none", role: "img", "aria-label": `${all.length} flights, the last lands after ${seconds(end_s)}`, style: `height:${height}px` });
+    const figure = svg("svg", { viewBox: `0 0 ${WIDTH} ${height}`, preserveAspectRatio: "none", role: "img", "aria-label": `${all.length} flights, the last lands after ${seconds(end_s)}`, style: `height:${height}px` });
     figure.append(...ticks(end_s, height), ...all.flatMap((flight, index) => row(flight, index, WIDTH / end_s, colours.get(flight.vehicle) ?? usual, asked)), hand);
     hand.setAttribute("y2", String(height));
     figure.addEventListener("click", (event) => {
