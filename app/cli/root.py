@@ -17,6 +17,7 @@ from app.cli import (
     links,
     logs,
     missions,
+    network,
     planning,
     replanning,
     sensors,
@@ -56,8 +57,8 @@ def _root(
 
 
 MODULES = (
-    serve, links, planning, replanning, missions, exchange, journey, sensors, aircraft, audit, logs, flown,
-    signing, bench,
+    serve, links, planning, replanning, network, missions, exchange, journey, sensors, aircraft, audit, logs,
+    flown, signing, bench,
 )  # fmt: skip
 for module in MODULES:
     module.register(cli)

@@ -12,6 +12,7 @@ from app.routers.streams import page_answer
 from app.schemas.plans import ProfileOut
 from app.schemas.preflight import ARCS_IS, CHORD_ERROR_IS
 from app.services.plans.missions import AutopilotName, MissionChoice, exported
+from app.services.plans.network import network_text
 from app.services.plans.profile import profile_of
 from app.services.reports.report import write_report
 from mavlink.encoding.options import Arcs
@@ -52,6 +53,32 @@ async def profile(plan_id: str, planning: PlanningDep, desk: DeskDep) -> Profile
     plan_text, scenario_text = await planning.plan_text(plan_id), await planning.scenario_text(plan_id)
     made = await desk.run("plan", profile_of, plan_text, scenario_text, planning.terrain_folder)
     return ProfileOut.model_validate(made)
+
+
+@router.get(
+    "/network.geojson",
+    summary="Segments round the targets",
+    response_class=Response,
+    responses=responses(404, 409, 422) | {200: {"content": {GEOJSON: {"schema": {"type": "object"}}}}},
+)
+async def network(
+    plan_id: str,
+    planning: PlanningDep,
+    desk: DeskDep,
+    target: Annotated[
+        list[str] | None, Query(description="Names of regions; all when left out.", max_length=200)
+    ] = None,
+) -> Response:
+    """The recognition segments round each target: those chosen, those that could be, those ruled out and why.
+
+    Features of role `segment` say target, sensor, look, heading, stand-off, part of the target seen (line of
+    sight over terrain counted), quality, exposure to threats, who can fly it, and by how much the flight
+    would be longer with it; `ingress` and `egress` are where it begins and ends, `target` says which sensors
+    meet the quality that is asked.
+    """
+    plan_text, scenario_text = await planning.plan_text(plan_id), await planning.scenario_text(plan_id)
+    told = (plan_text, scenario_text, planning.terrain_folder, tuple(target or ()))
+    return Response(await desk.run("plan", network_text, *told), media_type=GEOJSON)
 
 
 VehicleQuery = Annotated[

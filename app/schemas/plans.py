@@ -55,6 +55,7 @@ class PlanOut(BaseModel):
         if record.state == "done":
             artefacts = (
                 "plan.geojson",
+                "network.geojson",
                 "mission.plan",
                 "mission.waypoints",
                 "mission.kml",

@@ -6,6 +6,7 @@ import { placeAt } from "./crew/flights";
 import { watched } from "./fleet";
 import { flown } from "./flights";
 import { keeping } from "./keeping";
+import { segments } from "./network";
 import { open, running } from "./plans";
 import { scenarios } from "./scenario";
 import { countAt } from "./survey/overlap";
@@ -38,6 +39,8 @@ export interface Hook {
   seenBy(lon_deg: number, lat_deg: number): number | null;
   /** Where each aircraft of the plan is at the time chosen. */
   crew(): { vehicle: string; at: [number, number] }[];
+  /** Segments round targets that are drawn, by state. */
+  segments(): Record<string, number>;
   /** The flight whose seen ground is on the map. */
   flown(): string | null;
 }
@@ -88,6 +91,7 @@ export function installHook(map: MapLibreMap): void {
         const place = clock_s.value === null ? null : placeAt(flight, clock_s.value);
         return place ? [{ vehicle: flight.vehicle, at: place.at }] : [];
       }),
+    segments: () => segments.value,
     flown: () => flown.value?.flight.id ?? null,
   };
 }

@@ -4,7 +4,7 @@ import { FONT, repaint } from "./map";
 import { CLASSES } from "./survey/overlap";
 import { onThemeChange, palette, type Palette } from "./theme";
 
-export const SOURCES = ["scenario", "plan", "compared", "held", "waypoints", "photos", "taken", "cursor", "crew", "seen", "track"] as const;
+export const SOURCES = ["scenario", "plan", "compared", "held", "waypoints", "photos", "taken", "cursor", "crew", "network", "seen", "track"] as const;
 
 export interface Group {
   id: string;
@@ -14,6 +14,8 @@ export interface Group {
   layers: string[];
   /** What it is a part of. */
   of?: "photos";
+  /** Whether it is seen only once it is asked for. */
+  asked?: true;
   /** What its colours stand for. */
   classes?: readonly { label: string; colour: string }[];
 }
@@ -35,6 +37,7 @@ export const GROUPS: Group[] = [
   { id: "compared", label: "Path compared with", swatch: "line", colour: "area", layers: ["compared-line"] },
   { id: "held", label: "Mission read from the vehicle", swatch: "dashed", colour: "held", layers: ["held-line"] },
   { id: "collect", label: "Collect (sensor on)", swatch: "thick", colour: "collect", layers: ["collect-line", "collect-label"] },
+  { id: "network", label: "Segments round targets", swatch: "line", colour: "segment", asked: true, layers: ["network-ruled_out", "network-open", "network-chosen", "network-arrow", "network-end"] },
   { id: "crew", label: "Aircraft at the time chosen", swatch: "dot", colour: "path", layers: ["crew-spot", "crew-symbol"] },
   { id: "photos", of: "photos", label: "Photo, from near", swatch: "dot", colour: "photo", layers: ["photo-place"] },
   { id: "prints", of: "photos", label: "Ground of each photo, from near", swatch: "area", colour: "photo", layers: ["photo-print", "photo-print-one"] },
@@ -60,6 +63,7 @@ const roleIs = (role: string): FilterSpecification => ["==", ["get", "role"], ro
 
 /** The colour of the aircraft where a plan has several. */
 const ofCrew = (usual: string): ExpressionSpecification => ["coalesce", ["get", "colour"], usual];
+const segmentIs = (state: string): FilterSpecification => ["all", ["==", ["get", "role"], "segment"], ["==", ["get", "state"], state]];
 const fenceIs = (kind: string): FilterSpecification => ["all", ["==", ["get", "role"], "fence"], ["==", ["get", "kind"], kind]];
 
 function shape(id: string, source: string, filter: FilterSpecification, colour: string, opacity: number, width: number, dash?: number[]): LayerSpecification[] {
@@ -73,6 +77,9 @@ function shape(id: string, source: string, filter: FilterSpecification, colour: 
   if (opacity === 0) return [line];
   return [{ id: `${id}-fill`, type: "fill", source, filter, paint: { "fill-color": colour, "fill-opacity": opacity } }, line];
 }
+
+/** Until it is asked for. */
+const UNSEEN = { visibility: "none" } as const;
 
 function layers(c: Palette): LayerSpecification[] {
   const label: ExpressionSpecification = [
@@ -118,6 +125,26 @@ function layers(c: Palette): LayerSpecification[] {
       id: "collect-line", type: "line", source: "plan", filter: roleIs("collect"),
       layout: { "line-cap": "round" },
       paint: { "line-color": ofCrew(c.collect), "line-width": 4.5 },
+    },
+    {
+      id: "network-ruled_out", type: "line", source: "network", filter: segmentIs("ruled_out"), layout: UNSEEN,
+      paint: { "line-color": c.area, "line-width": 1.2, "line-dasharray": [2, 2], "line-opacity": 0.8 },
+    },
+    { id: "network-open", type: "line", source: "network", filter: segmentIs("open"), layout: UNSEEN, paint: { "line-color": c.segment, "line-width": 2 } },
+    { id: "network-chosen", type: "line", source: "network", filter: segmentIs("chosen"), layout: UNSEEN, paint: { "line-color": c.collect, "line-width": 5 } },
+    {
+      id: "network-arrow", type: "symbol", source: "network", filter: ["all", roleIs("segment"), ["!=", ["get", "state"], "ruled_out"]] as unknown as FilterSpecification,
+      layout: { ...UNSEEN, "symbol-placement": "line-center", "icon-image": "arrow", "icon-size": 0.8 },
+      paint: { "icon-color": ["match", ["get", "state"], "chosen", c.collect, c.segment], "icon-halo-color": c.halo, "icon-halo-width": 1 },
+    },
+    {
+      id: "network-end", type: "circle", source: "network", filter: ["all", ["in", ["get", "role"], ["literal", ["ingress", "egress"]]], ["!=", ["get", "state"], "ruled_out"]] as unknown as FilterSpecification,
+      layout: UNSEEN,
+      paint: {
+        "circle-radius": ["match", ["get", "state"], "chosen", 4.5, 2.6],
+        "circle-color": ["match", ["get", "role"], "egress", c.halo, ["match", ["get", "state"], "chosen", c.collect, c.segment]],
+        "circle-stroke-color": ["match", ["get", "state"], "chosen", c.collect, c.segment], "circle-stroke-width": 1.4,
+      },
     },
     { id: "photo-print", type: "line", source: "photos", filter: kindOf("print"), minzoom: 24, paint: { "line-color": c.photo, "line-width": 0.6, "line-opacity": 0.4 } },
     { id: "photo-print-one", type: "line", source: "photos", filter: onePhoto(0), paint: { "line-color": c.photo, "line-width": 3 } },

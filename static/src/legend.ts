@@ -9,13 +9,16 @@ import { phaseFeatures } from "./phases";
 import { compared, open } from "./plans";
 import { scenarios } from "./scenario";
 import { scenarioFeatures } from "./scenario_view";
-import { debounce, type Signal } from "./signal";
+import { debounce, Signal } from "./signal";
 import { hasPhotos } from "./survey/shots";
 import { onThemeChange, palette } from "./theme";
 
 const NARROW_PX = 1500;
 const QUIET_MS = 50;
-const hidden = new Set<string>();
+const hidden = new Set<string>(GROUPS.filter(({ asked }) => asked).map(({ id }) => id));
+
+/** How often a tick has been set or taken away. */
+export const ticks = new Signal(0);
 
 /** Whether the operator lets a group be seen. */
 export const isShown = (id: string): boolean => !hidden.has(id);
@@ -39,6 +42,8 @@ function present(): Set<string> {
     if (shown.items.length > 0) found.add("waypoints");
     if (hasPhotos(shown)) for (const group of GROUPS) if (group.of === "photos") found.add(group.id);
     found.add("crew");
+    // A mission file has no scenario, and a search chooses none.
+    if (!("mission_file" in shown.plan) && shown.plan.metrics.area_seen_m2 == null) found.add("network");
   }
   if (compared.value) found.add("compared");
   if (held.value) found.add("held");
@@ -76,6 +81,7 @@ export function buildLegend(map: MapLibreMap): void {
               if (ticked) hidden.delete(group.id);
               else hidden.add(group.id);
               showGroup(map, group, ticked);
+              ticks.set(ticks.value + 1);
             },
           }),
           h("span", { class: `swatch ${group.swatch}`, style: `--c:${colours[group.colour]}`, "aria-hidden": "true" }),

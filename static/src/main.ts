@@ -20,6 +20,7 @@ import { addLayers } from "./layers";
 import { buildLegend, isShown } from "./legend";
 import { createMap, fit, setData } from "./map";
 import { itemFeatures } from "./mission";
+import { showNetwork } from "./network";
 import { attempt, clearNotices, report } from "./notices";
 import { openNewest } from "./newest";
 import { keepOrdered } from "./ordered";
@@ -76,6 +77,7 @@ async function start(): Promise<void> {
   keepProfile();
   showSurvey(map, () => isShown("overlap"));
   showReadout(map);
+  showNetwork(map);
   showCursor(map);
   showCrew(map, () => palette().collect);
   keepToTheScenario();

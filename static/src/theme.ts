@@ -18,6 +18,7 @@ export interface Palette {
   path: string;
   phase: string;
   collect: string;
+  segment: string;
   photo: string;
   held: string;
   footprint: string;
@@ -45,6 +46,7 @@ const LIGHT: Palette = {
   path: "#26323a",
   phase: "#8a4b00",
   collect: "#008f7a",
+  segment: "#d2691e",
   photo: "#3d4fb8",
   held: "#d08a00",
   footprint: "#00a892",
@@ -72,6 +74,7 @@ const DARK: Palette = {
   path: "#dfe8ec",
   phase: "#ffb46b",
   collect: "#2fe0c4",
+  segment: "#ff9f5a",
   photo: "#a9b6ff",
   held: "#ffd166",
   footprint: "#2fe0c4",

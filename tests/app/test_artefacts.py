@@ -45,6 +45,26 @@ async def test_scenario_and_plan_come_back_as_they_were(
     assert {scenario.headers["content-type"], plan.headers["content-type"]} == {"application/geo+json"}
 
 
+async def test_segments_round_the_targets_are_handed_out(client: httpx.AsyncClient) -> None:
+    """All of the example's, or one target's; an unknown one is named, and a search chooses none."""
+    record = (await client.post("/api/v1/plans", json=EXAMPLE, params={"wait": 60})).json()
+    link = record["links"]["network.geojson"]
+    found = (await client.get(link)).json()["features"]
+    regions = {f["id"] for f in EXAMPLE["features"] if f["properties"]["role"] == "roi"}
+    assert {f["id"] for f in found if f["properties"]["role"] == "target"} == regions
+    segments = [f["properties"] for f in found if f["properties"]["role"] == "segment"]
+    assert {each["state"] for each in segments} >= {"chosen", "open"}
+    one = sorted(regions)[0]
+    only = (await client.get(link, params={"target": one})).json()["features"]
+    assert {f["properties"]["target"] for f in only} == {one}
+    refused = await client.get(link, params={"target": "nowhere"})
+    check_problem(refused, 422)
+    assert "nowhere" in refused.text
+    search = EXAMPLE | {"task": "search"}
+    record = (await client.post("/api/v1/plans", json=search, params={"wait": 60})).json()
+    check_problem(await client.get(record["links"]["network.geojson"]), 409)
+
+
 async def test_missions_are_what_other_programs_read(client: httpx.AsyncClient, plan_id: str) -> None:
     """The .plan file, the waypoint file and the KML have the marks of their formats, for either autopilot."""
     base = f"/api/v1/plans/{plan_id}/"

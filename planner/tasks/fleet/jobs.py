@@ -65,7 +65,7 @@ def jobs_of(
             found.append(Job(region, region.name))
             continue
         # Lanes beside the cuts, so that those of two parts lie side by side.
-        angle_rad = _along_rad(region)
+        angle_rad = along_rad(region)
         along = region.approach_rad or (angle_rad, angle_rad + math.pi)
         for number, piece in enumerate(pieces, start=1):
             name = f"{region.name} {number}/{len(pieces)}"
@@ -81,7 +81,7 @@ def cut(region: Region, count: int, shared_m: float = 0.0) -> list[Polygon | Mul
     """
     if count <= 1:
         return [region.area]
-    angle_rad = _along_rad(region)
+    angle_rad = along_rad(region)
     turned = affinity.rotate(region.area, -angle_rad, origin=(0.0, 0.0), use_radians=True)
     west, south, east, north = turned.bounds
     marks = [south, *(_mark(turned, k / count) for k in range(1, count)), north]
@@ -95,7 +95,8 @@ def cut(region: Region, count: int, shared_m: float = 0.0) -> list[Polygon | Mul
     return pieces
 
 
-def _along_rad(region: Region) -> float:
+def along_rad(region: Region) -> float:
+    """Along a region's length, or the first heading that it allows."""
     if region.approach_rad:
         return region.approach_rad[0]
     rectangle = shapely.minimum_rotated_rectangle(region.area)

@@ -1,8 +1,9 @@
-/** What lies under the pointer: a photo's figures, or how many photos see the place. */
+/** What lies under the pointer: a segment round a target, a photo's figures, or how many photos see the place. */
 import type { Map as MapLibreMap } from "maplibre-gl";
 import { byId } from "../dom";
 import { onePhoto } from "../layers";
 import { isShown } from "../legend";
+import { segmentAt } from "../network";
 import type { Position } from "../types";
 import { number } from "../units";
 import { countAt } from "./overlap";
@@ -34,8 +35,9 @@ export function showReadout(map: MapLibreMap): void {
     map.setFilter("photo-print-one", onePhoto(number));
   };
   const tell = (point: { x: number; y: number }): void => {
-    if (shots.value.length === 0 && takenShots.value.length === 0) return say("");
     const around: [[number, number], [number, number]] = [[point.x - NEAR_PX, point.y - NEAR_PX], [point.x + NEAR_PX, point.y + NEAR_PX]];
+    const segment = segmentAt(map, around);
+    if (segment || (shots.value.length === 0 && takenShots.value.length === 0)) return say(segment);
     const photo = map.queryRenderedFeatures(around, { layers: ["photo-place"] })[0];
     outline(Number(photo?.properties["number"] ?? 0));
     if (photo) return say(photoWords(photo.properties));

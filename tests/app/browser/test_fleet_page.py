@@ -14,7 +14,7 @@ import pytest
 from playwright.sync_api import Page, expect
 
 from tests.app.browser.conftest import Service
-from tests.app.browser.helpers import ask, open_scenario
+from tests.app.browser.helpers import ask, on_screen, open_scenario
 
 pytestmark = pytest.mark.browser
 
@@ -113,3 +113,30 @@ def test_all_aircraft_are_where_the_plan_has_them(page: Page, service: Service, 
         page.wait_for_selector("#fleet-result", timeout=90_000)
         assert page.get_attribute("#fleet-result", "data-outcome") == "accepted"
         assert page.get_attribute("#fleet-result", "data-verified") == "true"
+
+
+def test_segments_round_the_targets_are_drawn_once_asked_for(page: Page, service: Service) -> None:
+    """The legend's tick reads them; the pointer on one is told of it; unticked they are gone."""
+    plan_id = ask(page, "plan()")["id"]
+    assert ask(page, "segments()") == {}
+    tick = page.get_by_label("Segments round targets")
+    if not tick.is_visible():
+        page.locator("#legend summary").click()
+    tick.check()
+    page.wait_for_function("window.swathplan.segments().chosen > 0", timeout=60_000)
+    found = service.get(f"/api/v1/plans/{plan_id}/network.geojson").json()["features"]
+    own = [f for f in found if f["properties"]["role"] == "segment"]
+    drawn = ask(page, "segments()")
+    assert sum(drawn.values()) == len(own)
+    one = next(f for f in own if f["properties"]["state"] == "open")
+    lines = one["geometry"]["coordinates"]
+    (lon0, lat0, _), (lon1, lat1, _) = lines if one["geometry"]["type"] == "LineString" else lines[0]
+    lon_deg, lat_deg = (lon0 + lon1) / 2.0, (lat0 + lat1) / 2.0
+    page.evaluate(f"window.swathplan.look({lon_deg}, {lat_deg}, 16)")
+    x, y = on_screen(page, lon_deg, lat_deg)
+    page.mouse.move(x - 3, y)
+    page.mouse.move(x, y)
+    expect(page.locator("#readout")).to_contain_text(f"{one['properties']['target']} by cam")
+    expect(page.locator("#readout")).to_contain_text("open")
+    tick.uncheck()
+    page.wait_for_function("Object.keys(window.swathplan.segments()).length === 0")

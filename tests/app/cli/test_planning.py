@@ -28,6 +28,24 @@ def test_plan_from_file_to_file(swathplan: Command, scenario_file: Path, tmp_pat
     assert [path.name for path in tmp_path.iterdir() if "partial" in path.name] == []
 
 
+def test_segments_of_a_plan_are_written_and_counted(swathplan: Command, tmp_path: Path) -> None:
+    """Of the files alone; a target that is none of the regions is bad input."""
+    scenario, plan = tmp_path / "scenario.geojson", tmp_path / "plan.geojson"
+    scenario.write_text(json.dumps(EXAMPLE))
+    swathplan("plan", str(scenario), "-o", str(plan))
+    output = tmp_path / "network.geojson"
+    ended = swathplan("network", str(plan), str(scenario), "-o", str(output), "--json")
+    assert ended.code == 0
+    found = [f["properties"] for f in json.loads(output.read_text())["features"]]
+    segments = [each for each in found if each["role"] == "segment"]
+    told = json.loads(ended.out)
+    assert told["segments"] == len(segments)
+    assert told["chosen"] == sum(each["chosen"] for each in segments)
+    wrong = swathplan("network", str(plan), str(scenario), "--target", "nowhere")
+    assert wrong.code == 2
+    assert "nowhere" in wrong.err
+
+
 def test_plan_through_pipes_is_repeatable(swathplan: Command) -> None:
     """``-`` is standard input, the plan comes on standard output; times aside it is the same each time."""
     first, second = (swathplan("plan", "-", "--seed", "3", stdin=json.dumps(EXAMPLE)) for _ in range(2))
