@@ -3,7 +3,8 @@
 ``swathplan bench search --json``. The paper flies its variants at several turn durations; each has a row
 here, and one with the means of all. Times are those of one processor.
 ``--option turns_s=[6]`` for some of them. ``--option random=200`` plans so many random searches whole, each a
-row with what it uses of what it may, and what the judge says. ``--option picture=FILE`` draws instead.
+row with what it uses of what it may, and what the judge says. ``--option picture=FILE`` draws instead, with
+``--option drifting=true`` someone overboard.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
+from benchmarks.drift_picture import picture as drawn_drifting
 from benchmarks.search_picture import picture as drawn
 from benchmarks.search_scenarios import random_search
 from planner.errors import PlannerError
@@ -26,14 +28,18 @@ TURNS_S = (2.0, 4.0, 6.0, 8.0)
 
 
 def run(
-    turns_s: Sequence[float] = TURNS_S, seed: int = 0, random: int = 0, picture: str = ""
+    turns_s: Sequence[float] = TURNS_S,
+    seed: int = 0,
+    random: int = 0,
+    picture: str = "",
+    drifting: bool = False,
 ) -> Iterator[dict[str, Any]]:
     """A row for ``auto``, one for each variant and turn duration, and one with each variant's means.
 
     Or, where so many random searches are asked for, a row for each, and one that counts them.
     """
     if picture:
-        Path(picture).write_text(drawn())
+        Path(picture).write_text(drawn_drifting() if drifting else drawn())
         yield {"bench": "search", "picture": picture}
         return
     if random:

@@ -142,6 +142,7 @@ def _judged(
             surveys=verdict.surveys,
             area_seen_m2=verdict.area_seen_m2,
             importance_collected=verdict.importance_collected,
+            importance_total=verdict.importance_total,
             planning_time_s=dict(watch.seconds),
             left_out=left_out,
         ),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Literal
 
@@ -116,13 +117,61 @@ class ImportanceRaster:
 
 
 @dataclass(frozen=True, slots=True)
+class ImportancePoint:
+    """A place round which seeing ground is worth something: ``score`` a square metre there, less round it.
+
+    It falls off as a normal distribution does, of the standard deviation ``spread_m`` in each direction.
+    """
+
+    name: str
+    position: tuple[float, float]
+    spread_m: float
+    score: float
+
+    @property
+    def total(self) -> float:
+        """Of all ground round it."""
+        return self.score * math.tau * self.spread_m**2
+
+
+@dataclass(frozen=True, slots=True)
+class Drift:
+    """How what is looked for moves: east and north, and how uncertain that is.
+
+    Parameters
+    ----------
+    spread_m_s
+        Standard deviation in each direction; it stays as it is for the whole search.
+    elapsed_s
+        How long before the search's start it was where importance says.
+    """
+
+    east_m_s: float
+    north_m_s: float
+    spread_m_s: float = 0.0
+    elapsed_s: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
 class Importance:
-    """What seeing ground is worth; all the same where there are neither patches nor a raster."""
+    """What seeing ground is worth; all the same where there are no patches, points nor a raster.
+
+    Parameters
+    ----------
+    detection
+        Probability that a look finds what it sees; the k-th look pays (1 − detection)^(k − 1) of the first,
+        which pays that part of what ground is worth.
+    drift
+        How what is looked for moves on; None where it stays.
+    """
 
     patches: tuple[ImportancePatch, ...] = ()
     raster: ImportanceRaster | None = None
+    points: tuple[ImportancePoint, ...] = ()
+    detection: float = 1.0
+    drift: Drift | None = None
 
     @property
     def given(self) -> bool:
         """Whether some ground is worth more than other."""
-        return bool(self.patches) or self.raster is not None
+        return bool(self.patches) or bool(self.points) or self.raster is not None

@@ -207,10 +207,14 @@ def _tell_search(metrics: dict[str, Any]) -> None:
     say(
         f"searched: {metrics['area_seen_m2'] / 1e6:.3f} km² seen"
         + (f", {next(iter(parts)):.1%} of the ground" if len(parts) == 1 else "")
-        + ("" if worth is None else f", importance {worth:,.{0 if worth >= 100.0 else 3}f}")
+        + ("" if worth is None else f", importance {_worth(worth)} of {_worth(metrics['importance_total'])}")
         + f", in {metrics['flight_length_m'] / 1000:.2f} km and {metrics['flight_duration_s'] / 60:.1f} min"
         + ("" if energy_wh is None else f", {energy_wh:.1f} Wh")
     )
+
+
+def _worth(worth: float) -> str:
+    return f"{worth:,.{0 if worth >= 100.0 else 3}f}"
 
 
 def _tell_violations(violations: list[dict[str, Any]]) -> None:

@@ -6,6 +6,8 @@ import json
 from pathlib import Path
 from typing import Any
 
+from planner.geojson.equipment import METHODS
+
 EXAMPLE: dict[str, Any] = json.loads(
     (Path(__file__).resolve().parents[1] / "examples" / "scenario.geojson").read_text(encoding="utf-8")
 )
@@ -46,6 +48,18 @@ SCENARIO_SCHEMA: dict[str, Any] = {
                                 ]
                             },
                             "name": {"type": "string"},
+                            "score": {
+                                "type": "number",
+                                "minimum": 0,
+                                "description": "Of importance: what seeing a square metre is worth; of a "
+                                "Point, at the point.",
+                            },
+                            "spread_m": {
+                                "type": "number",
+                                "minimum": 1,
+                                "description": "Of importance that is a Point: standard deviation, in each "
+                                "direction, of the normal distribution that its score falls off by.",
+                            },
                         },
                     },
                 },
@@ -88,6 +102,42 @@ SCENARIO_SCHEMA: dict[str, Any] = {
             "type": "string",
             "description": "Of a search: id of an uploaded raster with the worth of seeing a square metre.",
         },
+        "search": {
+            "type": "object",
+            "description": "How a search finds what it looks for.",
+            "properties": {
+                "detection": {
+                    "type": "number",
+                    "exclusiveMinimum": 0,
+                    "maximum": 1,
+                    "default": 1,
+                    "description": "Probability that a look (a pass over it) finds what is there: k looks "
+                    "collect 1 - (1 - detection)^k of what ground is worth.",
+                },
+                "drift": {
+                    "type": "object",
+                    "description": "How what is looked for moves from where importance says.",
+                    "required": ["speed_m_s", "toward_deg"],
+                    "properties": {
+                        "speed_m_s": {"type": "number", "minimum": 0, "maximum": 20},
+                        "toward_deg": {"type": "number", "minimum": 0, "maximum": 360},
+                        "spread_m_s": {
+                            "type": "number",
+                            "minimum": 0,
+                            "maximum": 20,
+                            "default": 0,
+                            "description": "Standard deviation in each direction.",
+                        },
+                        "elapsed_s": {
+                            "type": "number",
+                            "minimum": 0,
+                            "default": 0,
+                            "description": "How long before the search's start it was there.",
+                        },
+                    },
+                },
+            },
+        },
         "wind": {"type": "object"},
         "clearance_m": {
             "type": "number",
@@ -97,7 +147,10 @@ SCENARIO_SCHEMA: dict[str, Any] = {
             "(30 m ArduPlane, 20 m PX4's wings, 5 m multirotors), 30 m over terrain. 0 is 0.",
         },
         "objective": {"type": "object"},
-        "method": {"type": "object"},
+        "method": {
+            "type": "object",
+            "properties": {stage: {"enum": list(names)} for stage, names in METHODS.items()},
+        },
         "seed": {"type": "integer"},
         "time_budget_s": {"type": "number", "exclusiveMinimum": 0},
     },

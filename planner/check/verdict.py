@@ -56,8 +56,8 @@ class Verdict:
         What is left of each region that is not covered whole, in the local frame.
     surveys
         What photos give of each region that a camera sees.
-    area_seen_m2, importance_collected
-        Of a search: the ground seen, and what it is worth where that is given.
+    area_seen_m2, importance_collected, importance_total
+        Of a search: the ground seen, and what it and all that is asked are worth where that is given.
     """
 
     violations: tuple[Violation, ...]
@@ -68,6 +68,7 @@ class Verdict:
     surveys: dict[str, Surveyed]
     area_seen_m2: float | None = None
     importance_collected: float | None = None
+    importance_total: float | None = None
 
 
 def judge(scenario: Scenario, plan: Plan) -> Verdict:
@@ -150,7 +151,7 @@ def judge(scenario: Scenario, plan: Plan) -> Verdict:
         if off_m > LENGTH_TOLERANCE * max(measured_m, 1.0):
             message = f"metrics say {said_m} m of {what}, the line measures {measured_m:.1f} m"
             violations.append(Violation("length", "metrics", message, off_m, "m"))
-    seen = (None, None) if found is None else (found.area_m2, found.importance)
+    seen = (None, None, None) if found is None else (found.area_m2, found.importance, found.total)
     return Verdict(tuple(violations), length_m, tightest_m, coverage, unseen, surveys, *seen)
 
 

@@ -28,8 +28,11 @@ HIGHEST_ALOFT_M = 30_000.0
 VEHICLE_TYPES = ("fixed_wing", "multirotor", "vtol")
 AUTOPILOTS = ("ardupilot", "px4")
 
-#: Patterns of search, and walks over importance, asked for by name.
-FAMILIES = ("parallel", "creeping", "spiral", "square", "sector", "importance", "snyder2021")
+#: Patterns of search, refined ones, walks over importance and the horizon on energy, asked for by name.
+FAMILIES = (
+    "parallel", "creeping", "spiral", "square", "sector", "refined", "importance", "snyder2021",
+    "energy-horizon", "energy-horizon-discrete", "energy-horizon-no-decision", "energy-horizon-time",
+)  # fmt: skip
 #: Ways of coverage whose sweeps come in order.
 OWN_ORDER = ("majeed2019", "boustrophedon-cells", "coverage-alternatives")
 
@@ -266,10 +269,12 @@ _WRITTEN = {
     "wind": '{"speed_m_s": 8, "from_deg": 270}',
     "objective": '{"missile": 2000}',
     "method": '{"routing": "auto"}',
+    "search": '{"detection": 0.8}',
+    "drift": '{"speed_m_s": 0.5, "toward_deg": 90}',
 }
 
 
-def _object(name: str, raw: Any, findings: Findings) -> dict[str, Any]:
+def as_object(name: str, raw: Any, findings: Findings) -> dict[str, Any]:
     """A member that has to be an object; another value is found, never ignored."""
     if isinstance(raw, dict):
         return raw
@@ -281,7 +286,7 @@ def read_wind(raw: Any, findings: Findings) -> Wind:
     """Member ``wind``."""
     if raw is None:
         return Wind()
-    fields = Fields("wind", _object("wind", raw, findings), findings)
+    fields = Fields("wind", as_object("wind", raw, findings), findings)
     speed_m_s = fields.number("speed_m_s", minimum=0.0, maximum=100.0) or 0.0
     from_deg = fields.number(
         "from_deg", 0.0 if not speed_m_s else fields.raw("from_deg"), minimum=0.0, maximum=360.0
@@ -294,7 +299,7 @@ def read_objective(raw: Any, findings: Findings) -> Objective:
     """Member ``objective``."""
     if raw is None:
         return Objective()
-    fields = Fields("objective", _object("objective", raw, findings), findings)
+    fields = Fields("objective", as_object("objective", raw, findings), findings)
     defaults = Objective()
     weights = {
         name: fields.number(name, getattr(defaults, name), minimum=0.0) for name in Objective.__slots__
@@ -307,7 +312,7 @@ def read_method(raw: Any, findings: Findings) -> Method:
     """Member ``method``."""
     if raw is None:
         return Method()
-    fields = Fields("method", _object("method", raw, findings), findings)
+    fields = Fields("method", as_object("method", raw, findings), findings)
     chosen = {stage: fields.choice(stage, names, "auto") or "auto" for stage, names in METHODS.items()}
     directions = fields.integer("directions", Method().directions, minimum=2)
     if directions > MOST_DIRECTIONS:

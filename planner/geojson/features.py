@@ -40,7 +40,7 @@ GEOMETRIES = {
     "start": ("Point",),
     "end": ("Point",),
     "base": ("Point",),
-    "importance": ("Polygon", "MultiPolygon"),
+    "importance": ("Polygon", "MultiPolygon", "Point"),
 }
 
 

@@ -22,19 +22,29 @@ from planner.geojson.home import home_amsl_m, kept_clear
 from planner.geojson.plausible import check_plausible
 from planner.geojson.relief import set_on_terrain
 from planner.geojson.rules import check_together
-from planner.geojson.searching import check_search, read_patch, searched, tell_unsearched, with_importance
+from planner.geojson.searching import (
+    check_search,
+    importance_of,
+    longest_s,
+    read_search,
+    read_worth,
+    searched,
+    tell_collected,
+    tell_unsearched,
+    with_importance,
+)
 from planner.geojson.shutter import at_camera_speed
 from planner.geojson.size import check_size
 from planner.geojson.slots import check_slots
 from planner.route import Terminal
 from planner.scenario import Scenario
 from planner.tasks.registry import TASKS
-from planner.wishes import ImportancePatch, Region
+from planner.wishes import Importance, ImportancePatch, ImportancePoint, Region
 
 MEMBERS = (
     "type", "features", "name", "bbox", "crs", "vehicles", "sensors", "altitude_m", "min_height_m",
     "max_height_m", "altitude_reference", "terrain", "terrain_following", "wind", "clearance_m", "objective",
-    "task", "method", "seed", "time_budget_s", "separation", "importance_raster",
+    "task", "method", "seed", "time_budget_s", "separation", "importance_raster", "search",
 )  # fmt: skip
 
 CRS84 = (
@@ -114,7 +124,7 @@ def _read(document: Any, findings: Findings, terrains: Terrains | None) -> Scena
         named = [raw.name for raw in raws if raw.role == role]
         for extra in named[most:]:
             findings.error(extra, f"several-{role}s", f"is a second {role}", f"Keep one {role}.")
-    patches: list[ImportancePatch] = each("importance", read_patch)
+    worth: list[ImportancePatch | ImportancePoint] = each("importance", read_worth)
 
     top = Fields("scenario", document, findings)
     top.refuse_unknown(also_known=MEMBERS)
@@ -138,7 +148,7 @@ def _read(document: Any, findings: Findings, terrains: Terrains | None) -> Scena
     reference: Any = top.choice("altitude_reference", ("amsl", "home", "terrain"), "terrain")
     task = top.choice("task", tuple(TASKS), "collect")
     if task != "search":
-        tell_unsearched(patches, top, findings)
+        tell_unsearched(worth, top, findings)
     raster_name = top.text("importance_raster", None) if task == "search" else None
     terrain_name = top.text("terrain", None)
     terrain = None if terrain_name is None else find_terrain(terrains, terrain_name)
@@ -161,10 +171,15 @@ def _read(document: Any, findings: Findings, terrains: Terrains | None) -> Scena
     wind = equipment.read_wind(document.get("wind"), findings)
     objective = equipment.read_objective(document.get("objective"), findings)
     method = equipment.read_method(document.get("method"), findings)
+    importance = Importance()
     if task == "search":
         named = [raw.name for raw in raws if raw.role == "area"]
-        regions = searched(regions, areas, named, patches, findings)
-    elif not regions and not any(raw.role == "roi" for raw in raws):
+        detection, drift = read_search(document.get("search"), findings)
+        importance = importance_of(worth, detection, drift)
+        regions = searched(regions, areas, named, importance, longest_s(aircraft), findings)
+    else:
+        tell_collected(method, findings)
+    if task != "search" and not regions and not any(raw.role == "roi" for raw in raws):
         findings.error("scenario", "no-region", "has no region of interest", "Add a feature of role roi.")
     separation = read_separation(document.get("separation"), findings)
     if len(aircraft) == 1 and separation is not None:
@@ -204,7 +219,7 @@ def _read(document: Any, findings: Findings, terrains: Terrains | None) -> Scena
     check_fleet(scenario, bases, document.get("objective"), findings)
     if task == "search":
         raster = None if raster_name is None else find_terrain(terrains, raster_name)
-        scenario = with_importance(scenario, patches, raster_name, raster, findings)
+        scenario = with_importance(scenario, importance, raster_name, raster, findings)
     scenario = with_wishes(scenario)
     tell_unused(scenario, heights, findings)
     if terrain is not None:

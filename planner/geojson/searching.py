@@ -3,59 +3,166 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import shapely
-from shapely.geometry import MultiPolygon, Polygon
+from shapely import affinity
+from shapely.geometry import MultiPolygon, Point, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from planner.airspace.terrain import Terrain
+from planner.angles import angle_from_heading
 from planner.frames import LocalFrame
 from planner.geojson import geometry as shapes
-from planner.geojson.features import RawFeature
-from planner.geojson.fields import Fields, Findings
+from planner.geojson.equipment import as_object
+from planner.geojson.features import DISC_QUADRANT, RawFeature
+from planner.geojson.fields import REQUIRED, Fields, Findings
 from planner.geojson.outlines import few_cornered
 from planner.scenario import Scenario
-from planner.wishes import Importance, ImportancePatch, ImportanceRaster, Region
+from planner.vehicle.aircraft import Aircraft
+from planner.vehicle.energy import FlightState
+from planner.wishes import (
+    Drift,
+    Importance,
+    ImportancePatch,
+    ImportancePoint,
+    ImportanceRaster,
+    Method,
+    Region,
+)
 
 #: A raster's local cells are no finer than this, and of the ground's longer side no fewer and no more.
 LEAST_CELL_M, LEAST_CELLS, MOST_CELLS = 1.0, 100, 500
+#: How uncertain a place is, what drifts and for how long: beyond these is a slip of the pen.
+LEAST_SPREAD_M, MOST_SPREAD_M, MOST_DRIFT_M_S, MOST_ELAPSED_S = 1.0, 1e5, 20.0, 7 * 86_400.0
+#: What methods of search know drift, walk over importance, or begin as the published horizon does.
+DRIFTED, WALKS = (
+    ("parallel", "creeping", "spiral", "square", "sector", "refined"),
+    ("importance", "snyder2021"),
+)
+HORIZON = "energy-horizon"
+#: So many standard deviations round a point are searched where nothing says what is.
+SPREADS = 3.0
 #: A square metre is hardly worth more, and sums of what is are exact no longer.
 MOST_SCORE = 1e12
 
 
-def read_patch(raw: RawFeature, frame: LocalFrame, findings: Findings) -> ImportancePatch | None:
+def read_worth(
+    raw: RawFeature, frame: LocalFrame, findings: Findings
+) -> ImportancePatch | ImportancePoint | None:
     """Role ``importance``."""
     score = raw.fields.number("score", minimum=0.0, maximum=MOST_SCORE)
+    if raw.geometry["type"] == "Point":
+        spread_m = raw.fields.number("spread_m", minimum=LEAST_SPREAD_M, maximum=MOST_SPREAD_M)
+        position = shapes.point(raw.name, raw.geometry, frame, findings)
+        raw.fields.refuse_unknown()
+        if score is None or spread_m is None or position is None:
+            return None
+        return ImportancePoint(raw.name, position, spread_m, score)
     drawn = shapes.area(raw.name, raw.geometry, frame, findings)
     area = few_cornered(raw.name, drawn, findings)
     raw.fields.refuse_unknown()
     return None if score is None or area is None else ImportancePatch(raw.name, area, score)
 
 
-def tell_unsearched(patches: Sequence[ImportancePatch], top: Fields, findings: Findings) -> None:
+def read_search(raw: Any, findings: Findings) -> tuple[float, Drift | None]:
+    """Member ``search``: how probable it is that a look finds, and how what is looked for drifts."""
+    if raw is None:
+        return 1.0, None
+    fields = Fields("search", as_object("search", raw, findings), findings)
+    detection = fields.number("detection", 1.0, above=0.0, maximum=1.0)
+    drift = fields.raw("drift")
+    fields.refuse_unknown()
+    return detection or 1.0, None if drift is None else _read_drift(drift, findings)
+
+
+def _read_drift(raw: Any, findings: Findings) -> Drift | None:
+    """Its member ``drift``."""
+    fields = Fields("drift", as_object("drift", raw, findings), findings)
+    speed_m_s = fields.number("speed_m_s", minimum=0.0, maximum=MOST_DRIFT_M_S)
+    toward_deg = fields.number(
+        "toward_deg", 0.0 if speed_m_s == 0.0 else REQUIRED, minimum=0.0, maximum=360.0
+    )
+    spread_m_s = fields.number("spread_m_s", 0.0, minimum=0.0, maximum=MOST_DRIFT_M_S)
+    elapsed_s = fields.number("elapsed_s", 0.0, minimum=0.0, maximum=MOST_ELAPSED_S)
+    fields.refuse_unknown()
+    if speed_m_s is None or toward_deg is None or spread_m_s is None or elapsed_s is None:
+        return None
+    angle_rad = angle_from_heading(toward_deg)
+    return Drift(speed_m_s * math.cos(angle_rad), speed_m_s * math.sin(angle_rad), spread_m_s, elapsed_s)
+
+
+def tell_unsearched(
+    patches: Sequence[ImportancePatch | ImportancePoint], top: Fields, findings: Findings
+) -> None:
     """Importance is what searches are for: elsewhere it is told that nothing reads it."""
     for patch in patches:
         said = f"is not used by the collect task, nor its score of {patch.score:g}"
         findings.warning(patch.name, "not-used", said, "Remove it, or set task to search.")
     top.unused("importance_raster", "is what a search is worth, and nothing is searched")
+    top.unused("search", "says how a search finds, and nothing is searched")
+
+
+def importance_of(
+    worth: Sequence[ImportancePatch | ImportancePoint], detection: float, drift: Drift | None
+) -> Importance:
+    """Importance as its features and the member ``search`` tell it."""
+    patches = tuple(one for one in worth if isinstance(one, ImportancePatch))
+    points = tuple(one for one in worth if isinstance(one, ImportancePoint))
+    return Importance(patches, None, points, detection, drift)
+
+
+def longest_s(aircraft: Sequence[Aircraft | None]) -> float | None:
+    """How long the longest flight lasts, about; None where nothing limits one of them."""
+    found = []
+    for one in aircraft:
+        if one is None:
+            continue
+        limits_s = [one.max_flight_time_s]
+        if one.max_range_m is not None:
+            limits_s.append(one.max_range_m / one.airspeed_m_s)
+        if one.usable_wh is not None and one.power is not None:
+            limits_s.append(one.usable_wh * 3600.0 / one.power.power_w(FlightState(one.airspeed_m_s)))
+        known = [limit_s for limit_s in limits_s if limit_s is not None]
+        if not known:
+            return None
+        found.append(min(known))
+    return max(found, default=None)
 
 
 def searched(
     regions: Sequence[Region],
     areas: Sequence[Polygon],
     area_names: Sequence[str],
-    patches: Sequence[ImportancePatch],
+    importance: Importance,
+    lasting_s: float | None,
     findings: Findings,
 ) -> list[Region]:
-    """The ground of a search: the regions where there are some, else the area, else what is important."""
+    """The ground of a search: the regions where there are some, else the area, else what is important.
+
+    Parameters
+    ----------
+    lasting_s
+        How long the longest flight lasts, for what drifts; None where nothing says.
+    """
     if regions:
         return [replace(region, required=False) for region in regions]
     if areas:
         return [Region(area_names[0], areas[0], required=False)]
-    whole = shapely.union_all([patch.area for patch in patches if patch.score > 0.0])
+    drift = importance.drift
+    if drift is not None and lasting_s is None:
+        findings.error(
+            "scenario",
+            "no-ground",
+            "looks for what drifts, and neither says where nor how long it flies",
+            "Add a Polygon of role area or roi, or energy, range or flight time of the vehicle.",
+        )
+        return []
+    most = [_drifted_over(one, drift, lasting_s or 0.0) for one in _worth_most(importance)]
+    whole = shapely.union_all(most)
     if isinstance(whole, Polygon | MultiPolygon) and not whole.is_empty:
         return [Region("importance", whole, required=False)]
     findings.error(
@@ -67,25 +174,66 @@ def searched(
     return []
 
 
+def _worth_most(importance: Importance) -> Iterator[Polygon | MultiPolygon]:
+    """Ground of what is worth anything, of points the disc round them."""
+    for patch in importance.patches:
+        if patch.score > 0.0:
+            yield patch.area
+    for point in importance.points:
+        if point.score > 0.0:
+            yield _round(point)
+
+
+def _round(point: ImportancePoint) -> Polygon:
+    """The disc that nearly all of its worth lies in."""
+    disc: Polygon = Point(point.position).buffer(SPREADS * point.spread_m, quad_segs=DISC_QUADRANT)
+    return disc
+
+
+def _drifted_over(ground: Polygon | MultiPolygon, drift: Drift | None, lasting_s: float) -> BaseGeometry:
+    """Ground that something on it drifts over in a flight."""
+    if drift is None:
+        return ground
+    places: list[BaseGeometry] = []
+    for since_s in (drift.elapsed_s, drift.elapsed_s + lasting_s):
+        moved = affinity.translate(ground, since_s * drift.east_m_s, since_s * drift.north_m_s)
+        places.append(moved.buffer(SPREADS * since_s * drift.spread_m_s))
+    hull: BaseGeometry = shapely.union_all(places).convex_hull
+    return hull
+
+
 def with_importance(
     scenario: Scenario,
-    patches: Sequence[ImportancePatch],
+    asked: Importance,
     raster_name: str | None,
     raster: Terrain | None,
     findings: Findings,
 ) -> Scenario:
     """The scenario with what its ground is worth."""
     ground = shapely.union_all([region.area for region in scenario.regions])
-    for patch in patches:
-        if patch.area.intersection(ground).area <= 0.0:
+    reached: list[tuple[str, float, Polygon | MultiPolygon]] = [
+        *((one.name, one.score, one.area) for one in asked.patches),
+        *((one.name, one.score, _round(one)) for one in asked.points),
+    ]
+    for name, _, area in reached:
+        if asked.drift is None and area.intersection(ground).area <= 0.0:
             findings.warning(
-                patch.name, "outside-ground", "lies outside what is searched", "Move it, or remove it."
+                name, "outside-ground", "lies outside what is searched", "Move it, or remove it."
             )
     local = None
     if raster_name is not None:
         local = _local(scenario, raster_name, raster, ground, findings)
-    importance = Importance(tuple(patches), local)
-    worth = math.fsum(patch.score * patch.area.intersection(ground).area for patch in patches)
+    importance = replace(asked, raster=local)
+    worth = math.fsum(score * area.intersection(ground).area for _, score, area in reached)
+    if asked.drift is not None:
+        worth = math.fsum(score for _, score, _ in reached)
+        if not importance.given:
+            findings.error(
+                "drift",
+                "nothing-drifts",
+                "says how what is looked for moves on, and nothing says where it was",
+                "Add importance: a Point with score and spread_m where it was last known.",
+            )
     if local is not None:
         worth += float(local.scores.sum())
     if importance.given and worth <= 0.0 and not findings.errors:
@@ -158,13 +306,7 @@ def _local(
 def check_search(scenario: Scenario, findings: Findings) -> None:
     """Rules of searches: one sensor, one height; nothing asked that they ignore."""
     regions = scenario.regions
-    if scenario.method.routing == "stecz2020":
-        findings.error(
-            "scenario",
-            "not-supported",
-            "asks for the routing stecz2020, which assigns regions; a search shares its ground out",
-            "Leave method.routing out.",
-        )
+    check_methods(scenario, findings)
     for region in regions:
         wishes = {
             "approach_deg": region.approach_rad is not None,
@@ -188,3 +330,42 @@ def check_search(scenario: Scenario, findings: Findings) -> None:
                 "with one sensor",
                 "Give all its regions the same, or search them one by one.",
             )
+
+
+def check_methods(scenario: Scenario, findings: Findings) -> None:
+    """Methods that a search has no use for, or that know less than it asks."""
+    method, importance = scenario.method, scenario.importance
+    for stage, said in (("coverage", "how regions are covered"), ("routing", "in which order, or by whom")):
+        name = getattr(method, stage)
+        if name != "auto":
+            findings.error(
+                "method",
+                "not-supported",
+                f"asks for the {stage} {name}, which says {said}; a search sees ground by method.search",
+                f"Leave method.{stage} out.",
+            )
+    known = {
+        "what misses": (importance.detection < 1.0, not method.search.startswith(HORIZON)),
+        "what drifts": (importance.drift is not None, method.search in (*DRIFTED, "auto")),
+        "importance": (importance.given, not method.search.startswith(HORIZON)),
+    }
+    missing = [what for what, (asked, able) in known.items() if asked and not able]
+    if missing:
+        every = ("auto", *DRIFTED) if importance.drift is not None else ("auto", *DRIFTED, *WALKS)
+        findings.error(
+            "method",
+            "not-supported",
+            f"asks for the search {method.search}, which knows nothing of {', nor of '.join(missing)}",
+            f"Use one of: {', '.join(every)}.",
+        )
+
+
+def tell_collected(method: Method, findings: Findings) -> None:
+    """A way to search is refused where nothing is searched."""
+    if method.search != "auto":
+        findings.error(
+            "method",
+            "not-supported",
+            f"asks for the search {method.search}, and the task is collect",
+            "Leave method.search out, or set task to search.",
+        )

@@ -15,10 +15,15 @@ from shapely.ops import nearest_points
 
 from planner.progress import Stop, never, raise_if
 from planner.route import Look
-from planner.search.families import patterns
+from planner.search.belief.drifting import Drifting
+from planner.search.belief.strips import drifting_strips
+from planner.search.families import FAMILIES, patterns
+from planner.search.horizon import VARIANTS
 from planner.search.importance.strips import WALKS, walked
 from planner.search.programme import Pricing, Programme, Sweep, cut_to, seen_worth, thinned_to
 from planner.search.room import LEAST_PASS_M, Room
+from planner.search.shifted import shifted, strip_of
+from planner.search.straights import horizon_strips
 from planner.search.swaths import Looking
 from planner.search.values import Worth
 
@@ -38,6 +43,12 @@ MOST_PARTS = 12
 LARGER = 1.3
 #: Passes made as long as need be are longer by this.
 ROUNDING_M = 1e-6
+#: Patterns that take less than this part of the budget are flown again, so often at most.
+ROOM_AGAIN, MOST_AGAIN = 0.97, 6
+#: What programmes are called whose strips were moved each by itself.
+REFINED = "refined"
+#: Published methods, flown as published.
+PUBLISHED = ("snyder2021", *VARIANTS)
 #: Strips by the width of the swath: wider ones leave gaps, and reach farther.
 WIDTHS = (1.0, 1.08)
 
@@ -63,6 +74,15 @@ class Search:
     pricing: Pricing
     stop: Stop = never
     family: str | None = None
+    detection: float = 1.0
+    drifting: Drifting | None = None
+    seed: int = 0
+
+    def found(self, sweeps: Sequence[Sweep]) -> float:
+        """What passes find: of the worth of ground, or of what drifts, the sooner the better."""
+        if self.drifting is not None:
+            return self.drifting.found(sweeps, self.pricing)
+        return seen_worth(sweeps, self.worth, self.detection)
 
     def ranked(self, budget_m: float) -> list[Programme]:
         """Programmes within a budget, metres through the air: those worth most, refined and as laid."""
@@ -72,18 +92,25 @@ class Search:
             for laid in self._laid(ground, width_m):
                 raise_if(self.stop)
                 found += self._cut(laid, budget_m, thin=False)
-        for laid in self._walked(budget_m, width_m):
+        laid_besides = (self._walked, self._published, self._drifted)
+        for laid in (each for lay in laid_besides for each in lay(budget_m, width_m)):
+            raise_if(self.stop)
             found += self._cut(laid, budget_m, thin=False)
+        found += [way for each in found for way in self._again(each, budget_m)]
         found.sort(key=lambda each: (-each.worth, each.cost_m))
         thinned = [
             way
             for each in found[:MOST_PATTERNS_THINNED]
-            if each.family != "snyder2021"
+            if each.family not in PUBLISHED
             for way in self._cut(each, budget_m, thin=True)
         ]
         ways = sorted(found + thinned, key=lambda each: (-each.worth, each.cost_m))
         best = ways[:MOST_REFINED]
-        refined = [self._refined(way, budget_m, width_m) for way in best if way.family not in WALKS]
+        refined = [
+            self._refined(way, budget_m, width_m)
+            for way in best
+            if way.family not in WALKS and way.family not in VARIANTS
+        ]
         refined.sort(key=lambda each: (-each.worth, each.cost_m))
         # What is estimated to be better may take more when it is flown: both are offered in turn.
         pairs = [each for pair in zip(refined, ways, strict=False) for each in pair]
@@ -110,9 +137,40 @@ class Search:
                             best, moved = way, True
         return best
 
+    def shifted(self, start: Programme, budget_m: float) -> Programme:
+        """The strips of a programme moved each by itself, for more within a budget."""
+        known: dict[bytes, tuple[Sweep, ...]] = {}
+
+        def tried(strips: Floats) -> Programme | None:
+            raise_if(self.stop)
+            sweeps: list[Sweep] = []
+            for strip in strips:
+                key = strip.tobytes()
+                if key not in known:
+                    known[key] = tuple(self._sweeps(strip[None], start.look))
+                sweeps += known[key]
+            laid = Laid(REFINED, tuple(sweeps), strips, start.look)
+            return next(iter(self._cut(laid, budget_m, thin=False)), None)
+
+        laid = np.array([strip_of(sweep) for sweep in start.sweeps])
+        total = self.worth.total if self.drifting is None else self.drifting.total
+        return shifted(laid, tried, self.looking.narrowest_m(), total, self.seed) or start
+
+    def _again(self, way: Programme, budget_m: float) -> Iterator[Programme]:
+        """A pattern to and fro for as long as the budget lasts, where looks again find something."""
+        if self.detection >= 1.0 or way.cost_m > ROOM_AGAIN * budget_m or not way.whole:
+            return
+        back = tuple(self._sweeps(way.strips[::-1, ::-1], way.look))
+        sweeps, strips = way.whole, way.strips
+        rounds = min(MOST_AGAIN, math.ceil(budget_m / max(way.cost_m, 1.0)))
+        for number in range(rounds):
+            sweeps += way.whole if number % 2 else back
+            strips = np.concatenate([strips, way.strips if number % 2 else way.strips[::-1, ::-1]])
+        yield from self._cut(Laid(way.family, sweeps, strips, way.look), budget_m, thin=False)
+
     def flyable(self) -> Iterator[tuple[Sweep, ...]]:
         """Passes over the ground, by pattern, whatever they cost; none where it is blocked."""
-        of_all = replace(self, family=None) if self.family in WALKS else self
+        of_all = self if self.family in FAMILIES else replace(self, family=None)
         laid = of_all._laid(self.ground, self.looking.narrowest_m(), (1.0,))
         return (each.whole for each in laid)
 
@@ -122,13 +180,19 @@ class Search:
         if not thin:
             way = cut_to(whole, self.pricing, budget_m)
         elif 1 < len(whole) <= MOST_THINNED:
-            way = thinned_to(whole, self.pricing, budget_m, self.worth)
+            way = thinned_to(whole, self.pricing, budget_m, self._alone(whole))
         else:
             return ()
         if not way:
             return ()
-        worth, cost_m = seen_worth(way, self.worth), self.pricing.cost_m(way)
+        worth, cost_m = self.found(way), self.pricing.cost_m(way)
         return (Programme(laid.family, way, worth, cost_m, whole, thin, laid.strips, laid.look),)
+
+    def _alone(self, sweeps: Sequence[Sweep]) -> Floats:
+        """What each pass finds, as if there were no other."""
+        if self.drifting is not None:
+            return self.drifting.alone(sweeps, self.pricing)
+        return np.array([seen_worth([sweep], self.worth, self.detection) for sweep in sweeps])
 
     def _laid(
         self, ground: Polygon | MultiPolygon, width_m: float, widths: Sequence[float] = WIDTHS
@@ -137,7 +201,7 @@ class Search:
         datum = self._datum()
         for part in widths:
             for pattern in patterns(ground, part * width_m, HEADINGS_RAD, datum):
-                if self.family not in (None, pattern.family):
+                if self.family not in (None, REFINED, pattern.family):
                     continue
                 for look in self.looking.looks:
                     sweeps = tuple(self._sweeps(pattern.strips, look))
@@ -147,7 +211,8 @@ class Search:
     def _walked(self, budget_m: float, width_m: float) -> Iterator[Laid]:
         """Walks over cells of importance; where all ground is worth the same, only if asked for by name."""
         scores = self.worth.scores[self.worth.scores > 0.0]
-        if self.family is None and (not len(scores) or scores.min() > 0.999 * scores.max()):
+        plain = not len(scores) or scores.min() > 0.999 * scores.max()
+        if self.family is None and (plain or self.drifting is not None):
             return
         name = "importance" if self.family is None else self.family
         if name not in WALKS:
@@ -157,6 +222,27 @@ class Search:
             raise_if(self.stop)
             for look in self.looking.looks:
                 sweeps = tuple(self._sweeps(strips, look))
+                if sweeps:
+                    yield Laid(name, sweeps, strips, look)
+
+    def _published(self, budget_m: float, width_m: float) -> Iterator[Laid]:
+        """The published receding horizon, asked for by name."""
+        if self.family not in VARIANTS:
+            return
+        strips = horizon_strips(self.family, self.ground, self.worth, width_m, self.pricing, budget_m)
+        for look in self.looking.looks:
+            sweeps = tuple(self._sweeps(strips, look)) if len(strips) else ()
+            if sweeps:
+                yield Laid(self.family, sweeps, strips, look)
+
+    def _drifted(self, budget_m: float, width_m: float) -> Iterator[Laid]:
+        """Patterns about what drifts, and lines planned for where it may be."""
+        if self.drifting is None or self.family not in (None, REFINED):
+            return
+        for name, strips in drifting_strips(self.drifting, self.pricing, width_m, budget_m, self.seed):
+            raise_if(self.stop)
+            for look in self.looking.looks:
+                sweeps = tuple(self._sweeps(strips, look)) if len(strips) else ()
                 if sweeps:
                     yield Laid(name, sweeps, strips, look)
 

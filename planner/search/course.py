@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 from numpy.typing import NDArray
-from shapely.geometry import LineString, Polygon
+from shapely.geometry import LineString, MultiPolygon, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from planner.search.course_kernels import disc_worth, rounded
@@ -41,6 +41,11 @@ class Glider:
     airspeed_m_s: float
     max_load_factor: float
     energy_j: float
+
+    @staticmethod
+    def load_of(airspeed_m_s: float, radius_m: float) -> float:
+        """n of a level turn of a radius."""
+        return math.hypot(1.0, airspeed_m_s**2 / (STANDARD_GRAVITY_M_S2 * radius_m))
 
     @property
     def max_turn_rad_s(self) -> float:
@@ -78,7 +83,7 @@ class DiscSearch:
         Radius of the disc.
     """
 
-    ground: Polygon
+    ground: Polygon | MultiPolygon
     worth: Worth
     reach_m: float
     start: Place

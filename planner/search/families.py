@@ -22,6 +22,7 @@ from shapely.geometry.base import BaseGeometry
 Floats = NDArray[np.float64]
 Ground = Polygon | MultiPolygon
 
+FAMILIES = ("parallel", "creeping", "spiral", "square", "sector")
 #: Strips shorter than this are left out.
 LEAST_M = 1.0
 #: Legs of a sector search are turned by this much, and it has so many triangles.

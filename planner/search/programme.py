@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from planner.dubins.kernels import dubins_lengths
 from planner.route import Look
-from planner.search.kernels import mark_seen
+from planner.search.kernels import mark_seen, take_looks
 from planner.search.room import LEAST_PASS_M
 from planner.search.values import Swath, Worth
 from planner.vehicle.model import FlightModel
@@ -145,6 +145,13 @@ class Pricing:
         goals = np.column_stack([np.tile(self.end, (len(exits), 1)), home_rad])
         return self.between_m(exits, goals)
 
+    def arrivals_m(self, sweeps: Sequence[Sweep], entries: Floats, exits: Floats) -> Floats:
+        """Metres through the air before each pass with its settling run, (N,)."""
+        own_m = self.own_m(sweeps)
+        between_m = self.between_m(exits[:-1], entries[1:]) if len(sweeps) > 1 else np.zeros(0)
+        reached_m = np.concatenate([[self.outward_m(entries[0])], between_m]).cumsum()
+        return np.asarray(reached_m + np.concatenate([[0.0], own_m[:-1].cumsum()]))
+
     def cost_m(self, sweeps: Sequence[Sweep]) -> float:
         """Of the whole."""
         if not sweeps:
@@ -155,13 +162,18 @@ class Pricing:
         return float(self.own_m(sweeps).sum() + between_m.sum() + ends_m)
 
 
-def seen_worth(sweeps: Sequence[Sweep], worth: Worth) -> float:
-    """What passes see together, each place once."""
-    seen = np.zeros(worth.scores.shape, dtype=np.bool_)
-    if sweeps:
-        rows = np.array([sweep.row for sweep in sweeps])
+def seen_worth(sweeps: Sequence[Sweep], worth: Worth, detection: float = 1.0) -> float:
+    """What passes find together: the k-th look at a place finds a part of what those before have missed."""
+    if not sweeps:
+        return 0.0
+    rows = np.array([sweep.row for sweep in sweeps])
+    if detection >= 1.0:
+        seen = np.zeros(worth.scores.shape, dtype=np.bool_)
         mark_seen(seen, worth.west_m, worth.south_m, worth.cell_m, rows)
-    return float(worth.scores[seen].sum()) * worth.cell_m**2
+        return float(worth.scores[seen].sum()) * worth.cell_m**2
+    left = np.ones(worth.scores.shape)
+    take_looks(left, worth.west_m, worth.south_m, worth.cell_m, rows, 1.0 - detection)
+    return float((worth.scores * (1.0 - left)).sum()) * worth.cell_m**2
 
 
 def cut_to(sweeps: Sequence[Sweep], pricing: Pricing, budget_m: float) -> tuple[Sweep, ...]:
@@ -169,10 +181,7 @@ def cut_to(sweeps: Sequence[Sweep], pricing: Pricing, budget_m: float) -> tuple[
     if not sweeps:
         return ()
     entries, exits = pricing.poses(sweeps)
-    own_m = pricing.own_m(sweeps)
-    between_m = pricing.between_m(exits[:-1], entries[1:]) if len(sweeps) > 1 else np.zeros(0)
-    reached_m = np.concatenate([[pricing.outward_m(entries[0])], between_m]).cumsum()
-    reached_m += np.concatenate([[0.0], own_m[:-1].cumsum()])
+    own_m, reached_m = pricing.own_m(sweeps), pricing.arrivals_m(sweeps, entries, exits)
     fits = np.flatnonzero(reached_m + own_m + pricing.homeward_m(exits) <= budget_m)
     count = int(fits[-1]) + 1 if len(fits) else 0
     kept = tuple(sweeps[:count])
@@ -190,9 +199,16 @@ def cut_to(sweeps: Sequence[Sweep], pricing: Pricing, budget_m: float) -> tuple[
     return (*kept, last.shortened(length_m)) if length_m >= least_m else kept
 
 
-def thinned_to(sweeps: Sequence[Sweep], pricing: Pricing, budget_m: float, worth: Worth) -> tuple[Sweep, ...]:
-    """The passes without those worth least for the way they take, until the rest is in the budget."""
-    values = np.array([seen_worth([sweep], worth) for sweep in sweeps])
+def thinned_to(
+    sweeps: Sequence[Sweep], pricing: Pricing, budget_m: float, values: Floats
+) -> tuple[Sweep, ...]:
+    """The passes without those worth least for the way they take, until the rest is in the budget.
+
+    Parameters
+    ----------
+    values
+        What each pass finds alone, (N,).
+    """
     own_m = pricing.own_m(sweeps)
     entries, exits = pricing.poses(sweeps)
     kept = np.arange(len(sweeps), dtype=np.int64)

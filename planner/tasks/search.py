@@ -9,7 +9,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 import shapely
 from shapely.geometry import MultiPolygon, Polygon
-from shapely.geometry.base import BaseGeometry
 
 from planner.errors import InfeasibleError
 from planner.metrics import used
@@ -18,16 +17,17 @@ from planner.progress import silent
 from planner.publish import Leg
 from planner.route import Anchor, CollectPass
 from planner.scenario import Scenario
-from planner.search.choose import Search
+from planner.search.belief.drifting import Drifting, believed
+from planner.search.choose import PUBLISHED, REFINED, Search
 from planner.search.programme import Pricing, Programme
 from planner.search.room import Room
 from planner.search.swaths import Looking
-from planner.search.values import Worth, worth_of_ground
 from planner.tasks.flying import Station
 from planner.tasks.methods import chosen_methods
 from planner.tasks.setting import Setting
 from planner.tasks.task import Answer, Controls, Task
 from planner.tasks.transits import Transits
+from planner.tasks.worth import drifted, ground_of, worth_of
 from planner.vehicle.aircraft import Aircraft
 from planner.vehicle.energy import FlightState
 from planner.vehicle.limits import Use, exceeded
@@ -39,6 +39,10 @@ FLOWN, LENGTHS = 6, 6
 #: A flight that uses this part of what it may is long enough; more than the other is not flown: the judge
 #: reckons by the vertices of the published line, by a thousandth or so another way.
 ENOUGH, MOST = 0.99, 0.997
+#: The best flight is improved so often, for so much more at least.
+MOST_IMPROVED, LEAST_BETTER = 3, 1e-3
+#: A flight that nothing limits looks for what drifts for so many times what sees all ground once.
+UNLIMITED = 1.5
 #: Ends no farther apart are one place to what hovers, which flies this far at least.
 HOVERED_M = 5.0
 
@@ -74,8 +78,8 @@ def search(scenario: Scenario, controls: Controls) -> Answer:
     return answer_to(sought(scenario, controls), controls)
 
 
-def reach_m2(scenario: Scenario, controls: Controls) -> float:
-    """Ground that an aircraft sees at most, flying straight for as long as its limits allow.
+def reach(scenario: Scenario, controls: Controls) -> tuple[float, float]:
+    """Ground that an aircraft sees at most, flying straight as long as limits allow, and how long that is.
 
     Raises
     ------
@@ -87,7 +91,8 @@ def reach_m2(scenario: Scenario, controls: Controls) -> float:
     if next(asked.flyable(), None) is None:
         _refuse_blocked(asked, math.inf, setting.model.aircraft)
     transits = Transits.of(setting, scenario.objective, chosen_methods(scenario.method))
-    return _spare_m(transits, scenario, controls) * asked.looking.narrowest_m()
+    spare_m, lead_s = _spare(transits, scenario, controls)
+    return spare_m * asked.looking.narrowest_m(), _lasting_s(asked, spare_m, lead_s)
 
 
 def sought(scenario: Scenario, controls: Controls) -> Sought:
@@ -101,8 +106,10 @@ def sought(scenario: Scenario, controls: Controls) -> Sought:
     setting = Setting.of(scenario)
     methods = chosen_methods(scenario.method) | {"search": "patterns", "coverage": "none", "routing": "none"}
     transits = Transits.of(setting, scenario.objective, methods)
-    asked = replace(_asked(scenario, setting), stop=controls.stop)
-    spare_m = _spare_m(transits, scenario, controls)
+    asked = replace(_asked(scenario, setting), stop=controls.stop, seed=scenario.seed)
+    spare_m, lead_s = _spare(transits, scenario, controls)
+    if scenario.importance.drift is not None:
+        asked = _drifting(asked, scenario, spare_m, lead_s)
     with controls.stage("search"):
         controls.progress("search", 0.0)
         ranked = asked.ranked(spare_m)
@@ -129,6 +136,8 @@ def answer_to(one: Sought, controls: Controls) -> Answer:
 
     with controls.stage("transit"):
         best = _best(one.ranked, asked, one.spare_m, fly, setting.model.aircraft, controls)
+        if asked.family in (None, REFINED) and best.programme.family not in PUBLISHED:
+            best = _improved(best, asked, fly, setting.model.aircraft, controls)
     methods = one.transits.methods | {"search": best.programme.family}
     return Answer(setting, best.composed, best.legs, best.passes, methods, (), best.notes)
 
@@ -146,7 +155,7 @@ def refuse_unsearchable(scenario: Scenario) -> None:
     asked = _asked(scenario, setting)
     if next(asked.flyable(), None) is None:
         _refuse_blocked(asked, math.inf, setting.model.aircraft)
-    _spare_m(transits, scenario, None)
+    _spare(transits, scenario, None)
 
 
 def _asked(scenario: Scenario, setting: Setting) -> Search:
@@ -161,39 +170,34 @@ def _asked(scenario: Scenario, setting: Setting) -> Search:
     start, end = (terminal.position for terminal in setting.ends)
     worth = worth_of(scenario, ground, _cell_m(ground, width_m))
     family = None if scenario.method.search == "auto" else scenario.method.search
-    return Search(ground, worth, looking, room, Pricing(setting.model, start, end), family=family)
+    detection = scenario.importance.detection
+    pricing = Pricing(setting.model, start, end)
+    return Search(ground, worth, looking, room, pricing, family=family, detection=detection)
 
 
-def ground_of(shape: BaseGeometry) -> Polygon | MultiPolygon:
-    """What of a shape has an area."""
-    parts = [p for p in shapely.get_parts(shape).tolist() if isinstance(p, Polygon) and p.area > 0.0]
-    return parts[0] if len(parts) == 1 else MultiPolygon(parts)
+def _lasting_s(asked: Search, spare_m: float, lead_s: float) -> float:
+    """How long the flight lasts at most."""
+    once_m = asked.ground.area / asked.looking.narrowest_m()
+    return lead_s + min(spare_m, UNLIMITED * once_m) / asked.pricing.model.aircraft.airspeed_m_s
+
+
+def _drifting(asked: Search, scenario: Scenario, spare_m: float, lead_s: float) -> Search:
+    """The search for what drifts: by places that move on, and by what ground is worth in the middle of it."""
+    importance = scenario.importance
+    if importance.drift is None:
+        return asked
+    until_s = _lasting_s(asked, spare_m, lead_s)
+    belief = believed(importance, importance.drift, seed=scenario.seed)
+    drifting = Drifting(belief, importance.detection, lead_s, until_s).within(asked.ground)
+    later = drifted(importance, 0.5 * until_s)
+    worth = worth_of(replace(scenario, importance=later), asked.ground, asked.worth.cell_m)
+    return replace(asked, worth=worth, drifting=drifting)
 
 
 def _cell_m(ground: Polygon | MultiPolygon, width_m: float) -> float:
     west_m, south_m, east_m, north_m = ground.bounds
     side_m = max(east_m - west_m, north_m - south_m)
     return max(LEAST_CELL_M, side_m / MOST_CELLS, min(width_m / CELLS_ACROSS, side_m / 40.0))
-
-
-def worth_of(scenario: Scenario, ground: Polygon | MultiPolygon, cell_m: float) -> Worth:
-    """Scores of the ground by cells."""
-    plain = worth_of_ground(ground, cell_m)
-    importance = scenario.importance
-    if not importance.given:
-        return plain
-    east, north = plain.centres_m[..., 0], plain.centres_m[..., 1]
-    scores = np.zeros(plain.scores.shape)
-    for patch in importance.patches:
-        shapely.prepare(patch.area)
-        scores += np.where(shapely.contains_xy(patch.area, east, north), patch.score, 0.0)
-    raster = importance.raster
-    if raster is not None:
-        rows, columns = raster.scores.shape
-        row = np.clip(((north - raster.south_m) / raster.cell_m).astype(np.int64), 0, rows - 1)
-        column = np.clip(((east - raster.west_m) / raster.cell_m).astype(np.int64), 0, columns - 1)
-        scores += raster.scores[row, column]
-    return worth_of_ground(ground, cell_m, scores)
 
 
 def _per_m(aircraft: Aircraft, above_sea_m: float) -> dict[str, float]:
@@ -219,8 +223,15 @@ def _limits(aircraft: Aircraft, use: Use) -> dict[str, tuple[float, float, str]]
     }
 
 
-def _spare_m(transits: Transits, scenario: Scenario, controls: Controls | None) -> float:
-    """Metres through the air that limits allow from start to end; inf where nothing limits them.
+def _part(aircraft: Aircraft, use: Use) -> float:
+    """What part of the limit that is nearest is used; 0 without any."""
+    return max((taken / limit for taken, limit, _ in _limits(aircraft, use).values()), default=0.0)
+
+
+def _spare(transits: Transits, scenario: Scenario, controls: Controls | None) -> tuple[float, float]:
+    """Metres through the air that limits allow from start to end, and seconds of what is before them.
+
+    The metres are inf where nothing limits them; the seconds are half of what take-off and landing last.
 
     Raises
     ------
@@ -251,7 +262,9 @@ def _spare_m(transits: Transits, scenario: Scenario, controls: Controls | None) 
         for name, (taken, limit, _) in _limits(aircraft, use).items()
         if per_m[name] > 0.0
     ]
-    return min(spare, default=math.inf) + math.dist(start.position, end.position)
+    away_m = math.dist(start.position, end.position)
+    lead_s = 0.5 * max(0.0, use.duration_s - away_m / aircraft.airspeed_m_s)
+    return min(spare, default=math.inf) + away_m, lead_s
 
 
 def _over_end(scenario: Scenario, setting: Setting) -> tuple[float, float]:
@@ -321,6 +334,32 @@ def _best(
     raise AssertionError
 
 
+def _improved(
+    best: _Flight,
+    asked: Search,
+    fly: Callable[[Programme], _Flight],
+    aircraft: Aircraft,
+    controls: Controls,
+) -> _Flight:
+    """The best flight's strips moved each by itself for as long as what is then flown sees more."""
+    for _ in range(MOST_IMPROVED):
+        if controls.enough():
+            break
+        # What was left over is given to the passes.
+        budget_m = best.programme.cost_m * max(1.0, MOST / max(_part(aircraft, best.use), 1e-9))
+        better = asked.shifted(best.programme, budget_m)
+        if better.worth <= best.programme.worth * (1.0 + LEAST_BETTER):
+            break
+        try:
+            found = _as_long_as_can_be(better, asked, budget_m, fly, aircraft)
+        except InfeasibleError:
+            break
+        if found is None or found.programme.worth <= best.programme.worth:
+            break
+        best = found
+    return best
+
+
 def _as_long_as_can_be(
     programme: Programme,
     asked: Search,
@@ -333,8 +372,7 @@ def _as_long_as_can_be(
     short_m, long_m, budget_m = 0.0, math.inf, spare_m
     for _ in range(LENGTHS):
         flight = fly(programme)
-        limits = _limits(aircraft, flight.use).values()
-        part = max((taken / limit for taken, limit, _ in limits), default=0.0)
+        part = _part(aircraft, flight.use)
         if part <= MOST and not exceeded(aircraft, flight.use):
             if best is None or flight.programme.worth >= best.programme.worth:
                 best = flight
@@ -342,7 +380,8 @@ def _as_long_as_can_be(
             if part >= ENOUGH or programme.sweeps == programme.whole:
                 break
         else:
-            long_m = budget_m
+            # What it was thought to take, where that is less than it might: the same is cut again otherwise.
+            long_m = budget_m = min(budget_m, programme.cost_m)
         wanted_m = budget_m * (0.5 * (MOST + ENOUGH)) / part if part > 0.0 else budget_m
         inside = short_m < wanted_m < long_m
         budget_m = wanted_m if inside else 0.5 * (short_m + min(long_m, 2.0 * budget_m))

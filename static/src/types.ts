@@ -93,6 +93,7 @@ export interface Metrics {
   /** Of a search: ground seen, each place once, and what that is worth where importance is given. */
   area_seen_m2?: number | null;
   importance_collected?: number | null;
+  importance_total?: number | null;
 }
 
 export interface PlanRecord {

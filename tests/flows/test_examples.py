@@ -8,6 +8,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 from app.cli.planning import with_raster
 from planner.geojson import read_plan
 from planner.pipeline import make_plan
@@ -106,3 +108,13 @@ def test_two_aircraft_search_the_fire_front() -> None:
     assert worth is not None
     # A square metre of the front is worth 5, of the village 3, of the rest 0.3 or nothing.
     assert worth > 3.0 * seen_m2
+
+
+def test_someone_overboard_is_looked_for_where_the_drift_leads() -> None:
+    """The flight keeps its reserve, and finds as likely as not who by then is nowhere near the point."""
+    scenario = read_valid(json.loads((EXAMPLES / "missing-at-sea.geojson").read_text()))
+    plan = make_plan(scenario)
+    assert plan.violations == ()
+    assert (plan.metrics.energy_wh or 0.0) <= (scenario.aircraft[0].usable_wh or 0.0)
+    assert plan.metrics.importance_total == pytest.approx(1.0, rel=1e-3)
+    assert (plan.metrics.importance_collected or 0.0) > 0.6

@@ -153,6 +153,7 @@ def test_contract_of_the_plan() -> None:
         "energy_wh",
         "coverage",
         "importance_collected",
+        "importance_total",
         "planning_time_s",
     }
     assert {"violations", "scenario_hash", "planner_version", "seed"} <= set(document)

@@ -22,8 +22,9 @@ from planner.tasks.fleet.crews import Crew
 from planner.tasks.fleet.flights import Flown
 from planner.tasks.fleet.placing import Errand, placed
 from planner.tasks.fleet.task import FleetAnswer
-from planner.tasks.search import answer_to, ground_of, reach_m2, sought, worth_of
+from planner.tasks.search import answer_to, reach, sought
 from planner.tasks.task import Answer, Controls
+from planner.tasks.worth import drifted, ground_of, worth_of
 
 #: Ends nearer to each other than this part of the ground's width say nothing of which part is whose.
 APART = 0.1
@@ -58,18 +59,22 @@ def search_together(scenario: Scenario, controls: Controls) -> FleetAnswer:
     dropped: list[Finding] = []
     shares: list[_Share] = []
     refused: InfeasibleError | None = None
+    longest_s = 0.0
     with controls.stage("options"):
         for index, crew in enumerate(crews):
             try:
-                seen_m2 = reach_m2(crew.alone, controls)
+                seen_m2, lasts_s = reach(crew.alone, controls)
             except InfeasibleError as error:
                 refused = error
                 dropped.append(_stays(crew, error))
                 continue
+            longest_s = max(longest_s, lasts_s)
             shares += [_Share(index, number, seen_m2) for number in range(crew.aircraft.batteries)]
     answers: dict[_Share, Answer] = {}
     while shares and not answers:
-        parts = shared_out(scenario, crews, shares)
+        # What drifts is shared out as it lies in the middle of the longest flight.
+        later = replace(scenario, importance=drifted(scenario.importance, 0.5 * longest_s))
+        parts = shared_out(later, crews, shares)
         for share, part in zip(shares, parts, strict=True):
             crew = crews[share.crew]
             alone = _within(crew.alone, part)

@@ -115,6 +115,19 @@ def value(**properties: Any) -> Document:
     return feature("I", "importance", "Polygon", square(0.0, 0.0, 0.01), **{"score": 1.0, **properties})
 
 
+def last_known(spread_m: float = 400.0, **search: Any) -> Document:
+    """A search round a last known point, within an hour's flight."""
+    point = feature("K", "importance", "Point", [0.01, 0.01], score=1.0, spread_m=spread_m)
+    document = vehicle(with_features(point), max_flight_time_s=1500.0)
+    document |= {"task": "search", "method": {"search": "parallel"}}
+    return {**document, "search": search} if search else document
+
+
+def drifting(**drift: Any) -> Document:
+    """The same for what drifts."""
+    return last_known(drift={"speed_m_s": 0.5, "toward_deg": 90.0, **drift})
+
+
 def based(place: float = -0.03, base: str | None = "B1", **properties: Any) -> Document:
     """Two bases, of which the vehicle names one."""
     bases = [

@@ -48,6 +48,57 @@ def test_what_no_search_can_keep_is_refused(asked, found):
     assert found in rules(asked)
 
 
+KNOWN = feature("importance", "Point", lonlat(600, 450), score=1.0, spread_m=100.0, name="K")
+DRIFT = {"speed_m_s": 0.5, "toward_deg": 90.0}
+
+
+@pytest.mark.parametrize(
+    ("asked", "found"),
+    [
+        (document(KNOWN, search={"detection": 0.0}), ("search", "out-of-range")),
+        (document(KNOWN, search={"detection": 1.2}), ("search", "out-of-range")),
+        (document(KNOWN, search={"sweeps": 2}), ("search", "unknown-property")),
+        (document(KNOWN, search=[]), ("scenario", "bad-value")),
+        (document(KNOWN, search={"drift": {"speed_m_s": 1.0}}), ("drift", "missing-property")),
+        (document(KNOWN, search={"drift": DRIFT | {"toward_deg": 400}}), ("drift", "out-of-range")),
+        (document(search={"drift": DRIFT}), ("drift", "nothing-drifts")),
+        (
+            document(feature("importance", "Point", lonlat(0, 0), score=1.0, name="K")),
+            ("K", "missing-property"),
+        ),
+        (document(rectangle("importance", *WEST, score=1, spread_m=5, name="I")), ("I", "unknown-property")),
+        (
+            document(KNOWN, search={"drift": DRIFT}, method={"search": "snyder2021"}),
+            ("method", "not-supported"),
+        ),
+        (document(KNOWN, method={"search": "energy-horizon"}), ("method", "not-supported")),
+        (
+            document(search={"detection": 0.5}, method={"search": "energy-horizon"}),
+            ("method", "not-supported"),
+        ),
+        (document(method={"search": "wiggle"}), ("method", "unknown-value")),
+        (document(method={"routing": "li2018"}), ("method", "not-supported")),
+        (document(method={"search": "spiral"}, task="collect"), ("method", "not-supported")),
+    ],
+)
+def test_what_no_search_can_believe_is_refused(asked, found):
+    """Each is an error that names the member and the rule, before anything is planned."""
+    assert found in rules(asked)
+
+
+def test_ground_of_what_drifts_is_where_it_may_be():
+    """Without area and regions the ground reaches from where it was to where it may be in the end."""
+    asked = document(KNOWN, search={"drift": DRIFT | {"elapsed_s": 1000.0}}, vehicle=WING | {"energy_wh": 30})
+    asked["features"] = asked["features"][1:]
+    (region,) = read_valid(asked).regions
+    west, south, east, north = region.area.bounds
+    usable_s = 30 * 0.8 * 3600 / 120
+    assert east - west == pytest.approx(600.0 + 0.5 * usable_s, rel=0.01)
+    assert north - south == pytest.approx(600.0, rel=0.01)
+    asked["vehicles"] = [{k: v for k, v in WING.items() if k not in ("energy_wh", "power")}]
+    assert ("scenario", "no-ground") in rules(asked)
+
+
 def test_nothing_to_search_is_refused():
     """Without area, regions and importance there is no ground."""
     asked = document()

@@ -76,7 +76,7 @@ def test_thinning_leaves_out_what_is_worth_least():
     scores = np.zeros((60, 100))
     scores[30:42] = 1.0
     worth = worth_of_ground(ground, 10.0, scores)
-    kept = thinned_to(LANES, PRICING, 5000.0, worth)
+    kept = thinned_to(LANES, PRICING, 5000.0, np.array([seen_worth([lane], worth) for lane in LANES]))
     assert PRICING.cost_m(kept) <= 5000.0
     assert seen_worth(kept, worth) == pytest.approx(0.92 * worth.total)
 

@@ -10,7 +10,7 @@ from shapely.geometry import Polygon
 from mavlink.encoding.encode import encode
 from planner.geojson import read_plan, read_scenario, write_plan
 from planner.pipeline import make_plan, with_bound
-from tests.planner.search.searches import COPTER, RADAR, WING, document, lonlat, rectangle
+from tests.planner.search.searches import COPTER, RADAR, WING, document, feature, lonlat, rectangle
 
 
 def seen_m2(scenario, plan):
@@ -104,3 +104,27 @@ def test_an_end_elsewhere_is_kept():
     last = scenario.frame.to_local(plan.paths[0].line[-1][:2])
     assert np.hypot(*(last - np.array(scenario.end.position))) < 1.0
     assert plan.violations == ()
+
+
+@pytest.mark.parametrize(
+    "name", ["energy-horizon", "energy-horizon-discrete", "energy-horizon-no-decision", "energy-horizon-time"]
+)
+@pytest.mark.parametrize("vehicle", [WING, COPTER], ids=["wing", "copter"])
+def test_the_published_horizon_is_flown_by_name(name, vehicle):
+    """Its straights are passes, the flight keeps every constraint, and deciding is told from not deciding."""
+    scenario = read_scenario(document(vehicle=vehicle, method={"search": name}))
+    plan = make_plan(scenario)
+    assert plan.methods["search"] == name
+    assert plan.violations == ()
+    assert plan.metrics.area_seen_m2 > 0.1 * scenario.area.area
+
+
+def test_refined_sees_no_less_than_patterns():
+    """Strips moved each by itself, flown whole, find as much as the patterns that they began as."""
+    patch = rectangle("importance", 700.0, 100.0, 1000.0, 800.0, score=2.5)
+    asked = document(patch, feature("importance", "Point", lonlat(300, 600), score=3.0, spread_m=80.0))
+    worth = {
+        name: make_plan(read_scenario(asked | {"method": {"search": name}})).metrics.importance_collected
+        for name in ("parallel", "creeping", "refined")
+    }
+    assert worth["refined"] >= max(worth.values()) * (1.0 - 1e-9)

@@ -1,0 +1,72 @@
+"""What the ground of a scenario is worth to a search, by cells, and how that moves on."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import shapely
+from shapely import affinity
+from shapely.geometry import MultiPolygon, Polygon
+from shapely.geometry.base import BaseGeometry
+
+from planner.scenario import Scenario
+from planner.search.values import Worth, worth_of_ground
+from planner.wishes import Importance
+
+#: Places on a raster's edge, but for rounding, are on it.
+EDGE = 1e-9
+
+
+def ground_of(shape: BaseGeometry) -> Polygon | MultiPolygon:
+    """What of a shape has an area."""
+    parts = [p for p in shapely.get_parts(shape).tolist() if isinstance(p, Polygon) and p.area > 0.0]
+    return parts[0] if len(parts) == 1 else MultiPolygon(parts)
+
+
+def worth_of(scenario: Scenario, ground: Polygon | MultiPolygon, cell_m: float) -> Worth:
+    """Scores of the ground by cells."""
+    plain = worth_of_ground(ground, cell_m)
+    importance = scenario.importance
+    if not importance.given:
+        return plain
+    east, north = plain.centres_m[..., 0], plain.centres_m[..., 1]
+    scores = np.zeros(plain.scores.shape)
+    for patch in importance.patches:
+        shapely.prepare(patch.area)
+        scores += np.where(shapely.contains_xy(patch.area, east, north), patch.score, 0.0)
+    for point in importance.points:
+        off = np.hypot(east - point.position[0], north - point.position[1]) / point.spread_m
+        scores += point.score * np.exp(-0.5 * off**2)
+    raster = importance.raster
+    if raster is not None:
+        rows, columns = raster.scores.shape
+        row = np.floor((north - raster.south_m) / raster.cell_m + EDGE).astype(np.int64)
+        column = np.floor((east - raster.west_m) / raster.cell_m + EDGE).astype(np.int64)
+        inside = (row >= 0) & (row < rows) & (column >= 0) & (column < columns)
+        found = raster.scores[np.clip(row, 0, rows - 1), np.clip(column, 0, columns - 1)]
+        scores += np.where(inside, found, 0.0)
+    return worth_of_ground(ground, cell_m, scores)
+
+
+def drifted(importance: Importance, time_s: float) -> Importance:
+    """What is worth how much after a time of the search, the drift's own spread for points alone."""
+    drift = importance.drift
+    if drift is None:
+        return importance
+    since_s = drift.elapsed_s + time_s
+    east_m, north_m = since_s * drift.east_m_s, since_s * drift.north_m_s
+    points = []
+    for point in importance.points:
+        spread_m = math.hypot(point.spread_m, since_s * drift.spread_m_s)
+        there = (point.position[0] + east_m, point.position[1] + north_m)
+        score = point.score * (point.spread_m / spread_m) ** 2
+        points.append(replace(point, position=there, spread_m=spread_m, score=score))
+    patches = tuple(
+        replace(patch, area=affinity.translate(patch.area, east_m, north_m)) for patch in importance.patches
+    )
+    raster = importance.raster
+    if raster is not None:
+        raster = replace(raster, west_m=raster.west_m + east_m, south_m=raster.south_m + north_m)
+    return replace(importance, points=tuple(points), patches=patches, raster=raster)
