@@ -11,7 +11,7 @@ from collections.abc import Iterable
 from typing import Any
 
 #: What the other methods' figures are set against.
-MEASURES = ("length_m", "turns", "overlap_m", "planning_s")
+MEASURES = ("length_m", "turns", "overlap_m", "cpu_s")
 
 
 def tables(rows: Iterable[dict[str, Any]]) -> str:
@@ -21,7 +21,7 @@ def tables(rows: Iterable[dict[str, Any]]) -> str:
     maps: dict[str, dict[str, dict[str, Any]]] = {}
     for row in listed:
         maps.setdefault(row["map"], {})[row["method"]] = row
-    heads = " | ".join(f"{method}: length, m | turns | overlap, m | s" for method in methods)
+    heads = " | ".join(f"{method}: length, m | turns | overlap, m | CPU s" for method in methods)
     lines = [f"| map | size, m | free | {heads} |", "| --- | --- | --- |" + " --- |" * (4 * len(methods))]
     for name, found in maps.items():
         first = next(iter(found.values()))
@@ -29,7 +29,7 @@ def tables(rows: Iterable[dict[str, Any]]) -> str:
         for method in methods:
             row = found[method]
             cells += [f"{row['length_m']:,.0f}", str(row["turns"]), f"{row['overlap_m']:,.0f}"]
-            cells.append(f"{row['planning_s']:.2f}")
+            cells.append(f"{row['cpu_s']:.3f}")
         lines.append(f"| {' | '.join(cells)} |")
     lines += ["", f"| mean of | against | {' | '.join(MEASURES)} |"]
     lines.append("| --- | --- |" + " --- |" * len(MEASURES))

@@ -19,8 +19,8 @@ from planner.coverage.decompose import OVERLAP_M
 from planner.coverage.merge import MergedRegion, split_region
 from planner.coverage.registry import family_of
 from planner.coverage.survey.pieces import Pieces, visits
-from planner.coverage.urban.auto import headings
 from planner.coverage.urban.boustrophedon import cells
+from planner.coverage.urban.layout import headings
 from planner.coverage.urban.regions import open_ground
 from planner.coverage.urban.visibility import edges_of
 from planner.coverage.visible import Seeing

@@ -48,16 +48,20 @@ class CoverageAlternatives:
         """
         free = free_space(urban)
         joiner = Joiner.among(urban, free)
-        return joiner.graph(self.sequence(urban, free, joiner)).flown()
+        return joiner.graph(self._sequence(urban, joiner)).flown()
 
-    def sequence(self, urban: UrbanArea, free: FreeSpace, joiner: Joiner) -> tuple[Sweep, ...]:
+    def sequence(self, urban: UrbanArea, free: FreeSpace) -> tuple[Sweep, ...]:
+        """Sweeps in the order and direction flown, joined by nobody yet."""
+        return self._sequence(urban, Joiner.among(urban, free))
+
+    def _sequence(self, urban: UrbanArea, joiner: Joiner) -> tuple[Sweep, ...]:
         """Sweeps in the order and direction flown: of each cell its alternative, in the order of cells.
 
         They try all permutations, with adjacencies to prune them; their cost is exponential in the number of
         cells. Here few cells are ordered exactly, by dynamic programming, and more by moves from the order
         of nearest neighbours. Ways between cells are those round obstacles.
         """
-        fitting = Fitting.of(urban)
+        free, fitting = joiner.free, Fitting.of(urban)
         parts = merged(_cells(urban, free, fitting), fitting)
         ways = [alternatives(part, fitting, free) for part in parts]
         entries = np.array([way[0].start for four in ways for way in four])

@@ -72,8 +72,10 @@ def frontier_sweeps(
     along: float,
     gap_m: float,
     bent_m: float,
+    each_m: float,
+    most_m: float,
 ) -> Floats:
-    """Sweeps that see all ground.
+    """Sweeps that see all ground; not all of them where they cost more than ``most_m``, each ``each_m`` more.
 
     Always the lowest ground unseen yet comes next: the sweep lies as high as may be to see it, and goes on
     to both sides as long as columns may be flown through and need it less ``bent_m``, or do so again within
@@ -87,7 +89,8 @@ def frontier_sweeps(
         unseen[k] = ground[at[k], 0] if at[k] < offsets[k + 1] else np.inf
     found = np.empty((256, 5))
     used = 0
-    while columns > 0:
+    cost = 0.0
+    while columns > 0 and cost <= most_m:
         seed = int(np.argmin(unseen))
         low = unseen[seed]
         if low == np.inf:
@@ -121,6 +124,7 @@ def frontier_sweeps(
         found = wider(found, used)
         found[used, 0], found[used, 1] = flown(borders, first, last, west, east, along)
         found[used, 2], found[used, 3], found[used, 4] = row, first, last
+        cost += found[used, 1] - found[used, 0] + each_m
         used += 1
         for k in range(first, last + 1):
             if unseen[k] >= row - half - LEAST_M:

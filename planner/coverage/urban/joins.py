@@ -7,8 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csr_array
-from scipy.sparse.csgraph import dijkstra
 
 from planner.coverage.urban.area import UrbanArea
 from planner.coverage.urban.free import FreeSpace
@@ -34,15 +32,12 @@ class Joins:
     ----------
     urban, ways
         The area, and ways through its free ground.
-    between
-        Ways between the corners of the ground, (N, N).
     outlines, rises
         Edges of obstacles and of the area, (E, 4), and the climb over each, inf where that is not allowed.
     """
 
     urban: UrbanArea
     ways: Ways
-    between: Floats
     outlines: Floats
     rises: Floats
 
@@ -56,17 +51,12 @@ class Joins:
             rise_m = cluster.top_m + urban.clearance_m - urban.height_m
             allowed = urban.may_climb_over(cluster.top_m)
             rises.append(np.full(len(edges[-1]), rise_m if allowed else np.inf))
-        count = len(ways.corners)
-        graph: csr_array[np.float64, tuple[int, int]] = csr_array(
-            (ways.lengths, ways.towards, ways.starts), shape=(count, count)
-        )
-        between = dijkstra(graph) if count else np.empty((0, 0))
-        return cls(urban, ways, between, np.vstack(edges), np.concatenate(rises))
+        return cls(urban, ways, np.vstack(edges), np.concatenate(rises))
 
     def tour(self, lines: Floats, seed: int) -> tuple[float, Floats]:
         """The shortest flight along lines, (N, 2, 2), from start to end: its length, and them as flown.
 
-        Lines that nothing leads to come as if they were far.
+        Each turn counts as much as a bend of the ways. Lines that nothing leads to come as if they were far.
         """
         ends = np.array([self.urban.end, self.urban.start], dtype=np.float64)
         places = np.concatenate([lines.reshape(-1, 2), ends])
@@ -74,7 +64,16 @@ class Joins:
         upright = self.urban.max_climb_rad >= math.pi / 2.0 - 1e-9
         steepest = math.inf if upright else math.tan(self.urban.max_climb_rad)
         costs = join_lengths(
-            ways.edges, ways.corners, self.between, self.outlines, self.rises, steepest, places, NEAR
+            ways.walls,
+            ways.corners,
+            ways.between,
+            self.outlines,
+            self.rises,
+            steepest,
+            places,
+            _ahead(lines),
+            ways.bend_m,
+            NEAR,
         )
         far_m = FAR * float(np.ptp(places, axis=0).sum()) + 1.0
         costs = np.where(np.isfinite(costs), costs, far_m)
@@ -89,3 +88,10 @@ class Joins:
         flown: Floats = places[order].reshape(-1, 2, 2)
         length_m = float(np.hypot(*(lines[:, 1] - lines[:, 0]).T).sum()) + tour_cost(costs, tour)
         return length_m, flown
+
+
+def _ahead(lines: Floats) -> Floats:
+    """Unit directions in which lines are left at their ends, (2 N + 2, 2); nought at start and end."""
+    along = lines[:, 1] - lines[:, 0]
+    along = along / np.maximum(np.hypot(along[:, 0], along[:, 1]), 1e-12)[:, None]
+    return np.concatenate([np.stack([-along, along], axis=1).reshape(-1, 2), np.zeros((2, 2))])

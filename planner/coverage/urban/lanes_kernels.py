@@ -47,3 +47,56 @@ def level_pieces(edges: Floats, heights: Floats, least_m: float) -> tuple[Floats
             owners[used] = k
             used += 1
     return ends[:used].copy(), owners[:used].copy()
+
+
+@njit(cache=True, nogil=True)
+def clip_rows(edges: Floats, rows: Floats, ahead_m: float, least_m: float) -> tuple[Floats, Floats]:
+    """The parts of level lines that are inside, and where those see less than the whole lines would.
+
+    ``rows`` float64 (N, 3): west end, east end, ordinate. Parts are as these, each about as long as
+    ``least_m``, a line of less being made so long; what is not seen any more, ``ahead_m`` beyond ends.
+    """
+    parts, lost = np.empty((len(rows) + 16, 3)), np.empty((16, 3))
+    used, gone = 0, 0
+    crossings = np.empty(len(edges))
+    for k in range(len(rows)):
+        west, east, height = rows[k, 0], rows[k, 1], rows[k, 2]
+        if east - west < least_m:
+            middle = 0.5 * (west + east)
+            west, east = middle - 0.5 * least_m, middle + 0.5 * least_m
+        count = 0
+        for e in range(len(edges)):
+            low, high = edges[e, 1], edges[e, 3]
+            if (low <= height) == (high <= height):
+                continue
+            crossings[count] = edges[e, 0] + (edges[e, 2] - edges[e, 0]) * (height - low) / (high - low)
+            count += 1
+        ordered = np.sort(crossings[:count])
+        reached = west - ahead_m
+        for i in range(0, count - 1, 2):
+            begin, end = max(ordered[i], west), min(ordered[i + 1], east)
+            if end - begin < 0.5 * least_m:
+                continue
+            if begin - ahead_m > reached:
+                lost = _room(lost, gone)
+                lost[gone, 0], lost[gone, 1], lost[gone, 2] = reached, begin - ahead_m, height
+                gone += 1
+            reached = max(reached, end + ahead_m)
+            parts = _room(parts, used)
+            parts[used, 0], parts[used, 1], parts[used, 2] = begin, end, height
+            used += 1
+        if reached < east + ahead_m:
+            lost = _room(lost, gone)
+            lost[gone, 0], lost[gone, 1], lost[gone, 2] = reached, east + ahead_m, height
+            gone += 1
+    return parts[:used].copy(), lost[:gone].copy()
+
+
+@njit(cache=True, nogil=True)
+def _room(rows: Floats, used: int) -> Floats:
+    """The same rows with room for one more at least."""
+    if used < len(rows):
+        return rows
+    more = np.empty((2 * len(rows) + 16, rows.shape[1]))
+    more[:used] = rows[:used]
+    return more

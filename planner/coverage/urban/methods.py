@@ -9,9 +9,9 @@ from planner.coverage.urban.alternatives import CoverageAlternatives
 from planner.coverage.urban.area import UrbanArea
 from planner.coverage.urban.auto import Auto
 from planner.coverage.urban.bcdh import BoustrophedonCells
+from planner.coverage.urban.free import FreeSpace
 from planner.coverage.urban.majeed import Majeed2019
 from planner.coverage.urban.measures import Flown, Sweep
-from planner.coverage.urban.waypoints import Joiner
 
 METHODS: Mapping[str, Callable[[UrbanArea], Flown]] = MappingProxyType(
     {
@@ -24,16 +24,14 @@ METHODS: Mapping[str, Callable[[UrbanArea], Flown]] = MappingProxyType(
 )
 
 #: Sweeps in the order and direction flown: of an area with its free ground, and a seed.
-Sequence = Callable[[UrbanArea, Joiner, int], tuple[Sweep, ...]]
+Sequence = Callable[[UrbanArea, FreeSpace, int], tuple[Sweep, ...]]
 
 #: What ``method.coverage`` may ask for; ``auto`` takes its own where obstacles cut a region.
 SEQUENCES: Mapping[str, Sequence] = MappingProxyType(
     {
-        "auto": lambda urban, joiner, seed: Auto(seed).sequence(urban, joiner),
-        "majeed2019": lambda urban, joiner, seed: Majeed2019(seed=seed).sequence(urban, joiner.free),
-        "boustrophedon-cells": lambda urban, joiner, _: BoustrophedonCells().sequence(urban, joiner.free),
-        "coverage-alternatives": lambda urban, joiner, _: CoverageAlternatives().sequence(
-            urban, joiner.free, joiner
-        ),
+        "auto": lambda urban, free, seed: Auto(seed).sequence(urban, free),
+        "majeed2019": lambda urban, free, seed: Majeed2019(seed=seed).sequence(urban, free),
+        "boustrophedon-cells": lambda urban, free, _: BoustrophedonCells().sequence(urban, free),
+        "coverage-alternatives": lambda urban, free, _: CoverageAlternatives().sequence(urban, free),
     }
 )

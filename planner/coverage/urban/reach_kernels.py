@@ -12,13 +12,15 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from planner.coverage.urban.visibility_kernels import crosses
+from planner.coverage.urban.visibility_kernels import Walls, crosses
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 #: Corners nearest to a place that are tried at first, and how many of those that it sees are used.
 TRIED_CORNERS, SEEN_CORNERS = 40, 16
+#: Cosine of what is no turn.
+STRAIGHT = math.cos(math.radians(1.0))
 
 
 @njit(cache=True, nogil=True)
@@ -74,8 +76,20 @@ def _nearest(places: Floats, east: float, north: float, most: int) -> Ints:
 
 
 @njit(cache=True, nogil=True)
-def _by_corners(edges: Floats, corners: Floats, between: Floats, places: Floats) -> Floats:
-    """Lengths of ways between all places round the corners that both ends see nearest, (P, P)."""
+def _turn(ahead: Floats, p: int, east: float, north: float, bend: float) -> float:
+    """What turning into a direction counts at an end: nothing where it is left straight ahead."""
+    along = ahead[p, 0] * east + ahead[p, 1] * north
+    length = math.hypot(east, north)
+    if length == 0.0 or along >= STRAIGHT * length or (ahead[p, 0] == 0.0 and ahead[p, 1] == 0.0):
+        return 0.0
+    return bend
+
+
+@njit(cache=True, nogil=True)
+def _by_corners(
+    walls: Walls, corners: Floats, between: Floats, places: Floats, ahead: Floats, bend: float
+) -> Floats:
+    """What ways between all places round the corners that both ends see nearest take, (P, P)."""
     count, bends = len(places), len(corners)
     out = np.full((count, count), np.inf)
     reach = np.full((count, bends), np.inf)
@@ -90,7 +104,7 @@ def _by_corners(edges: Floats, corners: Floats, between: Floats, places: Floats)
             for i in near[tried:]:
                 if found[p] == SEEN_CORNERS:
                     break
-                if not crosses(edges, e, n, corners[i, 0], corners[i, 1]):
+                if not crosses(walls, e, n, corners[i, 0], corners[i, 1]):
                     seen[p, found[p]] = i
                     found[p] += 1
             tried = len(near)
@@ -98,12 +112,14 @@ def _by_corners(edges: Floats, corners: Floats, between: Floats, places: Floats)
         for k in range(found[p]):
             i = seen[p, k]
             first = math.hypot(corners[i, 0] - e, corners[i, 1] - n)
+            first += _turn(ahead, p, corners[i, 0] - e, corners[i, 1] - n, bend)
             for j in range(bends):
                 reach[p, j] = min(reach[p, j], first + between[i, j])
     for p in range(count):
         for k in range(found[p]):
             i = seen[p, k]
-            first = math.hypot(corners[i, 0] - places[p, 0], corners[i, 1] - places[p, 1])
+            de, dn = corners[i, 0] - places[p, 0], corners[i, 1] - places[p, 1]
+            first = math.hypot(de, dn) + bend + _turn(ahead, p, de, dn, bend)
             for q in range(p):
                 out[p, q] = min(out[p, q], first + reach[q, i])
     return out
@@ -111,24 +127,28 @@ def _by_corners(edges: Floats, corners: Floats, between: Floats, places: Floats)
 
 @njit(cache=True, nogil=True)
 def join_lengths(
-    edges: Floats,
+    walls: Walls,
     corners: Floats,
     between: Floats,
     outlines: Floats,
     rises: Floats,
     steepest: float,
     places: Floats,
+    ahead: Floats,
+    bend: float,
     near: int,
 ) -> Floats:
-    """Lengths of joins between all places, (P, P): never too short, and hardly too long.
+    """What joins between all places take, (P, P): never too little, and hardly too much.
 
     To so many of the nearest places straight lines are tried too, and lines over obstacles; to others only
     where no corner leads there.
 
-    ``between`` are the corners' ways, (N, N), ``steepest`` is the greatest tangent of a climb.
+    ``between`` are the corners' ways, (N, N), with ``bend`` for each of their edges; ``steepest`` is the
+    greatest tangent of a climb; ``ahead``, (P, 2), are the directions places are left in without a turn.
+    Each turn counts ``bend``, four of them over obstacles.
     """
     count = len(places)
-    out = _by_corners(edges, corners, between, places)
+    out = _by_corners(walls, corners, between, places, ahead, bend)
     for p in range(count):
         e, n = places[p, 0], places[p, 1]
         close = _nearest(places, e, n, near + 1)
@@ -138,14 +158,16 @@ def join_lengths(
             a, b = max(p, q), min(p, q)
             if p == q or not (wanted[q] or (q < p and out[p, q] == np.inf)):
                 continue
-            away = math.hypot(places[q, 0] - e, places[q, 1] - n)
+            de, dn = places[q, 0] - e, places[q, 1] - n
+            away = math.hypot(de, dn)
+            away += _turn(ahead, p, de, dn, bend) + _turn(ahead, q, -de, -dn, bend)
             if out[a, b] <= away:
                 continue
-            if not crosses(edges, e, n, places[q, 0], places[q, 1]):
+            if not crosses(walls, e, n, places[q, 0], places[q, 1]):
                 out[a, b] = away
             elif len(outlines):
                 over = over_length(outlines, rises, steepest, e, n, places[q, 0], places[q, 1])
-                out[a, b] = min(out[a, b], over)
+                out[a, b] = min(out[a, b], over + 4.0 * bend)
     for p in range(count):
         out[p, p] = 0.0
         for q in range(p):

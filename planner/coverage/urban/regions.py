@@ -15,10 +15,9 @@ from planner.airspace.shapes import banded_shapes
 from planner.airspace.zones import TRANSIT_MARGIN_M
 from planner.coverage.merge import polygons_of
 from planner.coverage.urban.area import Building, Place, UrbanArea
-from planner.coverage.urban.free import enlarged, free_space
+from planner.coverage.urban.free import FreeSpace, enlarged, free_space
 from planner.coverage.urban.measures import Sweep
 from planner.coverage.urban.methods import SEQUENCES
-from planner.coverage.urban.waypoints import Joiner
 from planner.errors import InfeasibleError
 from planner.route import CollectPass
 from planner.sensors.base import Sensor
@@ -118,7 +117,7 @@ def _posed(
     level: Level,
     model: FlightModel,
     here: Place,
-) -> tuple[UrbanArea, Joiner]:
+) -> tuple[UrbanArea, FreeSpace]:
     """The problem that methods are given.
 
     D_safe is the clearance, the margin of transits and what a turn takes at the end of a sweep that runs up
@@ -186,7 +185,7 @@ def _posed(
         speed_m_s=model.airspeed_m_s,
         stop_s=model.stop_s,
     )
-    return urban, Joiner.among(urban, free_space(urban))
+    return urban, free_space(urban)
 
 
 def _pass(region: Region, camera: CameraSensor, height_m: float, sweep: Sweep) -> CollectPass:

@@ -95,8 +95,8 @@ class Joiner:
     tree: shapely.STRtree
 
     @classmethod
-    def among(cls, urban: UrbanArea, free: FreeSpace) -> Joiner:
-        """A joiner for one free ground."""
+    def among(cls, urban: UrbanArea, free: FreeSpace, bend_m: float = 0.0) -> Joiner:
+        """A joiner for one free ground; each bend counts ``bend_m`` besides the length."""
         edge_m = urban.span_m / 2.0 - TOUCH_M
         inner = urban.area.buffer(-edge_m, join_style="mitre", mitre_limit=MITRE_LIMIT)
         shapely.prepare(inner)
@@ -104,7 +104,7 @@ class Joiner:
             cluster.outline.buffer(-TOUCH_M, join_style="mitre", mitre_limit=MITRE_LIMIT)
             for cluster in free.clusters
         ]
-        return cls(urban, free, Ways.through(free.ground), inner, shapely.STRtree(outlines))
+        return cls(urban, free, Ways.through(free.ground, bend_m), inner, shapely.STRtree(outlines))
 
     def graph(self, sweeps: Sequence[Sweep]) -> WaypointGraph:
         """The graph of sweeps in their order (algorithm 1).
@@ -143,7 +143,7 @@ class Joiner:
             found.append(over)
         if not found:
             raise self._unjoined(start, end)
-        return min(found, key=lambda each: each.length_m)
+        return min(found, key=lambda each: each.length_m + self.ways.bend_m * (len(each.line) - 2))
 
     def _over(self, line: LineString) -> Join | None:
         """d_top: up before the first obstacle crossed, level, down behind the last."""

@@ -11,7 +11,7 @@ from shapely.geometry import LineString, Polygon, box
 from shapely.geometry.base import BaseGeometry
 
 from planner.coverage.urban.columns_kernels import intervals, left_over
-from planner.coverage.urban.frontier import Frontier, Manner, clipped, seen_from
+from planner.coverage.urban.frontier import Frontier, Laid, Manner
 from planner.coverage.urban.visibility import edges_of
 
 ACROSS_M, ALONG_M = 20.0, 30.0
@@ -33,8 +33,9 @@ def seen_of(lines: np.ndarray) -> BaseGeometry:
 
 def laid(angle_rad: float, manner: Manner, *, downwards: bool = False) -> np.ndarray:
     """Lines over the ground, as they can be flown."""
-    frontier = Frontier.of(edges_of(GROUND), angle_rad, downwards, ACROSS_M)
-    return clipped(frontier.lines(ACROSS_M, ALONG_M, manner), GROUND, angle_rad)
+    frontier = Frontier.of(edges_of(GROUND), angle_rad, False, ACROSS_M)
+    laid = (frontier.mirrored() if downwards else frontier).laid(ACROSS_M, ALONG_M, manner)
+    return laid.within(edges_of(GROUND.buffer(1e-5, join_style="mitre")), ACROSS_M, ALONG_M)[0].lines()
 
 
 @pytest.mark.parametrize("downwards", [False, True])
@@ -52,18 +53,25 @@ def test_along_an_edge_all_ground_is_seen(angle_deg: float, manner: Manner, down
 def test_a_plain_rectangle_takes_as_few_sweeps_as_it_is_wide() -> None:
     """200 m of height are ten sweeps, each half a frame short of both edges."""
     ground = box(0.0, 0.0, 500.0, 200.0)
-    lines = Frontier.of(edges_of(ground), 0.0, False, ACROSS_M).lines(
-        ACROSS_M, ALONG_M, Manner(None, 0.0, 0.0)
-    )
+    frontier = Frontier.of(edges_of(ground), 0.0, False, ACROSS_M)
+    lines = frontier.laid(ACROSS_M, ALONG_M, Manner(None, 0.0, 0.0)).lines()
     assert len(lines) == 10
     assert sorted(lines[:, 0, 1].tolist()) == pytest.approx([10.0 + 20.0 * k for k in range(10)])
     assert np.sort(lines[:, :, 0], axis=1) == pytest.approx(np.tile([15.0, 485.0], (10, 1)))
 
 
 def test_what_lines_see_is_what_lies_below_them() -> None:
-    """As strips of the test's own."""
-    lines = laid(0.3, Manner())
-    assert seen_from(lines, ACROSS_M, ALONG_M, 0.3).symmetric_difference(seen_of(lines)).area < 1.0
+    """As strips of the test's own; what is cut off them, where ground ends, is told as lost."""
+    rng = np.random.default_rng(2)
+    rows = np.column_stack([rng.uniform(-50, 150, 20), rng.uniform(200, 500, 20), rng.uniform(0, 300, 20)])
+    laid = Laid(0.3, rows)
+    inside, lost = laid.within(edges_of(GROUND), ACROSS_M, ALONG_M)
+    assert shapely.covers(GROUND.buffer(1e-6), shapely.linestrings(inside.lines())).all()
+    for whole, parts in ((laid.lines(), laid), (inside.lines(), inside)):
+        seen = shapely.union_all(parts.strips(ACROSS_M, ALONG_M), grid_size=1e-6)
+        assert seen.symmetric_difference(seen_of(whole)).area < 1.0
+    both = shapely.union_all([*inside.strips(ACROSS_M, ALONG_M), *lost], grid_size=1e-6)
+    assert both.symmetric_difference(seen_of(laid.lines())).area < 1.0
 
 
 def test_intervals_are_what_a_line_across_the_ground_meets() -> None:

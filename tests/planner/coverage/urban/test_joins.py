@@ -28,8 +28,9 @@ def test_joins_are_as_long_as_the_lines_that_are_flown(highest_m: float) -> None
     places = rng.uniform((west, south), (east, north), (60, 2))
     places = places[shapely.contains_xy(free.ground, *places.T)][:16]
     ways = joiner.ways
+    still = np.zeros((len(places), 2))
     found = join_lengths(
-        ways.edges, ways.corners, joins.between, joins.outlines, joins.rises, np.inf, places, 16
+        ways.walls, ways.corners, ways.between, joins.outlines, joins.rises, np.inf, places, still, 0.0, 16
     )
     for p in range(len(places)):
         for q in range(p):
@@ -48,3 +49,17 @@ def test_lines_are_flown_from_the_start_to_the_end() -> None:
     assert flown.tolist() == [[[20.0, 100.0], [300.0, 100.0]], [[300.0, 200.0], [20.0, 200.0]]]
     straight_m = np.hypot(15.0, 95.0) + 280.0 + 100.0 + 280.0 + np.hypot(15.0, 90.0)
     assert length_m == pytest.approx(straight_m)
+
+
+def test_turns_count_as_much_as_bends() -> None:
+    """Two lanes in line have none between them, two side by side have two."""
+    town = replace(TOWN, buildings=())
+    free = free_space(town)
+    joins = Joins.among(town, free, Ways.through(free.ground, 40.0))
+    lanes = np.array(
+        [[[20.0, 100.0], [150.0, 100.0]], [[200.0, 100.0], [300.0, 100.0]], [[20.0, 150.0], [300.0, 150.0]]]
+    )
+    length_m, _ = joins.tour(lanes, 0)
+    lines_m = 130.0 + 50.0 + 100.0 + 50.0 + 280.0
+    ends_m = np.hypot(15.0, 95.0) + np.hypot(15.0, 145.0)
+    assert length_m == pytest.approx(lines_m + ends_m + 4 * 40.0)

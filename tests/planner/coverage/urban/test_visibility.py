@@ -8,7 +8,8 @@ import shapely
 import shapely.affinity
 from shapely.geometry import LineString, MultiPolygon, Polygon, box
 
-from planner.coverage.urban.visibility import Ways
+from planner.coverage.urban.visibility import Ways, edges_of, walls_of
+from planner.coverage.urban.visibility_kernels import crosses
 
 
 def ground(seed: int) -> tuple[Polygon, np.random.Generator]:
@@ -76,3 +77,14 @@ def test_a_way_along_a_wall_is_clear() -> None:
     line = ways.way((40, 10), (60, 10))
     assert line is not None
     assert LineString(line).length == pytest.approx(40.0 + 40.0 + 20.0)
+
+
+def test_a_grid_finds_what_looking_at_all_edges_finds() -> None:
+    """Random lines, some beyond the ground, level and upright ones too."""
+    free, rng = ground(3)
+    walls = walls_of(edges_of(free))
+    rings = shapely.union_all([free.exterior, *free.interiors])
+    lines = rng.uniform(-20, 120, (400, 4))
+    lines[:50, 3], lines[50:100, 2] = lines[:50, 1], lines[50:100, 0]
+    for line in lines.tolist():
+        assert crosses(walls, *line) == rings.intersects(LineString([line[:2], line[2:]]))
