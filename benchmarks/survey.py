@@ -13,6 +13,8 @@ Parts, each with rows of its own:
 ``photos``
     Random regions in winds up to 60 % of the speed: how often each place of a grid of 1 m is seen, by how
     many lanes, and what neighbouring photos share at least; by a geometry of the benchmark's own.
+``overlap``
+    Random surveys through ``make_plan``, see ``survey_overlap``: overlaps reached over what is asked for.
 ``scale``
     40 km² at 3 cm a pixel with 24 megapixels, through ``make_plan``.
 """
@@ -27,9 +29,7 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 import numpy as np
-import shapely
 from numpy.typing import NDArray
-from scipy.spatial import ConvexHull
 from shapely.affinity import rotate
 from shapely.geometry import Polygon
 
@@ -42,6 +42,8 @@ from benchmarks.survey_baselines import (
     qgc_transects,
     with_turnaround,
 )
+from benchmarks.survey_overlap import overlap
+from benchmarks.survey_shapes import random_convex, random_star
 from planner.airspace.surroundings import Surroundings
 from planner.airspace.values import Wind
 from planner.coverage.merge import split_region
@@ -63,7 +65,7 @@ Row = dict[str, Any]
 
 HEIGHT_M = 100.0
 NOTHING = np.empty((0, 3))
-PARTS = ("fields", "items", "convex", "photos", "scale")
+PARTS = ("fields", "items", "convex", "photos", "overlap", "scale")
 #: Total lengths published by Fields2Cover for its own fields, which are not published themselves.
 PUBLISHED_M = {"convex": 23_937, "L": 23_449, "U": 25_774}
 FIELDS = {
@@ -122,24 +124,6 @@ def _shortest(options: Sequence[Any], radius_m: float) -> tuple[list[int], list[
 def lines_of(passes: Sequence[CollectPass]) -> Floats:
     """Their lines, (N, 2, 2)."""
     return np.array([[one.start, one.end] for one in passes])
-
-
-def random_convex(rng: np.random.Generator, area_m2: float) -> Polygon:
-    """A convex polygon of this area, up to three times as long as wide."""
-    points = rng.normal(size=(12, 2)) * [1.0, rng.uniform(0.3, 1.0)]
-    hull = Polygon(points[ConvexHull(points).vertices])
-    return shapely.transform(hull, lambda p: p * math.sqrt(area_m2 / hull.area))
-
-
-def random_star(rng: np.random.Generator, area_m2: float) -> Polygon:
-    """A polygon of this area whose middle sees all of it, often concave."""
-    count = int(rng.integers(5, 14))
-    angles_rad = np.sort(rng.uniform(0.0, math.tau, count))
-    radii = rng.uniform(0.35, 1.0, count)
-    star = Polygon(np.column_stack([radii * np.cos(angles_rad), radii * np.sin(angles_rad)]))
-    if not star.is_valid or star.area < 0.2:
-        return random_star(rng, area_m2)
-    return shapely.transform(star, lambda p: p * math.sqrt(area_m2 / star.area))
 
 
 def fields() -> Iterator[Row]:
@@ -352,6 +336,7 @@ def run(
         "items": lambda: items(count, seed),
         "convex": lambda: convex(count, seed),
         "photos": lambda: overlaps(regions, seed, grid_m),
+        "overlap": lambda: overlap(regions, seed, grid_m),
         "scale": scale,
     }
     for part in (parts,) if isinstance(parts, str) else parts:

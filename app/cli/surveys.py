@@ -28,11 +28,12 @@ def tell_surveys(document: dict[str, Any]) -> None:
         took_s = max(f["end_s"] for f in own.values()) - min(f["start_s"] for f in own.values())
         say(
             f"{roi}: {len(own)} {'pass' if len(own) == 1 else 'passes'}"
-            + (f", {photos} photos" if photos else "")
+            + (f", {photos} photos" if photos else ", a video")
             + f" from {height} over home, {_centimetres(survey['gsd_m'])} a pixel at worst"
             + _niirs(survey["niirs"])
-            + f"; overlaps at least {survey['forward_overlap']:.0%} forward"
-            + f" and {survey['side_overlap']:.0%} to the side; {took_s / 60:.1f} min from first to last"
+            + "; overlaps at least "
+            + (f"{survey['forward_overlap']:.0%} forward and " if photos else "")
+            + f"{survey['side_overlap']:.0%} to the side; {took_s / 60:.1f} min from first to last"
         )
 
 

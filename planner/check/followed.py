@@ -1,4 +1,4 @@
-"""Collects that follow the ground: how high over it they are flown."""
+"""How high over the ground collects are flown: those that follow it, and those with a greatest height."""
 
 from __future__ import annotations
 
@@ -85,3 +85,34 @@ def followed_violations(scenario: Scenario, plan: Plan, path: FlownPath) -> Iter
                 "m",
                 lonlat(scenario, places[worst]),
             )
+
+
+def ceiling_violations(scenario: Scenario, plan: Plan, path: FlownPath) -> Iterator[Violation]:
+    """No level collect comes higher over the ground below it than ``max_height_m``, its ends included.
+
+    Looked at no farther apart than half the ground's posts.
+    """
+    cap_m, ground = scenario.max_height_m, scenario.terrain
+    if cap_m is None:
+        return
+    followed = {region.name for region in scenario.regions if region.over_ground_m is not None}
+    for collect in plan.collects_of(path.vehicle):
+        if followed.intersection(collect.regions):
+            continue
+        if ground is None:
+            places, altitudes_m = along(scenario, plan, collect, math.inf)
+            over_m = altitudes_m - (scenario.level.altitude_m - scenario.level.height_m)
+        else:
+            places, altitudes_m = along(scenario, plan, collect, ground.step_m / 2.0)
+            over_m = altitudes_m - ground.at(places)
+        high = int(np.argmax(np.where(np.isnan(over_m), np.inf, over_m)))
+        if over_m[high] <= cap_m + PLACE_TOLERANCE_M:
+            continue
+        yield Violation(
+            "collect-height",
+            collect.roi,
+            f"collect {collect.seq} comes to {over_m[high]:.1f} m over the ground, max_height_m is {cap_m:g}",
+            float(np.nan_to_num(over_m[high] - cap_m, nan=cap_m)),
+            "m",
+            lonlat(scenario, places[high]),
+        )

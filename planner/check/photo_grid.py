@@ -17,7 +17,7 @@ import shapely
 from numpy.typing import NDArray
 from shapely.geometry import MultiPolygon, Polygon
 
-from planner.sensors.camera import CameraSensor
+from planner.sensors.camera import TWICE, CameraSensor
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -97,7 +97,7 @@ def grid_over(area: Polygon | MultiPolygon) -> Floats:
 
 
 def look(places_m: Floats, ground_m: Floats, lanes: Sequence[Lane], sensor: CameraSensor) -> Seen:
-    """What lanes give at places; parallel ones are neighbours, and of several such groups the better counts.
+    """What lanes give at places; parallel ones are neighbours, and the group that keeps overlaps best counts.
 
     Parameters
     ----------
@@ -108,6 +108,7 @@ def look(places_m: Floats, ground_m: Floats, lanes: Sequence[Lane], sensor: Came
     photos = np.zeros(count, dtype=np.int64)
     forward, side = np.full(count, -np.inf), np.full(count, -np.inf)
     worst, middle, best = np.full(count, np.nan), np.full(count, np.nan), np.full(count, np.inf)
+    nearest = sensor.forward_overlap >= TWICE
     for group in _parallel(lanes):
         across = _Across.none(count)
         for lane, track in zip(group, _tracks(group), strict=True):
@@ -117,12 +118,18 @@ def look(places_m: Floats, ground_m: Floats, lanes: Sequence[Lane], sensor: Came
             nearer = view.off < best[view.at]
             at = view.at[nearer]
             best[at], middle[at] = view.off[nearer], view.gsd(sensor)[nearer]
-            across.add(view, track, math.cos(lane.course_rad - group[0].course_rad) > 0.0)
+            onward = math.cos(lane.course_rad - group[0].course_rad) > 0.0
+            across.add(view, track, onward=onward, nearest=nearest)
         beside = across.side()
-        better = np.minimum(across.forward, beside) > np.minimum(forward, side)
+        better = _beyond(across.forward, beside, sensor) > _beyond(forward, side, sensor)
         forward = np.where(better, across.forward, forward)
         side = np.where(better, beside, side)
     return Seen(photos, forward, side, worst, middle)
+
+
+def _beyond(forward: Floats, side: Floats, sensor: CameraSensor) -> Floats:
+    """By how much overlaps are more than asked for, the lesser of both."""
+    return np.minimum(forward - sensor.forward_overlap, side - sensor.side_overlap)
 
 
 def _parallel(lanes: Sequence[Lane]) -> list[list[Lane]]:
@@ -240,15 +247,15 @@ class _Across:
 
     Parameters
     ----------
-    forward, rank_m
-        Of the nearest lane in two photos of which a place is, or in one; and how far that is, lanes in one
-        photo of which it is behind all others.
+    forward, rank
+        Of the lane that counts, and by what it does, the least of all: how far it is, lanes in one photo of
+        which a place is behind those in two; where places need not be in two photos, how little is shared.
     left_m, width_m, track
         (2, M): the nearest lane and the nearest of another track.
     """
 
     forward: Floats
-    rank_m: Floats
+    rank: Floats
     left_m: Floats
     width_m: Floats
     track: Floats
@@ -259,13 +266,21 @@ class _Across:
         far = np.full((2, count), np.inf)
         return cls(np.full(count, -np.inf), np.full(count, np.inf), far, far.copy(), far.copy())
 
-    def add(self, view: _View, track: int, onward: bool) -> None:
-        """One more lane; ``onward`` where it flies as the first does, by which left and right are told."""
+    def add(self, view: _View, track: int, *, onward: bool, nearest: bool) -> None:
+        """One more lane.
+
+        Parameters
+        ----------
+        onward
+            Whether it flies as the first does, by which left and right are told.
+        nearest
+            Whether the nearest lane counts forward, or the one whose photos share most.
+        """
         left_m = view.left_m if onward else -view.left_m
         away_m = np.abs(left_m)
-        rank_m = away_m + np.where(view.photos > 1, 0.0, _LAST_M)
-        closer = rank_m < self.rank_m[view.at]
-        self.rank_m[view.at[closer]] = rank_m[closer]
+        rank = away_m + np.where(view.photos > 1, 0.0, _LAST_M) if nearest else -view.forward
+        closer = rank < self.rank[view.at]
+        self.rank[view.at[closer]] = rank[closer]
         self.forward[view.at[closer]] = view.forward[closer]
         new = np.stack([left_m, view.width_m, np.full(len(left_m), float(track))])
         known = np.stack([self.left_m[:, view.at], self.width_m[:, view.at], self.track[:, view.at]])

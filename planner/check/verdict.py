@@ -14,7 +14,7 @@ from planner.check.continuity import collect_violations, terminal_violations
 from planner.check.coverage import covered
 from planner.check.energy import line_wh
 from planner.check.fleet import fleet_violations, window_violations
-from planner.check.followed import followed_violations
+from planner.check.followed import ceiling_violations, followed_violations
 from planner.check.footprint_quality import footprint_violations
 from planner.check.heights import (
     altitude_violations,
@@ -124,6 +124,7 @@ def judge(scenario: Scenario, plan: Plan) -> Verdict:
             aircraft.ground_turn_radius_m,
         )
         violations += followed_violations(scenario, plan, path)
+        violations += ceiling_violations(scenario, plan, path)
     scenario, plan = asked, published
     violations += window_violations(scenario, plan)
     violations += fleet_violations(scenario, plan, scenario.kept_apart)

@@ -71,7 +71,13 @@ class Heights:
         return region.altitude_m is None and (bool(wanted) or not self.altitude_given)
 
     def over_top_m(
-        self, region: Region, scenario: Scenario, relief_m: float, level_m: float | None, findings: Findings
+        self,
+        region: Region,
+        scenario: Scenario,
+        relief_m: float,
+        level_m: float | None,
+        findings: Findings,
+        beside_m: float = 0.0,
     ) -> float | None:
         """The height chosen for a region over its highest ground; None where none is to be, or may be.
 
@@ -82,6 +88,8 @@ class Heights:
         level_m
             What is flown over its highest ground where nothing is chosen: its own altitude or the
             collection's; None without either.
+        beside_m
+            How much lower than its lowest ground that is which passes over it end above.
         """
         if all(sensor.name != region.sensor for sensor in scenario.sensors) and region.sensor is not None:
             return None
@@ -98,9 +106,13 @@ class Heights:
                 most_m = level_m if scenario.terrain_following else level_m + relief_m
                 self._check_most(region, most_m, findings)
             return None
+        least_m = LEAST_M if self.min_m is None else self.min_m
+        if scenario.terrain is not None:
+            least_m = max(least_m, scenario.over_ground_m) if self.min_m is None else least_m
         most_m = min([each.height_m for each in wanted], default=math.inf) - relief_m
         if self.max_m is not None:
-            most_m = min(most_m, self.max_m - relief_m)
+            # Ground beside it takes no height that its own asks for.
+            most_m = min(most_m, max(self.max_m - relief_m - beside_m, min(self.max_m - relief_m, least_m)))
         elif level_m is not None:
             most_m = min(most_m, level_m)
         if math.isinf(most_m):
@@ -111,9 +123,6 @@ class Heights:
                 "Add altitude_m, or max_height_m for the planner to choose below.",
             )
             return None
-        least_m = LEAST_M if self.min_m is None else self.min_m
-        if scenario.terrain is not None:
-            least_m = max(least_m, scenario.over_ground_m) if self.min_m is None else least_m
         if most_m < least_m * (1.0 - ROUNDING):
             self._refuse(region, wanted, relief_m, level_m, least_m, sensor.name, findings)
             return None

@@ -13,6 +13,7 @@ import math
 from dataclasses import replace
 from itertools import pairwise
 
+import numpy as np
 import shapely
 from shapely.geometry.base import BaseGeometry
 
@@ -23,6 +24,7 @@ from planner.geojson.fields import Findings
 from planner.geojson.followed import followed, may_follow
 from planner.geojson.heights import Heights
 from planner.scenario import Scenario
+from planner.sensors.camera import CameraSensor
 from planner.sensors.wanted import UnknownQualityError, wanted_of
 from planner.wishes import Region
 
@@ -78,14 +80,16 @@ def set_on_terrain(
     asked: list[Region] = []
     for region in scenario.regions:
         low_m, top_m = ranges_m[region.name]
-        if scenario.terrain_following and may_follow(scenario, region):
+        follows = scenario.terrain_following and may_follow(scenario, region)
+        if follows:
             low_m = top_m - _beside_m(scenario, region, ground)
         given_m = level_m if heights.altitude_given else None
         if region.altitude_m is not None:
             over_m = {"amsl": 0.0, "home": home_amsl_m, "terrain": top_m}[reference]
             given_m = region.altitude_m + over_m
         of_top_m = None if given_m is None else given_m - top_m
-        chosen_m = heights.over_top_m(region, standing, top_m - low_m, of_top_m, findings)
+        beside_m = 0.0 if follows else _lower_beside_m(scenario, region, ground, heights)
+        chosen_m = heights.over_top_m(region, standing, top_m - low_m, of_top_m, findings, beside_m)
         asked.append(region if chosen_m is None else replace(region, altitude_m=chosen_m))
         if chosen_m is not None:
             regions.append(replace(region, altitude_m=top_m + chosen_m))
@@ -146,6 +150,18 @@ def _beside_m(scenario: Scenario, region: Region, ground: Ground) -> float:
     except UnknownQualityError:
         return 0.0
     return ground.relief_beside_m(region.area, sensor.swath_m(max(most_m, 0.0)) / 2.0)
+
+
+def _lower_beside_m(scenario: Scenario, region: Region, ground: Ground, heights: Heights) -> float:
+    """How much lower than all of it ground is that level passes over it end above: half a photo beyond."""
+    known = region.sensor is None or any(each.name == region.sensor for each in scenario.sensors)
+    sensor = scenario.sensor_for(region) if known else None
+    if heights.max_m is None or not isinstance(sensor, CameraSensor):
+        return 0.0
+    reach_m = heights.max_m * math.tan(sensor.optics.half_height_rad)
+    beyond_m = ground.posts_of(region.area.buffer(reach_m))[:, 2]
+    lower_m = ground.range_over(region.area)[0] - np.nanmin(beyond_m)
+    return max(float(lower_m), 0.0)
 
 
 def _above(name: str, level_m: float, top_m: float, clearance_m: float, findings: Findings) -> bool:

@@ -183,6 +183,28 @@ class CameraSensor:
         middle_m = max(-laid.middle * high_m, -laid.middle * low_m)
         return self._run_m(self.seen_out_m(height_m, angle_rad), middle_m, height_m, angle_rad)
 
+    def kept_in_m(self, height_m: float, angle_rad: float) -> float:
+        """How far before ground anywhere in a lane's strip the first photo is taken, for the overlap there.
+
+        Where photos overlap by half or more the beginning is in two of them, elsewhere no farther from the
+        middle of what the first one sees of its parallel than places between two photos are.
+        """
+        laid, high_m, low_m = self._drops(height_m, angle_rad)
+        middle_m = max(laid.middle_last * high_m, laid.middle_last * low_m)
+        return self._kept_m(self.seen_in_m(height_m, angle_rad), middle_m, height_m, angle_rad)
+
+    def kept_out_m(self, height_m: float, angle_rad: float) -> float:
+        """How far beyond ground anywhere in a lane's strip the last photo is taken, for the overlap there."""
+        laid, high_m, low_m = self._drops(height_m, angle_rad)
+        middle_m = max(-laid.middle_first * high_m, -laid.middle_first * low_m)
+        return self._kept_m(self.seen_out_m(height_m, angle_rad), middle_m, height_m, angle_rad)
+
+    def _kept_m(self, seen_m: float, middle_m: float, height_m: float, angle_rad: float) -> float:
+        spacing_m = self.photo_spacing_m(height_m, angle_rad)
+        if self.forward_overlap >= TWICE:
+            return seen_m + spacing_m
+        return max(seen_m, middle_m - spacing_m / 2.0)
+
     def seen_in_m(self, height_m: float, angle_rad: float) -> float:
         """How far before ground anywhere in a lane's strip a photo may be taken at the latest to see it."""
         laid, high_m, low_m = self._drops(height_m, angle_rad)

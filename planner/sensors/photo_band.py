@@ -127,6 +127,8 @@ class Pattern:
         beginnings, the nearest of their ends.
     middle
         How far ahead the middle of what is seen of the course itself lies.
+    middle_first, middle_last
+        The same of parallels to the course in the strip: of that where it lies least far ahead, and farthest.
     """
 
     spacing: float
@@ -135,6 +137,8 @@ class Pattern:
     before: float
     beyond: float
     middle: float
+    middle_first: float
+    middle_last: float
 
     @property
     def half_width(self) -> float:
@@ -160,6 +164,8 @@ def pattern(optics: Optics, tilt_rad: float, crab_rad: float, forward_overlap: f
     assert edges is not None
     right, left = edges
     spans = [seen.span(at) for at in (right, left, *(k for k in seen.knots if right < k < left))]
+    # Bounds of a quadrilateral: between its corners they, and what lies halfway, are straight.
+    middles = [(first + last) / 2.0 for first, last in spans]
     centre = seen.span(0.0)
     return Pattern(
         low,
@@ -168,4 +174,6 @@ def pattern(optics: Optics, tilt_rad: float, crab_rad: float, forward_overlap: f
         max(first for first, _ in spans),
         min(last for _, last in spans),
         (centre[0] + centre[1]) / 2.0,
+        min(middles),
+        max(middles),
     )

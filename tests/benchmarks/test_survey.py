@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,8 +13,10 @@ from shapely.geometry import LineString, Polygon, box
 from benchmarks import survey
 from benchmarks.photos import photos, places, seen_by
 from benchmarks.survey_baselines import fields2cover, flown_m, qgc_transects, snake, swaths, to_and_fro
+from benchmarks.survey_overlap import looked_at, random_survey
 from planner.airspace.values import STILL_AIR
 from planner.dubins.words import shortest
+from planner.pipeline import make_plan
 from planner.route import Pose
 
 
@@ -88,3 +91,25 @@ def test_random_regions_are_judged_photo_by_photo() -> None:
     assert row["least_lanes"] >= 2
     assert row["least_forward_kept"] >= 0.75 - 1e-3
     assert row["least_side_kept"] >= 0.65 - 1e-3
+
+
+def test_random_surveys_overlap_as_asked() -> None:
+    """Five of the benchmark's 300, wings that crab among them and a corridor round a bend, on 4 m."""
+    *short, row = survey.run(parts=("overlap",), regions=5, grid_m=4.0)
+    assert short == []
+    assert (row["places_unseen"], row["places_once"], row["places_one_lane"]) == (0, 0, 0)
+    assert min(row["least_forward_over_asked"], row["least_side_over_asked"]) >= -0.002
+
+
+def test_photos_left_out_are_missed_over_terrain() -> None:
+    """Of a survey over a slope: every other one, and less is shared; all but two, and ground is unseen."""
+    asked = random_survey(1, 8)
+    scenario = asked.scenario()
+    plan = make_plan(scenario)
+    whole = looked_at(asked, scenario, plan, 4.0)
+    assert whole.forward_kept >= asked.forward - 0.01
+    assert whole.unseen == whole.once == 0
+    every_other = replace(plan, photos=tuple(replace(p, places=p.places[::2]) for p in plan.photos))
+    assert looked_at(asked, scenario, every_other, 4.0).forward_kept < asked.forward - 0.05
+    few = replace(plan, photos=tuple(replace(p, places=p.places[:2]) for p in plan.photos))
+    assert looked_at(asked, scenario, few, 4.0).unseen > 0

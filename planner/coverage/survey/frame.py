@@ -96,10 +96,7 @@ def runs(camera: CameraSensor, height_m: float, angles_rad: Floats) -> Runs:
 
     line = (each(camera.run_in_m), each(camera.run_out_m))
     seen = (each(camera.seen_in_m), each(camera.seen_out_m))
-    beside = line
-    if camera.forward_overlap >= TWICE:
-        photos_m = each(camera.photo_spacing_m)
-        beside = (seen[0] + photos_m, seen[1] + photos_m)
+    beside = (each(camera.kept_in_m), each(camera.kept_out_m))
     return Runs(*(run_m + SPARE_M for run_m in (*line, *beside, *seen)))
 
 

@@ -29,3 +29,13 @@ def test_a_survey_is_told_in_a_line(capsys: pytest.CaptureFixture[str]) -> None:
     forward, side = (int(each) for each in re.findall(r"(\d+)%", said))
     assert forward >= 75
     assert side >= 65
+
+
+def test_a_video_is_told_as_one(capsys: pytest.CaptureFixture[str]) -> None:
+    """It has no photos, and none that overlap forward."""
+    asked = field(None, {"trigger": "video"}, type="multirotor", autopilot="px4", airspeed_m_s=8.0)
+    tell_surveys(write_plan(make_plan(read_scenario(asked))))
+    said = capsys.readouterr().err
+    assert "passes, a video from 100 m" in said
+    assert "forward" not in said
+    assert "photos" not in said

@@ -101,6 +101,30 @@ def test_a_photo_left_out_halves_what_its_neighbours_share() -> None:
     assert seen.forward.min() == pytest.approx(1.0 - 40.0 * 3.0 / 235.0)
 
 
+def test_where_lanes_cross_those_count_that_keep_the_overlaps() -> None:
+    """Asked for 30 and 70 %: lanes with 40 and 75 count, not those across with 60 and 50."""
+    camera = CameraSensor("eye", OPTICS, 0.3, 0.7)
+    wide_m, long_m = 117.5, 235.0 / 3.0
+    kept = [lane(0.0, left_m, 0.6 * long_m, 0.0, camera) for left_m in (0.0, 0.25 * wide_m)]
+    across = [
+        lane(math.pi / 2.0, left_m, 0.4 * long_m, 0.0, camera) for left_m in (-0.25 * wide_m, 0.25 * wide_m)
+    ]
+    at = np.array([[0.0, 0.1 * wide_m]])
+    seen = look(at, np.zeros(1), [*across, *kept], camera)
+    assert (seen.forward[0], seen.side[0]) == pytest.approx((0.4, 0.75))
+
+
+def test_where_photos_overlap_by_less_than_half_the_lane_counts_that_shares_most() -> None:
+    """A place past the end of the nearer lane, in its last photo's edge, is well within the other lane's."""
+    camera = CameraSensor("eye", OPTICS, 0.4, 0.6)
+    spacing_m = 0.6 * 235.0 / 3.0
+    ends, passes = (lane(0.0, left_m, spacing_m, 0.0, camera) for left_m in (0.0, 40.0))
+    ends = replace(ends, places_m=ends.places_m[:6], altitudes_m=ends.altitudes_m[:6])
+    at = np.array([[ends.places_m[-1, 0] + 35.0, 10.0]])
+    assert look(at, np.zeros(1), [ends], camera).forward[0] == pytest.approx(1.0 - 70.0 / (235.0 / 3.0))
+    assert look(at, np.zeros(1), [ends, passes], camera).forward[0] >= 0.4 - 1e-9
+
+
 def test_the_grid_holds_the_outline_and_no_place_outside() -> None:
     """A metre apart over a small region."""
     area = Polygon([(0.0, 0.0), (30.0, 5.0), (22.0, 28.0), (3.0, 14.0)])

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import math
 import re
+from dataclasses import replace
 from typing import Any
 
+import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from planner.check import judge
 from planner.errors import Finding, ScenarioError
 from planner.geojson import read_scenario
 from planner.pipeline import make_plan
@@ -179,6 +182,24 @@ def test_over_terrain_quality_is_that_on_the_lowest_ground_and_bounds_that_on_th
         "A": "heights-too-close",
         "B": "above-ceiling",
     }
+
+
+def test_no_pass_is_above_the_highest_beside_its_region_either() -> None:
+    """Over a slope passes end above lower ground than their region's: allowed for, and the judge looks."""
+    camera = EYE | {"forward_overlap": 0.3, "side_overlap": 0.3}
+    asked = document({}, camera, altitude_m=None, max_height_m=260.0, terrain="t")
+    del asked["features"][1]
+    slope = {"t": raster(lambda e, n: 0.1 * (e + n), read_scenario(small()).frame)}
+    plan = make_plan(read_scenario(asked, slope))
+    assert plan.violations == ()
+    scenario = read_scenario(asked, slope)
+    assert scenario.terrain is not None
+    line = np.array([place for collect in plan.collects for place in collect.line])
+    over_m = line[:, 2] - scenario.terrain.at(scenario.frame.to_local(line[:, :2]))
+    assert over_m.max() <= 260.0
+    lower = replace(scenario, max_height_m=float(over_m.max()) - 5.0)
+    (found,) = {(v.constraint, v.hard, round(v.amount)) for v in judge(lower, plan).violations}
+    assert found == ("collect-height", True, 5)
 
 
 def test_bounds_that_decide_nothing_are_told() -> None:

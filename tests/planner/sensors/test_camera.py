@@ -120,6 +120,26 @@ def test_what_passes_see_is_what_their_photos_see_and_the_judge_finds(
     assert seen.symmetric_difference(judged).area < 1e-5 * judged.area
 
 
+@given(drifts, courses, tilts, st.floats(0.1, 0.49))
+def test_photos_that_overlap_by_less_than_half_begin_early_enough_beside_the_line_too(
+    drift: float, course: float, tilt: float, overlap: float
+) -> None:
+    """Anywhere in the strip, chords cut by shapely: no more than half a spacing from the middle of its."""
+    camera = replace(PLAIN, tilt_rad=tilt, forward_overlap=overlap).in_wind(drift, 0.7)
+    laid = camera.pattern(course)
+    photo = image_on_ground(A6000, tilt, camera.crab_rad(course), 100.0)
+    in_m, out_m = camera.kept_in_m(100.0, course), camera.kept_out_m(100.0, course)
+    for share in (0.001, 0.2, 0.5, 0.8, 0.999):
+        left_m = 100.0 * (laid.right + share * (laid.left - laid.right))
+        chord = photo.intersection(box(-1e4, left_m - 1e-6, 1e4, left_m + 1e-6)).bounds
+        middle_m = (chord[0] + chord[2]) / 2.0
+        # Of the first photo, so far before the ground, that lies at +in; of the last one at -out.
+        assert in_m >= middle_m - 50.0 * laid.spacing - 1e-3
+        assert -out_m <= middle_m + 50.0 * laid.spacing + 1e-3
+        assert chord[0] - 1e-3 <= in_m
+        assert -out_m <= chord[2] + 1e-3
+
+
 @given(drifts, courses, tilts)
 def test_the_judge_spaces_photos_alike(drift: float, course: float, tilt: float) -> None:
     """By areas of polygons, where the planner sums chords."""
