@@ -136,6 +136,10 @@ def warm_up() -> None:
     with_bound(many, make_plan(many), share=True)
     make_plan(read_scenario(_city("auto", building=False)))
     make_plan(read_scenario(_city("auto", building=False) | {"task": "search", "method": {}}))
+    # Walks over importance, looks that miss, and what drifts.
+    still, drift = {"detection": 0.5}, {"detection": 0.5, "drift": {"speed_m_s": 0.2, "toward_deg": 90.0}}
+    for member in (still, drift):
+        make_plan(read_scenario(_valued() | {"search": member}))
     for coverage in SEQUENCES:
         make_plan(read_scenario(_city(coverage)))
     # What is left out where a limit is exceeded.
@@ -171,6 +175,21 @@ def _city(method: str, *, building: bool = True) -> dict[str, Any]:
         "sensors": [{"name": "eye", "type": "camera", "model": "Sony a6000 20 mm"}],
         "altitude_m": 60.0,
         "method": {"coverage": method},
+    }
+
+
+def _valued() -> dict[str, Any]:
+    """The same to be searched, with a place that is worth more."""
+    city = _city("auto", building=False)
+    geometry = {"type": "Point", "coordinates": [0.001, 0.0005]}
+    worth = {"role": "importance", "score": 1.0, "spread_m": 20.0}
+    point = {"type": "Feature", "id": "worth", "properties": worth, "geometry": geometry}
+    limited = {**city["vehicles"][0], "max_flight_time_s": 400.0}
+    return city | {
+        "features": [*city["features"], point],
+        "vehicles": [limited],
+        "task": "search",
+        "method": {},
     }
 
 
