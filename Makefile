@@ -26,9 +26,9 @@ journey-ardupilot: ## Fly a plan in a real ArduPlane: containers, plan, upload, 
 journey-px4: ## The same in a real PX4
 	sh docker/journey.sh px4 $(ADDRESS)
 
-# In the order of the files, so that those of a folder follow each other and share its service and its browser.
+# By two processes for each processor, in the order of tests/order.py.
 test: $(VENV)/.installed-dev static/dist/index.html ## Run every test
-	$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder
+	$(BIN)/python -m pytest -n auto --no-loadscope-reorder
 
 lint: $(VENV)/.installed-dev ## ruff
 	$(BIN)/ruff check .
