@@ -27,6 +27,8 @@ from mavlink.wire.items import Command, Frame, MissionItem, MissionType
 #: Items of short missions and of long ones; the last is longer than any autopilot holds.
 SIZES = (1, 10, 100, 1000, 10_000)
 REPETITIONS = 5
+#: Either client asks a vehicle that it has met for its version and its telemetry: that is over when this is.
+ACQUAINTED_S = 0.5
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,6 +92,7 @@ async def ours(items: tuple[MissionItem, ...]) -> Received:
     link = await open_udp("127.0.0.1", 0, listen=True)
     async with VehicleClient(link) as client, vehicle(link.local_port) as missions:
         await client.connect(10.0)
+        await asyncio.sleep(ACQUAINTED_S)
         begin_s = time.perf_counter()
         outcome = await client.upload(items, MissionType.MISSION)
         seconds = time.perf_counter() - begin_s
@@ -119,6 +122,7 @@ async def theirs(items: tuple[MissionItem, ...]) -> Received:
                 )
                 for item in items
             ]
+            await asyncio.sleep(ACQUAINTED_S)
             begin_s = time.perf_counter()
             await raw.upload_mission(peer_items)
             seconds = time.perf_counter() - begin_s

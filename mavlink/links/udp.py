@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import contextlib
 import ipaddress
 import socket
 from collections.abc import Callable
@@ -153,9 +152,10 @@ class UdpLink:
         if self._closed:
             raise LinkError("link closed")
         for peer in self._targets:
-            # A full buffer, or nobody listening there: the datagram is lost, as on any radio.
-            with contextlib.suppress(OSError):
+            try:
                 self._socket.sendto(data, peer)
+            except OSError:
+                continue  # a full buffer, or nobody listening there: lost, as on any radio
 
     async def receive(self) -> bytes:
         """Wait for datagrams."""

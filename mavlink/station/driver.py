@@ -1,6 +1,7 @@
 """One task between a link and the machines: it reads, lets time pass, and sends.
 
-Everything that goes out goes out from this task. Callers hand it machines and wait for their outcomes.
+Callers hand it machines and wait for their outcomes. On a link that can do without the event loop's next
+turn, what is queued goes out at once, in its order; the task then only lets time pass.
 """
 
 from __future__ import annotations
@@ -9,7 +10,7 @@ import asyncio
 import contextlib
 import math
 from collections import deque
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any, Final
 
@@ -28,7 +29,7 @@ from mavlink.station.forward.hub import Forwards
 from mavlink.station.identity import Identity
 from mavlink.station.jobs import Job
 from mavlink.station.list_ids import ListIds
-from mavlink.station.listener import Listener
+from mavlink.station.listener import Overheard
 from mavlink.station.restarts import Restarts
 from mavlink.station.trust import Trust
 from mavlink.station.under_way import UnderWay
@@ -44,7 +45,7 @@ _ACTIVE: Final = 4  # MAV_STATE_ACTIVE
 _MOST_WAITING: Final = 256
 
 
-class Driver(Believing):
+class Driver(Believing, Overheard):
     """Drives machines over a link on behalf of one ground station and one vehicle.
 
     Parameters
@@ -65,6 +66,7 @@ class Driver(Believing):
         lost_after_s: float = 5.0,
         forwards: Forwards | None = None,
     ) -> None:
+        super().__init__()
         self.state = VehicleState()
         self._link = link
         self.read_only = isinstance(link, ReplayLink)
@@ -89,8 +91,6 @@ class Driver(Believing):
         self._heard_s = -math.inf
         self._heartbeat_s = -math.inf
         self._under_way = UnderWay(clock, self._queue, self._wake)
-        self._watchers: set[asyncio.Event] = set()
-        self._recorders: set[Listener] = set()
         self.events = EventOrder()
         self.list_ids = ListIds()
         self.sensor = SensorWatch()
@@ -189,29 +189,11 @@ class Driver(Believing):
         self._set_state(VehicleState())
         self._trust.adopt(system_id)
 
-    @contextlib.contextmanager
-    def watching(self) -> Iterator[asyncio.Event]:
-        """An event that is set at every change of state, and at the end."""
-        changed = asyncio.Event()
-        self._watchers.add(changed)
-        try:
-            yield changed
-        finally:
-            self._watchers.discard(changed)
-
     @property
     def recording_clock(self) -> Callable[[], float | None] | None:
         """When what is heard was heard first, where the link is a recording; None of a live one."""
         link = self._link
         return (lambda: link.clock_s) if isinstance(link, ReplayLink) else None
-
-    def record(self, recorder: Listener) -> None:
-        """Feed whoever takes the vehicle's messages from now on."""
-        self._recorders.add(recorder)
-
-    def stop_recording(self, recorder: Listener) -> None:
-        """Stop feeding a recorder."""
-        self._recorders.discard(recorder)
 
     async def _run(self) -> None:
         if self._direct is not None:
@@ -239,12 +221,9 @@ class Driver(Believing):
         try:
             for message in self._codec.feed(data):
                 self._take(message)
-            while self._outgoing:
-                self._direct.send_now(self._outgoing.popleft())
         except Exception as error:  # noqa: BLE001 - raised again in the task, whose business it is
             self._error = error
-        if self._error is not None or self._next_deadline_s() < self._due_s:
-            self._wake()
+        self._wake()
 
     async def _wait(self) -> bytes:
         """Bytes, or none when something is due first."""
@@ -265,6 +244,16 @@ class Driver(Believing):
         while self._outgoing:
             await self._link.send(self._outgoing.popleft())
 
+    def _send_at_once(self) -> None:
+        """Send what is queued, where the link and its task are ready for it."""
+        if self._direct is None or self._task is None or self._error is not None:
+            return
+        try:
+            while self._outgoing:
+                self._direct.send_now(self._outgoing.popleft())
+        except LinkError as error:
+            self._error = error  # raised again in the task, whose business it is
+
     def _queue(self, messages: list[Message], job: Job[Any]) -> None:
         """Queue a job's messages for the task."""
         try:
@@ -273,6 +262,10 @@ class Driver(Believing):
             job.fail(error)
 
     def _wake(self) -> None:
+        """Send, and have the task look up where that is its business or something is due sooner."""
+        self._send_at_once()
+        if not self._outgoing and self._error is None and self._next_deadline_s() >= self._due_s:
+            return
         if self._timeout is not None and not self._timeout.expired():
             self._timeout.reschedule(asyncio.get_running_loop().time())
 
@@ -304,8 +297,7 @@ class Driver(Believing):
         if not self._identity.speaks(message, self.state):
             beside = message.name in CAMERA_MESSAGES or message.name in MOUNT_MESSAGES
             if beside and message.system_id == self.state.system_id:
-                for recorder in self._recorders:
-                    recorder.take(message, self.state)
+                self._tell(message)
                 self._change(self.sensor.watched(self.state, message, now_s))
             self._change(self._identity.watched(self.state, message, now_s))
             return
@@ -314,6 +306,10 @@ class Driver(Believing):
         self._trust.heard(message, now_s)
         if message.name in EVENT_MESSAGES and not self._event_is_new(message):
             return
+        known = self.state.connected
+        if known:
+            # Before the rest is looked at: the vehicle is at work on the answer meanwhile.
+            self._answer(message, now_s)
         state = self.list_ids.watched(updated(self.state, message, now_s), message, now_s)
         state = self.sensor.watched(state, message, now_s)
         if self._restarts.noticed(self.state, state, message):
@@ -324,12 +320,16 @@ class Driver(Believing):
             self._on_connect()
         else:
             self._change(state)
-        for recorder in self._recorders:
-            recorder.take(message, self.state)
+        self._tell(message)
+        if not known:
+            self._answer(message, now_s)
+
+    def _answer(self, message: Message, now_s: float) -> None:
         if message.fields.get("target_system", 0) not in (0, self._codec.system_id):
             return  # meant for another ground station on the same link
         answers = self._under_way.receive(message, now_s)
         self._outgoing.extend([self._codec.pack(answer) for answer in answers])
+        self._send_at_once()
 
     def _event_is_new(self, message: Message) -> bool:
         """Whether to read on; events that were lost on the way are asked for again."""

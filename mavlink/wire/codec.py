@@ -170,7 +170,7 @@ class Codec:
         self.noted: Callable[[Message, Verdict], None] | None = None
         self.refused_frames = 0
         self._sequence = 0
-        self._buffer = bytearray()
+        self._buffer = b""
 
     def pack(self, message: Message) -> bytes:
         """Encode as one MAVLink 2 frame from this codec's sender.
@@ -229,8 +229,8 @@ class Codec:
         After a failed checksum the search goes on one byte further, so a good frame behind or inside a
         damaged one is still found.
         """
-        buffer = self._buffer
-        buffer += data
+        # As a rule a datagram holds whole frames, and nothing is left over: it is read where it lies.
+        buffer = self._buffer + data if self._buffer else data
         messages: list[Message] = []
         position = 0
         while (start := MAGIC.search(buffer, position)) is not None:
@@ -241,7 +241,7 @@ class Codec:
             known = len(messages)
             taken = self._decode(buffer, position, end, messages) if end > position else False
             if taken:
-                frame, message = bytes(buffer[position:end]), messages[-1] if len(messages) > known else None
+                frame, message = buffer[position:end], messages[-1] if len(messages) > known else None
                 if not self._trusts(frame, message):
                     del messages[known:]
                 else:
@@ -255,7 +255,7 @@ class Codec:
                 position += 1
         else:
             position = len(buffer)
-        del buffer[:position]
+        self._buffer = buffer[position:]
         return messages
 
     def _trusts(self, frame: bytes, message: Message | None) -> bool:
@@ -271,7 +271,7 @@ class Codec:
             self.noted(message, verdict)
         return verdict in (Verdict.GENUINE, Verdict.UNVERIFIED)
 
-    def _decode(self, buffer: bytearray, start: int, end: int, messages: list[Message]) -> bool:
+    def _decode(self, buffer: bytes, start: int, end: int, messages: list[Message]) -> bool:
         """Decode the frame at ``start``; False when it is none."""
         signature = 0
         if buffer[start] == _MAGIC_V2:
@@ -291,10 +291,10 @@ class Codec:
             self.unknown_frames += believed
             return believed
         crc_at = end - signature - _CRC_BYTES
-        if buffer[crc_at : crc_at + _CRC_BYTES] != _crc(bytes(buffer[start + 1 : crc_at]) + layout.crc_extra):
+        if buffer[crc_at : crc_at + _CRC_BYTES] != _crc(buffer[start + 1 : crc_at] + layout.crc_extra):
             return False
         size = layout.payload.size
-        payload = bytes(buffer[body : body + min(length, size)]).ljust(size, b"\0")
+        payload = buffer[body : body + min(length, size)].ljust(size, b"\0")
         flat = layout.payload.unpack(payload)
         if layout.plain:
             fields: dict[str, Value] = dict(zip(layout.names, flat, strict=True))
