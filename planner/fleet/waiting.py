@@ -54,10 +54,10 @@ class Timing:
         return math.fsum(self.waits_s)
 
 
-def timing(dues: Sequence[Due], ready_s: float) -> Timing:
-    """The timing of a flight that may lift off at ``ready_s``."""
+def timing(dues: Sequence[Due], ready_s: float, *, pinned: bool = False) -> Timing:
+    """The timing of a flight that may lift off at ``ready_s``, and where it is ``pinned`` begins then."""
     waits_s, _, slack_s = _forward(dues, ready_s)
-    start_s = ready_s + max(0.0, min(slack_s, math.fsum(waits_s)))
+    start_s = ready_s if pinned else ready_s + max(0.0, min(slack_s, math.fsum(waits_s)))
     waits_s, late, _ = _forward(dues, start_s, whole=True)
     worst = max(range(len(dues)), key=lambda k: late[k], default=None)
     late_s = 0.0 if worst is None else max(late[worst], 0.0)

@@ -34,6 +34,14 @@ FITTINGS, WITHIN_S = 4, 0.1
 
 
 @dataclass(frozen=True, slots=True)
+class Order:
+    """Passes in a given order of jobs, and which job each is of."""
+
+    passes: tuple[CollectPass, ...]
+    of: tuple[int, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class Flown:
     """One flight, times from its lift-off.
 
@@ -43,6 +51,8 @@ class Flown:
         Number of the crew; its jobs in flight order, with the visit that each is.
     composed, legs, passes
         As ``Answer`` has them, by the names that were asked for.
+    order
+        Its passes by the names of the jobs.
     spans_s
         Of each job, when it begins and ends.
     waited_s
@@ -58,6 +68,7 @@ class Flown:
     spans_s: tuple[tuple[float, float], ...]
     use: Use
     methods: dict[str, str]
+    order: Order
     waited_s: float = 0.0
 
     @property
@@ -104,14 +115,6 @@ def in_given_order(crew: Crew, number: int, jobs: Sequence[tuple[Job, int]], con
     with controls.stage("routing"):
         order = in_order(crew, jobs, controls)
     return _through(crew, number, jobs, order, (), controls)
-
-
-@dataclass(frozen=True, slots=True)
-class Order:
-    """Passes in a given order of jobs, and which job each is of."""
-
-    passes: tuple[CollectPass, ...]
-    of: tuple[int, ...]
 
 
 def in_order(crew: Crew, jobs: Sequence[tuple[Job, int]], controls: Controls) -> Order:
@@ -162,7 +165,7 @@ def with_waits(
     bounds_s
         Of each job on the plan's clock: when it may begin, and when it has to be over.
     ready_s
-        When it may lift off.
+        When it may lift off; what flies already begins then, and waits in the air alone.
 
     Raises
     ------
@@ -176,7 +179,7 @@ def with_waits(
         before = [k for k in range(len(dues)) if jobs[k][0].region.name == job.region.name]
         apart_s = job.region.revisit_after_s + SPARE_S
         dues.append(Due(start_s, end_s, opens_s, closes_s, held_s, before[-1] if before else None, apart_s))
-    when = timing(dues, ready_s)
+    when = timing(dues, ready_s, pinned=crew.aircraft.aloft is not None)
     if when.worst is not None or when.waited_s <= 0.0:
         return plain, when
     return _waited(crew, number, jobs, order, plain, dues, when, controls)
@@ -281,6 +284,7 @@ def _flown(
 ) -> Flown:
     only = [job for job, _ in jobs]
     spans: dict[int, tuple[float, float]] = {}
+    firsts: list[int] = []
     for index, (each, (from_m, until_m)) in enumerate(zip(passes, composed.passes_m, strict=True)):
         begin_s, end_s = composed.flight.along(from_m)[1], composed.flight.along(until_m)[1]
         seen = (
@@ -288,6 +292,7 @@ def _flown(
             if of is None
             else [of[index]]
         )
+        firsts.append(seen[0] if seen else -1)
         for place in seen:
             first_s, last_s = spans.get(place, (math.inf, 0.0))
             spans[place] = (min(first_s, begin_s), max(last_s, end_s))
@@ -306,6 +311,7 @@ def _flown(
         tuple(spans[place] for place in range(len(only))),
         used(composed.flight, setting.model, setting.level),
         methods,
+        Order(tuple(passes), tuple(firsts)),
     )
 
 

@@ -5,12 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from planner.errors import InfeasibleError
 from planner.fleet.assignment import Trip
 from planner.fleet.separation import Apart, Track, step_m, track_of
+from planner.tasks.fleet.aloft import held_apart
 from planner.tasks.fleet.crews import Crew
 from planner.tasks.fleet.flights import SPARE_S, Flown, Order, with_waits
 from planner.tasks.fleet.jobs import Job
@@ -176,6 +178,13 @@ def placed(
             continue
         if clock is not None and (best is None or clock.cost_s < best.cost_s):
             best = clock
+    flying = [each for each in first if crews[each.trip.member].aircraft.aloft is not None]
+    for each in flying if best is None else ():
+        # None may be put off: whoever is placed later waits in the air.
+        order = _sooner(crews, first, each)
+        clock = _in_turn(apart, order, crews, tracks, separation, controls, waiting=True)
+        if clock is not None and (best is None or clock.cost_s < best.cost_s):
+            best = clock
     if best is None:
         raise _too_near([crews[each.trip.member].aircraft for each in first], separation)
     return tuple(sorted(best.sorties, key=lambda each: (each.flown.crew, each.number)))
@@ -188,12 +197,21 @@ def _in_turn(
     tracks: Mapping[int, int],
     separation: Separation,
     controls: Controls,
+    *,
+    waiting: bool = False,
 ) -> _Clock | None:
-    """All flights placed in an order; None where one that flies already would have to wait on the ground."""
+    """All flights placed in an order; None where one that flies already comes too near to another.
+
+    ``waiting`` looks for waits in the air that keep those apart.
+    """
     clock = _Clock(apart)
     for errand in order:
         crew = crews[errand.trip.member]
         ready_s = clock.ready_s(errand.trip.member, crew.aircraft.turnaround_s)
+        if crew.aircraft.aloft is not None and (waiting or errand.flown is None):
+            if not _put_aloft(clock, crew, errand, separation, controls):
+                return None
+            continue
         if errand.flown is None:
             try:
                 _put_in_order(clock, crew, errand, ready_s, separation, controls)
@@ -208,6 +226,23 @@ def _in_turn(
             return None
         clock.put(errand, errand.flown, start_s, track)
     return clock
+
+
+def _put_aloft(
+    clock: _Clock, crew: Crew, errand: Errand, separation: Separation, controls: Controls
+) -> bool:
+    """Place a flight that has begun; whether it can be kept apart from those placed, in time."""
+    order = errand.order if errand.flown is None else errand.flown.order
+    if order is None:
+        raise ValueError("a flight without an order has no order to keep")
+    bounds_s = [clock.bounds_s(job, visit) for job, visit in errand.jobs]
+    of = partial(_track, crew, separation=separation)
+    found = held_apart(clock, crew, errand.trip.member, errand.jobs, order, bounds_s, of, controls)
+    if found is None:
+        return False
+    flown, track = found
+    clock.put(errand, flown, 0.0, track)
+    return True
 
 
 def _too_near(flying: Sequence[Aircraft], separation: Separation) -> InfeasibleError:

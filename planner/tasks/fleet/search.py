@@ -19,7 +19,7 @@ from planner.metrics import used
 from planner.scenario import Scenario
 from planner.search.values import Worth
 from planner.tasks.fleet.crews import Crew
-from planner.tasks.fleet.flights import Flown
+from planner.tasks.fleet.flights import Flown, Order
 from planner.tasks.fleet.placing import Errand, placed
 from planner.tasks.fleet.task import FleetAnswer
 from planner.tasks.search import answer_to, reach, sought
@@ -171,8 +171,9 @@ def _flown(crew: Crew, share: _Share, answer: Answer) -> Flown:
     setting = crew.setting
     use = used(answer.composed.flight, setting.model, setting.level)
     return Flown(
-        share.crew, (), answer.composed, answer.legs, answer.passes, answer.notes, (), use, answer.methods
-    )
+        share.crew, (), answer.composed, answer.legs, answer.passes, answer.notes, (), use, answer.methods,
+        Order(answer.passes, ()),
+    )  # fmt: skip
 
 
 def _trip(share: _Share, flown: Flown) -> Trip:
