@@ -1,4 +1,4 @@
-"""Flights that begin in the air: they cannot be put off, and wait before one of their passes instead."""
+"""Flights that begin in the air: they wait before one of their passes, and go home when all is done."""
 
 from __future__ import annotations
 
@@ -6,10 +6,11 @@ from collections.abc import Iterator, Sequence
 from typing import Protocol
 
 from planner.errors import InfeasibleError
+from planner.fleet.assignment import Trip
 from planner.fleet.separation import Apart, Track
 from planner.fleet.waiting import least_hold_s
 from planner.tasks.fleet.crews import Crew
-from planner.tasks.fleet.flights import Flown, Order, with_waits
+from planner.tasks.fleet.flights import Flown, Order, straight_home, with_waits
 from planner.tasks.fleet.jobs import Job
 from planner.tasks.task import Controls
 
@@ -88,3 +89,22 @@ def _waited(
             opens_s, closes_s = bounds_s[place]
             later = (max(opens_s, begin_s + circles * once_s), closes_s)
             yield [*bounds_s[:place], later, *bounds_s[place + 1 :]]
+
+
+def homewards(crews: Sequence[Crew], trips: Sequence[Trip], controls: Controls) -> list[tuple[Trip, Flown]]:
+    """The ways home of those in the air that are given nothing by trips of others.
+
+    Raises
+    ------
+    InfeasibleError
+        Where there is none.
+    """
+    busy = {trip.member for trip in trips}
+    found = []
+    for number, crew in enumerate(crews):
+        if busy and number not in busy and crew.aircraft.aloft is not None:
+            flown = straight_home(crew, number, controls)
+            length_m, duration_s, energy_wh = flown.use.length_m, flown.use.duration_s, flown.use.energy_wh
+            trip = Trip(number, 0, 0, 0.0, duration_s, (), length_m, energy_wh or 0.0, 0.0)
+            found.append((trip, flown))
+    return found

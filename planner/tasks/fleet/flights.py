@@ -16,12 +16,13 @@ from planner.plan import LeftOut
 from planner.profile.compose import Composed
 from planner.progress import silent
 from planner.publish import Leg
-from planner.route import CollectPass
+from planner.route import Anchor, CollectPass
 from planner.routing.joint.chain import layers_of
 from planner.routing.joint.tours import Choice, Tours
 from planner.tasks.collect import collect
 from planner.tasks.fleet.crews import ETAS, STEP_RAD, Crew
 from planner.tasks.fleet.jobs import Job, as_asked, renamed
+from planner.tasks.flying import Station
 from planner.tasks.methods import chosen_methods
 from planner.tasks.task import Answer, Controls
 from planner.tasks.transits import Transits
@@ -115,6 +116,26 @@ def in_given_order(crew: Crew, number: int, jobs: Sequence[tuple[Job, int]], con
     with controls.stage("routing"):
         order = in_order(crew, jobs, controls)
     return _through(crew, number, jobs, order, (), controls)
+
+
+def straight_home(crew: Crew, number: int, controls: Controls) -> Flown:
+    """The flight of one that flies already and has nothing to do any more.
+
+    Raises
+    ------
+    InfeasibleError
+        Where no line leads to its end.
+    """
+    start, level = crew.setting.ends[0], crew.setting.level
+    here = Station(
+        start.name,
+        Anchor(*start.position, start.angle_rad),
+        altitude_m=level.altitude_m - level.height_m + (start.over_home_m or 0.0),
+    )
+    transits = Transits.of(crew.setting, crew.asked.objective, chosen_methods(crew.alone.method))
+    with controls.stage("transit"):
+        composed, legs, notes = transits.by([here], silent, controls.stop)
+    return _flown(crew, number, (), composed, legs, (), notes, transits.methods, ())
 
 
 def in_order(crew: Crew, jobs: Sequence[tuple[Job, int]], controls: Controls) -> Order:

@@ -228,9 +228,7 @@ def _in_turn(
     return clock
 
 
-def _put_aloft(
-    clock: _Clock, crew: Crew, errand: Errand, separation: Separation, controls: Controls
-) -> bool:
+def _put_aloft(clock: _Clock, crew: Crew, errand: Errand, separation: Separation, controls: Controls) -> bool:
     """Place a flight that has begun; whether it can be kept apart from those placed, in time."""
     order = errand.order if errand.flown is None else errand.flown.order
     if order is None:

@@ -15,6 +15,7 @@ from planner.plan import Assigned, LeftOut
 from planner.scenario import Scenario
 from planner.sensors.base import Sensor
 from planner.sensors.camera import CameraSensor
+from planner.tasks.fleet.aloft import homewards
 from planner.tasks.fleet.barred import BarredError, barred, infeasible
 from planner.tasks.fleet.crews import Crew, crews_of, most_s, not_seen, takes_s, ways_of
 from planner.tasks.fleet.deciding import decided, decided_by, methods_of
@@ -194,6 +195,8 @@ class _Rounds:
                 return jobs, problem, assigned, []
             try:
                 errands = [self._errand(jobs, trip) for trip in assigned.trips]
+                home = homewards(self._crews, assigned.trips, self._controls)
+                errands += [Errand(trip, (), flown=flown) for trip, flown in home]
                 return jobs, problem, assigned, errands
             except BarredError as refused:
                 self._bar(refused)
@@ -232,6 +235,8 @@ class _Rounds:
         thought = {_key(jobs, trip): trip for trip in assigned.trips}
         for sortie in sorties:
             crew = sortie.flown.crew
+            if not sortie.flown.jobs:
+                continue
             trip = thought[crew, tuple((job.region.name, visit) for job, visit in sortie.flown.jobs)]
             waited_s = math.fsum(visit.wait_s for visit in trip.visits)
             thought_s = trip.duration_s - waited_s
