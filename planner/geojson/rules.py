@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from dataclasses import dataclass
 
 from shapely.geometry import Point
 
@@ -167,13 +168,13 @@ def _area(scenario: Scenario, findings: Findings) -> None:
                 f"has {outside_m2:.0f} m² of {region.area.area:.0f} m² outside the operating area",
                 "Enlarge the area or cut the region to it.",
             )
-    for terminal in _ends(scenario):
-        if not wide.covers(Point(terminal.position)):
+    for end in _ends(scenario):
+        if not wide.covers(Point(end.position)):
             findings.error(
-                terminal.name,
+                end.feature,
                 "outside-area",
-                "lies outside the operating area",
-                "Move it inside, or enlarge the area.",
+                f"{end.is_there} outside the operating area",
+                f"{end.move} inside, or enlarge the area.",
             )
     for aircraft in scenario.aircraft:
         if grown(area, -aircraft.min_turn_radius_m).is_empty:
@@ -192,22 +193,22 @@ def _terminals(scenario: Scenario, findings: Findings) -> None:
         if not banded.hard or not banded.counts(*level.counted_m):
             continue
         shape = banded.shape
-        for terminal in _ends(scenario):
-            end = _role(scenario, terminal)
-            away_m = shape.away_m(Point(terminal.position))
+        for end in _ends(scenario):
+            away_m = shape.away_m(Point(end.position))
             if away_m <= 0.0:
                 findings.error(
-                    terminal.name,
-                    f"{end}-in-hard-zone",
-                    f"lies inside {shape.name}, which may never be entered",
-                    f"Move it out of {shape.name}.",
+                    end.feature,
+                    f"{end.role}-in-hard-zone",
+                    f"{end.is_there} inside {shape.name}, which may never be entered",
+                    f"{end.move} out of {shape.name}.",
                 )
             elif away_m < banded.kept_m:
                 findings.error(
-                    terminal.name,
-                    f"{end}-within-clearance",
-                    f"lies {away_m:.1f} m from {shape.name}, of which {banded.kept_m:g} m are kept clear",
-                    f"Move it away, or set clearance_m to {_whole_or_tenths(away_m - ROOM_M):g} at most.",
+                    end.feature,
+                    f"{end.role}-within-clearance",
+                    f"{end.is_there} {away_m:.1f} m from {shape.name}, of which {banded.kept_m:g} m are kept"
+                    " clear",
+                    f"{end.move} away, or set clearance_m to {_whole_or_tenths(away_m - ROOM_M):g} at most.",
                 )
 
 
@@ -216,15 +217,43 @@ def _whole_or_tenths(length_m: float) -> float:
     return max(0.0, math.floor(length_m) if length_m >= 1.0 else math.floor(10.0 * length_m) / 10.0)
 
 
-def _ends(scenario: Scenario) -> tuple[Terminal, ...]:
+@dataclass(frozen=True, slots=True)
+class _End:
+    """Where a flight starts or ends: a place on the ground, or where an aircraft flies already."""
+
+    feature: str
+    role: str
+    position: tuple[float, float]
+
+    @property
+    def is_there(self) -> str:
+        return "flies" if self.role == "in-flight" else "lies"
+
+    @property
+    def move(self) -> str:
+        return "Fly it" if self.role == "in-flight" else "Move it"
+
+
+def _ends(scenario: Scenario) -> tuple[_End, ...]:
+    """Those on the ground once each, then those in the air."""
     if scenario.bases:
-        return scenario.terminals()
-    if scenario.end.position == scenario.start.position:
-        return (scenario.start,)
-    return (scenario.start, scenario.end)
+        based = {base.position for base in scenario.bases}
+        ground = [
+            _End(each.name, "base" if each.position in based else _role(scenario, each), each.position)
+            for each in scenario.terminals()
+            if each.over_home_m is None
+        ]
+    else:
+        both = {end.position: end for end in (scenario.end, scenario.start)}
+        ground = [_End(each.name, _role(scenario, each), each.position) for each in reversed(both.values())]
+    starts = [(aircraft, scenario.ends_of(aircraft)[0]) for aircraft in scenario.aircraft]
+    aloft = [
+        _End(f"vehicle {aircraft.name}", "in-flight", start.position)
+        for aircraft, start in starts
+        if start.over_home_m is not None
+    ]
+    return (*ground, *aloft)
 
 
 def _role(scenario: Scenario, terminal: Terminal) -> str:
-    if any(terminal is base for base in scenario.bases):
-        return "base"
-    return "start" if terminal is scenario.start else "end"
+    return "start" if terminal.position == scenario.start.position else "end"

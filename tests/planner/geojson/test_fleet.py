@@ -31,6 +31,7 @@ def of_region(**properties: Any) -> Document:
 
 
 BASE = feature("pier", "base", "Point", [0.02, -0.02])
+INSIDE = {"lon_deg": 0.02, "lat_deg": -0.02, "height_m": 100.0, "heading_deg": 0.0}
 ZONE = feature("N", "no_fly", "Polygon", square(0.015, -0.025, 0.01))
 
 
@@ -44,6 +45,8 @@ ZONE = feature("N", "no_fly", "Polygon", square(0.015, -0.025, 0.01))
         (of_region(revisits=3, revisit_after_s=200.0, time_window_s=[0.0, 400.0]), "A", "window-too-short"),
         (of_region(revisit_after_s=-1.0, revisits=2), "A", "out-of-range"),
         (of_two(second={"base": "quay"}), "vehicle second", "unknown-base"),
+        (of_two(ZONE, second={"in_flight": INSIDE}), "vehicle second", "in-flight-in-hard-zone"),
+        (of_two(BASE, ZONE, second={"in_flight": INSIDE}), "vehicle second", "in-flight-in-hard-zone"),
         (of_two(BASE, ZONE, second={"base": "pier"}), "pier", "base-in-hard-zone"),
         (of_two(second={"name": "uav"}), "vehicle uav", "duplicate-id"),
         (of_two(separation={"horizontal_m": -1.0}), "separation", "out-of-range"),
