@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import shapely
+from numpy.typing import NDArray
 from shapely.geometry import Point, Polygon
 from shapely.geometry.base import BaseGeometry
 from shapely.ops import nearest_points
@@ -14,6 +15,7 @@ from planner.airspace.airspace import Airspace, Level
 from planner.airspace.shapes import banded_shapes
 from planner.airspace.zones import TRANSIT_MARGIN_M
 from planner.coverage.merge import polygons_of
+from planner.coverage.survey.frame import lengthened_m
 from planner.coverage.urban.area import Building, Place, UrbanArea
 from planner.coverage.urban.free import FreeSpace, enlarged, free_space
 from planner.coverage.urban.measures import Sweep
@@ -30,6 +32,10 @@ from planner.wishes import Region
 COURSES_RAD = np.radians(np.arange(0.0, 360.0, 10.0))
 #: Sweeps shorter than this are flown this long, by half of the difference at either end.
 LEAST_PASS_M = 1.0
+#: Sweeps this far outside of the ground run along its edge.
+EDGE_M = 1e-3
+
+Floats = NDArray[np.float64]
 
 
 def camera_of(region: Region, sensor: Sensor, method: str) -> CameraSensor:
@@ -73,10 +79,10 @@ def urban_passes(
     found: list[CollectPass] = []
     parts = sorted(polygons_of(region.area), key=lambda part: float(part.distance(Point(here))))
     for part in parts:
-        sweeps = SEQUENCES[method](
-            *_posed(region, part, camera, height_m, airspace, level, model, here), seed
-        )
-        found += [_pass(region, camera, height_m, sweep) for sweep in sweeps]
+        urban, free = _posed(region, part, camera, height_m, airspace, level, model, here)
+        sweeps = SEQUENCES[method](urban, free, seed)
+        ground = free.ground.buffer(EDGE_M)
+        found += [pass_of(region, camera, height_m, sweep, ground) for sweep in sweeps]
         here = found[-1].end
     return tuple(found)
 
@@ -188,13 +194,41 @@ def _posed(
     return urban, free_space(urban)
 
 
-def _pass(region: Region, camera: CameraSensor, height_m: float, sweep: Sweep) -> CollectPass:
+def pass_of(
+    region: Region, camera: CameraSensor, height_m: float, sweep: Sweep, ground: BaseGeometry
+) -> CollectPass:
+    """The pass of a sweep, longer within the ground where the camera could not take its photos in time.
+
+    Parameters
+    ----------
+    height_m
+        Over the ground seen.
+    ground
+        What may be flown over, a little wider than it is.
+    """
     ends = np.array([sweep.start, sweep.end])
-    length_m = sweep.length_m
-    ahead = (ends[1] - ends[0]) / length_m
-    more_m = max(LEAST_PASS_M - length_m, 0.0) / 2.0
-    start, end = (tuple(place) for place in (ends + np.outer([-more_m, more_m], ahead)).tolist())
+    ahead = (ends[1] - ends[0]) / sweep.length_m
+    length_m = max(sweep.length_m, LEAST_PASS_M)
+    ends += np.outer([-0.5, 0.5], (length_m - sweep.length_m) * ahead)
     course_rad = math.atan2(ahead[1], ahead[0])
-    seen = seen_on_flat(camera, (start, end), height_m)
     apart_m = camera.photo_spacing_m(height_m, course_rad)
+    spacings = np.array([[length_m], [apart_m], [camera.least_spacing_m(course_rad)]])
+    more_m = float(lengthened_m(*spacings)[0])
+    before_m, after_m = _room_m(ends[0], -ahead, more_m, ground), _room_m(ends[1], ahead, more_m, ground)
+    before_m = min(before_m, max(more_m / 2.0, more_m - after_m))
+    after_m = min(after_m, more_m - before_m)
+    start, end = (tuple(place) for place in (ends + np.outer([-before_m, after_m], ahead)).tolist())
+    seen = seen_on_flat(camera, (start, end), height_m)
     return CollectPass((region.name,), camera.name, "down", start, end, 0.5, seen, apart_m)
+
+
+def _room_m(place: Floats, ahead: Floats, most_m: float, ground: BaseGeometry) -> float:
+    """How far it goes on from a place within the ground."""
+    if most_m <= 0.0:
+        return 0.0
+    onward = shapely.intersection(shapely.linestrings([place, place + most_m * ahead]), ground)
+    here = Point(place)
+    return max(
+        (float(part.length) for part in shapely.get_parts(onward) if part.distance(here) < EDGE_M),
+        default=0.0,
+    )
