@@ -1,7 +1,6 @@
 """One task between a link and the machines: it reads, lets time pass, and sends.
 
-Callers hand it machines and wait for their outcomes. On a link that can do without the event loop's next
-turn, what is queued goes out at once, in its order; the task then only lets time pass.
+Everything that goes out goes out from this task. Callers hand it machines and wait for their outcomes.
 """
 
 from __future__ import annotations
@@ -10,7 +9,7 @@ import asyncio
 import contextlib
 import math
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import Any, Final
 
@@ -29,7 +28,7 @@ from mavlink.station.forward.hub import Forwards
 from mavlink.station.identity import Identity
 from mavlink.station.jobs import Job
 from mavlink.station.list_ids import ListIds
-from mavlink.station.listener import Overheard
+from mavlink.station.listener import Listener
 from mavlink.station.restarts import Restarts
 from mavlink.station.trust import Trust
 from mavlink.station.under_way import UnderWay
@@ -45,7 +44,7 @@ _ACTIVE: Final = 4  # MAV_STATE_ACTIVE
 _MOST_WAITING: Final = 256
 
 
-class Driver(Believing, Overheard):
+class Driver(Believing):
     """Drives machines over a link on behalf of one ground station and one vehicle.
 
     Parameters
@@ -66,7 +65,6 @@ class Driver(Believing, Overheard):
         lost_after_s: float = 5.0,
         forwards: Forwards | None = None,
     ) -> None:
-        super().__init__()
         self.state = VehicleState()
         self._link = link
         self.read_only = isinstance(link, ReplayLink)
@@ -91,6 +89,8 @@ class Driver(Believing, Overheard):
         self._heard_s = -math.inf
         self._heartbeat_s = -math.inf
         self._under_way = UnderWay(clock, self._queue, self._wake)
+        self._watchers: set[asyncio.Event] = set()
+        self._recorders: set[Listener] = set()
         self.events = EventOrder()
         self.list_ids = ListIds()
         self.sensor = SensorWatch()
@@ -189,11 +189,29 @@ class Driver(Believing, Overheard):
         self._set_state(VehicleState())
         self._trust.adopt(system_id)
 
+    @contextlib.contextmanager
+    def watching(self) -> Iterator[asyncio.Event]:
+        """An event that is set at every change of state, and at the end."""
+        changed = asyncio.Event()
+        self._watchers.add(changed)
+        try:
+            yield changed
+        finally:
+            self._watchers.discard(changed)
+
     @property
     def recording_clock(self) -> Callable[[], float | None] | None:
         """When what is heard was heard first, where the link is a recording; None of a live one."""
         link = self._link
         return (lambda: link.clock_s) if isinstance(link, ReplayLink) else None
+
+    def record(self, recorder: Listener) -> None:
+        """Feed whoever takes the vehicle's messages from now on."""
+        self._recorders.add(recorder)
+
+    def stop_recording(self, recorder: Listener) -> None:
+        """Stop feeding a recorder."""
+        self._recorders.discard(recorder)
 
     async def _run(self) -> None:
         if self._direct is not None:
@@ -221,9 +239,12 @@ class Driver(Believing, Overheard):
         try:
             for message in self._codec.feed(data):
                 self._take(message)
+            while self._outgoing:
+                self._direct.send_now(self._outgoing.popleft())
         except Exception as error:  # noqa: BLE001 - raised again in the task, whose business it is
             self._error = error
-        self._wake()
+        if self._error is not None or self._next_deadline_s() < self._due_s:
+            self._wake()
 
     async def _wait(self) -> bytes:
         """Bytes, or none when something is due first."""
@@ -244,16 +265,6 @@ class Driver(Believing, Overheard):
         while self._outgoing:
             await self._link.send(self._outgoing.popleft())
 
-    def _send_at_once(self) -> None:
-        """Send what is queued, where the link and its task are ready for it."""
-        if self._direct is None or self._task is None or self._error is not None:
-            return
-        try:
-            while self._outgoing:
-                self._direct.send_now(self._outgoing.popleft())
-        except LinkError as error:
-            self._error = error  # raised again in the task, whose business it is
-
     def _queue(self, messages: list[Message], job: Job[Any]) -> None:
         """Queue a job's messages for the task."""
         try:
@@ -262,10 +273,6 @@ class Driver(Believing, Overheard):
             job.fail(error)
 
     def _wake(self) -> None:
-        """Send, and have the task look up where that is its business or something is due sooner."""
-        self._send_at_once()
-        if not self._outgoing and self._error is None and self._next_deadline_s() >= self._due_s:
-            return
         if self._timeout is not None and not self._timeout.expired():
             self._timeout.reschedule(asyncio.get_running_loop().time())
 
@@ -297,7 +304,8 @@ class Driver(Believing, Overheard):
         if not self._identity.speaks(message, self.state):
             beside = message.name in CAMERA_MESSAGES or message.name in MOUNT_MESSAGES
             if beside and message.system_id == self.state.system_id:
-                self._tell(message)
+                for recorder in self._recorders:
+                    recorder.take(message, self.state)
                 self._change(self.sensor.watched(self.state, message, now_s))
             self._change(self._identity.watched(self.state, message, now_s))
             return
@@ -306,10 +314,6 @@ class Driver(Believing, Overheard):
         self._trust.heard(message, now_s)
         if message.name in EVENT_MESSAGES and not self._event_is_new(message):
             return
-        known = self.state.connected
-        if known:
-            # Before the rest is looked at: the vehicle is at work on the answer meanwhile.
-            self._answer(message, now_s)
         state = self.list_ids.watched(updated(self.state, message, now_s), message, now_s)
         state = self.sensor.watched(state, message, now_s)
         if self._restarts.noticed(self.state, state, message):
@@ -320,16 +324,12 @@ class Driver(Believing, Overheard):
             self._on_connect()
         else:
             self._change(state)
-        self._tell(message)
-        if not known:
-            self._answer(message, now_s)
-
-    def _answer(self, message: Message, now_s: float) -> None:
+        for recorder in self._recorders:
+            recorder.take(message, self.state)
         if message.fields.get("target_system", 0) not in (0, self._codec.system_id):
             return  # meant for another ground station on the same link
         answers = self._under_way.receive(message, now_s)
         self._outgoing.extend([self._codec.pack(answer) for answer in answers])
-        self._send_at_once()
 
     def _event_is_new(self, message: Message) -> bool:
         """Whether to read on; events that were lost on the way are asked for again."""
