@@ -18,7 +18,14 @@ WAITING = ("tests/app", "tests/flows", "tests/mavlink/links", "tests/mavlink/sim
 #: Folders whose files share what is costly to start, and run in one process.
 TOGETHER = ("tests/app/browser",)
 #: What takes longest, the longest first: the last to begin must not be the last to end, alone.
-LONG: tuple[str, ...] = ()
+LONG = (
+    "tests/app/browser",
+    "tests/flows/test_examples.py",
+    "tests/app/test_anywhere_flight.py",
+    "tests/planner/geojson/test_every_property.py",
+    "tests/planner/bounds/test_ways.py",
+    "tests/planner/coverage/test_relaxation.py",
+)
 #: Processes for each processor: one waits while the other computes.
 WORKERS_EACH = 2
 MOST_WORKERS = 8

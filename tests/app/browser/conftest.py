@@ -15,7 +15,7 @@ from pathlib import Path
 
 import httpx
 import pytest
-from playwright.sync_api import Browser, Page, sync_playwright
+from playwright.sync_api import Browser, Page, expect, sync_playwright
 
 ROOT = Path(__file__).resolve().parents[3]
 PAGE = ROOT / "static" / "dist" / "index.html"
@@ -30,6 +30,8 @@ CHROMIUM_FLAGS = [
     "--disable-sync",
 ]
 START_LIMIT_S = 120.0
+#: How long the page may take for anything, ms.
+PATIENCE_MS = 90_000.0
 #: Slower for a good picture: see docs/map.md.
 SPEEDUP = int(os.environ.get("SWATHPLAN_TEST_SPEEDUP", "200"))
 #: The processor draws a quarter of the points where nobody looks; the page's own pixels are as ever.
@@ -117,6 +119,9 @@ def page(browser: Browser, service: Service) -> Iterator[Page]:
         color_scheme="light",
         device_scale_factor=SCALE,
     )
+    # The suite's other processes share the processors; what comes late is still right.
+    context.set_default_timeout(PATIENCE_MS)
+    expect.set_options(timeout=PATIENCE_MS / 3)
     opened = context.new_page()
     failures: list[str] = []
     opened.on("pageerror", lambda error: failures.append(str(error)))
