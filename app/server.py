@@ -44,16 +44,21 @@ class Welcome(Wishes):
     scenario: Mapping[str, Any] | None = None
 
 
-async def _greet(house: House, welcome: Welcome) -> None:
+async def _begin(house: House, welcome: Welcome, announced: Callable[[], None]) -> None:
+    """Whoever comes once it is announced finds the sample among the plans, if only queued."""
     try:
         if welcome.scenario is not None:
             await _plan_sample(house, welcome.scenario)
-        if house.keeper is not None:
-            await house.keeper.greet()
     except ServiceError as error:
-        log.error("start-up wish not fulfilled", reason=str(error))
+        log.error("the scenario is not planned", reason=str(error))
+    announced()
     if house.keeper is None:
         await greet(house.fleet, welcome)
+        return
+    try:
+        await house.keeper.greet()
+    except ServiceError as error:
+        log.error("start-up wish not fulfilled", reason=str(error))
 
 
 async def _plan_sample(house: House, scenario: Mapping[str, Any]) -> None:
@@ -110,8 +115,7 @@ def run_server(
     address = _address(settings, listener)
 
     async def listening() -> None:
-        announce(address)
-        await _greet(app.state.house, welcome)
+        await _begin(app.state.house, welcome, lambda: announce(address))
 
     _run(app, Server(config, listening, app_ending(app)), listener)
 
@@ -149,8 +153,8 @@ def run_apart(
 
     async def listening() -> None:
         await door.open()
-        announce(address)
-        await asyncio.gather(_greet(app.state.house, welcome), door.watch())
+        begun = _begin(app.state.house, welcome, lambda: announce(address))
+        await asyncio.gather(begun, door.watch())
 
     with listener:
         try:

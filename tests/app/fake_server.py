@@ -1,6 +1,7 @@
 """A service process whose planner is a stand-in: ``python -m tests.app.fake_server DATABASE``.
 
-With ``apart`` behind it the links are held in a process of their own, as by ``swathplan serve``.
+With ``apart`` behind it the links are held in a process of their own, as by ``swathplan serve``; with
+``sample`` it plans a scenario by itself.
 
 Planning processes import this module anew, so it imports nothing at its top.
 """
@@ -16,7 +17,7 @@ def announce(address: str) -> None:
     sys.stdout.flush()
 
 
-def main(database: str, apart: str | None = None) -> None:
+def main(database: str, *words: str) -> None:
     """Serve until a signal."""
     from pathlib import Path
 
@@ -25,10 +26,9 @@ def main(database: str, apart: str | None = None) -> None:
     from tests.app.conftest import pooled_house
 
     settings = Settings(database=Path(database), workers=1, request_workers=2, port=0, log_level="error")
-    if apart is None:
-        run_server(settings, Welcome(), announce, pooled_house)
-    else:
-        run_apart(settings, Welcome(), announce, pooled_house)
+    sample = {"features": [{}], "name": "sample", "fake": "done"} if "sample" in words else None
+    run = run_apart if "apart" in words else run_server
+    run(settings, Welcome(scenario=sample), announce, pooled_house)
 
 
 if __name__ == "__main__":

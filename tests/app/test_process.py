@@ -56,9 +56,9 @@ class Service:
 
 
 @contextmanager
-def service(database: Path) -> Iterator[Service]:
+def service(database: Path, *words: str) -> Iterator[Service]:
     """A service process on a database, ended by SIGTERM."""
-    command = [sys.executable, "-m", "tests.app.fake_server", str(database)]
+    command = [sys.executable, "-m", "tests.app.fake_server", str(database), *words]
     with subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, text=True) as process:
         assert process.stdout is not None
         address = process.stdout.readline().strip()
@@ -139,3 +139,11 @@ def test_sigterm_ends_open_streams(tmp_path: Path) -> None:
                 if running.process.poll() is None:
                     running.process.terminate()
         assert running.process.wait(60) in (0, -signal.SIGTERM)
+
+
+@pytest.mark.parametrize("words", [("sample",), ("sample", "apart")])
+def test_who_comes_first_finds_the_sample(tmp_path: Path, words: tuple[str, ...]) -> None:
+    """Once the address is told, the scenario that the service plans by itself is among its plans."""
+    with service(tmp_path / "plans.db", *words) as running:
+        (plan,) = running.client.get(PLANS).json()["plans"]
+        assert plan["name"] == "sample"
