@@ -36,6 +36,8 @@ export const TOOLS: Tool[] = [
   { id: "obstacle", label: "Obstacle", role: "obstacle", mode: "polygon", properties: { height_m: 50 }, hint: POLYGON_HINT },
   { id: "area", label: "Area", role: "area", mode: "polygon", properties: {}, hint: POLYGON_HINT },
   { id: "importance", label: "Importance", role: "importance", mode: "polygon", properties: { score: 1 }, hint: POLYGON_HINT },
+  // Somebody is there for sure: the density at its middle is 1/(2π spread²).
+  { id: "last_seen", label: "Last seen", role: "importance", mode: "point", properties: { score: 1.768e-6, spread_m: 300 }, hint: POINT_HINT },
   { id: "base", label: "Base", role: "base", mode: "point", properties: {}, hint: POINT_HINT },
   { id: "start", label: "Start", role: "start", mode: "point", properties: {}, hint: POINT_HINT },
   { id: "end", label: "End", role: "end", mode: "point", properties: {}, hint: POINT_HINT },

@@ -89,8 +89,8 @@ function layers(c: Palette): LayerSpecification[] {
   ];
   return [
     ...shape("area", "scenario", kindIs("area"), c.area, 0, 1.5, [4, 3]),
-    { id: "importance-fill", type: "fill", source: "scenario", filter: kindIs("importance"), paint: { "fill-color": c.importance, "fill-opacity": ["+", 0.06, ["*", 0.5, ["coalesce", ["get", "weight"], 0.2]]] } },
-    ...shape("importance", "scenario", kindIs("importance"), c.importance, 0, 1, [1, 2]),
+    { id: "importance-fill", type: "fill", source: "scenario", filter: kindIs("importance"), paint: { "fill-color": c.importance, "fill-opacity": ["+", ["case", ["==", ["get", "plain"], true], 0, 0.06], ["*", 0.5, ["coalesce", ["get", "weight"], 0.2]]] } },
+    ...shape("importance", "scenario", ["all", kindIs("importance"), ["!=", ["get", "plain"], true]] as unknown as FilterSpecification, c.importance, 0, 1, [1, 2]),
     ...shape("seen", "seen", roleIs("seen"), c.seen, 0.22, 1.2),
     ...shape("unknown", "seen", roleIs("unknown"), c.area, 0.3, 1.2, [2, 2]),
     ...shape("assumed", "seen", roleIs("assumed"), c.seen, 0, 1.2, [1, 2]),
@@ -105,7 +105,9 @@ function layers(c: Palette): LayerSpecification[] {
     ...shape("obstacle", "scenario", kindIs("obstacle"), c.obstacle, 0.35, 1.4),
     ...shape("fence_out", "plan", fenceIs("exclusion"), c.noFly, 0.12, 2, [2, 1.5]),
     ...shape("fence_in", "plan", fenceIs("inclusion"), c.area, 0, 2, [2, 1.5]),
-    ...shape("uncovered", "plan", roleIs("uncovered"), c.uncovered, 0.55, 1.5),
+    // A search leaves ground unseen by its nature; where all was to be seen it is a fault.
+    { id: "uncovered-fill", type: "fill", source: "plan", filter: roleIs("uncovered"), paint: { "fill-color": ["case", ["==", ["get", "searched"], true], c.area, c.uncovered], "fill-opacity": ["case", ["==", ["get", "searched"], true], 0.1, 0.55] } },
+    { id: "uncovered-line", type: "line", source: "plan", filter: roleIs("uncovered"), paint: { "line-color": ["case", ["==", ["get", "searched"], true], c.area, c.uncovered], "line-width": 1.5 } },
     {
       id: "compared-line", type: "line", source: "compared",
       layout: { "line-join": "round" },

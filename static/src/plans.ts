@@ -215,6 +215,9 @@ export async function deletePlan(id: string): Promise<void> {
 }
 
 /** Plan features for the map: collects carry the number of their place in flight order. */
+/** Whether it sees as much as it can, not all. */
+export const isSearch = ({ metrics }: PlanCollection): boolean => metrics.area_seen_m2 != null;
+
 export function planFeatures(plan: PlanCollection, dark = false): Feature[] {
   const colours = coloursOf(plan, dark);
   return numbered(plan).map((feature) => {
@@ -236,6 +239,7 @@ function numbered(plan: PlanCollection): Feature[] {
     if (feature.properties["role"] === "footprint" && photographed.has(String(feature.properties["sensor"]))) {
       return { ...feature, properties: { ...feature.properties, of_photos: true } };
     }
+    if (feature.properties["role"] === "uncovered" && isSearch(plan)) return { ...feature, properties: { ...feature.properties, searched: true } };
     const place = numbers.get(feature);
     const { role, radius_m } = feature.properties ?? {};
     if (role === "fence" && feature.geometry.type === "Point" && typeof radius_m === "number") {

@@ -1,8 +1,11 @@
 /** From the scenario document to what the map draws of it. */
 import type { Feature, Geometry } from "geojson";
-import { circleRing, corridorRing, labelPoint } from "./geo";
+import { ahead, circleRing, corridorRing, labelPoint } from "./geo";
 import { nameOf, radiusOf } from "./scenario";
-import type { Position, Scenario, ScenarioFeature } from "./types";
+import type { Member, Position, Scenario, ScenarioFeature } from "./types";
+
+/** Discs that stand for a normal distribution: their radii in standard deviations, the widest first. */
+const DISCS = [2.5, 2, 1.5, 1, 0.5];
 
 function kindOf(feature: ScenarioFeature): string {
   const { role } = feature.properties;
@@ -22,6 +25,30 @@ function outline({ geometry, properties }: ScenarioFeature, radius_m: number): G
   return geometry;
 }
 
+/** Where a point of importance has drifted to by the time the search begins, and how far it may be off. */
+function driftedTo(scenario: Scenario, place: Position, spread_m: number): { centre: Position; spread_m: number } {
+  const drift = (scenario["search"] as Member | undefined)?.["drift"] as Member | undefined;
+  const elapsed_s = Number(drift?.["elapsed_s"] ?? 0);
+  const moved_m = Number(drift?.["speed_m_s"] ?? 0) * elapsed_s;
+  const centre = moved_m > 0 ? ahead(place, Number(drift?.["toward_deg"] ?? 0), moved_m) : place;
+  return { centre, spread_m: Math.hypot(spread_m, Number(drift?.["spread_m_s"] ?? 0) * elapsed_s) };
+}
+
+/** Discs, the stronger the more of them lie on each other, and the way drifted until the search begins. */
+function spreadOf(scenario: Scenario, { geometry, properties }: ScenarioFeature, shared: Member): Feature[] {
+  const spread_m = Number(properties["spread_m"]);
+  if (properties.role !== "importance" || geometry.type !== "Point" || !(spread_m > 0)) return [];
+  const place = geometry.coordinates as Position;
+  const now = driftedTo(scenario, place, spread_m);
+  const weight = Number(shared["weight"] ?? 1) / DISCS.length;
+  const discs = DISCS.map((part): Feature => ({
+    type: "Feature", properties: { ...shared, weight, plain: true },
+    geometry: { type: "Polygon", coordinates: [circleRing(now.centre, part * now.spread_m)] },
+  }));
+  if (now.centre === place) return discs;
+  return [...discs, { type: "Feature", properties: shared, geometry: { type: "LineString", coordinates: [place, now.centre] } }];
+}
+
 /** Shapes and, apart from them, one label point a feature; discs become rings. */
 export function scenarioFeatures(scenario: Scenario): Feature[] {
   const most = Math.max(...scenario.features.map(({ properties }) => Number(properties["score"] ?? 0)), 0);
@@ -32,6 +59,6 @@ export function scenarioFeatures(scenario: Scenario): Feature[] {
     const shape: Feature = { type: "Feature", properties, geometry: outline(feature, radius_m) };
     const at = feature.properties.role === "area" ? null : labelPoint(feature.geometry);
     if (!at) return [shape];
-    return [shape, { type: "Feature", properties: { ...properties, label: true }, geometry: { type: "Point", coordinates: at } }];
+    return [shape, ...spreadOf(scenario, feature, properties), { type: "Feature", properties: { ...properties, label: true }, geometry: { type: "Point", coordinates: at } }];
   });
 }

@@ -127,7 +127,10 @@ function roleFields(name: string, role: string, geometryType: string, model: unk
     case "obstacle":
       return [number("height_m", "Height", "m", { min: 0, required: true }), number("base_m", "Base", "m", { placeholder: "0" })];
     case "importance":
-      return [number("score", "Score", "1/m²", { min: 0, required: true })];
+      return [
+        number("score", "Score", "1/m²", { min: 0, required: true }),
+        ...(geometryType === "Point" ? [number("spread_m", "Spread (one standard deviation)", "m", { min: 0, required: true })] : []),
+      ];
     case "start":
     case "end":
       return [number("heading_deg", "Heading", "°", { min: 0, max: 360, placeholder: "any" })];

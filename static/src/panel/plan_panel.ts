@@ -2,7 +2,7 @@
 import { ask } from "../dialog";
 import { button, fill, h, section } from "../dom";
 import { attempt, findingText } from "../notices";
-import { cancelPlan, deletePlan, open, openPlan, planUrl, problemOf, recent, refresh, running, startPlan, type OpenPlan } from "../plans";
+import { cancelPlan, deletePlan, isSearch, open, openPlan, planUrl, problemOf, recent, refresh, running, startPlan, type OpenPlan } from "../plans";
 import { freshness } from "../freshness";
 import { mayLeave } from "../leaving";
 import { readFindings } from "../api";
@@ -99,11 +99,11 @@ function table(rows: [string, string][], id?: string): HTMLElement {
   return h("table", { id }, h("tbody", {}, ...rows.map(([name, value]) => h("tr", {}, h("th", { scope: "row" }, name), h("td", {}, value)))));
 }
 
-function coverage(fractions: Record<string, number>): HTMLElement {
+function coverage(fractions: Record<string, number>, searched: boolean): HTMLElement {
   const rows = Object.entries(fractions).map(([roi, fraction]) =>
     h(
       "tr",
-      { class: fraction >= COVERED ? "" : "short" },
+      { class: searched || fraction >= COVERED ? "" : "short" },
       h("th", { scope: "row" }, roi),
       h("td", {}, h("meter", { min: 0, max: 1, value: fraction, "aria-label": `Coverage of ${roi}` })),
       h("td", {}, percentDown(fraction)),
@@ -143,7 +143,7 @@ function result({ record, plan, items, madeFrom }: OpenPlan, view: PlanView): HT
     leftOut({ record, plan, items, madeFrom }),
     pathsOf(plan).length > 1 ? section("Parts of each flight", false, phaseTable(plan)) : phaseTable(plan),
     pathsOf(plan).length > 1 ? null : operatingStrip(plan),
-    section("Coverage", true, coverage(m.coverage ?? {})),
+    section("Coverage", true, coverage(m.coverage ?? {}, isSearch(plan))),
     planning.length > 0 ? section("Planning time", false, table(planning.map(([stage, s]) => [stage, seconds(s)]))) : null,
     plan.methods ? section("Methods", false, table(Object.entries(plan.methods))) : null,
     h(

@@ -11,6 +11,10 @@ import { terrainField } from "./terrain_field";
 const METHODS: Record<string, readonly string[]> = {
   coverage: ["auto", "li2018", "majeed2019", "boustrophedon-cells", "coverage-alternatives"],
   routing: ["auto", "joint", "li2018", "li2018-threat-aware", "stecz2020"],
+  search: [
+    "auto", "parallel", "creeping", "spiral", "square", "sector", "refined", "importance", "snyder2021",
+    "energy-horizon", "energy-horizon-discrete", "energy-horizon-no-decision", "energy-horizon-time",
+  ],
   transit: ["auto", "ssas", "tangent", "milp", "milp-length"],
   smoothing: ["auto", "fillet", "shortcut", "three-arc", "past-target", "short-turn"],
 };
@@ -42,6 +46,7 @@ function mission(): Field[] {
     tickField({ id: "s-terrain_following", label: "Follow the ground", hint: "Passes of cameras keep their height over the raster's ground", get: () => following.get<boolean>() ?? false, set: (value) => following.set(value ? true : undefined) }),
     numberField({ id: "s-clearance_m", label: "Clearance", unit: "m", min: 0, placeholder: "the autopilot's", hint: "Kept from zones, hard threats, obstacles and terrain", get: () => clearance.get<number>(), set: clearance.set }),
     ...wind(),
+    ...lookedFor(),
     ...apart(),
     numberField({ id: "s-seed", label: "Seed", min: 0, placeholder: "0", get: () => seed.get<number>(), set: seed.set }),
     numberField({ id: "s-time_budget_s", label: "Time for planning", unit: "s", min: 0, placeholder: "no limit", get: () => budget.get<number>(), set: budget.set }),
@@ -65,8 +70,10 @@ function apart(): Field[] {
   ];
 }
 
+/** A search has its own stage in place of those that cover and order regions. */
 function methods(): Field[] {
-  return Object.entries(METHODS).map(([stage, choices]) => {
+  const searched = scenarios.document.value["task"] === "search";
+  return Object.entries(METHODS).filter(([stage]) => (stage === "search" || stage === "coverage" || stage === "routing" ? (stage === "search") === searched : true)).map(([stage, choices]) => {
     const { get, set } = nested("method", stage);
     return choiceField({
       id: `m-${stage}`, label: stage[0]?.toUpperCase() + stage.slice(1), choices,
@@ -89,6 +96,33 @@ function wind(): Field[] {
   ];
 }
 
+/** What a search is told of what it looks for. */
+function lookedFor(): Field[] {
+  if (scenarios.document.value["task"] !== "search") return [];
+  const search = (): Member => (scenarios.document.value["search"] as Member | undefined) ?? {};
+  const drift = (): Member => (search()["drift"] as Member | undefined) ?? {};
+  const put = (member: Member): void =>
+    scenarios.change((draft) => {
+      const kept = Object.fromEntries(Object.entries(member).filter(([, value]) => value !== undefined));
+      if (Object.keys(kept).length > 0) draft["search"] = kept;
+      else delete draft["search"];
+    });
+  const moved = (property: string) => (value: unknown): void => {
+    const wanted: Member = { toward_deg: 0, ...drift(), [property]: value };
+    const kept = Object.fromEntries(Object.entries(wanted).filter(([, each]) => each !== undefined));
+    put({ ...search(), drift: kept["speed_m_s"] === undefined ? undefined : { ...kept, toward_deg: kept["toward_deg"] ?? 0 } });
+  };
+  const driftField = (property: string, label: string, unit: string, placeholder: string, hint: string, max?: number): Field =>
+    numberField({ id: `drift-${property}`, label, unit, min: 0, ...(max === undefined ? {} : { max }), placeholder, hint, get: () => drift()[property] as number | undefined, set: moved(property) });
+  return [
+    numberField({ id: "search-detection", label: "Found by a look", min: 0, max: 1, placeholder: "1", hint: "Probability that a look finds what it sees", get: () => search()["detection"] as number | undefined, set: (value) => put({ ...search(), detection: value }) }),
+    driftField("speed_m_s", "Drift", "m/s", "stays", "How fast what is looked for moves on"),
+    driftField("toward_deg", "Drift toward", "°", "0", "Clockwise from north; needs a drift", 360),
+    driftField("spread_m_s", "Drift uncertain by", "m/s", "0", "One standard deviation, in each direction; needs a drift"),
+    driftField("elapsed_s", "Since last seen", "s", "0", "From when it was where importance says until take-off; needs a drift"),
+  ];
+}
+
 function weights(): Field[] {
   return WEIGHTS.map((weight) => {
     const { get, set } = nested("objective", weight);
@@ -101,7 +135,7 @@ function weights(): Field[] {
 
 /** What decides which fields there are. */
 export function settingsKey(scenario: Scenario): string {
-  return `${aircraftKey()}|${sensorsKey(scenario.sensors ?? [])}`;
+  return `${aircraftKey()}|${sensorsKey(scenario.sensors ?? [])}|${String(scenario["task"] ?? "")}`;
 }
 
 export function settingsForm(): Field {

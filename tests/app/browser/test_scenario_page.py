@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 
 import pytest
@@ -259,3 +260,43 @@ def test_every_control_has_a_name(page: Page) -> None:
         ).map((e) => e.outerHTML)"""
     )
     assert nameless == []
+
+
+def test_what_is_looked_for_at_sea_is_drawn_where_it_has_drifted_to(page: Page) -> None:
+    """Discs round where it is by take-off, none beyond; what is edited is in the document."""
+    open_scenario(page, EXAMPLES / "missing-at-sea.geojson")
+    seen = json.loads((EXAMPLES / "missing-at-sea.geojson").read_text())
+    (point,) = (f for f in seen["features"] if f["properties"]["role"] == "importance")
+    drift, spread_m = seen["search"]["drift"], point["properties"]["spread_m"]
+    spread_m = math.hypot(spread_m, drift["spread_m_s"] * drift["elapsed_s"])
+    lon_deg, lat_deg = point["geometry"]["coordinates"]
+    moved_m = drift["speed_m_s"] * drift["elapsed_s"]
+    now = WGS84.fwd(lon_deg, lat_deg, drift["toward_deg"], moved_m)[:2]
+    page.evaluate("([lon, lat]) => window.swathplan.look(lon, lat, 12)", list(now))
+    for off, drawn in ((0.0, True), (2.3, True), (2.8, False)):
+        place = WGS84.fwd(*now, drift["toward_deg"], off * spread_m)[:2]
+        assert ("importance-fill" in ask(page, f"at({place[0]}, {place[1]})")) is drawn
+    assert page.input_value("#search-detection") == "0.7"
+    page.fill("#drift-speed_m_s", "0.9")
+    page.locator("#drift-speed_m_s").blur()
+    await_hook(page, "scenario().search.drift.speed_m_s === 0.9")
+    page.fill("#drift-speed_m_s", "")
+    page.locator("#drift-speed_m_s").blur()
+    await_hook(page, "scenario().search.drift === undefined")
+    assert ask(page, "scenario()")["search"] == {"detection": 0.7}
+    page.get_by_text("Methods", exact=True).click()
+    offered = page.locator("#m-search option").evaluate_all("o => o.map(e => e.value)")
+    assert offered == list(METHODS["search"])
+    assert page.locator("#m-coverage").count() == 0
+    page.click("[data-tool=last_seen]")
+    click_place(page, *now)
+    await_hook(page, "selected() === 'I1'")
+    drawn = feature(page, "I1")
+    assert drawn is not None
+    assert drawn["geometry"]["type"] == "Point"
+    # Somebody is there: the density's integral over the plane is 1.
+    own = drawn["properties"]
+    assert own["score"] * math.tau * own["spread_m"] ** 2 == pytest.approx(1.0, rel=1e-3)
+    page.get_by_label("Spread (one standard deviation)").fill("500")
+    page.keyboard.press("Tab")
+    await_hook(page, "scenario().features.some(f => f.properties.spread_m === 500)")
