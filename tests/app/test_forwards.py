@@ -13,7 +13,8 @@ import httpx
 import pytest
 
 from app.main import create_app
-from app.server import Welcome, _greet
+from app.server import Welcome
+from app.services.vehicles.greeting import greet
 from app.settings import Settings
 from mavlink.links.recording import STAMP
 from mavlink.links.udp import open_udp
@@ -224,7 +225,7 @@ async def test_serve_connects_and_forwards_at_every_start(settings: Settings) ->
         for write in (False, True):
             app = create_app(settings, fake_house)
             async with serving(app) as client:
-                await _greet(app.state.house, Welcome(vehicle=url, forward=((to, write),)))
+                await greet(app.state.house.fleet, Welcome(vehicle=url, forward=((to, write),)))
                 (vehicle,) = (await client.get(VEHICLES)).json()["vehicles"]
                 ids.add(vehicle["id"])
                 assert (vehicle["name"], vehicle["url"]) == ("uav-1", url)
@@ -239,7 +240,7 @@ async def test_serve_forwards_its_simulated_aircraft(settings: Settings) -> None
     async with station() as (peer, to):
         app = create_app(settings, fake_house)
         async with serving(app) as client:
-            await _greet(app.state.house, Welcome(simulated=1, forward=((to, False),)))
+            await greet(app.state.house.fleet, Welcome(simulated=1, forward=((to, False),)))
             (vehicle,) = (await client.get(VEHICLES)).json()["vehicles"]
             assert (vehicle["name"], len(vehicle["forward"])) == ("sim-1", 1)
             await peer.until("HEARTBEAT")

@@ -161,9 +161,10 @@ async def test_a_standard_session(tmp_path: Path) -> None:
         said = await proxy.order("module load param", r"Saved \d+ parameters")
         for module in ("mode", "arm", "misc"):
             said += await proxy.order(f"module load {module}", f"Loaded module {module}")
-        # Setting says nothing when it has worked.
+        # Setting says nothing when it has worked, and works while the next orders are taken.
         said += await proxy.order("param set WP_LOITER_RAD 120\nmode LOITER", "DO_SET_MODE: ACCEPTED")
-        said += await proxy.order("param show WP_LOITER_RAD", r"WP_LOITER_RAD +120")
+        while not re.search(r"WP_LOITER_RAD +120", said[-1]):
+            said += await proxy.order("param show WP_LOITER_RAD", r"WP_LOITER_RAD +\d")
         said += await proxy.order("arm throttle", "ARMED")
         said += await proxy.order("fence list", "Requesting 0 fence items")
         assert not [line for line in said if "breach" in line.lower()]
