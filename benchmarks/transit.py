@@ -157,8 +157,8 @@ def _ours(given: Problem, repeats: int) -> tuple[float, float]:
 
 def _is_direct(given: Problem, length_m: float) -> bool:
     """Whether a line is no longer than the shortest without discs."""
-    ends = (np.array([[end.east_m, end.north_m, end.angle_rad]]) for end in (given.start, given.goal))
-    return bool(length_m <= dubins_lengths(*ends, RADIUS_M)[0] + DIRECT_M)
+    start, goal = (np.array([[end.east_m, end.north_m, end.angle_rad]]) for end in (given.start, given.goal))
+    return bool(length_m <= dubins_lengths(start, goal, RADIUS_M)[0] + DIRECT_M)
 
 
 @njit(cache=True)

@@ -70,7 +70,7 @@ def tables(data: pyvrp.ProblemData) -> Tables:
     clients, depots, types = data.clients(), data.depots(), data.vehicle_types()
     _check(data)
     bases, total = len(depots), len(clients)
-    where = [each.location for each in (*depots, *clients)]
+    where = [*(depot.location for depot in depots), *(client.location for client in clients)]
     profiles = sorted({kind.profile for kind in types})
     length = np.array([data.distance_matrix(p)[np.ix_(where, where)] for p in profiles], dtype=float)
     seconds = np.array([data.duration_matrix(p)[np.ix_(where, where)] for p in profiles], dtype=float)

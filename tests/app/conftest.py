@@ -16,7 +16,8 @@ from fastapi import FastAPI
 from app.logging import configure
 from app.main import create_app
 from app.routers.bodies import EXAMPLE
-from app.services.house import House, Limits
+from app.services.house import House
+from app.services.limits import Limits
 from app.services.links.keeper import Keeper
 from app.services.plans.work import plan_scenario
 from app.services.vehicles import audit

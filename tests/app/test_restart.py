@@ -18,7 +18,8 @@ import pytest
 from pymavlink.dialects.v20 import ardupilotmega
 
 from app.main import create_app
-from app.services.house import House, Limits
+from app.services.house import House
+from app.services.limits import Limits
 from app.settings import Settings
 from mavlink.links.link import Link
 from mavlink.links.tcp import open_tcp_server

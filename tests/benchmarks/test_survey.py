@@ -60,7 +60,7 @@ def test_lengths_are_those_of_lines_and_of_the_plain_turns() -> None:
 
 def _pose(line: np.ndarray, end: int) -> Pose:
     (e0, n0), (e1, n1) = line
-    return Pose(*line[end].tolist(), math.atan2(n1 - n0, e1 - e0))
+    return Pose(float(line[end][0]), float(line[end][1]), math.atan2(n1 - n0, e1 - e0))
 
 
 def test_ours_is_never_longer_on_fields_of_that_kind() -> None:

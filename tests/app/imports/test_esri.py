@@ -5,6 +5,7 @@ from __future__ import annotations
 import struct
 
 import pytest
+import shapely
 from pyproj import Geod, Transformer
 from shapely.geometry import Polygon, shape
 
@@ -27,7 +28,7 @@ def test_an_archive_gives_named_regions_with_holes() -> None:
     first, second = found.collection["features"]
     assert (found.format, first["id"], second["id"]) == ("shapefile", "north field", "south field")
     assert shape(first["geometry"]).symmetric_difference(Polygon(RING, [HOLE])).area < 1e-12
-    assert len(shape(second["geometry"]).interiors) == 0
+    assert shapely.get_num_interior_rings(shape(second["geometry"])) == 0
 
 
 def test_the_layer_is_a_folder_and_the_table_has_values() -> None:
@@ -43,7 +44,7 @@ def test_projected_places_are_brought_to_wgs84(crs: str) -> None:
     move = Transformer.from_crs("EPSG:4326", crs, always_xy=True)
     ring = [move.transform(lon, lat) for lon, lat in RING[::-1]]
     (feature,) = import_regions(archive_of(shapefiles([[ring]], ["x"], crs))).collection["features"]
-    got = shape(feature["geometry"]).exterior
+    got = Polygon(shape(feature["geometry"])).exterior
     for lon, lat in RING:
         assert min(WGS84.inv(lon, lat, x, y)[2] for x, y in got.coords) < 1.0
     back = Transformer.from_crs(crs, "EPSG:4326", always_xy=True)

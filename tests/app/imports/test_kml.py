@@ -7,7 +7,7 @@ from io import BytesIO
 from typing import Any
 
 import pytest
-from shapely.geometry import shape
+from shapely.geometry import Polygon, shape
 
 from app.imports import ImportOptions, RegionFileError, import_regions
 from app.imports.archive import MAX_MEMBERS
@@ -37,6 +37,7 @@ def test_a_polygon_is_a_region_with_its_name_and_holes() -> None:
     assert feature["id"] == feature["properties"]["name"] == "Märchen & Co"
     assert feature["properties"]["role"] == "roi"
     drawn = shape(feature["geometry"])
+    assert isinstance(drawn, Polygon)
     assert drawn.exterior.is_ccw
     assert len(drawn.interiors) == 1
     assert not drawn.interiors[0].is_ccw

@@ -15,6 +15,8 @@ from mavlink.state.track import TrackRecorder
 from mavlink.transfer.clear import ClearMachine, SetCurrentMachine
 from mavlink.transfer.command import CommandMachine
 from mavlink.transfer.download import DownloadMachine
+from mavlink.transfer.machine import Machine
+from mavlink.transfer.outcome import Outcome
 from mavlink.transfer.upload import UploadMachine
 from mavlink.wire.codec import Codec
 from mavlink.wire.items import MissionType
@@ -65,7 +67,7 @@ def messages(draw: st.DrawFn) -> Message:
 def test_no_message_raises_and_no_state_holds_a_non_number(heard: list[Message]) -> None:
     """State, track and every machine take them all; what the state holds can be written as JSON."""
     state, recorder = VehicleState(), TrackRecorder()
-    machines = [
+    machines: list[Machine[Outcome] | CommandMachine] = [
         UploadMachine(waypoints(3), MissionType.MISSION, 1, 1),
         DownloadMachine(MissionType.MISSION, 1, 1),
         ClearMachine(MissionType.FENCE, 1, 1),

@@ -7,6 +7,7 @@ import socket
 import sys
 from collections.abc import AsyncIterator
 from contextlib import ExitStack, asynccontextmanager
+from typing import Self
 
 import pytest
 from pymavlink.dialects.v20 import common
@@ -37,7 +38,7 @@ class Stranger:
         self._to = ("127.0.0.1", port)
         self._mav = common.MAVLink(None, srcSystem=system_id, srcComponent=1)
 
-    def __enter__(self) -> Stranger:
+    def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *_: object) -> None:

@@ -36,7 +36,7 @@ def test_it_holds_all_within_the_distance_and_hardly_more(pitch_m: float, deep_m
 def test_what_is_left_is_as_far_from_the_edge(pitch_m: float, deep_m: float, by_m: float) -> None:
     """Shrunk, it is as far from the edge to a thousandth, and no corner of what is left is much farther."""
     wide = comb(FEW // 2 + 1, pitch_m, deep_m)
-    shape = shapely.box(-300.0, -305.0, 300.0 + wide.bounds[2], 1.0).union(wide)
+    shape = Polygon(shapely.box(-300.0, -305.0, 300.0 + wide.bounds[2], 1.0).union(wide))
     found = grown(shape, -by_m)
     assert not found.is_empty
     assert shape.covers(found)

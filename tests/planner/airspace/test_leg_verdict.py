@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+import shapely
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from shapely import constrained_delaunay_triangles
@@ -34,7 +35,7 @@ OFFSETS = np.cumsum([0, *(len(ring) for ring in RINGS)], dtype=np.int64)
 NO_EDGES = np.empty((0, 4))
 
 ALLOWED = [
-    np.array(piece.exterior.coords[:3])
+    shapely.get_coordinates(piece)[:3]
     for piece in constrained_delaunay_triangles(AREA.difference(unary_union(ZONES))).geoms
 ]
 #: Well inside one of the triangles of the allowed ground: hardly one is drawn in vain.
@@ -62,7 +63,8 @@ def test_verdict_agrees_with_shapely(start, bearing_rad, length_m):
     assume(abs(disc_m) > 1e-3 and corner_m > 1e-3)
     # nor is a leg along an edge, which is neither in nor out
     assume(edge_m > 1e-3 or any(zone.buffer(-1e-3).intersection(line).length > 1e-2 for zone in ZONES))
-    verdict = leg_verdict(*start, *end, np.array([DISC]), EDGES, OFFSETS, ring_edges(AREA))
+    (e0, n0), (e1, n1) = start, end
+    verdict = leg_verdict(e0, n0, e1, n1, np.array([DISC]), EDGES, OFFSETS, ring_edges(AREA))
     if not AREA.contains(line):
         assert verdict == OUTSIDE
     elif disc_m < 0.0 or any(zone.intersects(line) for zone in ZONES):
@@ -88,5 +90,6 @@ def test_no_rows_are_no_limit():
 )
 def test_corners(leg, expected):
     """A corner may be touched, not passed."""
-    verdict = leg_verdict(*leg, np.empty((0, 3)), EDGES, OFFSETS, NO_EDGES)
+    e0, n0, e1, n1 = leg
+    verdict = leg_verdict(e0, n0, e1, n1, np.empty((0, 3)), EDGES, OFFSETS, NO_EDGES)
     assert verdict == expected

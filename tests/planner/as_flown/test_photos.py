@@ -162,7 +162,9 @@ def test_a_hill_hides_what_lies_behind_it() -> None:
     """Ground in an oblique photo, behind a wall of forty metres, is not seen; before it it is."""
     camera = replace(CAMERA, tilt_deg=60.0)
     ground = grid(lambda e, n: np.where(np.abs(n - 200.0) < 6.0, 40.0, 0.0), 800.0, 5.0)
-    shots = Shots(np.array([[0.0, 0.0, 100.0]]), *axes(camera, *np.zeros((3, 1)), np.zeros(1, dtype=bool)))
+    level = np.zeros(1)
+    ways = axes(camera, level, level, level, np.zeros(1, dtype=bool))
+    shots = Shots(np.array([[0.0, 0.0, 100.0]]), *ways)
     cells = PhotoGrid.over(box(-5.0, 140.0, 5.0, 280.0), 200.0)
     cells.lay(shots, camera, ground, 0.0)
     seen = cells.counts[:, cells.counts.shape[1] // 2] > 0

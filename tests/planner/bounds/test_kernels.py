@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Iterable
 
 import numpy as np
 import pytest
@@ -48,6 +49,12 @@ def family(
 ) -> Floats:
     """Passes of a sensor with a swath of 700 m from 300 m off, 40 m of aperture and 50 m to settle."""
     return np.array([kind, side, 300.0, 700.0, 20.0, 50.0, *middle, strips, 1e6, 0.0, 20.0])
+
+
+def between(begin: Iterable[float], end: Iterable[float]) -> float:
+    """Length of the shortest line from one pose to another."""
+    (e0, n0, angle0), (e1, n1, angle1) = begin, end
+    return float(dubins_length(e0, n0, angle0, e1, n1, angle1, RADIUS_M))
 
 
 def flown(ring: Floats, of: Floats, theta: float, eta: float) -> tuple[Floats, Floats] | None:
@@ -114,17 +121,17 @@ def test_no_line_between_passes_of_two_cells_costs_less(
     )
     priced = slope0 @ np.array(inside[:2]) - slope1 @ np.array(inside[2:])
     inner = math.dist(*ends[1])
-    assert dubins_length(*leaves, *arrives, RADIUS_M) + inner + priced >= least - 1e-6
+    assert between(leaves, arrives) + inner + priced >= least - 1e-6
     # From a place and a pose, and to them.
     place = np.array([-700.0, 400.0, 0.0, 0.0])
     pose = np.array([-700.0, 400.0, 1.0, 2.0])
     two = np.empty(2)
     for start in (place, pose):
         into = lines.from_terminal(start, cells[1], cells_of.ENTRY, slope1, RADIUS_M, two)
-        flight = dubins_length(-700.0, 400.0, 2.0, *arrives, RADIUS_M)
+        flight = between((-700.0, 400.0, 2.0), arrives)
         assert flight + inner - slope1 @ np.array(inside[2:]) >= into - 1e-6
         out = lines.from_terminal(start, cells[0], cells_of.EXIT, slope0, RADIUS_M, two)
-        flight = dubins_length(*leaves, -700.0, 400.0, 2.0, RADIUS_M)
+        flight = between(leaves, (-700.0, 400.0, 2.0))
         assert flight + slope0 @ np.array(inside[:2]) >= out - 1e-6
 
 
@@ -245,10 +252,10 @@ def test_no_line_to_a_crabbing_pass_costs_less(
     lines.from_terminal(start, cell, cells_of.ENTRY, np.zeros(2), RADIUS_M, gains)
     slope = gains.copy() if own else 500.0 * np.array(slopes)
     into = lines.from_terminal(start, cell, cells_of.ENTRY, slope, RADIUS_M, gains)
-    flown_m = dubins_length(-900.0, 700.0, 2.0, *entry, heading, RADIUS_M) + inner
+    flown_m = between((-900.0, 700.0, 2.0), (*entry, heading)) + inner
     assert flown_m - slope @ np.array(inside) >= into - 1e-6
     out = lines.from_terminal(start, cell, cells_of.EXIT, slope, RADIUS_M, gains)
-    flown_m = dubins_length(*collect.end, heading, -900.0, 700.0, 2.0, RADIUS_M)
+    flown_m = between((*collect.end, heading), (-900.0, 700.0, 2.0))
     assert flown_m + slope @ np.array(inside) >= out - 1e-6
 
 
@@ -275,7 +282,7 @@ def test_between_two_passes_the_bound_is_the_dubins_length(
         for f, t in zip(of, (theta, other), strict=True)
     ]
     least = lines.between(cells[0], cells[1], np.zeros(2), np.zeros(2), RADIUS_M, np.empty(4))
-    length = dubins_length(*ends[0][1], theta, *ends[1][0], other, RADIUS_M) + math.dist(*ends[1])
+    length = between((*ends[0][1], theta), (*ends[1][0], other)) + math.dist(*ends[1])
     assert least <= length + 1e-6
     # A turn of nothing may come out as a full one, which the bound takes for none.
     assert least == pytest.approx(length, abs=1e-6) or least >= length - 2.0 * math.pi * RADIUS_M - 1e-6

@@ -52,10 +52,8 @@ def dubins(begin: tuple[float, float, float], end: tuple[float, float, float]) -
 def test_the_bound_is_below_brute_force(seed: int) -> None:
     """Three regions, eight headings, three offsets, every order: none is shorter than either bound."""
     rng = np.random.default_rng(seed)
-    more = [
-        feature(f"N{k}", "roi", "Polygon", square(*(float(x) for x in rng.uniform(-0.04, 0.04, 2)), 0.003))
-        for k in range(3)
-    ]
+    places = [rng.uniform(-0.04, 0.04, 2).tolist() for _ in range(3)]
+    more = [feature(f"N{k}", "roi", "Polygon", square(e, n, 0.003)) for k, (e, n) in enumerate(places)]
     document = small()
     document["features"] = [f for f in document["features"] if f["properties"]["role"] != "roi"] + more
     scenario = read_scenario(document)

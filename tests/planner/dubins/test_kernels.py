@@ -22,10 +22,11 @@ from tests.planner.dubins.test_words import awkward, poses, radii
 def test_length_is_the_plain_one(start: Pose, goal: Pose, radius_m: float) -> None:
     """Scalar, pairwise and matrix kernels agree with words.py within 1e-9 m, degenerate cases included."""
     plain_m = shortest(start, goal, radius_m).length_m
-    a = np.array([[start.east_m, start.north_m, start.angle_rad]])
-    b = np.array([[goal.east_m, goal.north_m, goal.angle_rad]])
+    e0, n0, angle0 = start.east_m, start.north_m, start.angle_rad
+    e1, n1, angle1 = goal.east_m, goal.north_m, goal.angle_rad
+    a, b = np.array([[e0, n0, angle0]]), np.array([[e1, n1, angle1]])
     tolerance = pytest.approx(plain_m, abs=1e-9 * max(1.0, radius_m / 100.0))
-    assert dubins_length(*a[0], *b[0], radius_m) == tolerance
+    assert dubins_length(e0, n0, angle0, e1, n1, angle1, radius_m) == tolerance
     assert dubins_lengths(a, b, radius_m)[0] == tolerance
     assert dubins_matrix(a, b, radius_m)[0, 0] == tolerance
 

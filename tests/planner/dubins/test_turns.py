@@ -102,13 +102,12 @@ def test_turned_and_mirrored_they_are_as_long(turn_rad: float, by_rad: float, mi
             east_m * math.sin(by_rad) + north_m * math.cos(by_rad),
         )
 
-    legs = [BEFORE, WAYPOINT, after(turn_rad)]
+    legs = (BEFORE, WAYPOINT, after(turn_rad))
+    gone = (moved(BEFORE), moved(WAYPOINT), moved(legs[2]))
     for make in (three_arc, past_target, short_turn):
-        here, there = make(*legs, RADIUS_M), make(*map(moved, legs), RADIUS_M)
+        here, there = make(*legs, RADIUS_M), make(*gone, RADIUS_M)
         assert there.path.length_m == pytest.approx(here.path.length_m, rel=5e-3)
-        assert quality_m2(there.path, [moved(leg) for leg in legs]) == pytest.approx(
-            quality_m2(here.path, legs), rel=5e-3, abs=0.5
-        )
+        assert quality_m2(there.path, gone) == pytest.approx(quality_m2(here.path, legs), rel=5e-3, abs=0.5)
 
 
 @pytest.mark.parametrize("degrees", [10, 45, 90, 130])

@@ -132,7 +132,8 @@ def test_brute_force(seed: int) -> None:
     """A search over all arcs on a fine grid finds nothing shorter, and nothing much longer."""
     generator = np.random.default_rng(seed)
     start = Pose(0.0, 0.0, float(generator.uniform(-math.pi, math.pi)))
-    goal = Pose(*generator.uniform(-250.0, 250.0, 2).tolist(), float(generator.uniform(-math.pi, math.pi)))
+    east_m, north_m = generator.uniform(-250.0, 250.0, 2).tolist()
+    goal = Pose(east_m, north_m, float(generator.uniform(-math.pi, math.pi)))
     steps = 720
     grid_error_m = 100.0 * 2.0 * math.pi / steps * 6.0 + 2.0 * math.pi / steps * 400.0
     found_m = brute_force_m(start, goal, 100.0, steps)

@@ -171,7 +171,7 @@ def many(budget_s: float) -> Document:
     """More regions than the exact order takes, and a time to plan them in."""
     rng = np.random.default_rng(3)
     places = rng.uniform(-0.04, 0.06, (14, 2)).tolist()
-    regions = [feature(f"M{k}", "roi", "Polygon", square(*place, 0.002)) for k, place in enumerate(places)]
+    regions = [feature(f"M{k}", "roi", "Polygon", square(e, n, 0.002)) for k, (e, n) in enumerate(places)]
     return small(*regions, time_budget_s=budget_s)
 
 

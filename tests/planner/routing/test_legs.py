@@ -12,16 +12,16 @@ from hypothesis import strategies as st
 from shapely.geometry import LineString, Point
 
 from planner.airspace.prices import INSIDE_FACTOR
-from planner.airspace.zones import TRANSIT_MARGIN_M
+from planner.airspace.zones import TRANSIT_MARGIN_M, keep_out
 from planner.check import line_s
 from planner.dubins.words import shortest_between
 from planner.errors import InfeasibleError
 from planner.geojson import read_scenario
 from planner.progress import never
 from planner.route import Anchor, CollectPass
-from planner.routing import legs as module
 from planner.routing.legs import Legs, anchor, leaves
 from planner.scenario import Scenario
+from planner.transit import tangent
 from planner.transit.tangent import connect
 from tests.planner.scenarios import feature, small
 from tests.planner.stages import legs_of as legs_in
@@ -84,7 +84,9 @@ def test_a_tour_is_the_sum_of_its_parts(passes: list[CollectPass]) -> None:
     expected_m, before = 0.0, Anchor(*SETTLED.start.position)
     for one in passes:
         back = np.array(one.start) - settle_m * np.array([math.cos(one.angle_rad), math.sin(one.angle_rad)])
-        expected_m += shortest_between(before, Anchor(*map(float, back), one.angle_rad), radius_m).length_m
+        expected_m += shortest_between(
+            before, Anchor(float(back[0]), float(back[1]), one.angle_rad), radius_m
+        ).length_m
         expected_m += settle_m + one.length_m
         before = Anchor(*one.end, one.angle_rad)
     expected_m += shortest_between(before, Anchor(*SETTLED.end.position), radius_m).length_m
@@ -121,7 +123,7 @@ def test_what_was_asked_for_is_kept(monkeypatch: pytest.MonkeyPatch) -> None:
         asked.append((start, goal))
         return connect(start, goal, *rest)
 
-    monkeypatch.setattr(module.tangent, "connect", counted)
+    monkeypatch.setattr(tangent, "connect", counted)
     legs = legs_of(OPEN)
     a, b = Anchor(0.0, 0.0, 1.0), Anchor(900.0, 300.0, 2.0)
     costs = [legs.cost_m(a, b), legs.cost_m(a, b), legs.between_m(pose(a), pose(b))]
@@ -143,7 +145,7 @@ def test_no_line_costs_infinitely_much() -> None:
         connect(
             away,
             inside,
-            module.keep_out(scenario.airspace, scenario.level, TRANSIT_MARGIN_M),
+            keep_out(scenario.airspace, scenario.level, TRANSIT_MARGIN_M),
             radius_of(scenario),
             never,
         )
@@ -161,7 +163,7 @@ def test_a_way_round_a_hard_zone_is_longer_than_straight_on() -> None:
     )
     disc = Point(east_m, north_m).buffer(400.0 + TRANSIT_MARGIN_M, quad_segs=512)
     hull = disc.union(LineString([start.position, goal.position])).convex_hull
-    assert legs_of(scenario).cost_m(start, goal) == pytest.approx(hull.exterior.length / 2.0, abs=0.05)
+    assert legs_of(scenario).cost_m(start, goal) == pytest.approx(hull.length / 2.0, abs=0.05)
 
 
 @settings(deadline=None, max_examples=40)
@@ -194,7 +196,7 @@ def test_in_a_wind_time_counts(start: Anchor, goal: Anchor, from_deg: float) -> 
     scenario = open_ground(wind={"speed_m_s": 8.0, "from_deg": from_deg})
     aircraft = scenario.aircraft[0].in_wind(8.0)
     legs = legs_in(scenario, never)
-    zones = module.keep_out(scenario.airspace, scenario.level, TRANSIT_MARGIN_M)
+    zones = keep_out(scenario.airspace, scenario.level, TRANSIT_MARGIN_M)
     path = connect(start, goal, zones, aircraft.planned_turn_radius_m, never)
     points = path.sample(0.5)[:, :2]
     seconds = line_s(points, np.zeros(len(points)), aircraft, scenario.wind, 0.0)

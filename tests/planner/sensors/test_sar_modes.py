@@ -21,6 +21,7 @@ from planner.geojson import read_scenario
 from planner.pipeline import make_plan
 from planner.plan import Collect, Plan, Ring
 from planner.sensors import sar_modes
+from planner.sensors.sar import SarSensor
 from tests.planner.scenarios import feature, small
 from tests.planner.terrains import raster
 
@@ -56,6 +57,8 @@ def test_scansar_pays_for_width_with_resolution() -> None:
     sensor = BASE | {"elevation_beamwidth_deg": 10.0, "mode": "scansar", "sub_swaths": 3, "resolution_m": 1.0}
     (wide,) = read_scenario(with_sensor(sensor)).sensors
     (plain,) = read_scenario(with_sensor(BASE)).sensors
+    assert isinstance(wide, SarSensor)
+    assert isinstance(plain, SarSensor)
     assert wide.swath_m(500.0) == pytest.approx(plain.swath_m(500.0))
     assert wide.resolution_m == 4.0
     assert wide.aperture_m(500.0) == pytest.approx(plain.aperture_m(500.0))
@@ -87,6 +90,8 @@ def test_frequency_gives_the_wavelength() -> None:
     }
     one = read_scenario(with_sensor(SPOT)).sensors[0]
     other = read_scenario(with_sensor(by_frequency)).sensors[0]
+    assert isinstance(one, SarSensor)
+    assert isinstance(other, SarSensor)
     assert one.turned_rad == pytest.approx(other.turned_rad)
 
 
@@ -114,7 +119,9 @@ def test_squinted_ground_lies_ahead_of_the_line() -> None:
         return float(places.min()), float(places.max())
 
     nearest_m = 500.0 / math.cos(math.radians(30.0)) * math.tan(math.radians(20.0))
-    wider_m = scenario.sensors[0].aperture_m(500.0) / 2.0
+    (sensor,) = scenario.sensors
+    assert isinstance(sensor, SarSensor)
+    wider_m = sensor.aperture_m(500.0) / 2.0
     assert reach(ahead)[0] == pytest.approx(nearest_m + wider_m, abs=1e-6)
     assert reach(ahead)[0] > reach(abeam)[0]
     assert reach(ahead)[1] > reach(abeam)[1]

@@ -227,6 +227,7 @@ def test_sensors_take_on_the_wind() -> None:
     scenario = in_crosswind(20.0)
     assert scenario.wind != Wind()
     (sensor,) = Setting.of(scenario).suite.sensors
+    assert isinstance(sensor, SarSensor)
     course = np.linspace(-3.0, 3.0, 7)
     crab = crab_rad(course, scenario.aircraft[0].airspeed_m_s, scenario.wind)
     assert sensor.yaw_rad(course, "right") == pytest.approx(crab)

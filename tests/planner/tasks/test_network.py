@@ -58,7 +58,7 @@ def of(target: str, state: str) -> list[RecognitionSegment]:
     return [each for each in made()[2].segments if (each.target, each.state) == (target, state)]
 
 
-def straight(segment: RecognitionSegment) -> shapely.Geometry:
+def straight(segment: RecognitionSegment) -> LineString:
     """The first pass with what is flown straight before it."""
     return LineString([segment.ingress.position, segment.lines[0][1]])
 

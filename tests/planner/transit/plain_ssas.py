@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from shapely.geometry import LineString, Point, Polygon
 
 from planner.airspace.threats import risk_of_detection
+from planner.transit.ssas import SsasParameters
 
 
 @dataclass
@@ -95,7 +96,7 @@ class Run:
     goal_angle: float
     direct: float
     weights: tuple[float, float, float]
-    p: object
+    p: SsasParameters
     around: Surroundings
     backwards: bool
 

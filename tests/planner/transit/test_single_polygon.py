@@ -41,7 +41,9 @@ class Grid:
 
     def shortest(self, angles: dict[int, np.ndarray], side: int, known_m: float) -> tuple[float, list[State]]:
         """Its length and what it passes; ways no shorter than ``known_m`` are left out."""
-        poses = {v: [Pose(*self.corners[v], float(a)) for a in angles[v]] for v in angles}
+        poses = {
+            v: [Pose(self.corners[v, 0], self.corners[v, 1], float(a)) for a in angles[v]] for v in angles
+        }
         reached: dict[State, tuple[float, State | None]] = {}
         for v in poses:
             for k, pose in enumerate(poses[v]):

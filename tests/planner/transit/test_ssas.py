@@ -114,8 +114,8 @@ def test_search_equals_its_plain_twin(around, parameters):
     for start, goal in random_pairs(7, 20, around):
         # directions within a quarter turn of the way keep the plain search short
         way_rad = math.atan2(goal.north_m - start.north_m, goal.east_m - start.east_m)
-        start = Anchor(*start.position, way_rad + rng.uniform(-0.7, 0.7))
-        goal = Anchor(*goal.position, way_rad + rng.uniform(-0.7, 0.7))
+        start = replace(start, angle_rad=way_rad + rng.uniform(-0.7, 0.7))
+        goal = replace(goal, angle_rad=way_rad + rng.uniform(-0.7, 0.7))
         kind = rng.randrange(4)
         start = Anchor(*start.position) if kind in (1, 3) else start
         goal = Anchor(*goal.position) if kind in (2, 3) else goal
@@ -155,9 +155,9 @@ def test_reported_cost_is_eq_25_of_the_waypoints():
     # weights so small that routes do go through threats
     weights = (1.0, 0.01, 0.02)
     for start, goal in random_pairs(13, 60, MAP):
-        for ends in ((start, goal), (Anchor(*start.position), goal), (start, Anchor(*goal.position))):
+        for begin, end in ((start, goal), (Anchor(*start.position), goal), (start, Anchor(*goal.position))):
             try:
-                found = search(*ends, space, weights, DIRECTED.faithful())
+                found = search(begin, end, space, weights, DIRECTED.faithful())
             except InfeasibleError:
                 continue
             kill, detection = line_risk(found.waypoints, THREATS)
@@ -195,8 +195,8 @@ def test_from_goal_is_the_search_of_the_way_back():
         except InfeasibleError:
             continue
         back = search(
-            Anchor(*goal.position, goal.angle_rad + math.pi),
-            Anchor(*start.position, start.angle_rad + math.pi),
+            replace(goal, angle_rad=goal.angle_rad + math.pi),
+            replace(start, angle_rad=start.angle_rad + math.pi),
             space,
             parameters=DIRECTED,
         )

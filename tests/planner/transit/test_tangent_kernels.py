@@ -26,6 +26,12 @@ def on_wheel(wheel: np.ndarray, phi: float) -> np.ndarray:
     return np.array([wheel[0] + wheel[2] * math.sin(phi), wheel[1] - wheel[2] * math.cos(phi)])
 
 
+def pose_on(wheel: np.ndarray, phi: float) -> Pose:
+    """That place with the direction."""
+    east_m, north_m = on_wheel(wheel, phi)
+    return Pose(float(east_m), float(north_m), phi)
+
+
 @settings(deadline=None)
 @given(wheels, wheels)
 def test_tangent_touches_both_wheels(first: tuple[float, ...], second: tuple[float, ...]) -> None:
@@ -75,8 +81,8 @@ def chain_path(chain: np.ndarray, start_rad: float, goal_rad: float) -> Path | N
         turn = (phi - arriving) * math.copysign(1.0, wheel[2]) % (2.0 * math.pi)
         turn = 0.0 if turn > 2.0 * math.pi - 1e-9 else turn
         kind = "left" if wheel[2] > 0.0 else "right"
-        arc = Segment(kind, Pose(*on_wheel(wheel, arriving), arriving), turn * abs(wheel[2]), abs(wheel[2]))
-        segments += [arc, Segment("straight", Pose(*on_wheel(wheel, phi), phi), length_m)]
+        arc = Segment(kind, pose_on(wheel, arriving), turn * abs(wheel[2]), abs(wheel[2]))
+        segments += [arc, Segment("straight", pose_on(wheel, phi), length_m)]
         arriving = phi
     return Path(tuple(segments))
 

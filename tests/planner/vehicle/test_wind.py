@@ -18,7 +18,7 @@ from planner.dubins.words import shortest
 from planner.errors import InfeasibleError
 from planner.geojson import read_scenario
 from planner.pipeline import make_plan
-from planner.plan import Collect, Plan
+from planner.plan import Collect, Plan, Transit
 from planner.route import Pose
 from planner.scenario import Scenario
 from planner.tasks.setting import Setting
@@ -150,7 +150,9 @@ def test_plan_times_are_those_of_its_line(speed_m_s: float, from_deg: float) -> 
 
 def time_of(plan: Plan, scenario: Scenario, wind: Wind) -> float:
     """Time the mission of a plan takes in a wind, by the judge's formula."""
-    flown = sorted((*plan.transits, *plan.collects), key=lambda one: (one.seq, isinstance(one, Collect)))
+    flown: list[Transit | Collect] = sorted(
+        (*plan.transits, *plan.collects), key=lambda one: (one.seq, isinstance(one, Collect))
+    )
     line = np.array([place for one in flown for place in one.line])
     points = scenario.frame.to_local(line[:, :2])
     return line_s(points, line[:, 2], scenario.aircraft[0], wind, 0.0)

@@ -67,9 +67,8 @@ def test_kind_says_which_angles_work(area: Polygon, swath_m: float) -> None:
 @given(polygons((50.0, 700.0)), st.floats(0.6, 1.2), st.booleans())
 def test_kind_as_on_pixels(area: Polygon, part: float, of_long: bool) -> None:
     """Algorithm 2 on the paper's binary image gives the sides and, pixels apart, the category of eq 16."""
-    lengths_m = sorted(
-        math.dist(a, b) for a, b in itertools.pairwise(area.minimum_rotated_rectangle.exterior.coords)
-    )
+    around = shapely.get_coordinates(area.minimum_rotated_rectangle)
+    lengths_m = sorted(math.dist(a, b) for a, b in itertools.pairwise(around))
     swath_m = part * lengths_m[-1 if of_long else 0]
     # A pixel is on where the region comes within half its diagonal, so that thin points are not lost.
     reach_m = PIXEL_M / math.sqrt(2.0)

@@ -53,8 +53,8 @@ def test_no_heading_takes_fewer_lanes_than_the_best_that_is_singled_out(area: Po
 def test_every_edge_is_among_them_both_ways(area: Polygon) -> None:
     """Each edge of the outline and of its hull has its direction and the opposite in the list."""
     found = telling(area, swaths)
-    for ring in (area.exterior, area.convex_hull.exterior):
-        places = np.asarray(ring.coords)
+    for ring in (area.exterior, area.convex_hull):
+        places = shapely.get_coordinates(ring)
         for ahead in np.diff(places, axis=0):
             for turn in (0.0, math.pi):
                 off = found - math.atan2(ahead[1], ahead[0]) - turn

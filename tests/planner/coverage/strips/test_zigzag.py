@@ -15,6 +15,7 @@ from planner.coverage.intervals import operating_function
 from planner.coverage.strips.zigzag import Direction, Zigzag
 from planner.route import Look, Terminal
 from planner.scenario import Scenario
+from planner.sensors.sar import SarSensor
 from planner.wishes import Region
 from tests.planner.coverage.shapes import paper_sensor, polygons, sample, unseen_m2
 from tests.planner.stages import zigzag
@@ -29,6 +30,7 @@ PAPER_LENGTHS_M = {
 def assert_full_resolution(found: Zigzag, scenario: Scenario) -> None:
     """Judge by the flown line itself: what it sees for one aperture length, while on, holds every region."""
     sensor, height_m = scenario.sensors[0], scenario.height_m
+    assert isinstance(sensor, SarSensor)
     half_m, look = sensor.aperture_m(height_m) / 2.0, "right" if "right" in sensor.looks else "left"
     line = LineString(found.waypoints)
     seen = []

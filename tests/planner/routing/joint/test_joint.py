@@ -8,6 +8,7 @@ import math
 
 import numpy as np
 import pytest
+import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely.geometry import LineString, Point
@@ -18,7 +19,7 @@ from planner.dubins.words import shortest, shortest_between
 from planner.errors import InfeasibleError
 from planner.geojson import read_scenario
 from planner.orders_kernels import best_options, best_orders, improve_order
-from planner.route import Anchor, Pose
+from planner.route import Anchor, CollectPass, Pose
 from planner.routing.joint import route as joint
 from planner.routing.joint.route import JointRoute
 from planner.scenario import Scenario
@@ -105,7 +106,7 @@ def test_detour_round_one_disc_is_the_shortest(x: float, y: float, r: float) -> 
     if min(math.hypot(x, y), math.hypot(end - x, y)) <= r:
         assert extra_m == 0.0
         return
-    ring = hull.exterior
+    ring = shapely.get_exterior_ring(hull)
     if not LineString([(0, 0), (end, 0)]).crosses(disc):
         assert extra_m == pytest.approx(0.0, abs=0.05)
         return
@@ -146,7 +147,7 @@ def test_joint_routes_are_shorter_than_greedy_ones(number: int) -> None:
     scenario, found = of_case(number)
     radius_m = scenario.aircraft[0].planned_turn_radius_m
 
-    def length_m(passes: tuple) -> float:
+    def length_m(passes: tuple[CollectPass, ...]) -> float:
         anchors = [Anchor(*scenario.start.position)]
         for p in passes:
             anchors += [Anchor(*p.start, p.angle_rad), Anchor(*p.end, p.angle_rad)]

@@ -17,7 +17,7 @@ from planner.coverage.strips.options import Options
 from planner.dubins.estimate_kernels import point_costs, transit_costs
 from planner.orders_kernels import best_options, best_orders
 from planner.progress import never, silent
-from planner.routing.large.order import kernels as large_kernels
+from planner.routing.large import kernels as large_kernels
 from planner.routing.large.order import large_order
 from planner.vehicle.wind import CIRCLE_RAD, still_air_costs, still_air_factor
 
