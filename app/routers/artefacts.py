@@ -8,6 +8,7 @@ from fastapi import APIRouter, Query, Response
 
 from app.deps import DeskDep, PlanningDep
 from app.problems import responses
+from app.routers.answers import GEOJSON, GEOJSON_ANSWER
 from app.routers.streams import page_answer
 from app.schemas.plans import ProfileOut
 from app.schemas.preflight import ARCS_IS, CHORD_ERROR_IS
@@ -19,14 +20,12 @@ from mavlink.encoding.options import Arcs
 
 router = APIRouter(prefix="/api/v1/plans/{plan_id}", tags=["artefacts"])
 
-GEOJSON = "application/geo+json"
-
 
 @router.get(
     "/scenario",
     summary="The scenario",
     response_class=Response,
-    responses=responses(404) | {200: {"content": {GEOJSON: {"schema": {"type": "object"}}}}},
+    responses=responses(404) | GEOJSON_ANSWER,
 )
 async def scenario(plan_id: str, planning: PlanningDep) -> Response:
     """The scenario as it was sent."""
@@ -37,7 +36,7 @@ async def scenario(plan_id: str, planning: PlanningDep) -> Response:
     "/plan.geojson",
     summary="The plan",
     response_class=Response,
-    responses=responses(404, 409) | {200: {"content": {GEOJSON: {"schema": {"type": "object"}}}}},
+    responses=responses(404, 409) | GEOJSON_ANSWER,
 )
 async def plan(plan_id: str, planning: PlanningDep) -> Response:
     """The plan as a GeoJSON FeatureCollection; 409 while there is none."""
@@ -59,7 +58,7 @@ async def profile(plan_id: str, planning: PlanningDep, desk: DeskDep) -> Profile
     "/network.geojson",
     summary="Segments round the targets",
     response_class=Response,
-    responses=responses(404, 409, 422) | {200: {"content": {GEOJSON: {"schema": {"type": "object"}}}}},
+    responses=responses(404, 409, 422) | GEOJSON_ANSWER,
 )
 async def network(
     plan_id: str,
@@ -105,7 +104,9 @@ GimbalQuery = Annotated[
         max_length=200,
     ),
 ]
-SortieQuery = Annotated[int, Query(ge=1, description="Which of the vehicle's flights in the plan.")]
+SortieQuery = Annotated[
+    int, Query(ge=1, le=10_000, description="Which of the vehicle's flights in the plan.")
+]
 ArcsQuery = Annotated[Arcs | None, Query(description=ARCS_IS)]
 ChordErrorQuery = Annotated[float | None, Query(ge=0.1, le=100.0, description=CHORD_ERROR_IS)]
 

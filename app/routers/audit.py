@@ -10,6 +10,7 @@ from pydantic import AfterValidator
 
 from app.deps import AuditDep
 from app.problems import responses
+from app.routers.answers import PageLimit, PageOffset
 from app.schemas.audit import AuditEntryOut, AuditList
 from app.services.records import AuditKind
 from app.services.store.audit import AuditFilter
@@ -30,8 +31,8 @@ Moment = Annotated[datetime, AfterValidator(_utc)]
 @router.get("", summary="List what was ordered", responses=responses(422))
 async def list_entries(
     audit: AuditDep,
-    limit: Annotated[int, Query(ge=1, le=1000)] = 50,
-    offset: Annotated[int, Query(ge=0, le=2**31)] = 0,
+    limit: PageLimit = 50,
+    offset: PageOffset = 0,
     vehicle: Annotated[str | None, Query(max_length=200, description="Its id, or its name.")] = None,
     kind: AuditKind | None = None,
     since: Annotated[Moment | None, Query(description="At or after; UTC without a zone.")] = None,

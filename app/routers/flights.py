@@ -7,8 +7,18 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Query, Request, Response
 from fastapi.responses import HTMLResponse
 
-from app.deps import FlightsDep, PlanningDep, SettingsDep, WhereaboutsDep
+from app.deps import FlightsDep, PlanningDep, WhereaboutsDep
 from app.problems import responses
+from app.routers.answers import (
+    GEOJSON,
+    GEOJSON_ANSWER,
+    GEOTIFF,
+    GEOTIFF_ANSWER,
+    PageLimit,
+    PageOffset,
+    PostedDep,
+    RegionName,
+)
 from app.routers.streams import page_answer
 from app.schemas.flights import FilledOut, FlightList, FlightOut
 from app.schemas.plans import PlanOut
@@ -16,28 +26,18 @@ from app.services.documents import write_json
 
 router = APIRouter(prefix="/api/v1/flights", tags=["flights"])
 
-GEOJSON = "application/geo+json"
 LOG_BODY: dict[str, Any] = {
     "required": True,
     "description": "The file itself, e.g. `curl --data-binary @00000042.BIN`.",
     "content": {"application/octet-stream": {"schema": {"type": "string", "format": "binary"}}},
 }
-GEOJSON_ANSWER: dict[int | str, dict[str, Any]] = {
-    200: {"content": {GEOJSON: {"schema": {"type": "object"}}}}
-}
-
-GEOTIFF = "image/tiff; application=geotiff"
-GEOTIFF_ANSWER: dict[int | str, dict[str, Any]] = {
-    200: {"content": {GEOTIFF: {"schema": {"type": "string", "format": "binary"}}}}
-}
-RegionName = Annotated[str | None, Query(max_length=200, description="One region; all when left out.")]
 
 
 @router.get("", summary="List flights", responses=responses(422))
 async def list_flights(
     flights: FlightsDep,
-    limit: Annotated[int, Query(ge=1, le=1000)] = 50,
-    offset: Annotated[int, Query(ge=0, le=2**31)] = 0,
+    limit: PageLimit = 50,
+    offset: PageOffset = 0,
     vehicle_id: Annotated[str | None, Query(max_length=36)] = None,
 ) -> FlightList:
     """Flights, newest first."""
@@ -145,9 +145,7 @@ async def refly(
     flights: FlightsDep,
     whereabouts: WhereaboutsDep,
     planning: PlanningDep,
-    settings: SettingsDep,
-    response: Response,
-    wait: Annotated[float, Query(ge=0, description="Seconds to hold the answer for the plan's end.")] = 0.0,
+    posted: PostedDep,
 ) -> PlanOut:
     """Plan what the flight did not see, from where the aircraft is while it flies, else from the start.
 
@@ -155,8 +153,4 @@ async def refly(
     threats and zones. 409 when nothing is left to fly again for.
     """
     scenario = await flights.refly(flight_id, await whereabouts.place_in_flight(flight_id))
-    record = await planning.submit(scenario)
-    if wait > 0 and not record.ended:
-        record = await planning.wait(record.id, min(wait, settings.max_wait_s))
-    response.headers["Location"] = f"/api/v1/plans/{record.id}"
-    return PlanOut.of(record)
+    return await posted.of(await planning.submit(scenario))

@@ -9,8 +9,9 @@ from typing import Annotated, Any, Literal
 from fastapi import APIRouter, Header, Query, Request, Response
 from sse_starlette import EventSourceResponse, ServerSentEvent
 
-from app.deps import FilingDep, PlanningDep, ScenariosDep, SettingsDep
+from app.deps import FilingDep, PlanningDep, ScenariosDep
 from app.problems import responses
+from app.routers.answers import PageLimit, PageOffset, PostedDep
 from app.routers.bodies import MISSION_BODY, SCENARIO_BODY
 from app.routers.streams import event_stream
 from app.schemas.plans import PlanList, PlanOut, PlanStateName
@@ -37,10 +38,9 @@ EVENT_STREAM: dict[int | str, dict[str, Any]] = {
 )
 async def post_plan(
     request: Request,
-    response: Response,
     planning: PlanningDep,
     scenarios: ScenariosDep,
-    settings: SettingsDep,
+    posted: PostedDep,
     scenario_id: Annotated[
         str | None,
         Query(
@@ -49,7 +49,6 @@ async def post_plan(
             "deleted.",
         ),
     ] = None,
-    wait: Annotated[float, Query(ge=0, description="Seconds to hold the answer for the plan's end.")] = 0.0,
     idempotency_key: Annotated[
         str | None,
         Header(
@@ -65,11 +64,7 @@ async def post_plan(
     """
     if scenario_id is not None:
         await scenarios.get(scenario_id)
-    record = await planning.submit(await request.body(), idempotency_key, scenario_id)
-    if wait > 0 and not record.ended:
-        record = await planning.wait(record.id, min(wait, settings.max_wait_s))
-    response.headers["Location"] = f"/api/v1/plans/{record.id}"
-    return PlanOut.of(record)
+    return await posted.of(await planning.submit(await request.body(), idempotency_key, scenario_id))
 
 
 @router.post(
@@ -129,8 +124,8 @@ async def import_mission(
 @router.get("", summary="List plans", responses=responses(422))
 async def list_plans(
     planning: PlanningDep,
-    limit: Annotated[int, Query(ge=1, le=1000)] = 50,
-    offset: Annotated[int, Query(ge=0, le=2**31)] = 0,
+    limit: PageLimit = 50,
+    offset: PageOffset = 0,
     state: PlanStateName | None = None,
 ) -> PlanList:
     """Plans, newest first."""

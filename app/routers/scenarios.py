@@ -10,6 +10,7 @@ from fastapi import APIRouter, Header, Query, Request, Response
 
 from app.deps import DeskDep, PlanningDep, ScenariosDep
 from app.problems import responses
+from app.routers.answers import PageLimit, PageOffset
 from app.routers.bodies import DRAFT_BODY, SCENARIO_BODY
 from app.schemas.base import FindingOut
 from app.schemas.plans import ValidationOut
@@ -63,8 +64,8 @@ async def keep(request: Request, scenarios: ScenariosDep, response: Response) ->
 @router.get("", summary="List kept scenarios", responses=responses(422))
 async def list_kept(
     scenarios: ScenariosDep,
-    limit: Annotated[int, Query(ge=1, le=1000)] = 50,
-    offset: Annotated[int, Query(ge=0, le=2**31)] = 0,
+    limit: PageLimit = 50,
+    offset: PageOffset = 0,
 ) -> ScenarioList:
     """Kept scenarios without their texts, the one changed last first."""
     records = await scenarios.newest(limit, offset)
@@ -213,7 +214,7 @@ RegionFormat = Literal[
     "kml", "kmz", "gpx", "gml", "shp", "shapefile", "zip", "geojson", "geojsonl", "esrijson", "wkt", "csv",
     "mission",
 ]  # fmt: skip
-Metres = Annotated[float | None, Query(gt=0, description="For shapes that do not say theirs.")]
+Metres = Annotated[float | None, Query(gt=0, le=1_000_000, description="For shapes that do not say theirs.")]
 
 
 @router.post(

@@ -2,28 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated
 
-from fastapi import APIRouter, Header, Query, Response
+from fastapi import APIRouter, Header, Response
 
-from app.deps import FlightsDep, PlanningDep, SettingsDep
+from app.deps import FlightsDep, PlanningDep
 from app.problems import responses
+from app.routers.answers import GEOJSON, GEOJSON_ANSWER, GEOTIFF, GEOTIFF_ANSWER, PostedDep, RegionName
 from app.schemas.plans import PlanOut
 from app.schemas.replans import ReplanIn
 from app.services.documents import write_json
 
 router = APIRouter(prefix="/api/v1/plans/{plan_id}", tags=["flights"])
-
-GEOJSON = "application/geo+json"
-GEOJSON_ANSWER: dict[int | str, dict[str, Any]] = {
-    200: {"content": {GEOJSON: {"schema": {"type": "object"}}}}
-}
-
-GEOTIFF = "image/tiff; application=geotiff"
-GEOTIFF_ANSWER: dict[int | str, dict[str, Any]] = {
-    200: {"content": {GEOTIFF: {"schema": {"type": "string", "format": "binary"}}}}
-}
-RegionName = Annotated[str | None, Query(max_length=200, description="One region; all when left out.")]
 
 
 @router.get(
@@ -70,19 +60,13 @@ async def refly(
     plan_id: str,
     flights: FlightsDep,
     planning: PlanningDep,
-    settings: SettingsDep,
-    response: Response,
-    wait: Annotated[float, Query(ge=0, description="Seconds to hold the answer for the plan's end.")] = 0.0,
+    posted: PostedDep,
 ) -> PlanOut:
     """Plan what none of the plan's flights is known to have seen, from the start.
 
     Ground of which nobody knows is planned, too: send the onboard logs first. 409 when nothing is left.
     """
-    record = await planning.submit(await flights.plan_refly(plan_id))
-    if wait > 0 and not record.ended:
-        record = await planning.wait(record.id, min(wait, settings.max_wait_s))
-    response.headers["Location"] = f"/api/v1/plans/{record.id}"
-    return PlanOut.of(record)
+    return await posted.of(await planning.submit(await flights.plan_refly(plan_id)))
 
 
 @router.post(
@@ -93,9 +77,7 @@ async def replan(
     body: ReplanIn,
     flights: FlightsDep,
     planning: PlanningDep,
-    settings: SettingsDep,
-    response: Response,
-    wait: Annotated[float, Query(ge=0, description="Seconds to hold the answer for the plan's end.")] = 0.0,
+    posted: PostedDep,
     idempotency_key: Annotated[
         str | None,
         Header(
@@ -114,7 +96,4 @@ async def replan(
     place and read back.
     """
     record = await planning.submit(await flights.replan(plan_id, body.asked()), idempotency_key)
-    if wait > 0 and not record.ended:
-        record = await planning.wait(record.id, min(wait, settings.max_wait_s))
-    response.headers["Location"] = f"/api/v1/plans/{record.id}"
-    return PlanOut.of(record)
+    return await posted.of(record)

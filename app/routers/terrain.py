@@ -8,6 +8,7 @@ from fastapi import APIRouter, Query, Request, Response
 
 from app.deps import TerrainDep
 from app.problems import responses
+from app.routers.answers import PageLimit, PageOffset
 from app.schemas.terrain import TerrainList, TerrainOut
 from app.services.terrain.rasters import VerticalDatum
 
@@ -56,8 +57,8 @@ async def post_terrain(
 @router.get("", summary="List elevation rasters", responses=responses(422))
 async def list_terrain(
     terrain: TerrainDep,
-    limit: Annotated[int, Query(ge=1, le=1000)] = 50,
-    offset: Annotated[int, Query(ge=0, le=2**31)] = 0,
+    limit: PageLimit = 50,
+    offset: PageOffset = 0,
 ) -> TerrainList:
     """Rasters, newest first."""
     records = await terrain.newest(limit, offset)

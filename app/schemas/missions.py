@@ -26,7 +26,7 @@ class MissionIn(Strict):
         default=["mission"], description="Uploaded in this order; the first refusal ends it."
     )
     vehicle: str | None = Field(default=None, max_length=200, description="Vehicle of the plan; its first.")
-    sortie: int = Field(default=1, ge=1, description="Which of the vehicle's flights in the plan.")
+    sortie: int = Field(default=1, ge=1, le=10_000, description="Which of the vehicle's flights in the plan.")
     payload: str | None = Field(
         default=None,
         max_length=200,

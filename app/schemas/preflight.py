@@ -70,7 +70,7 @@ class PreflightIn(Strict):
 
     plan_id: str = Field(max_length=36)
     vehicle: str | None = Field(default=None, max_length=200, description="Vehicle of the plan; its first.")
-    sortie: int = Field(default=1, ge=1, description="Which of the vehicle's flights in the plan.")
+    sortie: int = Field(default=1, ge=1, le=10_000, description="Which of the vehicle's flights in the plan.")
     payload: str | None = Field(
         default=None,
         max_length=200,

@@ -9,6 +9,7 @@ from pydantic import Field
 from app.schemas.base import Strict
 from app.services.plans.replanned import Changes
 from app.services.plans.replanning import Asked, Told
+from planner.geojson.equipment import HIGHEST_ALOFT_M
 
 Degrees = Annotated[float, Field(ge=-180, le=180)]
 
@@ -18,17 +19,19 @@ class WhereIn(Strict):
 
     lon_deg: Degrees | None = None
     lat_deg: Annotated[float, Field(ge=-90, le=90)] | None = None
-    height_m: Annotated[float, Field(gt=0)] | None = Field(default=None, description="Over home.")
+    height_m: Annotated[float, Field(gt=0, le=HIGHEST_ALOFT_M)] | None = Field(
+        default=None, description="Over home."
+    )
     heading_deg: Annotated[float, Field(ge=0, le=360)] | None = Field(
         default=None, description="Its course, clockwise from true north; needed of what flies on wings."
     )
-    energy_left_wh: Annotated[float, Field(gt=0)] | None = Field(
+    energy_left_wh: Annotated[float, Field(gt=0, le=1e7)] | None = Field(
         default=None, description="In its battery; the reserve is kept as before."
     )
-    flown_m: Annotated[float, Field(ge=0)] | None = Field(
+    flown_m: Annotated[float, Field(ge=0, le=1e8)] | None = Field(
         default=None, description="Of its range used already [as recorded]."
     )
-    flown_s: Annotated[float, Field(ge=0)] | None = Field(
+    flown_s: Annotated[float, Field(ge=0, le=1e7)] | None = Field(
         default=None, description="Of its flight time used already [as recorded]."
     )
 
@@ -43,7 +46,7 @@ class ReplanIn(Strict):
     vehicles: Annotated[dict[str, WhereIn], Field(max_length=100)] = Field(
         default={}, description="Where the plan's aircraft are, by name; those not named nor recorded stand."
     )
-    at_s: Annotated[float, Field(ge=0)] | None = Field(
+    at_s: Annotated[float, Field(ge=0, le=1e7)] | None = Field(
         default=None,
         description="Seconds of the plan's own clock: aircraft that are neither told of nor recorded are "
         "where the plan has them then, and what it sees until then is seen. Windows count from then on.",

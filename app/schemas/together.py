@@ -21,7 +21,7 @@ class FleetMissionIn(Strict):
         description="Ids of connected vehicles by the names of the plan's vehicles: every one of them.",
         examples=[{"north": "5f0c…", "south": "a71b…"}],
     )
-    sorties: Annotated[dict[str, Annotated[int, Field(ge=1)]], Field(max_length=100)] = Field(
+    sorties: Annotated[dict[str, Annotated[int, Field(ge=1, le=10_000)]], Field(max_length=100)] = Field(
         default={}, description="Which flight of a vehicle, by its name; the first when left out."
     )
     parts: Annotated[list[Part], Field(min_length=1, max_length=3)] = Field(

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from html.parser import HTMLParser
 from pathlib import Path
+from typing import Any
 
 import httpx
 import pytest
@@ -53,3 +55,56 @@ async def test_page_tells_every_call_and_needs_no_network(
     assert [target for target in parts.targets if not re.match(r"/(?!/)|#|data:", target)] == []
     assert {target[1:] for target in parts.targets if target.startswith("#")} <= parts.ids
     assert absent.status_code == 404
+
+
+def _numbers(
+    schema: dict[str, Any], parts: dict[str, Any], where: str
+) -> Iterator[tuple[str, dict[str, Any]]]:
+    """The numbers that a schema lets in, by where they stand."""
+    if "$ref" in schema:
+        schema = parts[schema["$ref"].rpartition("/")[2]]
+    if schema.get("type") in ("integer", "number"):
+        yield where, schema
+    for one in (*schema.get("anyOf", ()), *schema.get("oneOf", ()), *schema.get("prefixItems", ())):
+        yield from _numbers(one, parts, where)
+    for name, one in schema.get("properties", {}).items():
+        yield from _numbers(one, parts, f"{where}.{name}")
+    for name in ("items", "additionalProperties"):
+        if isinstance(schema.get(name), dict):
+            yield from _numbers(schema[name], parts, f"{where}[]")
+
+
+async def test_every_number_of_a_request_has_bounds(
+    answers: tuple[httpx.Response, httpx.Response, httpx.Response],
+) -> None:
+    """Numbers of queries and of bodies other than scenarios say their least and their most."""
+    api = answers[1].json()
+    parts = api["components"]["schemas"]
+    asked: list[tuple[str, dict[str, Any]]] = []
+    for path, item in api["paths"].items():
+        for method, call in item.items():
+            given = [(one["name"], one["schema"]) for one in call.get("parameters", ())]
+            bodies = [
+                body.get("schema", {}) for body in call.get("requestBody", {}).get("content", {}).values()
+            ]
+            given += [("body", body) for body in bodies if "features" not in body.get("properties", {})]
+            for name, schema in given:
+                asked += _numbers(schema, parts, f"{method} {path} {name}")
+    assert {where.rpartition(" ")[2] for where, _ in asked} >= {"wait", "limit", "offset", "width_m"}
+    boundless = [
+        where
+        for where, schema in asked
+        if not {"minimum", "exclusiveMinimum"} & set(schema)
+        or not {"maximum", "exclusiveMaximum"} & set(schema)
+    ]
+    assert boundless == []
+
+
+@pytest.mark.parametrize("wait", ["3.7e16", "inf", "nan", "-1"])
+async def test_waits_without_end_are_refused(tmp_path: Path, wait: str) -> None:
+    """A wait beyond an hour, below nothing or of no number is a 422 that names it and its bounds."""
+    settings = Settings(database=tmp_path / "plans.db", workers=1, static_dir=tmp_path, log_level="error")
+    async with serving(create_app(settings, fake_house)) as client:
+        answer = await client.post("/api/v1/plans", params={"wait": wait}, content=b"{}")
+    assert answer.status_code == 422
+    assert "wait" in answer.text
