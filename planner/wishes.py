@@ -10,6 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 from shapely.geometry import LineString, MultiPolygon, Polygon
 
+#: No aircraft is sent higher: over the scenario's datum, or the ground.
+HIGHEST_M = 30_000.0
+
 #: How a camera sees a region.
 Pattern = Literal["auto", "lanes", "crosshatch", "orbit", "spiral", "look"]
 

@@ -18,6 +18,8 @@ from planner.vehicle.manners import Manners, manners_of
 
 Floats = NDArray[np.float64]
 
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(12)
+
 #: Edges shorter than this over the ground are flown on the spot.
 SPOT_M = 0.01
 
@@ -50,16 +52,25 @@ def edges_s(
             line_m[np.concatenate([[True], flown])], rises_m[flown], aircraft, wind, manners
         )
         return found
-    middles_m = datum_amsl_m + 0.5 * (altitudes_m[1:] + altitudes_m[:-1])[flown]
-    # ICAO standard atmosphere: density falls with the 4.2559th power of temperature.
-    density = ((288.15 - 0.0065 * np.clip(middles_m, -1_000.0, 11_000.0)) / 288.15) ** 4.25588
-    slope = over_m[flown] / np.hypot(over_m[flown], rises_m[flown])
-    air_m_s = aircraft.airspeed_m_s / np.sqrt(density) * slope
+    starts_m, climbs_m = altitudes_m[:-1][flown], rises_m[flown]
+    # ICAO standard atmosphere: density falls with the 4.2559th power of temperature. Along an edge it is
+    # taken at Gauss's places: what a wind near the airspeed leaves changes with it many times over.
+    at_m = datum_amsl_m + starts_m[:, None] + (0.5 + 0.5 * _NODES) * climbs_m[:, None]
+    density = ((288.15 - 0.0065 * np.clip(at_m, -1_000.0, 11_000.0)) / 288.15) ** 4.25588
+    air_m_s = aircraft.airspeed_m_s / np.sqrt(density)
+    if (air_m_s <= wind.speed_m_s).any():
+        # In air that dense it is not faster than the wind.
+        return np.full(len(found), math.inf)
     toward = np.array([math.cos(wind.toward_rad), math.sin(wind.toward_rad)])
     along_m_s = wind.speed_m_s * (np.diff(line_m, axis=0)[flown] @ toward) / over_m[flown]
-    # The velocity over the ground less the wind is as long as the airspeed: v² - 2 v w + W² = V².
-    ground_m_s = along_m_s + np.sqrt(along_m_s**2 + air_m_s**2 - wind.speed_m_s**2)
-    found[flown] = over_m[flown] / ground_m_s
+    # In a time t, how far it is through the air: (d - w t)² + (W² - w²) t² + h² = V² t². So
+    # (V² - W²) t² + 2 d w t = d² + h², w the wind along the edge.
+    spare = air_m_s**2 - wind.speed_m_s**2
+    with_it = (over_m[flown] * along_m_s)[:, None]
+    reach = (over_m[flown] ** 2 + climbs_m**2)[:, None]
+    root = np.sqrt(with_it**2 + spare * reach)
+    times_s = np.where(with_it > 0.0, reach / (root + np.maximum(with_it, 0.0)), (root - with_it) / spare)
+    found[flown] = 0.5 * (times_s @ _WEIGHTS)
     return found
 
 

@@ -17,6 +17,7 @@ from planner.airspace.airspace import Airspace, Level
 from planner.airspace.shapes import DiscShape, hard_shapes
 from planner.coverage.merge import MergedRegion
 from planner.errors import InfeasibleError
+from planner.wishes import HIGHEST_M
 
 #: Whether some pass sees the region among these zones, from this level.
 Seen = Callable[[Airspace, Level], bool]
@@ -195,7 +196,7 @@ def _altitudes(airspace: Airspace, level: Level, name: str) -> list[float]:
     return [
         math.ceil(level.altitude_m + change) if change > 0.0 else math.floor(level.altitude_m + change)
         for change in changes_m
-        if math.isfinite(change) and level.height_m + change > 0.0
+        if 0.0 < level.height_m + change <= HIGHEST_M
     ]
 
 

@@ -17,14 +17,14 @@ from planner.geojson.fields import Fields, Findings, is_finite
 from planner.geojson.forbidding import forbidding_areas
 from planner.geojson.outlines import EXACT_M, MANY, few_cornered
 from planner.route import Terminal
-from planner.wishes import Pattern, Region
+from planner.wishes import HIGHEST_M, Pattern, Region
 
 #: A point target without a radius still has to be inside a footprint, as a disc this large.
 POINT_TARGET_RADIUS_M = 1.0
 #: Corners of a disc's polygon to a quarter.
 DISC_QUADRANT = 32
-#: Altitudes beyond these are a slip of the pen.
-LOWEST_M, HIGHEST_M = 1.0, 30_000.0
+#: Altitudes below this are a slip of the pen.
+LOWEST_M = 1.0
 #: Where the scale of NIIRS ends.
 HIGHEST_NIIRS = 9.0
 #: More visits than this are a slip of the pen: each is a stop of the tour.

@@ -11,12 +11,12 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
-from planner.geojson.features import HIGHEST_M, LOWEST_M
+from planner.geojson.features import LOWEST_M
 from planner.geojson.fields import Fields, Findings
 from planner.scenario import Scenario
 from planner.sensors.sar import SarSensor
 from planner.sensors.wanted import UnknownQualityError, Wanted, wanted_of
-from planner.wishes import Region
+from planner.wishes import HIGHEST_M, Region
 
 #: Chosen heights are not below this where no ``min_height_m`` says so.
 LEAST_M = 10.0

@@ -39,7 +39,7 @@ from planner.geojson.slots import check_slots
 from planner.route import Terminal
 from planner.scenario import Scenario
 from planner.tasks.registry import TASKS
-from planner.wishes import Importance, ImportancePatch, ImportancePoint, Region
+from planner.wishes import HIGHEST_M, Importance, ImportancePatch, ImportancePoint, Region
 
 MEMBERS = (
     "type", "features", "name", "bbox", "crs", "vehicles", "sensors", "altitude_m", "min_height_m",
@@ -135,7 +135,7 @@ def _read(document: Any, findings: Findings, terrains: Terrains | None) -> Scena
         equipment.read_sensor(raw, i, findings, steady)
         for i, raw in enumerate(equipment.listed(document, "sensors", findings))
     ]
-    altitude_m = top.number("altitude_m", None, minimum=features.LOWEST_M, maximum=features.HIGHEST_M)
+    altitude_m = top.number("altitude_m", None, minimum=features.LOWEST_M, maximum=HIGHEST_M)
     heights = Heights.read(top)
     if not heights.decided(regions) and "altitude_m" not in top:
         top.wrong(

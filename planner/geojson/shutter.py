@@ -20,7 +20,7 @@ from planner.sensors.suite import camera_on
 from planner.vehicle.aircraft import Aircraft
 from planner.vehicle.atmosphere import true_over_equivalent
 from planner.vehicle.model import FlightModel
-from planner.wishes import Region
+from planner.wishes import HIGHEST_M, Region
 
 #: Courses looked at where a region allows any: there and back is one.
 COURSES_RAD = np.radians(np.arange(0.0, 180.0, 15.0))
@@ -170,19 +170,28 @@ def _refuse(each: _Shooting, aircraft: Aircraft, scenario: Scenario, findings: F
     overlap = _overlap(each, aircraft, scenario)
     if overlap is not None:
         fixes.append(f"set forward_overlap to {overlap:g} or less")
-    if not any((each.region.gsd_m, each.region.min_niirs, each.region.min_resolution_m)):
+    most_m = HIGHEST_M if scenario.max_height_m is None else scenario.max_height_m - camera.relief_m
+    asks = any((each.region.gsd_m, each.region.min_niirs, each.region.min_resolution_m))
+    if not asks and higher_m <= most_m:
         fixes.append(f"fly it from {higher_m:g} m over its ground or more")
     slowest = replace(aircraft, min_airspeed_m_s=SLOWEST_M_S)
     slower = _slower(slowest, scenario, [each])
     if slower is not None:
         fixes.append(f"let {aircraft.name} fly at {slower.airspeed_m_s:g} m/s (min_airspeed_m_s)")
-    fix = ", or ".join(fixes) or "Use a camera with a shorter min_interval_s"
+    least_s = camera.min_interval_s / over
+    fix = ", or ".join(fixes) or f"use a camera with min_interval_s {_floor(least_s):g} or less"
     findings.error(
         each.region.name,
         "interval-too-short",
-        f"{told}it would take one every {camera.min_interval_s / over:.2f} s",
+        f"{told}it would take one every {least_s:.2f} s",
         f"{fix[0].upper()}{fix[1:]}.",
     )
+
+
+def _floor(value: float) -> float:
+    """Three digits of it, not more than it is."""
+    scale = 10.0 ** (2 - math.floor(math.log10(value)))
+    return math.floor(value * scale) / scale
 
 
 def _higher_m(each: _Shooting, over: float, aircraft: Aircraft, scenario: Scenario) -> int:

@@ -23,13 +23,15 @@ from planner.vehicle.aircraft import Aircraft
 from planner.vehicle.atmosphere import true_over_equivalent
 from planner.vehicle.jerks import HALVINGS, change_m, change_s, chords_of, corners_of, is_corner
 from planner.vehicle.manners import Manners
-from planner.vehicle.wind import duration_s, held_speed_m_s
+from planner.vehicle.wind import duration_s, held_speed_m_s, no_headway
 
 #: Places of an arc at which the wind is asked for.
 _ALONG_ARC = (np.arange(16) + 0.5) / 16.0
 
 #: Arcs are timed in pieces that turn by no more.
 PIECE_RAD = math.radians(45.0)
+#: And over which what the wind leaves of the airspeed grows by no more than this factor.
+PIECE_FASTER = 1.5
 
 
 def wing_times(
@@ -38,27 +40,41 @@ def wing_times(
     """Seconds of each stretch flown on wings; hover stretches at the hover's rates."""
     on_the_spot_s = spots_s(stretches, partial(_shares_s, manners=manners))
     return [
-        spot_s if s.segment is None else _held_s(s, s.segment, aircraft.airspeed_m_s, datum_amsl_m, wind)
+        spot_s if s.segment is None else _held_s(s, s.segment, aircraft, datum_amsl_m, wind)
         for s, spot_s in zip(stretches, on_the_spot_s, strict=True)
     ]
 
 
-def _held_s(
-    stretch: Stretch, segment: Segment, airspeed_m_s: float, datum_amsl_m: float, wind: Wind
-) -> float:
+def _held_s(stretch: Stretch, segment: Segment, aircraft: Aircraft, datum_amsl_m: float, wind: Wind) -> float:
     """Seconds of a stretch at one equivalent airspeed: of its pieces, averaged over their heights (Simpson).
 
     In a turn wind and air change together: thin where the wind is behind, it is not thin where it is ahead.
+
+    Raises
+    ------
+    InfeasibleError
+        ``"wind"``: in the densest air on the way it is not faster than the wind.
     """
-    over_ground = stretch.ground_m / stretch.length_m
+    slope = (stretch.end_altitude_m - stretch.start_altitude_m) / stretch.ground_m
+    ends_m_s = [
+        aircraft.airspeed_m_s * true_over_equivalent(datum_amsl_m + at_m)
+        for at_m in (stretch.start_altitude_m, stretch.end_altitude_m)
+    ]
+    if 0.0 < wind.speed_m_s >= min(ends_m_s):
+        raise no_headway(aircraft.name, wind, min(ends_m_s))
     pieces = max(1, math.ceil(abs(segment.turn_rad) / PIECE_RAD)) if wind.speed_m_s > 0.0 else 1
+    # What a wind near its airspeed leaves may be many times as much at one end as at the other.
+    left = (max(ends_m_s) - wind.speed_m_s) / (min(ends_m_s) - wind.speed_m_s)
+    pieces = max(pieces, math.ceil(math.log(left) / math.log(PIECE_FASTER)))
     edges_m = datum_amsl_m + np.linspace(stretch.start_altitude_m, stretch.end_altitude_m, 2 * pieces + 1)
-    speeds_m_s = [airspeed_m_s * true_over_equivalent(float(at_m)) * over_ground for at_m in edges_m]
+    speeds_m_s = [aircraft.airspeed_m_s * true_over_equivalent(float(at_m)) for at_m in edges_m]
     part_m = segment.length_m / pieces
     total_s = 0.0
     for k in range(pieces):
         piece = Path((replace(segment, start=segment.at(k * part_m), length_m=part_m),))
-        one_s, middle_s, other_s = (duration_s(piece, speed, wind) for speed in speeds_m_s[2 * k : 2 * k + 3])
+        one_s, middle_s, other_s = (
+            duration_s(piece, speed, wind, slope) for speed in speeds_m_s[2 * k : 2 * k + 3]
+        )
         total_s += (one_s + 4.0 * middle_s + other_s) / 6.0
     return total_s
 

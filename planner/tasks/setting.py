@@ -57,7 +57,8 @@ class Setting:
         InfeasibleError
             ``"wind"``: it is not faster than the wind.
         """
-        model = FlightModel.of(scenario.aircraft[0], scenario.wind)
+        home_m = scenario.level.amsl_m - scenario.level.height_m
+        model = FlightModel.of(scenario.aircraft[0], scenario.wind, home_m)
         suite = scenario.suite
         if scenario.wind.speed_m_s > 0.0:
             suite = suite.in_wind(model.drift, scenario.wind.toward_rad)

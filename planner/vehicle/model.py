@@ -8,15 +8,16 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from planner.airspace.values import STILL_AIR, Wind
-from planner.errors import InfeasibleError
 from planner.route import Line
 from planner.vehicle.aircraft import Aircraft
+from planner.vehicle.atmosphere import true_over_equivalent
 from planner.vehicle.jerks import change_s
 from planner.vehicle.manners import manners_of
 from planner.vehicle.wind import (
     duration_s,
     ground_speed_m_s,
     held_speed_m_s,
+    no_headway,
     still_air_costs,
     still_air_factor,
 )
@@ -40,22 +41,24 @@ class FlightModel:
     wind: Wind = STILL_AIR
 
     @classmethod
-    def of(cls, aircraft: Aircraft, wind: Wind) -> FlightModel:
+    def of(cls, aircraft: Aircraft, wind: Wind, lowest_amsl_m: float = 0.0) -> FlightModel:
         """The model of an aircraft in a wind.
+
+        Parameters
+        ----------
+        lowest_amsl_m
+            Where it flies lowest: in denser air than that at sea level wings are slower than their airspeed.
 
         Raises
         ------
         InfeasibleError
             ``"wind"``: it is not faster than the wind, so some courses cannot be flown.
         """
-        if wind.speed_m_s > 0.0 and wind.speed_m_s >= aircraft.airspeed_m_s:
-            raise InfeasibleError(
-                "wind",
-                aircraft.name,
-                f"the wind of {wind.speed_m_s:g} m/s is not slower than its airspeed of "
-                f"{aircraft.airspeed_m_s:g} m/s: against it no ground is gained",
-                f"Wait for a wind under {aircraft.airspeed_m_s:g} m/s or fly faster.",
-            )
+        slowest_m_s = aircraft.airspeed_m_s
+        if not aircraft.hovers:
+            slowest_m_s *= min(true_over_equivalent(lowest_amsl_m), 1.0)
+        if 0.0 < wind.speed_m_s >= slowest_m_s:
+            raise no_headway(aircraft.name, wind, slowest_m_s)
         return cls(aircraft.in_wind(wind.speed_m_s), wind)
 
     @property

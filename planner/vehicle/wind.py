@@ -5,6 +5,11 @@ angle from the direction the air moves to, to the course, V the airspeed and W t
 
     crab = asin(W sin δ / V)          ground speed = W cos δ + √(V² - W² sin² δ)
 
+On a line that climbs m metres for each over the ground, the velocity through the air, (v, v m) less the wind,
+is still as long as the airspeed, and for every V > W there is one such v > 0, however steep the line is::
+
+    (1 + m²) v² - 2 v W cos δ + W² = V²
+
 A turn that is an arc over the ground is none in the air: at ground speed v the aircraft needs the sideways
 acceleration v² / (r cos crab), most of it downwind, where v = V + W. An arc is flyable in any wind direction
 where its radius is at least ((V + W) / V)² times the tightest turn in still air.
@@ -18,6 +23,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from planner.airspace.values import Wind
+from planner.errors import InfeasibleError
 from planner.route import Line, LinePiece
 
 Array = NDArray[np.float64]
@@ -36,12 +42,33 @@ def crab_rad(course_rad: ArrayLike, airspeed_m_s: float, wind: Wind) -> Array:
     return np.asarray(np.arcsin(np.sin(delta) * (wind.speed_m_s / airspeed_m_s)), dtype=np.float64)
 
 
-def ground_speed_m_s(course_rad: ArrayLike, airspeed_m_s: float, wind: Wind) -> Array:
-    """Speed over the ground on the courses given; the wind must be slower than the airspeed."""
+def ground_speed_m_s(course_rad: ArrayLike, airspeed_m_s: float, wind: Wind, slope: float = 0.0) -> Array:
+    """Speed over the ground on the courses given; the wind must be slower than the airspeed.
+
+    Parameters
+    ----------
+    slope
+        Metres of climb, or of descent where negative, for one over the ground.
+    """
     delta = np.asarray(course_rad, dtype=np.float64) - wind.toward_rad
-    across_m_s = wind.speed_m_s * np.sin(delta)
-    return np.asarray(
-        wind.speed_m_s * np.cos(delta) + np.sqrt(airspeed_m_s**2 - across_m_s**2), dtype=np.float64
+    along_m_s = wind.speed_m_s * np.cos(delta)
+    steep = 1.0 + slope * slope
+    left = (airspeed_m_s - wind.speed_m_s) * (airspeed_m_s + wind.speed_m_s)
+    root_m_s = np.sqrt(along_m_s**2 + steep * left)
+    # Against the wind the root and what is taken from it are all but equal: there in the form that adds.
+    return np.where(
+        along_m_s < 0.0, left / (root_m_s - np.minimum(along_m_s, 0.0)), (along_m_s + root_m_s) / steep
+    )
+
+
+def no_headway(name: str, wind: Wind, airspeed_m_s: float) -> InfeasibleError:
+    """The refusal of an aircraft that is not faster than the wind, so that some courses cannot be flown."""
+    return InfeasibleError(
+        "wind",
+        name,
+        f"the wind of {wind.speed_m_s:g} m/s is not slower than its airspeed of {airspeed_m_s:g} m/s: "
+        "against it no ground is gained",
+        f"Wait for a wind under {airspeed_m_s:g} m/s or fly faster.",
     )
 
 
@@ -65,21 +92,21 @@ def held_speed_m_s(course_rad: ArrayLike, airspeed_m_s: float, wind: Wind, shari
     return np.minimum(wind.speed_m_s * np.cos(delta) + ahead_m_s, airspeed_m_s)
 
 
-def duration_s(path: Line, airspeed_m_s: float, wind: Wind) -> float:
-    """Time to fly a line."""
+def duration_s(path: Line, airspeed_m_s: float, wind: Wind, slope: float = 0.0) -> float:
+    """Time to fly a line, which may climb all along; see ``ground_speed_m_s``."""
     if wind.speed_m_s == 0.0:
-        return path.length_m / airspeed_m_s
-    return math.fsum(_segment_s(segment, airspeed_m_s, wind) for segment in path.segments)
+        return path.length_m * math.hypot(1.0, slope) / airspeed_m_s
+    return math.fsum(_segment_s(segment, airspeed_m_s, wind, slope) for segment in path.segments)
 
 
-def _segment_s(segment: LinePiece, airspeed_m_s: float, wind: Wind) -> float:
+def _segment_s(segment: LinePiece, airspeed_m_s: float, wind: Wind, slope: float) -> float:
     course_rad, turn_rad = segment.start.angle_rad, segment.turn_rad
     pieces = max(1, math.ceil(abs(turn_rad) / PIECE_RAD))
     if turn_rad == 0.0:
-        return segment.length_m / float(ground_speed_m_s(course_rad, airspeed_m_s, wind))
+        return segment.length_m / float(ground_speed_m_s(course_rad, airspeed_m_s, wind, slope))
     middles = (np.arange(pieces) + 0.5) / pieces
     shares = middles[:, None] + 0.5 * NODES / pieces
-    speeds = ground_speed_m_s(course_rad + turn_rad * shares, airspeed_m_s, wind)
+    speeds = ground_speed_m_s(course_rad + turn_rad * shares, airspeed_m_s, wind, slope)
     return segment.length_m * float((WEIGHTS / speeds).sum()) / (2.0 * pieces)
 
 

@@ -32,6 +32,7 @@ from planner.route import CollectPass, Look
 from planner.sensors.sar import SarSensor
 from planner.sensors.strip import strip_on, swaths_m
 from planner.sensors.view import seen_on_flat
+from planner.wishes import HIGHEST_M
 
 Floats = NDArray[np.float64]
 
@@ -176,10 +177,11 @@ def too_wide(region: MergedRegion, sensor: SarSensor, height_m: float, across_m:
     # Of a swath only the part that the beam gives grows with the height.
     fixed_m = 2.0 * sensor.position_margin_m
     needed_m = height_m * (across_m / 2.0 + fixed_m) / (swath_m + fixed_m)
+    higher = f"fly at {needed_m:.0f} m or higher over it, " if needed_m <= HIGHEST_M else ""
     return InfeasibleError(
         "swath",
         region.label,
         f"it is {across_m:.0f} m wide where it is narrowest, more than two swaths of {swath_m:.0f} m",
-        f"fly at {needed_m:.0f} m or higher over it, widen the elevation beam, or divide the region",
+        f"{higher}widen the elevation beam, or divide the region",
         region.centroid,
     )

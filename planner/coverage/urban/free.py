@@ -11,6 +11,7 @@ from shapely.geometry.base import BaseGeometry
 
 from planner.coverage.urban.area import Building, UrbanArea
 from planner.errors import InfeasibleError
+from planner.wishes import HIGHEST_M
 
 #: Corners of enlarged outlines are sharp up to this ratio; sharper ones are cut off beyond the clearance.
 MITRE_LIMIT = 2.0
@@ -146,4 +147,5 @@ def _relaxation(urban: UrbanArea, standing: list[Building]) -> str:
     over_m = max((building.height_m for building in standing), default=0.0) + urban.clearance_m
     if over_m <= urban.max_height_m:
         return f"a flight height of {over_m:.0f} m passes over all of them"
-    return f"a highest height of {over_m:.0f} m or more, or less than {urban.clearance_m:g} m clearance"
+    higher = f"a highest height of {over_m:.0f} m or more, or " if over_m <= HIGHEST_M else ""
+    return f"{higher}less than {urban.clearance_m:g} m clearance"

@@ -6,6 +6,8 @@ import re
 from typing import Any
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from planner.errors import Finding, ScenarioError
 from planner.geojson import read_scenario
@@ -91,3 +93,46 @@ def test_each_value_that_a_refusal_names_works(interval_s: float, wind_m_s: floa
             helped["sensors"][0]["forward_overlap"] = overlap
             change(helped, float(value))
             read_scenario(helped)
+
+
+@settings(deadline=None, max_examples=40)
+@given(
+    st.floats(-3.0, 9.5), st.floats(0.0, 0.9999), st.floats(3.0, 60.0), st.floats(0.0, 0.95),
+    st.sampled_from(["fixed_wing", "multirotor"]), st.sampled_from([None, 120.0, 400.0]),
+)  # fmt: skip
+def test_no_figure_of_a_refusal_leaves_what_can_be(
+    magnitude: float, share: float, airspeed_m_s: float, overlap: float, kind: str, highest_m: float | None
+) -> None:
+    """Whatever interval, wind and airspeed: figures are positive, and what is named may be asked for."""
+    members: Document = {"wind": {"speed_m_s": share * airspeed_m_s, "from_deg": 40.0}}
+    if highest_m is not None:
+        members["max_height_m"] = highest_m
+    vehicle = {"type": kind, "airspeed_m_s": airspeed_m_s}
+
+    def again() -> Document:
+        made = document(10.0**magnitude, vehicle, **members)
+        made["sensors"][0] |= {"forward_overlap": overlap, "stabilised": True}
+        return made
+
+    try:
+        scenario = read_scenario(again())
+    except ScenarioError as error:
+        findings = error.findings
+    else:
+        findings = scenario.warnings
+        assert 0.0 < scenario.aircraft[0].airspeed_m_s <= airspeed_m_s
+    for finding in findings:
+        figures = [float(each) for each in re.findall(r"(?<![\w.])-?[\d.]*\d(?:e[+-]\d+)?(?= )", finding.fix)]
+        assert all(figure > 0.0 for figure in figures if "overlap" not in finding.fix), finding
+        said = re.findall(r"(?:takes|lies|every|at) (-?[\d.]*\d(?:e[+-]\d+)?|nan|inf)", finding.message)
+        assert all(float(each) >= 0.0 for each in said), finding
+        for value in re.findall(r"from ([\d.e+]+) m over its ground", finding.fix):
+            assert float(value) <= min(highest_m or 30_000.0, 30_000.0)
+        for value in re.findall(r"min_interval_s ([\d.e+-]+) or less", finding.fix):
+            helped = again()
+            helped["sensors"][0]["min_interval_s"] = float(value)
+            try:
+                told = read_scenario(helped).warnings
+            except ScenarioError as error:
+                told = error.findings
+            assert (finding.feature, finding.rule) not in {(each.feature, each.rule) for each in told}

@@ -14,15 +14,20 @@ from scipy.optimize import brentq
 
 from planner.airspace.values import Wind
 from planner.check import judge, line_s
+from planner.dubins.path import Segment
 from planner.dubins.words import shortest
 from planner.errors import InfeasibleError
 from planner.geojson import read_scenario
 from planner.pipeline import make_plan
 from planner.plan import Collect, Plan, Transit
+from planner.profile.flight import Stretch
+from planner.profile.times import wing_times
 from planner.route import Pose
 from planner.scenario import Scenario
 from planner.tasks.setting import Setting
 from planner.vehicle.aircraft import Aircraft
+from planner.vehicle.atmosphere import true_over_equivalent
+from planner.vehicle.manners import manners_of
 from planner.vehicle.wind import crab_rad, duration_s, ground_speed_m_s, still_air_costs
 from tests.planner.scenarios import case, small
 
@@ -35,15 +40,16 @@ winds = st.builds(Wind, st.floats(0.0, 10.0), directions)
 
 def stepwise_s(points: np.ndarray[Any, np.dtype[np.float64]], airspeed_m_s: float, wind: Wind) -> float:
     """Time along a polyline: for each chord the time, found as a root, that takes the airspeed in the air."""
-    drift_m_s = np.array([math.cos(wind.toward_rad), math.sin(wind.toward_rad)]) * wind.speed_m_s
+    toward = (math.cos(wind.toward_rad), math.sin(wind.toward_rad), 0.0)[: points.shape[1]]
+    drift_m_s = np.array(toward) * wind.speed_m_s
     total_s = 0.0
     for chord in np.diff(points, axis=0):
-        length_m = float(np.hypot(*chord))
+        length_m = float(np.linalg.norm(chord))
         if length_m < 1e-9:
             continue
 
         def too_far(time_s: float, chord: Any = chord) -> float:
-            return float(np.hypot(*(chord - drift_m_s * time_s))) - airspeed_m_s * time_s
+            return float(np.linalg.norm(chord - drift_m_s * time_s)) - airspeed_m_s * time_s
 
         slowest_s = length_m / (airspeed_m_s - wind.speed_m_s)
         total_s += brentq(too_far, 0.0, 1.01 * slowest_s, xtol=1e-13)
@@ -61,6 +67,41 @@ def test_duration_is_that_of_small_steps(start: Pose, goal: Pose, airspeed_m_s: 
     aircraft = Aircraft("a", "fixed_wing", "ardupilot", airspeed_m_s, 100.0)
     at_sea_s = line_s(points, np.zeros(len(points)), aircraft, wind, 0.0)
     assert at_sea_s == pytest.approx(expected_s, rel=1e-9, abs=1e-9)
+
+
+@settings(deadline=None, max_examples=60)
+@given(
+    directions, airspeeds, st.floats(0.0, 0.9999), st.floats(-0.7, 0.7), st.floats(1.0, 3_000.0),
+    st.floats(-400.0, 3_000.0),
+)  # fmt: skip
+def test_climbs_in_any_wind_below_the_airspeed_take_a_time(
+    course_rad: float, airspeed_m_s: float, share: float, slope: float, length_m: float, home_m: float
+) -> None:
+    """Planner and judge: that of short chords in space, through air as dense as at their heights; or none."""
+    aircraft = Aircraft("a", "fixed_wing", "ardupilot", airspeed_m_s, 100.0)
+    wind = Wind(share * airspeed_m_s, 0.0)
+    start, end = Pose(0.0, 0.0, course_rad), length_m * np.exp(1j * course_rad)
+    segment = Segment("straight", start, length_m, 0.0)
+    climb = Stretch("mission", start, segment, 0.0, 0.0, slope * length_m)
+    line_m, heights_m = np.array([[0.0, 0.0], [end.real, end.imag]]), np.array([0.0, slope * length_m])
+    judged_s = line_s(line_m, heights_m, aircraft, wind, home_m)
+    lowest_m = home_m + min(heights_m)
+    if airspeed_m_s * true_over_equivalent(lowest_m) <= wind.speed_m_s:
+        assert math.isinf(judged_s)
+        with pytest.raises(InfeasibleError):
+            wing_times([climb], aircraft, manners_of(aircraft), wind, home_m)
+        return
+    (time_s,) = wing_times([climb], aircraft, manners_of(aircraft), wind, home_m)
+    # Closest where the air is densest: there the wind leaves least.
+    parts = np.concatenate([[0.0], np.geomspace(1e-6, 1.0, 400)])
+    parts = parts if slope >= 0.0 else 1.0 - parts[::-1]
+    places = parts[:, None] * [end.real, end.imag, slope * length_m]
+    steps_s = [
+        stepwise_s(places[k : k + 2], airspeed_m_s * true_over_equivalent(home_m + z), wind)
+        for k, z in enumerate(0.5 * (places[1:, 2] + places[:-1, 2]))
+    ]
+    assert time_s == pytest.approx(math.fsum(steps_s), rel=1e-3)
+    assert judged_s == pytest.approx(time_s, rel=1e-3)
 
 
 @given(directions, airspeeds, winds)
@@ -129,13 +170,14 @@ def test_plan_times_are_those_of_its_line(speed_m_s: float, from_deg: float) -> 
     (path,) = plan.paths
     line = np.array(path.line)
     points = scenario.frame.to_local(line[:, :2])
+    line_m = np.column_stack([points, line[:, 2]])
     over_m, rises_m = np.hypot(*np.diff(points, axis=0).T), np.diff(line[:, 2])
     middles_m = 0.5 * (line[1:, 2] + line[:-1, 2])
-    # Equivalent airspeed through the standard atmosphere, and what of it is over the ground.
+    # Equivalent airspeed through the standard atmosphere.
     density = (1.0 - 2.25577e-5 * middles_m) ** 4.25588
-    speeds = scenario.aircraft[0].airspeed_m_s / np.sqrt(density) * over_m / np.hypot(over_m, rises_m)
+    speeds = scenario.aircraft[0].airspeed_m_s / np.sqrt(density)
     steps_s = [
-        stepwise_s(points[k : k + 2], float(speed_m_s), scenario.wind) for k, speed_m_s in enumerate(speeds)
+        stepwise_s(line_m[k : k + 2], float(speed_m_s), scenario.wind) for k, speed_m_s in enumerate(speeds)
     ]
     at_m = np.concatenate([[0.0], np.cumsum(np.hypot(over_m, rises_m))])
     at_s = np.concatenate([[0.0], np.cumsum(steps_s)])
