@@ -41,6 +41,7 @@ class Benchmark(StrEnum):
     SEPARATION = "separation"
     FLEET = "fleet"
     REPLAN = "replan"
+    THREE = "three"
 
 
 def _options(pairs: list[str]) -> dict[str, Any]:

@@ -208,7 +208,9 @@ def finished_list(
 def infeasible(flavour: Flavour, items: Sequence[MissionItem], *, hovers: bool = False) -> str:
     """Why a stored mission cannot be started; empty when it can.
 
-    PX4 asks a multirotor for neither take-off nor landing (MIS_TKO_LAND_REQ 0).
+    PX4 asks what has wings for a landing, a multirotor for nothing (MIS_TKO_LAND_REQ 2 and 0); a take-off,
+    where there is one, is to be the first item with a place (``FeasibilityChecker::checkTakeoff``). Whether
+    an aircraft on the ground has one is for the caller to ask.
     """
     flown = items[1:] if flavour is Flavour.ARDUPILOT else items
     if not flown:
@@ -216,8 +218,7 @@ def infeasible(flavour: Flavour, items: Sequence[MissionItem], *, hovers: bool =
     if flavour is Flavour.ARDUPILOT:
         return ""
     placed = [item for item in flown if item.command in _PX4_PLACED]
-    takes_off = any(item.command in _TAKEOFFS for item in placed) or not hovers
-    if takes_off and (not placed or placed[0].command not in _TAKEOFFS):
+    if any(item.command in _TAKEOFFS for item in placed[1:]) and placed[0].command not in _TAKEOFFS:
         return "first item is no takeoff"
     if not hovers and not any(item.command in _LANDINGS for item in placed):
         return "landing required"

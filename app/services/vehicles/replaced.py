@@ -7,11 +7,14 @@ from dataclasses import dataclass
 from mavlink.dialects.mission import Mission
 from mavlink.encoding.options import DEFAULT_PAYLOAD
 from mavlink.encoding.payload import parse_payload
+from mavlink.state.modes import RETURN_MODES, WAITING_MODES
 from mavlink.state.passes import passes_of
 from mavlink.station.client import VehicleClient
 from mavlink.wire.items import MissionType
 from planner.plan import Plan
 
+#: Modes in which it is not on a mission; where one ends too soon ArduPilot returns, PX4 waits.
+OFF_ITS_MISSION = RETURN_MODES | WAITING_MODES
 #: The vehicle tells its current item at least once a second; a new list shows there behind its upload.
 TELLING_S = 2.0
 
@@ -39,6 +42,11 @@ class Replaced:
     cut: tuple[int, str] | None
 
     def __str__(self) -> str:
+        if self.mode in OFF_ITS_MISSION:
+            return (
+                f"the aircraft has left its mission (mode {self.mode}), as one does that is given fewer "
+                "items than it has flown: goto_item 1, then resume, have it fly all of the new one"
+            )
         if self.item is None:
             return f"the aircraft flies on in mode {self.mode}, and does not say to which item"
         words = f"the aircraft goes on at item {self.item} of {self.items - 1} (mode {self.mode})"

@@ -1,4 +1,4 @@
-"""Flights that begin in the air: they wait before one of their passes, and go home when all is done."""
+"""Flights that begin in the air: they wait before one of their passes, or their way home when all is done."""
 
 from __future__ import annotations
 
@@ -70,6 +70,27 @@ def held_apart(
             # There is no room for the circles there.
             continue
         if when.worst is not None:
+            continue
+        track = placed.apart.add(track_of(flown))
+        if placed.first_s(track, 0.0) <= 0.0:
+            return flown, track
+    return None
+
+
+def home_apart(
+    placed: Placed, crew: Crew, number: int, track_of: TrackOf, controls: Controls
+) -> tuple[Flown, int] | None:
+    """The way home of one that has nothing to do, behind the least wait that is tried, as ``held_apart``."""
+    once_s = least_hold_s(crew.setting.model)
+    # Where its course is not known, there is no circle to go into.
+    known = crew.setting.ends[0].angle_rad is not None
+    for circles in (0.0, *CIRCLES) if known else (0.0,):
+        try:
+            flown = straight_home(crew, number, controls, circles * once_s)
+        except InfeasibleError:
+            if circles == 0.0:
+                raise
+            # There is no room for the circles here.
             continue
         track = placed.apart.add(track_of(flown))
         if placed.first_s(track, 0.0) <= 0.0:

@@ -16,7 +16,7 @@ from planner.plan import LeftOut
 from planner.profile.compose import Composed
 from planner.progress import silent
 from planner.publish import Leg
-from planner.route import Anchor, CollectPass
+from planner.route import Anchor, CollectPass, Pose
 from planner.routing.joint.chain import layers_of
 from planner.routing.joint.tours import Choice, Tours
 from planner.tasks.collect import collect
@@ -118,13 +118,18 @@ def in_given_order(crew: Crew, number: int, jobs: Sequence[tuple[Job, int]], con
     return _through(crew, number, jobs, order, (), controls)
 
 
-def straight_home(crew: Crew, number: int, controls: Controls) -> Flown:
+def straight_home(crew: Crew, number: int, controls: Controls, wait_s: float = 0.0) -> Flown:
     """The flight of one that flies already and has nothing to do any more.
+
+    Parameters
+    ----------
+    wait_s
+        In circles where it is, before it goes; not where its course is not known.
 
     Raises
     ------
     InfeasibleError
-        Where no line leads to its end.
+        Where no line leads to its end, or there is no room for the circles.
     """
     start, level = crew.setting.ends[0], crew.setting.level
     here = Station(
@@ -132,6 +137,9 @@ def straight_home(crew: Crew, number: int, controls: Controls) -> Flown:
         Anchor(*start.position, start.angle_rad),
         altitude_m=level.altitude_m - level.height_m + (start.over_home_m or 0.0),
     )
+    if wait_s > 0.0 and start.angle_rad is not None:
+        pose = Pose(*start.position, start.angle_rad)
+        here = replace(here, hold=_circles(crew, pose, wait_s, start.name))
     transits = Transits.of(crew.setting, crew.asked.objective, chosen_methods(crew.alone.method))
     with controls.stage("transit"):
         composed, legs, notes = transits.by([here], silent, controls.stop)
@@ -272,7 +280,13 @@ def _through(
 
 
 def _hold(crew: Crew, collect_pass: CollectPass, wait_s: float, told_s: float | None) -> Path:
-    """Circles before a pass, on the side where there is room.
+    """Circles before a pass; raises as ``_circles``."""
+    pose = collect_pass.settling(crew.setting.model.settle_m)
+    return _circles(crew, pose, wait_s, "+".join(collect_pass.regions), told_s)
+
+
+def _circles(crew: Crew, pose: Pose, wait_s: float, name: str, told_s: float | None = None) -> Path:
+    """Circles back to a pose, on the side where there is room.
 
     Raises
     ------
@@ -280,12 +294,10 @@ def _hold(crew: Crew, collect_pass: CollectPass, wait_s: float, told_s: float | 
         Where there is none on either.
     """
     model, level = crew.setting.model, crew.setting.level
-    pose = collect_pass.settling(model.settle_m)
     zones = keep_out(crew.setting.airspace, level, TRANSIT_MARGIN_M)
     for circles in holds(pose, wait_s, model, told_s):
         if zones.clear(circles):
             return circles
-    name = "+".join(collect_pass.regions)
     raise InfeasibleError(
         "window", name, f"there is no room to wait {wait_s:.0f} s before it", "Widen its time_window_s.",
         pose.position,

@@ -12,7 +12,7 @@ import numpy as np
 from planner.errors import InfeasibleError
 from planner.fleet.assignment import Trip
 from planner.fleet.separation import Apart, Track, step_m, track_of
-from planner.tasks.fleet.aloft import held_apart
+from planner.tasks.fleet.aloft import held_apart, home_apart
 from planner.tasks.fleet.crews import Crew
 from planner.tasks.fleet.flights import SPARE_S, Flown, Order, with_waits
 from planner.tasks.fleet.jobs import Job
@@ -230,12 +230,15 @@ def _in_turn(
 
 def _put_aloft(clock: _Clock, crew: Crew, errand: Errand, separation: Separation, controls: Controls) -> bool:
     """Place a flight that has begun; whether it can be kept apart from those placed, in time."""
-    order = errand.order if errand.flown is None else errand.flown.order
-    if order is None:
-        raise ValueError("a flight without an order has no order to keep")
-    bounds_s = [clock.bounds_s(job, visit) for job, visit in errand.jobs]
     of = partial(_track, crew, separation=separation)
-    found = held_apart(clock, crew, errand.trip.member, errand.jobs, order, bounds_s, of, controls)
+    if not errand.jobs:
+        found = home_apart(clock, crew, errand.trip.member, of, controls)
+    else:
+        order = errand.order if errand.flown is None else errand.flown.order
+        if order is None:
+            raise ValueError("a flight without an order has no order to keep")
+        bounds_s = [clock.bounds_s(job, visit) for job, visit in errand.jobs]
+        found = held_apart(clock, crew, errand.trip.member, errand.jobs, order, bounds_s, of, controls)
     if found is None:
         return False
     flown, track = found

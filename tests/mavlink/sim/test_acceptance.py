@@ -128,12 +128,13 @@ def test_rally_altitudes_are_whole_metres_on_ardupilot() -> None:
     assert as_stored(PX4, sent, HOME).z == 50.9
 
 
-def test_px4_missions_need_a_takeoff_and_a_landing() -> None:
-    """A PX4 mission starts with a take-off and contains a landing; ArduPilot's need neither to be stored."""
+def test_px4_missions_need_a_landing_and_their_takeoff_first() -> None:
+    """On PX4 a take-off is the first place, and a landing is there; ArduPilot needs neither to store it."""
     good = numbered(landing_mission([waypoint(0.0, 1000.0)], home_row=False))
     assert infeasible(PX4, good) == ""
     assert "takeoff" in infeasible(PX4, numbered(landing_mission([], home_row=True)))
     assert "landing" in infeasible(PX4, good[:-1])
+    assert infeasible(PX4, numbered(landing_mission([waypoint(0.0, 1000.0)], home_row=False)[1:])) == ""
     assert "condition" in infeasible(PX4, [*good, item(Command.CONDITION_DELAY, None, (3.0,))])
     assert infeasible(ARDUPILOT, numbered([item(16, HOME), waypoint(0.0, 1000.0)])) == ""
     assert "no mission" in infeasible(ARDUPILOT, numbered([item(16, HOME)]))

@@ -11,8 +11,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mavlink.sim.autopilot import SimulatedAircraft
+from mavlink.sim.commands import CommandResult
 from mavlink.sim.dynamics import AircraftState
-from mavlink.sim.modes import Flavour
+from mavlink.sim.modes import Flavour, Mode
 from mavlink.sim.settings import SimSettings
 from mavlink.wire.items import Command, MissionItem
 from mavlink.wire.messages import Message
@@ -21,6 +22,7 @@ from tests.mavlink.sim.helpers import (
     Station,
     arc_waypoints,
     east_north_m,
+    from_ground,
     item,
     landing_mission,
     place_at,
@@ -237,6 +239,39 @@ def test_a_mission_without_an_end_leads_home_or_holds() -> None:
         assert s.aircraft.mode.value == "RTL"
         assert s.aircraft.mission_complete
         assert any("Mission complete" in text for text in s.texts())
+
+
+@pytest.mark.parametrize("flavour", FLAVOURS)
+def test_a_shorter_mission_taken_up_in_flight_is_flown_once_it_is_ordered(flavour: Flavour) -> None:
+    """At an item that the new one has not, the mission is over; ordered from its first item, it is flown."""
+    home_row = flavour is Flavour.ARDUPILOT
+    first = int(home_row)
+    long = landing_mission([waypoint(0.0, 500.0 * n) for n in range(1, 9)], home_row=home_row)
+    s = Station(SimulatedAircraft(SimSettings(home=HOME, autopilot=flavour)))
+    assert s.upload(long) == 0
+    s.start()
+    s.fly(150.0)
+    short = landing_mission([waypoint(0.0, 2500.0)], home_row=home_row)
+    del short[first]
+    assert s.aircraft.pilot.current >= len(short)
+    assert s.upload(short) == 0
+    s.fly(1.0)
+    assert s.aircraft.mode is (Mode.RTL if home_row else Mode.LOITER)
+    s.say(from_ground("MISSION_SET_CURRENT", seq=first))
+    assert s.command(Command.MISSION_START) == 0
+    s.fly(1.0)
+    assert (s.aircraft.mode, s.aircraft.pilot.current) == (Mode.AUTO, first)
+    s.fly_until_disarmed(600.0)
+    assert s.aircraft.mission_complete
+
+
+def test_px4_does_not_start_from_the_ground_without_a_takeoff() -> None:
+    """What may be taken up in flight is denied on the ground."""
+    s = Station(SimulatedAircraft(SimSettings(home=HOME, autopilot=Flavour.PX4)))
+    assert s.upload(landing_mission([waypoint(0.0, 1000.0)], home_row=False)[1:]) == 0
+    assert s.command(Command.COMPONENT_ARM_DISARM, 1.0) == 0
+    assert s.command(Command.MISSION_START) == CommandResult.DENIED
+    assert any("mission has no takeoff" in text for text in s.texts())
 
 
 ODD = st.sampled_from([math.nan, math.inf, -1.0, 0.0, 1.0, 3.0, 1e9])

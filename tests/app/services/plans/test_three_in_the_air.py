@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 from typing import Any
 
@@ -69,3 +70,22 @@ def test_one_in_the_air_with_nothing_to_do_flies_home(
     assert aloft <= {path.vehicle for path in new.paths}
     working = {collect.vehicle for collect in new.collects}
     assert working < aloft
+
+
+@pytest.mark.parametrize(("at_s", "left_one"), [(150.0, "weir"), (300.0, "sluice")])
+def test_of_two_that_fly_home_at_once_one_waits_where_it_is(
+    document: dict[str, Any], flown: tuple[Scenario, Plan], at_s: float, left_one: str
+) -> None:
+    """With nothing to do their ways home come too near: one goes round where it is, and none meet."""
+    scenario, plan = flown
+    changes = json.loads((EXAMPLES / "three-aircraft-changes.json").read_text())
+    gone = [region.name for region in scenario.regions if region.name != left_one]
+    asked = ReplanIn.model_validate({"at_s": at_s, "remove": gone, "add": changes["add"][:1]}).asked()
+    new = make_plan(read_scenario(left_of(document, scenario, plan, asked)))
+    assert new.hard_violations == ()
+    idle = [path for path in new.paths if path.vehicle not in {c.vehicle for c in new.collects}]
+    assert len(idle) == 2
+    assert all(path.start_s == 0.0 for path in idle)
+    round_m = 2.0 * math.pi * 80.0
+    firsts = [path.segments[0] for path in idle]
+    assert sum(first.kind in ("left", "right") and first.length_m > round_m for first in firsts) == 1
