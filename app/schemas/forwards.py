@@ -35,7 +35,10 @@ class ForwardFigures(BaseModel):
     sent: int = Field(description="From the vehicle to stations.")
     dropped: int = Field(description="Meant for a station that did not keep up; the oldest go first.")
     passed: int = Field(description="From stations on to the vehicle.")
-    refused: int = Field(description="From stations that only watch, or meant for another vehicle.")
+    refused: int = Field(
+        description="From stations that only watch, or meant for another vehicle; and orders while two "
+        "aircraft may hear them under one system id."
+    )
     held_back: int = Field(description="From stations while a mission was exchanged from here.")
     lost: int = Field(description="From stations: unreadable, or too many for the link to the vehicle.")
 
@@ -76,8 +79,14 @@ class ForwardsOut(BaseModel):
 
     vehicle_id: str
     forward: list[ForwardOut]
+    shared: bool = Field(
+        description="Another vehicle of the same system id is forwarded with `write` too: a station may not "
+        "tell the two apart. What makes an aircraft fly or changes what it holds is refused to stations of "
+        "both, until one has another system id or is forwarded to watch alone; stops pass."
+    )
 
     @classmethod
     def of(cls, vehicle: Vehicle) -> Self:
         """The answer for a vehicle."""
-        return cls(vehicle_id=vehicle.id, forward=[ForwardOut.of(o) for o in vehicle.forwards.outlets])
+        forward = [ForwardOut.of(outlet) for outlet in vehicle.forwards.outlets]
+        return cls(vehicle_id=vehicle.id, forward=forward, shared=vehicle.forwards.shared)

@@ -45,6 +45,10 @@ class StatusText:
     against_mission: bool = False
 
 
+#: The doubt that two aircraft hear what one is sent.
+TWO_AIRCRAFT: Final = "two-aircraft"
+
+
 @dataclass(frozen=True, slots=True)
 class Doubt:
     """Why it is not certain that orders reach the vehicle meant, and it alone: only stops are sent.

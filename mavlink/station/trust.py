@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Final
 
 from mavlink.links.link import Link, OpenLink, ReplayLink
-from mavlink.state.telemetry import Doubt, VehicleState
+from mavlink.state.telemetry import TWO_AIRCRAFT, Doubt, VehicleState
 from mavlink.station.identity import is_autopilot
 from mavlink.station.peers import Peers
 from mavlink.station.twins import Twins
@@ -96,7 +96,7 @@ class Trust:
     def _doubt(self, state: VehicleState) -> Doubt | None:
         if state.connected and self._twins.told(self._clock()):
             return Doubt(
-                "two-aircraft",
+                TWO_AIRCRAFT,
                 f"two aircraft speak in turns as system {state.system_id} on this link: what one is ordered,"
                 " both do",
                 "switch one of them off, or give it another system id",
@@ -115,7 +115,7 @@ class Trust:
         system_id = peers.rivals[0].system_id
         if state.connected:
             return Doubt(
-                "two-aircraft",
+                TWO_AIRCRAFT,
                 f"two aircraft say that they are system {system_id}: one at {peers.place}, which is heard, "
                 f"and {others}, which is not",
                 "give one of them another system id, or acknowledge the address of the one that is meant",

@@ -13,6 +13,7 @@ from app.main import create_app
 from app.settings import Settings
 from mavlink.links.udp import open_udp
 from tests.app.conftest import impatient_house, serving
+from tests.app.test_forwards import station
 from tests.app.test_problems import check_problem
 from tests.app.test_restart import free_port
 from tests.mavlink.station.aircraft import Aircraft
@@ -40,6 +41,11 @@ async def until(client: httpx.AsyncClient, place: str, ready: Callable[[Any], bo
 def armings(flying: Aircraft) -> int:
     """How often it was told to arm."""
     return sum(number == 400 for number, _ in flying.commands)
+
+
+def frames(body: Any, kind: str) -> int:
+    """How many frames of a kind went over the first forward."""
+    return int(body["forward"][0]["frames"][kind])
 
 
 async def test_of_two_aircraft_with_one_system_id_none_is_armed(settings: Settings) -> None:
@@ -94,3 +100,35 @@ async def test_one_system_id_on_two_links_is_told(settings: Settings) -> None:
         assert 176 not in [number for number, _ in second.commands]
         await client.delete(places[1])
         await until(client, places[0], lambda body: body["namesakes"] == [])
+
+
+async def test_a_station_that_two_of_one_system_id_are_forwarded_to_flies_neither(settings: Settings) -> None:
+    """Its arming reaches none of them, its return both; once one may only be watched, the other is armed."""
+    ports = [free_port(), free_port()]
+    async with (
+        serving(create_app(settings, impatient_house)) as client,
+        aircraft(ports[0]) as first,
+        aircraft(ports[1]) as second,
+        station() as (peer, url),
+    ):
+        places = []
+        for name, port in zip(("one", "two"), ports, strict=True):
+            asked = {"name": name, "url": f"udpin:127.0.0.1:{port}", "forward": [{"url": url, "write": True}]}
+            places.append((await client.post(VEHICLES, json=asked)).headers["location"])
+        for place in places:
+            await until(client, place + "/forward", lambda body: body["shared"])
+        async with asyncio.timeout(20):
+            while peer.link.peers < 2:
+                await peer.link.receive()
+        peer.say("COMMAND_LONG", command=400, param1=1.0)
+        peer.say("COMMAND_LONG", command=20)
+        for place in places:
+            await until(client, place + "/forward", lambda body: frames(body, "passed") == 1)
+            assert frames((await client.get(place + "/forward")).json(), "refused") == 1
+        assert armings(first) == armings(second) == 0
+
+        answer = await client.put(places[1] + "/forward", json={"forward": [{"url": url, "write": False}]})
+        assert not answer.json()["shared"]
+        peer.say("COMMAND_LONG", command=400, param1=1.0)
+        await until(client, places[0] + "/forward", lambda body: frames(body, "passed") == 2)
+        assert (armings(first), armings(second)) == (1, 0)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import uuid
+from collections import Counter
 from collections.abc import AsyncGenerator, Sequence
 from dataclasses import replace
 from datetime import UTC, datetime
@@ -204,6 +205,7 @@ class Fleet:
         self._refuse_loops(vehicle, addresses)
         before = tuple(outlet.address for outlet in vehicle.forwards.outlets)
         await vehicle.forward_to(addresses)
+        self._share_forwards()
         try:
             await self._kept.forward(vehicle_id, addresses)
         except StorageError:
@@ -352,6 +354,23 @@ class Fleet:
             if names and names != one.namesakes:
                 log.warning("one system id twice", vehicle=one.name, system_id=one.system_id, others=names)
             one.namesakes = names
+        self._share_forwards()
+
+    def _share_forwards(self) -> None:
+        """Have orders of stations refused that reach two aircraft of one system id by their forwards."""
+        commanded = [
+            one
+            for one in self._vehicles.values()
+            if one.state.connected and any(outlet.address.write for outlet in one.forwards.outlets)
+        ]
+        ids = Counter(one.system_id for one in commanded)
+        for one in self._vehicles.values():
+            shared = one in commanded and ids[one.system_id] > 1
+            if shared and not one.forwards.shared:
+                log.warning(
+                    "stations may command two of one system id", vehicle=one.name, system_id=one.system_id
+                )
+            one.forwards.shared = shared
 
 
 def _give_up(opening: asyncio.Task[None]) -> None:

@@ -1,13 +1,15 @@
 """What of other ground stations' frames goes on to the vehicle. No socket, no clock.
 
 A station on a read-only forward is heard by nobody. One on a read-write forward speaks to the vehicle as over
-a radio of its own, with three exceptions:
+a radio of its own, with four exceptions:
 
 - While a list is exchanged from here, its frames of the mission protocol are held back: the vehicle knows one
   partner at a time, and ArduPilot keeps half a list when two get in each other's way. They are not kept for
   later, as an announcement its sender has given up would begin an upload that nobody serves; the protocol's
   own repeats bring them through afterwards. While a list is changed, so are its orders to fly the mission.
 - No key passes: it would shut this station out.
+- While two aircraft may hear it under one system id, nothing passes that makes them fly or changes what they
+  hold. Stops do: one must not wait for a doubt.
 - While a station exchanges a list, no transfer is begun from here: ``reserve`` raises BusyError.
 """
 
@@ -19,7 +21,7 @@ from typing import Final
 
 from mavlink.errors import BusyError
 from mavlink.state.modes import mode_name
-from mavlink.state.telemetry import VehicleState
+from mavlink.state.telemetry import TWO_AIRCRAFT, VehicleState
 from mavlink.wire.items import Command
 from mavlink.wire.messages import Message
 
@@ -58,6 +60,17 @@ _BEGINNINGS: Final = frozenset(
 CHANGES: Final = frozenset(
     {"MISSION_CLEAR_ALL", "MISSION_COUNT", "MISSION_WRITE_PARTIAL_LIST", "FENCE_POINT", "RALLY_POINT"}
 )
+#: Frames that lead an aircraft, or set it up otherwise. Sticks are none: whoever holds them looks at it.
+_LEADS: Final = frozenset(
+    {
+        "PARAM_EXT_SET",
+        "PARAM_SET",
+        "SET_ATTITUDE_TARGET",
+        "SET_POSITION_TARGET_GLOBAL_INT",
+        "SET_POSITION_TARGET_LOCAL_NED",
+    }
+)
+_LEADING: Final = frozenset({Command.NAV_TAKEOFF, Command.NAV_VTOL_TAKEOFF, Command.DO_REPOSITION})
 _INVALID_SEQUENCE: Final = 13
 _MISSION_MODES: Final = frozenset({"AUTO", "AUTO.MISSION"})
 
@@ -80,6 +93,8 @@ class Guard:
         self._changers: set[Sender] = set()
         self._reading = 0
         self._changing = 0
+        #: Whether the stations here may speak to another aircraft of the vehicle's system id as well.
+        self.shared = False
 
     def judge(self, message: Message, state: VehicleState, write: bool, now_s: float) -> Verdict:
         """What becomes of a frame; ``write`` says whether its station may command the vehicle."""
@@ -87,6 +102,8 @@ class Guard:
             return Verdict.REFUSED
         if message.name == "SETUP_SIGNING":
             return Verdict.REFUSED  # keys come from here alone, and are in no recording
+        if (self.shared or _is_doubled(state)) and _is_for_one(message, state):
+            return Verdict.REFUSED
         if message.name in _LISTS:
             if self._reading or self._changing:
                 return Verdict.HELD_BACK
@@ -180,6 +197,18 @@ def flies_mission(message: Message, state: VehicleState) -> bool:
             packed = int(main) << 16 | int(sub) << 24 if state.autopilot == "px4" else int(main)
             return _is_mission_mode(packed, state)
     return False
+
+
+def _is_doubled(state: VehicleState) -> bool:
+    """Whether two aircraft speak under the vehicle's system id on its own link."""
+    return state.doubt is not None and state.doubt.rule == TWO_AIRCRAFT
+
+
+def _is_for_one(message: Message, state: VehicleState) -> bool:
+    """Whether a frame is one that a single aircraft has to be meant by."""
+    if message.name in _LISTS or message.name in _LEADS or flies_mission(message, state):
+        return True
+    return message.name in ("COMMAND_LONG", "COMMAND_INT") and message.integer("command") in _LEADING
 
 
 def _is_mission_mode(custom_mode: int, state: VehicleState) -> bool:

@@ -63,6 +63,15 @@ class Forwards:
         return tuple(self._outlets.values())
 
     @property
+    def shared(self) -> bool:
+        """Whether the stations here may speak to another aircraft of the vehicle's system id as well."""
+        return self._guard.shared
+
+    @shared.setter
+    def shared(self, value: bool) -> None:
+        self._guard.shared = value
+
+    @property
     def exchanging(self) -> int | None:
         """The system id of a station that is exchanging a list with the vehicle; None when none is."""
         return self._guard.exchanging(self._clock())

@@ -56,8 +56,8 @@ class Figures:
     dropped
         Meant to be, but the station did not keep up.
     passed, refused, held_back
-        From stations: on to the vehicle; not, as the forward is read-only or another vehicle is meant; not,
-        as the lists were being exchanged from here.
+        From stations: on to the vehicle; not, as the forward is read-only, another vehicle is meant or two
+        may hear it under one system id; not, as the lists were being exchanged from here.
     lost
         From stations: unreadable, or too many for the link to the vehicle.
     """

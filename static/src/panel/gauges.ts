@@ -86,6 +86,12 @@ function doubt(vehicle: Vehicle): HTMLElement | null {
   return h("p", { class: "error" }, says, ...places.map((place) => button(`It is at ${place} …`, () => void takeAddress(vehicle, place))));
 }
 
+/** Others that say that they are the same system, each on its own link. */
+function namesakes(vehicle: Vehicle): HTMLElement | null {
+  if (vehicle.namesakes.length === 0) return null;
+  return h("p", { class: "warning" }, `${vehicle.namesakes.join(", ")} says that it is system ${vehicle.system_id ?? "unknown"}, too, on a link of its own: orders from here reach ${vehicle.name} alone, other ground stations take the two for one. Give one of them another system id.`);
+}
+
 /** Why a vehicle that is heard does not count as there. */
 const SIGNING: Record<string, string> = {
   unsigned: "It is heard, but does not sign, and with its key given nothing unsigned counts.",
@@ -104,6 +110,7 @@ export function words(): HTMLElement {
       box,
       absence(vehicle),
       doubt(vehicle),
+      namesakes(vehicle),
       stream.value === "broken" ? h("p", { class: "error" }, "The telemetry is interrupted; trying again …") : null,
       vehicle.pending ? h("p", { class: "warning" }, "The last upload's outcome is unknown; it is read back when the vehicle is heard.") : null,
       loud.length > 0 ? h("ul", { class: "plain quiet", "aria-label": "What the vehicle says" }, ...loud.map(({ severity, text }) => h("li", { class: severity <= ERROR_SEVERITY ? "error" : "" }, text))) : null,

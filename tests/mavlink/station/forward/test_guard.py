@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from mavlink.errors import BusyError
-from mavlink.state.telemetry import VehicleState
+from mavlink.state.telemetry import TWO_AIRCRAFT, Doubt, VehicleState
 from mavlink.station.forward.guard import EXCHANGE_OVER_S, Guard, Verdict, flies_mission
 from mavlink.wire.messages import Message
 
@@ -138,3 +139,37 @@ def test_orders_to_fly_wait_while_the_mission_is_changed(
     assert guard.judge(message, state, True, 0.0) is Verdict.PASSED
     guard.reserve(0.0, changes=True)
     assert guard.judge(message, state, True, 0.0) is (Verdict.HELD_BACK if flies else Verdict.PASSED)
+
+
+DOUBLED = replace(VEHICLE, doubt=Doubt(TWO_AIRCRAFT, "two speak", "switch one off"))
+FOR_ONE = [
+    said("COMMAND_LONG", command=400, param1=1.0),
+    said("COMMAND_LONG", command=22),
+    said("COMMAND_INT", command=192),
+    said("COMMAND_LONG", command=300),
+    said("MISSION_COUNT", count=3),
+    said("MISSION_CLEAR_ALL"),
+    said("PARAM_SET"),
+    said("SET_POSITION_TARGET_GLOBAL_INT"),
+]
+FOR_ALL = [
+    said("COMMAND_LONG", command=20),
+    said("COMMAND_LONG", command=400, param1=0.0),
+    said("COMMAND_LONG", command=21),
+    said("HEARTBEAT"),
+    said("MANUAL_CONTROL"),
+    said("PARAM_REQUEST_LIST"),
+]
+
+
+@pytest.mark.parametrize("doubled", [True, False], ids=["two on its link", "two forwarded"])
+def test_what_two_aircraft_would_do_is_refused(doubled: bool) -> None:
+    """Arming, leading, uploads and settings do not pass where two may hear them; stops and sticks do."""
+    guard = Guard()
+    guard.shared = not doubled
+    state = DOUBLED if doubled else VEHICLE
+    assert {guard.judge(message, state, True, 0.0) for message in FOR_ONE} == {Verdict.REFUSED}
+    assert {guard.judge(message, state, True, 0.0) for message in FOR_ALL} == {Verdict.PASSED}
+    assert guard.exchanging(0.0) is None
+    guard.shared = False
+    assert {guard.judge(message, VEHICLE, True, 0.0) for message in FOR_ONE} == {Verdict.PASSED}
