@@ -11,6 +11,7 @@ from shapely.geometry import LineString, MultiLineString
 
 from planner.bounds.allowance import Allowance
 from planner.check import judge
+from planner.check.edge import near_edge
 from planner.errors import Finding
 from planner.metrics import measure
 from planner.plan import LeftOut, Plan
@@ -132,6 +133,7 @@ def _judged(
     controls.progress("check", 0.95)
     with watch.stage("check"):
         verdict = judge(scenario, draft)
+        near = tuple(str(finding) for finding in near_edge(scenario, draft))
     reasons = {name: f.message for f in dropped for name in f.feature.split("+")}
     controls.progress("done", 1.0)
     return replace(
@@ -146,6 +148,7 @@ def _judged(
             planning_time_s=dict(watch.seconds),
             left_out=left_out,
         ),
+        warnings=draft.warnings + near,
         violations=verdict.violations,
         uncovered=uncovered(chart, verdict.unseen, reasons),
     )
