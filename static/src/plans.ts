@@ -7,6 +7,7 @@ import { adoptIfSame, keeping, keepNow } from "./keeping";
 import { itemsOf, type MissionItem } from "./mission";
 import { coloursOf } from "./crew/flights";
 import { attempt, news, report } from "./notices";
+import type { Replan } from "./replanning";
 import { scenarios } from "./scenario";
 import { Signal } from "./signal";
 import type { PlanCollection, PlanRecord, PlanState, Position, Problem, Scenario } from "./types";
@@ -98,7 +99,8 @@ export async function compareWith(id: string | null): Promise<void> {
 
 let unwatch: (() => void) | null = null;
 
-function ended(id: string): void {
+/** `own`: a plan that was made of another scenario than the page's comes with that. */
+function ended(id: string, own: boolean): void {
   unwatch?.();
   unwatch = null;
   const before = scenarios.replaced.value;
@@ -107,7 +109,7 @@ function ended(id: string): void {
     if (scenarios.replaced.value === before) {
       running.set(record);
       if (record.state === "done") {
-        await openPlan(id, true);
+        await openPlan(id, !own);
         if (record.metrics?.lower_bound_m == null) watchBound(id);
       } else if (record.state === "failed") {
         const problem = problemOf(record) ?? { title: "Planning failed" };
@@ -137,7 +139,7 @@ function watchBound(id: string): void {
   );
 }
 
-function watchPlan(record: PlanRecord): void {
+function watchPlan(record: PlanRecord, own = false): void {
   unwatch?.();
   let over = false;
   unwatch = follow(
@@ -150,7 +152,7 @@ function watchPlan(record: PlanRecord): void {
       running.set(merged);
       if (ENDED.has(merged.state)) {
         over = true;
-        ended(record.id);
+        ended(record.id, own);
       }
     },
     () => undefined,
@@ -169,6 +171,21 @@ export async function startPlan(): Promise<void> {
     watchPlan(record);
   } else {
     news("The plan of the scenario before goes on; it will stand under Recent plans.");
+  }
+  await refresh();
+}
+
+/** Plan what is left of a plan; once it is made it is shown with the scenario that is left. */
+export async function startReplan(id: string, body: Replan): Promise<void> {
+  const before = scenarios.replaced.value;
+  // What was edited stays with the scenario it was edited in.
+  await keepNow();
+  const record = await post<PlanRecord>(`/plans/${encodeURIComponent(id)}/replan`, body);
+  if (scenarios.replaced.value === before) {
+    running.set(record);
+    watchPlan(record, true);
+  } else {
+    news("The plan of what is left goes on; it will stand under Recent plans.");
   }
   await refresh();
 }

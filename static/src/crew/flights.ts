@@ -40,11 +40,31 @@ export function crewOf(plan: PlanCollection): string[] {
   return [...named, ...[...flying].filter((name) => !named.includes(name))];
 }
 
-/** The colour of each aircraft; none where there is one alone. */
+/** The place among the colours that a name was given: an aircraft keeps its own from plan to plan. */
+const given = new Map<string, number>();
+
+/** The colour of each aircraft; none where there is one alone that never had company. */
 export function coloursOf(plan: PlanCollection, dark: boolean): Map<string, string> {
   const crew = crewOf(plan);
   const colours = COLOURS[dark ? "dark" : "light"];
-  return new Map(crew.length < 2 ? [] : crew.map((name, index) => [name, colours[index % colours.length] as string]));
+  if (crew.length < 2 && !crew.some((name) => given.has(name))) return new Map();
+  const used = new Set<number>();
+  const places = new Map<string, number>();
+  for (const name of crew) {
+    const own = given.get(name);
+    if (own === undefined || used.has(own)) continue;
+    used.add(own);
+    places.set(name, own);
+  }
+  for (const name of crew) {
+    if (places.has(name)) continue;
+    const free = colours.findIndex((_, index) => !used.has(index));
+    const place = free < 0 ? places.size % colours.length : free;
+    used.add(place);
+    places.set(name, place);
+    given.set(name, place);
+  }
+  return new Map(crew.map((name) => [name, colours[places.get(name) ?? 0] as string]));
 }
 
 export function flightsOf(plan: PlanCollection): Flight[] {

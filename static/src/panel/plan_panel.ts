@@ -15,6 +15,7 @@ import { moreOf } from "./more";
 import { pathsOf } from "../phases";
 import { phaseTable } from "./phase_table";
 import { profileBox } from "./profile_box";
+import { replanBox } from "./replan_box";
 import { operatingStrip } from "./strip";
 import { leftOut, vehiclesTable } from "./vehicles_table";
 import { surveyBox } from "./survey_box";
@@ -211,5 +212,5 @@ export function planPanel(view: PlanView): HTMLElement {
     fill(box, plan ? result(plan, view) : null);
     beside.hidden = plan === null;
   });
-  return h("div", {}, h("div", { class: "row" }, go), progress(view), stale, crewBox(), box, surveyBox(), profileBox(), waypointList(view.zoomToPlace), beside, earlier());
+  return h("div", {}, h("div", { class: "row" }, go), progress(view), stale, crewBox(), replanBox(), box, surveyBox(), profileBox(), waypointList(view.zoomToPlace), beside, earlier());
 }

@@ -1,0 +1,130 @@
+/** Planning anew in flight: what is left of the plan on the map, with what was changed on the page since. */
+import { ApiError } from "../api";
+import { clock_s } from "../crew/clock";
+import { crewOf } from "../crew/flights";
+import { button, fill, h, section } from "../dom";
+import { vehicles } from "../fleet";
+import { inFlight } from "../holding";
+import { findingText, report } from "../notices";
+import { open, running, startReplan } from "../plans";
+import { differences, wordsOf, type Replan } from "../replanning";
+import { scenarios } from "../scenario";
+import type { Scenario, Vehicle } from "../types";
+
+const MOVING = new Set(["queued", "running"]);
+
+/** Connected vehicles that fly the plan on the map now. */
+function flyers(): Vehicle[] {
+  const id = open.value?.record.id;
+  return vehicles.value.filter((vehicle) => !vehicle.replay && vehicle.flight_id !== null && vehicle.plan_id === id && inFlight(vehicle));
+}
+
+export function replanBox(): HTMLElement {
+  const changes = h("ul", { id: "replan-changes" });
+  const from = h("select", { id: "replan-from" });
+  const minutes = h("input", { id: "replan-min", type: "number", min: 0, step: "any", value: 0 });
+  const when = h("div", { class: "field" }, h("label", { for: "replan-min" }, "Minutes after its beginning"), minutes);
+  const lost = h("div", { class: "grid", id: "replan-lost" });
+  const why = h("p", { class: "quiet", id: "replan-why" });
+  const answer = h("div", { "aria-live": "polite" });
+  const go = button("Plan what is left", () => void send(), { class: "primary", id: "replan" });
+  const box = section(
+    "Change in flight",
+    false,
+    h("p", { class: "quiet" }, "Draw what is new, move or delete what changed under Scenario; the plan is then made anew from where its aircraft are, for what they have not seen. Nothing is sent to them until you upload it."),
+    changes,
+    h("div", { class: "grid" }, h("div", { class: "field" }, h("label", { for: "replan-from" }, "From"), from), when),
+    lost,
+    h("div", { class: "row" }, go),
+    why,
+    answer,
+  );
+  box.id = "replan-box";
+  const ticks = new Map<string, HTMLInputElement>();
+  let asking = false;
+
+  const send = async (): Promise<void> => {
+    const shown = open.value;
+    if (!shown) return;
+    const { add, remove, wind } = differences(JSON.parse(shown.madeFrom) as Scenario, scenarios.document.value);
+    const body: Replan = { add, remove, lost: [...ticks].filter(([, tick]) => tick.checked).map(([name]) => name) };
+    if (wind !== undefined) body.wind = wind;
+    if (from.value === "plan") body.at_s = Number(minutes.value) * 60;
+    asking = true;
+    fill(answer);
+    update();
+    try {
+      await startReplan(shown.record.id, body);
+    } catch (error) {
+      if (error instanceof ApiError) fill(answer, h("ul", { class: "findings" }, h("li", { class: "error" }, error.message), ...error.errors.map((finding) => h("li", { class: "error" }, findingText(finding)))));
+      report("It was not planned anew", error);
+    } finally {
+      asking = false;
+      update();
+    }
+  };
+  const refusal = (): string => {
+    const shown = open.value;
+    if (!shown) return "";
+    const { refused } = differences(JSON.parse(shown.madeFrom) as Scenario, scenarios.document.value);
+    if (refused.length > 0) return `What flies cannot take over what you changed of: ${[...new Set(refused)].join(", ")}. Undo that, or plan the whole scenario for a start from the ground.`;
+    if (from.value === "plan" && (!minutes.checkValidity() || minutes.value === "")) return "Say at which minute of the plan.";
+    if (ticks.size > 0 && [...ticks.values()].every(({ checked }) => checked)) return "No aircraft is left.";
+    return "";
+  };
+  const update = (): void => {
+    const shown = open.value;
+    if (!shown) return;
+    const found = wordsOf(differences(JSON.parse(shown.madeFrom) as Scenario, scenarios.document.value));
+    fill(changes, ...(found.length > 0 ? found : ["nothing was changed: only what has been seen is left out"]).map((words) => h("li", {}, words)));
+    when.hidden = from.value !== "plan";
+    const busy = asking || (running.value !== null && MOVING.has(running.value.state));
+    const words = refusal();
+    go.disabled = busy || words !== "";
+    fill(go, asking ? "Asking the service …" : "Plan what is left");
+    if (why.textContent !== words) why.textContent = words;
+  };
+  let key = "";
+  const draw = (): void => {
+    const shown = open.value;
+    box.hidden = shown === null;
+    if (!shown) return;
+    const flying = flyers().map(({ name }) => name);
+    const now = JSON.stringify([shown.record.id, flying]);
+    if (now !== key) {
+      const other = !key.startsWith(JSON.stringify([shown.record.id]).slice(0, -1));
+      key = now;
+      const before = other ? "" : from.value;
+      fill(from, flying.length > 0 ? h("option", { value: "flights" }, "where they are now") : null, h("option", { value: "plan" }, "the plan, at a time"));
+      from.title = flying.length > 0 ? `In flight: ${flying.join(", ")}` : "None of them is known to fly this plan";
+      from.value = flying.length > 0 && before !== "plan" ? "flights" : "plan";
+      if (flying.length > 0) box.open = true;
+      if (other) {
+        const crew = crewOf(shown.plan);
+        ticks.clear();
+        minutes.value = "0";
+        fill(
+          lost,
+          ...(crew.length < 2 ? [] : crew).map((name, index) => {
+            const tick = h("input", { id: `lost-${index}`, type: "checkbox", onchange: update });
+            ticks.set(name, tick);
+            return h("div", { class: "field tick" }, tick, h("label", { for: `lost-${index}` }, `${name} flies no more`));
+          }),
+        );
+        fill(answer);
+      }
+    }
+    update();
+  };
+  from.addEventListener("change", update);
+  minutes.addEventListener("input", update);
+  // The slider of the plan's clock says when, too.
+  clock_s.watch((at_s) => {
+    if (at_s !== null && document.activeElement !== minutes) minutes.value = (at_s / 60).toFixed(2);
+  });
+  open.watch(draw);
+  vehicles.watch(draw);
+  scenarios.document.watch(update);
+  running.watch(update);
+  return box;
+}
