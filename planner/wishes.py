@@ -156,6 +156,25 @@ class Drift:
 
 
 @dataclass(frozen=True, slots=True)
+class Seen:
+    """Ground that was looked at before the search's start, and nothing was found.
+
+    Parameters
+    ----------
+    begin_s, end_s
+        When, after the search's start: neither above 0.
+    course_rad
+        In which direction it was flown over, the rearmost of it at ``begin_s`` and the foremost at ``end_s``;
+        None where all of it was looked at in the middle of that time.
+    """
+
+    area: Polygon | MultiPolygon
+    begin_s: float = 0.0
+    end_s: float = 0.0
+    course_rad: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class Importance:
     """What seeing ground is worth; all the same where there are no patches, points nor a raster.
 
@@ -166,6 +185,8 @@ class Importance:
         which pays that part of what ground is worth.
     drift
         How what is looked for moves on; None where it stays.
+    seen
+        Looks that were had before the search's start, each counted as one.
     """
 
     patches: tuple[ImportancePatch, ...] = ()
@@ -173,6 +194,7 @@ class Importance:
     points: tuple[ImportancePoint, ...] = ()
     detection: float = 1.0
     drift: Drift | None = None
+    seen: tuple[Seen, ...] = ()
 
     @property
     def given(self) -> bool:

@@ -114,6 +114,14 @@ SCENARIO_SCHEMA: dict[str, Any] = {
                     "description": "Probability that a look (a pass over it) finds what is there: k looks "
                     "collect 1 - (1 - detection)^k of what ground is worth.",
                 },
+                "seen": {
+                    "type": "array",
+                    "description": "Ground looked at before the search's start, a look an entry: a "
+                    "Polygon, a MultiPolygon, or a Feature of one with properties ago_s [begin, end], "
+                    "seconds before the start [0, 0], and heading_deg, the direction flown over it, which "
+                    "matter where what is looked for drifts.",
+                    "items": {"type": "object"},
+                },
                 "drift": {
                     "type": "object",
                     "description": "How what is looked for moves from where importance says.",

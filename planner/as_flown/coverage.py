@@ -130,7 +130,7 @@ class _Judge:
             plan, suite, asked.frame, self._passes, self._home_m, asked.airspace.terrain
         )
         self._ground: dict[str, list[Polygon]] = {}
-        self._flown: dict[tuple[str, int], list[ground.Floats]] = {}
+        self._flown: dict[tuple[str, int], list[tuple[ground.Floats, ground.Floats]]] = {}
         self._lines: dict[str | None, list[tuple[Line, tuple[Gap, ...]]]] = {}
         self._gaps: list[tuple[Gap, ...]] = []
         self._not_counted: list[NotCounted] = []
@@ -185,8 +185,8 @@ class _Judge:
             if by_photos[row]:
                 along_m = planned.along_m(line.places)
                 on = (along_m >= 0.0) & (along_m <= planned.length_m)
-            stretches = [line.places[r] for r in runs(on & (in_pass == row), line)]
-            if sum(len(each) for each in stretches) > 1:
+            stretches = [(line.places[r], line.time_s[r]) for r in runs(on & (in_pass == row), line)]
+            if sum(len(places) for places, _ in stretches) > 1:
                 self._flown.setdefault(planned.key, []).extend(stretches)
         self._leave_out(number, line, counted, reasons)
 
@@ -287,7 +287,10 @@ class _Judge:
             fraction[name] = _share(seen[name], region.area)
             dark_fraction[name] = _share(dark[name], region.area)
         by_key = {planned.key: planned for planned in self._passes}
-        flown = [flown_pass(by_key[key], stretches) for key, stretches in self._flown.items()]
+        flown = [
+            flown_pass(by_key[key], [places for places, _ in found], [times_s for _, times_s in found])
+            for key, found in self._flown.items()
+        ]
         return FlownCoverage(
             fraction, seen, unseen, tuple(sorted(flown, key=lambda p: (p.seq, p.vehicle))),
             dark, dark_fraction, parts, tuple(self._gaps), tuple(self._not_counted), photos,

@@ -150,7 +150,11 @@ def runs(held: NDArray[np.bool_], line: Line, label: NDArray[np.int64] | None = 
 
 @dataclass(frozen=True, slots=True)
 class FlownPass:
-    """How well one collect was flown: distance from its line while the sensor was on."""
+    """How well one collect was flown: distance from its line while the sensor was on.
+
+    ``start_s`` and ``end_s`` are the first and last moment of that by the clock of its record; of several
+    records, of the earliest and the latest.
+    """
 
     seq: int
     roi: str
@@ -158,10 +162,12 @@ class FlownPass:
     cross_track_max_m: float
     sensor_on_m: float
     vehicle: str = ""
+    start_s: float = math.nan
+    end_s: float = math.nan
 
 
-def flown_pass(planned: PlannedPass, stretches: Sequence[Floats]) -> FlownPass:
-    """Of the places flown in it with the sensor on, stretch by stretch."""
+def flown_pass(planned: PlannedPass, stretches: Sequence[Floats], times_s: Sequence[Floats]) -> FlownPass:
+    """Of the places flown in it with the sensor on, stretch by stretch, and when."""
     across_m = np.concatenate([planned.across_m(places) for places in stretches])
     length_m = sum(float(np.hypot(*np.diff(places, axis=0).T).sum()) for places in stretches)
     collect = planned.collect
@@ -172,4 +178,6 @@ def flown_pass(planned: PlannedPass, stretches: Sequence[Floats]) -> FlownPass:
         float(across_m.max()),
         length_m,
         collect.vehicle,
+        min(float(each.min()) for each in times_s),
+        max(float(each.max()) for each in times_s),
     )

@@ -15,7 +15,7 @@ from planner.check.coverage import GRID_M
 from planner.check.footprints import footprint
 from planner.plan import Collect, Plan
 from planner.scenario import Scenario
-from planner.wishes import Drift, Importance, ImportancePatch, ImportancePoint, ImportanceRaster
+from planner.wishes import Drift, Importance, ImportancePatch, ImportancePoint, ImportanceRaster, Seen
 
 Floats = NDArray[np.float64]
 
@@ -58,18 +58,24 @@ def searched(scenario: Scenario, plan: Plan) -> Found:
     if importance.drift is not None:
         return Found(float(seen.area), *_drifting(scenario, plan, prints, importance, importance.drift))
     looks = [shapely.intersection(each, ground, grid_size=GRID_M) for each in prints]
+    before = [look.area for look in importance.seen]
     miss = 1.0 - importance.detection
     worth, total = 0.0, 0.0
+    # Where looks find all, what was seen before is no ground any more.
+    sampled = miss > 0.0
     for patch in importance.patches:
-        total += patch.score * shapely.intersection(ground, patch.area, grid_size=GRID_M).area
-        if miss <= 0.0:
+        if not (sampled and before):
+            total += patch.score * shapely.intersection(ground, patch.area, grid_size=GRID_M).area
+        if not sampled:
             worth += patch.score * shapely.intersection(seen, patch.area, grid_size=GRID_M).area
-    for places, scores, cell_m2 in _samples(importance, patches=miss > 0.0):
+    whole = len(importance.points) + (importance.raster is not None)
+    for number, (places, scores, cell_m2) in enumerate(_samples(importance, patches=sampled)):
         inside = _inside(ground, places)
+        there = scores[inside] * _missed(before, places[inside], miss)
         missed = _missed(looks, places[inside], miss)
-        worth += float((scores[inside] * (1.0 - missed)).sum()) * cell_m2
-    for places, scores, cell_m2 in _samples(importance, patches=False):
-        total += float(scores[_inside(ground, places)].sum()) * cell_m2
+        worth += float((there * (1.0 - missed)).sum()) * cell_m2
+        if number < whole or before:
+            total += float(there.sum()) * cell_m2
     return Found(float(seen.area), worth, total)
 
 
@@ -148,20 +154,40 @@ def _drifting(
     moves = np.array([drift.east_m_s, drift.north_m_s]) + drift.spread_m_s * rng.standard_normal((DRAWN, 2))
     places = places + drift.elapsed_s * moves
     left = np.ones(DRAWN)
+    for look in importance.seen:
+        left[_inside(look.area, _swept(look, places, moves))] *= 1.0 - importance.detection
+    before = left.mean()
     order = sorted(range(len(prints)), key=lambda k: plan.collects[k].start_s)
     for k in order:
         there = _abeam(scenario, plan.collects[k], places, moves)
         left[_inside(prints[k], there)] *= 1.0 - importance.detection
-    return total * float(1.0 - left.mean()), total
+    return total * float(before - left.mean()), total * float(before)
+
+
+def _swept(look: Seen, places: Floats, moves: Floats) -> Floats:
+    """Where what drifts was when a look before the start came by."""
+    if look.course_rad is None:
+        return np.asarray(places + 0.5 * (look.begin_s + look.end_s) * moves)
+    along = np.array([math.cos(look.course_rad), math.sin(look.course_rad)])
+    corners = shapely.get_coordinates(look.area)
+    corners = corners[np.argsort(corners @ along, kind="stable")]
+    return _met(corners[0], corners[-1], along, look.begin_s, look.end_s, places, moves)
 
 
 def _abeam(scenario: Scenario, collect: Collect, places: Floats, moves: Floats) -> Floats:
     """Where what drifts is when the aircraft comes nearest to it on a collect."""
     begin, end = scenario.frame.to_local([place[:2] for place in (collect.line[0], collect.line[-1])])
-    lasts_s = max(collect.end_s - collect.start_s, 1e-9)
-    speed = (end - begin) / lasts_s
-    along = speed / max(float(np.hypot(*speed)), 1e-9)
-    ahead = (places + collect.start_s * moves - begin) @ along
-    closing = np.maximum(float(speed @ along) - moves @ along, 1e-6)
-    at_s = collect.start_s + np.clip(ahead / closing, 0.0, lasts_s)
+    along = (end - begin) / max(float(np.hypot(*(end - begin))), 1e-9)
+    return _met(begin, end, along, collect.start_s, collect.end_s, places, moves)
+
+
+def _met(
+    begin: Floats, end: Floats, along: Floats, from_s: float, until_s: float, places: Floats, moves: Floats
+) -> Floats:
+    """Where what drifts is when a line across the course comes by that moves from one place to another."""
+    lasts_s = max(until_s - from_s, 1e-9)
+    speed_m_s = float((end - begin) @ along) / lasts_s
+    ahead = (places + from_s * moves - begin) @ along
+    closing = np.maximum(speed_m_s - moves @ along, 1e-6)
+    at_s = from_s + np.clip(ahead / closing, 0.0, lasts_s)
     return np.asarray(places + at_s[:, None] * moves)

@@ -174,8 +174,7 @@ def _read(document: Any, findings: Findings, terrains: Terrains | None) -> Scena
     importance = Importance()
     if task == "search":
         named = [raw.name for raw in raws if raw.role == "area"]
-        detection, drift = read_search(document.get("search"), findings)
-        importance = importance_of(worth, detection, drift)
+        importance = importance_of(worth, read_search(document.get("search"), frame, findings))
         regions = searched(regions, areas, named, importance, longest_s(aircraft), findings)
     else:
         tell_collected(method, findings)

@@ -21,6 +21,7 @@ from planner.geojson.equipment import as_object
 from planner.geojson.features import DISC_QUADRANT, RawFeature
 from planner.geojson.fields import REQUIRED, Fields, Findings
 from planner.geojson.outlines import few_cornered
+from planner.geojson.seen import read_seen, unseen_of
 from planner.scenario import Scenario
 from planner.vehicle.aircraft import Aircraft
 from planner.vehicle.energy import FlightState
@@ -68,15 +69,20 @@ def read_worth(
     return None if score is None or area is None else ImportancePatch(raw.name, area, score)
 
 
-def read_search(raw: Any, findings: Findings) -> tuple[float, Drift | None]:
-    """Member ``search``: how probable it is that a look finds, and how what is looked for drifts."""
+def read_search(raw: Any, frame: LocalFrame, findings: Findings) -> Importance:
+    """Member ``search``: how a look finds, how what is looked for drifts, what has been looked at already."""
     if raw is None:
-        return 1.0, None
+        return Importance()
     fields = Fields("search", as_object("search", raw, findings), findings)
     detection = fields.number("detection", 1.0, above=0.0, maximum=1.0)
     drift = fields.raw("drift")
+    seen = read_seen(fields, frame, findings)
     fields.refuse_unknown()
-    return detection or 1.0, None if drift is None else _read_drift(drift, findings)
+    return Importance(
+        detection=detection or 1.0,
+        drift=None if drift is None else _read_drift(drift, findings),
+        seen=seen,
+    )
 
 
 def _read_drift(raw: Any, findings: Findings) -> Drift | None:
@@ -106,13 +112,11 @@ def tell_unsearched(
     top.unused("search", "says how a search finds, and nothing is searched")
 
 
-def importance_of(
-    worth: Sequence[ImportancePatch | ImportancePoint], detection: float, drift: Drift | None
-) -> Importance:
+def importance_of(worth: Sequence[ImportancePatch | ImportancePoint], told: Importance) -> Importance:
     """Importance as its features and the member ``search`` tell it."""
     patches = tuple(one for one in worth if isinstance(one, ImportancePatch))
     points = tuple(one for one in worth if isinstance(one, ImportancePoint))
-    return Importance(patches, None, points, detection, drift)
+    return replace(told, patches=patches, points=points)
 
 
 def longest_s(aircraft: Sequence[Aircraft | None]) -> float | None:
@@ -149,9 +153,10 @@ def searched(
         How long the longest flight lasts, for what drifts; None where nothing says.
     """
     if regions:
-        return [replace(region, required=False) for region in regions]
+        asked = [replace(region, required=False) for region in regions]
+        return unseen_of(asked, importance, findings)
     if areas:
-        return [Region(area_names[0], areas[0], required=False)]
+        return unseen_of([Region(area_names[0], areas[0], required=False)], importance, findings)
     drift = importance.drift
     if drift is not None and lasting_s is None:
         findings.error(
@@ -164,7 +169,7 @@ def searched(
     most = [_drifted_over(one, drift, lasting_s or 0.0) for one in _worth_most(importance)]
     whole = shapely.union_all(most)
     if isinstance(whole, Polygon | MultiPolygon) and not whole.is_empty:
-        return [Region("importance", whole, required=False)]
+        return unseen_of([Region("importance", whole, required=False)], importance, findings)
     findings.error(
         "scenario",
         "no-ground",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from planner.as_flown import coverage
+from planner.as_flown import coverage, looks
 from planner.as_flown.photo_judge import PhotoJudge
 from planner.as_flown.track import Record, TrackSample
 from planner.plan import Plan
@@ -24,6 +24,11 @@ def sortie_coverage(scenario: Scenario, plan: Plan, records: Sequence[Record]) -
 def sortie_photos(scenario: Scenario, plan: Plan, records: Sequence[Record]) -> PhotoJudge:
     """The photos of several flights together, to be laid on grids."""
     return coverage.photo_judge(_asked(scenario), plan, records)
+
+
+def sortie_looks(scenario: Scenario, plan: Plan, records: Sequence[Record]) -> tuple[looks.FlownLook, ...]:
+    """Pass by pass of several flights; see ``planner.as_flown.looks.flown_looks``."""
+    return looks.flown_looks(_asked(scenario), plan, records)
 
 
 def _asked(scenario: Scenario) -> coverage.Asked:

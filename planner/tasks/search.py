@@ -188,6 +188,13 @@ def _drifting(asked: Search, scenario: Scenario, spare_m: float, lead_s: float) 
         return asked
     until_s = _lasting_s(asked, spare_m, lead_s)
     belief = believed(importance, importance.drift, seed=scenario.seed)
+    if not belief.weights.any():
+        raise InfeasibleError(
+            "nothing-left",
+            "search",
+            "has looked already (seen) wherever what drifts may be, and a look finds all there is",
+            "Lower detection, widen the importance, or leave out of seen what is to be looked at again.",
+        )
     drifting = Drifting(belief, importance.detection, lead_s, until_s).within(asked.ground)
     later = drifted(importance, 0.5 * until_s)
     worth = worth_of(replace(scenario, importance=later), asked.ground, asked.worth.cell_m)

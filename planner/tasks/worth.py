@@ -12,6 +12,7 @@ from shapely.geometry import MultiPolygon, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from planner.scenario import Scenario
+from planner.search.seen import missed_before, moved_on
 from planner.search.values import Worth, worth_of_ground
 from planner.wishes import Importance
 
@@ -26,11 +27,12 @@ def ground_of(shape: BaseGeometry) -> Polygon | MultiPolygon:
 
 
 def worth_of(scenario: Scenario, ground: Polygon | MultiPolygon, cell_m: float) -> Worth:
-    """Scores of the ground by cells."""
+    """Scores of the ground by cells, less what looks before the search have taken of them."""
     plain = worth_of_ground(ground, cell_m)
     importance = scenario.importance
+    left = missed_before(importance, plain.centres_m)
     if not importance.given:
-        return plain
+        return worth_of_ground(ground, cell_m, left)
     east, north = plain.centres_m[..., 0], plain.centres_m[..., 1]
     scores = np.zeros(plain.scores.shape)
     for patch in importance.patches:
@@ -47,7 +49,7 @@ def worth_of(scenario: Scenario, ground: Polygon | MultiPolygon, cell_m: float) 
         inside = (row >= 0) & (row < rows) & (column >= 0) & (column < columns)
         found = raster.scores[np.clip(row, 0, rows - 1), np.clip(column, 0, columns - 1)]
         scores += np.where(inside, found, 0.0)
-    return worth_of_ground(ground, cell_m, scores)
+    return worth_of_ground(ground, cell_m, scores * left)
 
 
 def drifted(importance: Importance, time_s: float) -> Importance:
@@ -69,4 +71,5 @@ def drifted(importance: Importance, time_s: float) -> Importance:
     raster = importance.raster
     if raster is not None:
         raster = replace(raster, west_m=raster.west_m + east_m, south_m=raster.south_m + north_m)
-    return replace(importance, points=tuple(points), patches=patches, raster=raster)
+    seen = moved_on(importance.seen, drift.east_m_s, drift.north_m_s, time_s)
+    return replace(importance, points=tuple(points), patches=patches, raster=raster, seen=seen)

@@ -139,14 +139,14 @@ def _gap_after(flight: Flown, later: Flown | None) -> Gap | None:
     if later is None:
         return Gap(last.time_s, None, None, (here, None))
     first = later.samples[0]
-    lasted_s = (_moment(later, first.time_s) - _moment(flight, last.time_s)).total_seconds()
+    lasted_s = (moment(later, first.time_s) - moment(flight, last.time_s)).total_seconds()
     if first.time_s >= last.time_s:
         # The clock of an aircraft that flew on has run on; that of the service may have been set.
         lasted_s = max(lasted_s, first.time_s - last.time_s)
     return Gap(last.time_s, first.time_s, max(lasted_s, 0.0), (here, (first.lon_deg, first.lat_deg)))
 
 
-def _moment(flight: Flown, time_s: float) -> datetime:
+def moment(flight: Flown, time_s: float) -> datetime:
     """When it was by the service's clock."""
     began_s = flight.samples[0].time_s if flight.samples else time_s
     return flight.record.started_at + timedelta(seconds=time_s - began_s)
@@ -280,10 +280,10 @@ def _gaps(sortie: Sortie, gaps_of: Sequence[Sequence[Gap]]) -> list[dict[str, An
             "start_s": gap.start_s,
             "end_s": gap.end_s,
             "duration_s": gap.duration_s,
-            "start_at": _moment(flight, gap.start_s).isoformat(),
+            "start_at": moment(flight, gap.start_s).isoformat(),
             "end_at": None
             if gap.duration_s is None
-            else _moment(flight, gap.start_s + gap.duration_s).isoformat(),
+            else moment(flight, gap.start_s + gap.duration_s).isoformat(),
             "from": list(gap.places[0]),
             "to": None if gap.places[1] is None else list(gap.places[1]),
         }

@@ -15,10 +15,12 @@ from shapely.geometry.base import BaseGeometry
 
 from app.services.errors import ConflictError, RefusedError
 from app.services.flights.as_flown import SLIVER_M, SLIVER_M2
+from app.services.plans.looked import Looked, searched_on
 from planner.errors import Finding
 from planner.geojson.geometry import areal, written
 from planner.plan import Plan
 from planner.scenario import Scenario
+from planner.vehicle.aircraft import Aircraft
 
 #: Corners of what is left lie on a grid, so that written places round to no other shape.
 GRID_M = 0.1
@@ -141,6 +143,7 @@ def replanned(
     seen: Mapping[str, BaseGeometry],
     at_s: float,
     changes: Changes,
+    looks: Sequence[Looked] = (),
 ) -> dict[str, Any]:
     """The scenario that is left.
 
@@ -154,6 +157,8 @@ def replanned(
         The ground seen of each region, in the scenario's frame.
     at_s
         Seconds since the mission's start: windows count from now on.
+    looks
+        What a search has looked at; its regions stay as they are.
 
     Raises
     ------
@@ -172,7 +177,7 @@ def replanned(
         name = _name(feature)
         if name in changes.removed or name in coming:
             continue
-        if feature["properties"].get("role") == "roi":
+        if feature["properties"].get("role") == "roi" and scenario.task != "search":
             features += _left(feature, name, scenario, seen, at_s)
         else:
             features.append(feature)
@@ -181,8 +186,11 @@ def replanned(
         feature["properties"].get("role") == "roi" for feature in made["features"]
     ):
         raise ConflictError("nothing is left to be seen")
+    if scenario.task == "search":
+        searched_on(made, scenario, looks, at_s, changed=bool(changes.features))
+    crew = {aircraft.name: aircraft for aircraft in scenario.aircraft}
     made["vehicles"] = [
-        _flying(vehicle, now.get(str(vehicle.get("name"))))
+        _flying(vehicle, now.get(str(vehicle.get("name"))), crew.get(str(vehicle.get("name"))))
         for vehicle in made.get("vehicles", [])
         if vehicle.get("name") not in changes.lost
     ]
@@ -230,22 +238,29 @@ def _later(feature: dict[str, Any], at_s: float) -> dict[str, Any]:
     return feature | {"properties": feature["properties"] | {"time_window_s": [opens_s, closes_s]}}
 
 
-def _flying(vehicle: dict[str, Any], now: Now | None) -> dict[str, Any]:
+def _flying(vehicle: dict[str, Any], now: Now | None, aircraft: Aircraft | None) -> dict[str, Any]:
     """An aircraft where it is, with what is left of its limits."""
-    if now is None:
+    if now is None or aircraft is None:
         return vehicle
     made = dict(vehicle)
     place = {"lon_deg": now.lon_deg, "lat_deg": now.lat_deg, "height_m": round(now.height_m, 3)}
     if now.heading_deg is not None:
         place["heading_deg"] = round(now.heading_deg % 360.0, 6)
     made["in_flight"] = place
-    for name, used in (("max_range_m", now.flown_m), ("max_flight_time_s", now.flown_s)):
-        if name in made:
-            made[name] = max(made[name] - used, LEAST_WH)
-    if made.get("energy_wh") is not None and now.energy_left_wh is not None:
-        kept_wh = made["energy_wh"] * made.get("reserve", 0.2)
+    limits = {
+        "max_range_m": (aircraft.max_range_m, now.flown_m),
+        "max_flight_time_s": (aircraft.max_flight_time_s, now.flown_s),
+    }
+    for name, (limit, used) in limits.items():
+        if limit is not None:
+            made[name] = max(limit - used, LEAST_WH)
+    # As read: the store may be told as charge and voltage, or by the airframe's name.
+    if aircraft.energy_wh is not None and now.energy_left_wh is not None:
+        kept_wh = aircraft.energy_wh * aircraft.reserve
         made["energy_wh"] = max(now.energy_left_wh, LEAST_WH)
         made["reserve"] = min(kept_wh / made["energy_wh"], 0.999999)
+        for name in ("charge_mah", "voltage_v"):
+            made.pop(name, None)
     for name in ("batteries", "turnaround_s"):
         made.pop(name, None)
     return made

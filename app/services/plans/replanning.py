@@ -15,6 +15,7 @@ from shapely.geometry.base import BaseGeometry
 from app.services.documents import read_object
 from app.services.errors import ConflictError, RefusedError
 from app.services.flights.seen import Sortie, judged
+from app.services.plans.looked import Looked, flown_looks, planned_looks
 from app.services.plans.missions import plan_of
 from app.services.plans.replanned import Changes, Now, replanned, seen_by_plan, where_planned
 from app.services.records import FlightRecord, TrackSample
@@ -116,14 +117,29 @@ def left_of(
             " which time of the plan (at_s)"
         )
     at_s = asked.at_s if asked.at_s is not None else max((n.flown_s for n in now.values()), default=0.0)
+    as_flown = sortie if flying or (flights and asked.at_s is None) else None
+    if scenario.task == "search":
+        looks = _looks(scenario, plan, asked, as_flown, at_s)
+        return replanned(document, scenario, now, {}, at_s, asked.changes, looks)
     if asked.seen is not None:
         ground = union_all([_area(shape, scenario, k) for k, shape in enumerate(asked.seen)])
         seen: Mapping[str, BaseGeometry] = {region.name: ground for region in scenario.regions}
-    elif sortie is not None and (flying or (flights and asked.at_s is None)):
-        seen = judged(sortie, scenario, plan).seen
+    elif as_flown is not None:
+        seen = judged(as_flown, scenario, plan).seen
     else:
         seen = seen_by_plan(scenario, plan, at_s)
     return replanned(document, scenario, now, seen, at_s, asked.changes)
+
+
+def _looks(
+    scenario: Scenario, plan: Plan, asked: Asked, as_flown: Sortie | None, at_s: float
+) -> list[Looked]:
+    """What a search has looked at: as told, which was right now; as recorded; or as planned."""
+    if asked.seen is not None:
+        return [Looked(_area(shape, scenario, k), at_s, at_s) for k, shape in enumerate(asked.seen)]
+    if as_flown is not None:
+        return flown_looks(as_flown, scenario, plan)
+    return planned_looks(scenario, plan, at_s)
 
 
 def _name(record: FlightRecord, scenario: Scenario) -> str:

@@ -15,6 +15,7 @@ from scipy.stats.qmc import Sobol
 from planner.search.belief.target import Belief, Target
 from planner.search.kernels import drifting_gains
 from planner.search.programme import Pricing, Sweep
+from planner.search.seen import missed_before
 from planner.wishes import Drift, Importance, ImportancePatch, ImportancePoint, ImportanceRaster
 
 Floats = NDArray[np.float64]
@@ -131,7 +132,8 @@ def believed(importance: Importance, drift: Drift, count: int = PLACES, seed: in
         drifts.append(np.array([drift.east_m_s, drift.north_m_s]) + drift.spread_m_s * normal)
         weights.append(np.full(len(there), size / len(there)))
     moved = np.concatenate(drifts)
-    return Belief(np.concatenate(places) + drift.elapsed_s * moved, moved, np.concatenate(weights))
+    now = np.concatenate(places) + drift.elapsed_s * moved
+    return Belief(now, moved, np.concatenate(weights) * missed_before(importance, now, moved))
 
 
 def _places_of(source: Source, count: int, seed: int) -> tuple[Floats, Floats]:

@@ -128,6 +128,13 @@ def drifting(**drift: Any) -> Document:
     return last_known(drift={"speed_m_s": 0.5, "toward_deg": 90.0, **drift})
 
 
+def looked_at(**told: Any) -> Document:
+    """The same, after a look to the east over the south of where it may be."""
+    geometry = {"type": "Polygon", "coordinates": square(0.0, 0.0, 0.01)}
+    seen = [{"type": "Feature", "geometry": geometry, "properties": {"ago_s": [300.0, 240.0], **told}}]
+    return last_known(drift={"speed_m_s": 2.0, "toward_deg": 90.0}, seen=seen)
+
+
 def based(place: float = -0.03, base: str | None = "B1", **properties: Any) -> Document:
     """Two bases, of which the vehicle names one."""
     bases = [
