@@ -228,3 +228,22 @@ class CircleFollower:
         north_m = c_n + self._radius_m * math.cos(aim_rad)
         east_m = c_e + self._radius_m * math.sin(aim_rad)
         return self._pursuit.bank_rad(state, north_m, east_m)
+
+    def course_error_rad(self, state: AircraftState, place: Place) -> float:
+        """How far the circle's course abeam of the aircraft is from the one that it is left on for a place.
+
+        As ArduPlane reckons since 4.2: from a point of the circle straight to a place outside it; a place
+        inside is left for a little before it is abeam. Source: ``ModeLoiter::isHeadingLinedUp``.
+        """
+        c_n, c_e = offset_m(state.lat_deg, state.lon_deg, self._centre.lat_deg, self._centre.lon_deg)
+        at_rad = math.atan2(-c_e, -c_n)
+        p_n, p_e = offset_m(self._centre.lat_deg, self._centre.lon_deg, place.lat_deg, place.lon_deg)
+        inside_m = self._radius_m - math.hypot(p_n, p_e)
+        if inside_m > 0.0:
+            early_rad = 2.0 * math.asin(inside_m / (2.0 * self._radius_m))
+            wanted_rad = math.atan2(p_e, p_n) + self._turning * (0.5 * math.pi - early_rad)
+        else:
+            north_m = p_n - self._radius_m * math.cos(at_rad)
+            east_m = p_e - self._radius_m * math.sin(at_rad)
+            wanted_rad = math.atan2(east_m, north_m)
+        return abs(wrap_rad(at_rad + self._turning * 0.5 * math.pi - wanted_rad))

@@ -98,6 +98,9 @@ class Loiter:
         How long; both None: for ever, unless ``until_altitude``.
     exit_towards
         Leave only when flying towards this place, or after one more turn.
+    by_circle
+        Whether that is told by the circle's own course, as ArduPlane does, which also leaves for places
+        inside; else by the aircraft's.
     """
 
     lands = False
@@ -105,9 +108,11 @@ class Loiter:
     def __init__(
         self, tuning: Tuning, centre: Place, radius_m: float, *, turns: float | None = None,
         seconds: float | None = None, until_altitude: bool = False, exit_towards: Place | None = None,
+        by_circle: bool = False,
     ) -> None:  # fmt: skip
         self._tuning = tuning
         self._centre = centre
+        self._by_circle = by_circle
         self._circle = CircleFollower(tuning, centre, radius_m)
         self._turns = turns
         self._seconds = seconds
@@ -139,7 +144,10 @@ class Loiter:
         return self._until_altitude and off_m < _ALTITUDE_REACHED_M
 
     def _aligned(self, state: AircraftState) -> bool:
-        return self._exit_towards is None or _course_error_rad(state, self._exit_towards) < _ALIGNED_RAD
+        if self._exit_towards is None:
+            return True
+        course_error_rad = self._circle.course_error_rad if self._by_circle else _course_error_rad
+        return course_error_rad(state, self._exit_towards) < _ALIGNED_RAD
 
 
 class GoTo:

@@ -91,6 +91,7 @@ class FixedWing:
             until_altitude=item.command == Command.NAV_LOITER_TO_ALT,
             # ArduPlane leaves every loiter towards the next item; PX4 where the item says so.
             exit_towards=onwards if self._ardupilot or aligned == 1.0 else None,
+            by_circle=self._ardupilot,
         )
 
     def wait(self, state: AircraftState, place: Place | None = None) -> Manoeuvre:

@@ -45,13 +45,17 @@ def used_wh(aircraft: Aircraft, track: list[TrackSample]) -> float:
     return joules / 3600.0
 
 
+@pytest.mark.parametrize("radius_m", [47.0, 90.0], ids=["tight", "wide"])
 @pytest.mark.parametrize("from_deg", [None, 240.0], ids=["still air", "wind"])
-def test_a_search_uses_and_sees_what_was_planned(from_deg: float | None) -> None:
+def test_a_search_uses_and_sees_what_was_planned(from_deg: float | None, radius_m: float) -> None:
     """Within 3 % of the plan, in still air and in 8 m/s of wind, and home with the reserve."""
     wind: dict[str, Any] = {}
     if from_deg is not None:
         wind = {"wind": {"speed_m_s": WIND_M_S, "from_deg": from_deg}}
-    asked = document(vehicle=WING, sensor=RADAR, altitude_m=150, **wind)
+    wing = WING | {"min_turn_radius_m": radius_m}
+    # Tight turns bring lanes one beside the other, and part turns round a centre between them.
+    method = {} if radius_m == WING["min_turn_radius_m"] else {"method": {"search": "parallel"}}
+    asked = document(vehicle=wing, sensor=RADAR, altitude_m=150, **wind, **method)
     asked["features"][0] = rectangle("area", -700.0, -700.0, 1900.0, 1600.0)
     asked["features"].append(rectangle("roi", 0.0, 0.0, 1200.0, 900.0, name="ground"))
     scenario = read_scenario(asked)
@@ -62,8 +66,8 @@ def test_a_search_uses_and_sees_what_was_planned(from_deg: float | None) -> None
     seen = flown_coverage(scenario, plan, track)
     planned_wh, planned = plan.metrics.energy_wh, plan.metrics.coverage["ground"]
     log.info(
-        "| %s | %.2f Wh | %.2f Wh | %+.1f %% | %.2f %% | %.2f %% |",
-        "none" if from_deg is None else f"{WIND_M_S:g} m/s", planned_wh, used,
+        "| %g m | %s | %.2f Wh | %.2f Wh | %+.1f %% | %.2f %% | %.2f %% |",
+        radius_m, "none" if from_deg is None else f"{WIND_M_S:g} m/s", planned_wh, used,
         100.0 * (used / (planned_wh or math.inf) - 1.0), 100.0 * planned, 100.0 * seen.fraction["ground"],
     )  # fmt: skip
     assert used == pytest.approx(planned_wh, rel=WITHIN)
