@@ -7,7 +7,8 @@ Parts, each with rows of its own:
     and by its method in both of its orders, from the first swath to the last; swaths and turns apart.
 ``items``
     Random polygons as survey items of QGroundControl: at the item's heading and spacing, and with the heading
-    free; its lines alone, and with the 10 m that it flies on beyond each for a multirotor.
+    free; its lines alone, and with the 10 m that it flies on beyond each for a multirotor; ours with overlaps
+    kept up to the edges, and there as such items leave them.
 ``convex``
     Random convex regions: metres from the first lane to the last over area / spacing and the least turns.
 ``photos``
@@ -26,12 +27,15 @@ import math
 import resource
 import time
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 from shapely.affinity import rotate
 from shapely.geometry import Polygon
+from shapely.geometry.base import BaseGeometry
 
 from benchmarks.photos import photos, places, seen_by
 from benchmarks.survey_baselines import (
@@ -64,6 +68,8 @@ Floats = NDArray[np.float64]
 Row = dict[str, Any]
 
 HEIGHT_M = 100.0
+#: Less than this is all of an area.
+LEAST_M2 = 1.0
 NOTHING = np.empty((0, 3))
 PARTS = ("fields", "items", "convex", "photos", "overlap", "scale")
 #: Total lengths published by Fields2Cover for its own fields, which are not published themselves.
@@ -154,41 +160,83 @@ def _measured(planner: str, count: int, lanes_m: float, turns_m: float, publishe
 
 def items(count: int, seed: int) -> Iterator[Row]:
     """See the module."""
-    ratios: dict[str, list[float]] = {"same": [], "free": []}
-    whole: dict[str, list[float]] = {"same": [], "free": []}
-    lanes = {"same": 0, "fewer": 0, "more": 0}
-    for k in range(count):
-        rng = np.random.default_rng([seed, k])
-        spacing_m, radius_m = float(rng.uniform(20.0, 60.0)), 5.0
-        side = float(rng.choice([0.6, 0.65, 0.7, 0.75]))
-        area = (random_convex, random_star)[k % 2](rng, float(rng.uniform(8.0, 30.0) * spacing_m) ** 2)
-        azimuth_deg = float(rng.uniform(-90.0, 90.0))
-        transects = qgc_transects(area, azimuth_deg, spacing_m)
-        theirs_m = math.fsum(qgc_item_m(transects, radius_m))
+    for edge_overlap in (True, False):
+        told = {"same": _Items(), "free": _Items()}
+        for k in range(count):
+            rng = np.random.default_rng([seed, k])
+            spacing_m, radius_m = float(rng.uniform(20.0, 60.0)), 5.0
+            side = float(rng.choice([0.6, 0.65, 0.7, 0.75]))
+            area = (random_convex, random_star)[k % 2](rng, float(rng.uniform(8.0, 30.0) * spacing_m) ** 2)
+            azimuth_deg = float(rng.uniform(-90.0, 90.0))
+            transects = qgc_transects(area, azimuth_deg, spacing_m)
+            camera = replace(camera_for(spacing_m, side), edge_overlap=edge_overlap)
+            along_rad = math.radians(90.0 - azimuth_deg)
+            for name, approach_rad in (("same", (along_rad, along_rad + math.pi)), ("free", None)):
+                passes = surveyed(area, camera, radius_m, approach_rad)
+                told[name].add(passes, transects, along_rad, radius_m)
+                told[name].missed_m2.append(area.difference(seen_from(transects, camera)).area)
+        for name, of in told.items():
+            yield {
+                "bench": "survey-items",
+                "heading": "the item's" if name == "same" else "free",
+                "edge_overlap": edge_overlap,
+                "items": count,
+            } | of.row(lanes=name == "same")
+
+
+def seen_from(lines: Sequence[Floats], camera: CameraSensor) -> BaseGeometry:
+    """Ground in some photo of those taken all along lines, (2, 2) each, in still air."""
+    beside_m = camera.swath_m(HEIGHT_M) / 2.0
+    ahead_m = HEIGHT_M * math.tan(camera.optics.half_height_rad)
+    return shapely.union_all([_strip(line, ahead_m, beside_m) for line in lines])
+
+
+def _strip(line: Floats, ahead_m: float, beside_m: float) -> Polygon:
+    ahead = (line[1] - line[0]) / np.hypot(*(line[1] - line[0]))
+    left = np.array([-ahead[1], ahead[0]])
+    first, last = line[0] - ahead_m * ahead, line[1] + ahead_m * ahead
+    right, left = -beside_m * left, beside_m * left
+    return Polygon([first + right, last + right, last + left, first + left])
+
+
+@dataclass(slots=True)
+class _Items:
+    """Lengths of ours over those of items, also with these flown on for a multirotor, and lanes."""
+
+    ratios: list[float] = field(default_factory=list)
+    whole: list[float] = field(default_factory=list)
+    lanes: list[int] = field(default_factory=list)
+    missed_m2: list[float] = field(default_factory=list)
+
+    def add(
+        self, passes: Sequence[CollectPass], transects: list[Floats], along_rad: float, radius_m: float
+    ) -> None:
+        """One more."""
+        ours_m = math.fsum(flown_m(lines_of(passes), radius_m))
+        self.ratios.append(ours_m / math.fsum(qgc_item_m(transects, radius_m)))
         flown = with_turnaround(transects, QGC_TURNAROUND_M)
-        theirs_whole_m = math.fsum(qgc_item_m(flown, radius_m))
-        camera = camera_for(spacing_m, side)
-        along_rad = math.radians(90.0 - azimuth_deg)
-        fixed = surveyed(area, camera, radius_m, (along_rad, along_rad + math.pi))
-        free = surveyed(area, camera, radius_m)
-        lane_count = len({round(float(np.dot(one.start, _left(along_rad))), 3) for one in fixed})
-        of = "same" if lane_count == len(transects) else "fewer" if lane_count < len(transects) else "more"
-        lanes[of] += 1
-        for name, passes in (("same", fixed), ("free", free)):
-            ours_m = math.fsum(flown_m(lines_of(passes), radius_m))
-            ratios[name].append(ours_m / theirs_m)
-            whole[name].append(ours_m / theirs_whole_m)
-    for name, of in ratios.items():
-        yield {
-            "bench": "survey-items",
-            "heading": "the item's" if name == "same" else "free",
-            "items": count,
-            "mean_ratio": round(float(np.mean(of)), 4),
-            "worst_ratio": round(max(of), 4),
-            "longer": sum(ratio > 1.0 for ratio in of),
-            "mean_ratio_with_its_turnaround": round(float(np.mean(whole[name])), 4),
-            "longer_than_with_it": sum(ratio > 1.0 for ratio in whole[name]),
-        } | ({f"lanes_{key}": value for key, value in lanes.items()} if name == "same" else {})
+        self.whole.append(ours_m / math.fsum(qgc_item_m(flown, radius_m)))
+        count = len({round(float(np.dot(one.start, _left(along_rad))), 3) for one in passes})
+        self.lanes.append(count - len(transects))
+
+    def row(self, *, lanes: bool) -> Row:
+        """What is told of all."""
+        longer = [k for k, ratio in enumerate(self.ratios) if ratio > 1.0]
+        told: Row = {
+            "mean_ratio": round(float(np.mean(self.ratios)), 4),
+            "worst_ratio": round(max(self.ratios), 4),
+            "longer": len(longer),
+            "longer_where_the_item_sees_all": sum(self.missed_m2[k] < LEAST_M2 for k in longer),
+            "mean_ratio_with_its_turnaround": round(float(np.mean(self.whole)), 4),
+            "longer_than_with_it": sum(ratio > 1.0 for ratio in self.whole),
+        }
+        if lanes:
+            told |= {
+                "lanes_same": self.lanes.count(0),
+                "lanes_fewer": sum(more < 0 for more in self.lanes),
+                "lanes_more": sum(more > 0 for more in self.lanes),
+            }
+        return told
 
 
 def _left(angle_rad: float) -> Floats:

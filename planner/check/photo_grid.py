@@ -3,7 +3,8 @@
 A place is seen by the photos of a lane along a stretch of the way, its *chord*; what part of the chord lies
 between two photos is what they do not share. Of the strip that a lane's photos leave no gap in, the part that
 lies between two lanes is what these do not share. A place that one photo alone sees, or one lane, counts as
-if the next were as far from it on the other side.
+if the next were as far from it on the other side; beside the outer lanes, and beyond the ends of lanes, of a
+camera that need not keep its overlaps up to the edges it counts as shared enough.
 """
 
 from __future__ import annotations
@@ -110,7 +111,7 @@ def look(places_m: Floats, ground_m: Floats, lanes: Sequence[Lane], sensor: Came
     worst, middle, best = np.full(count, np.nan), np.full(count, np.nan), np.full(count, np.inf)
     nearest = sensor.forward_overlap >= TWICE
     for group in _parallel(lanes):
-        across = _Across.none(count)
+        across = _Across.none(count, once=not sensor.edge_overlap)
         for lane, track in zip(group, _tracks(group), strict=True):
             view = _View.of(lane, places_m, ground_m)
             photos[view.at] += view.photos
@@ -121,6 +122,10 @@ def look(places_m: Floats, ground_m: Floats, lanes: Sequence[Lane], sensor: Came
             onward = math.cos(lane.course_rad - group[0].course_rad) > 0.0
             across.add(view, track, onward=onward, nearest=nearest)
         beside = across.side()
+        if not sensor.edge_overlap:
+            beside = np.where(across.outside(), np.maximum(beside, sensor.side_overlap), beside)
+            enough = np.maximum(across.forward, sensor.forward_overlap)
+            across.forward = np.where(across.beyond, enough, across.forward)
         better = _beyond(across.forward, beside, sensor) > _beyond(forward, side, sensor)
         forward = np.where(better, across.forward, forward)
         side = np.where(better, beside, side)
@@ -162,6 +167,8 @@ class _View:
         along the image's upright.
     drop_m
         From the photo to the ground.
+    beyond
+        Whether the middle of the nearest photo lies before the first, or behind the last.
     """
 
     at: NDArray[np.int64]
@@ -174,6 +181,7 @@ class _View:
     ahead_last: Floats
     ahead: Floats
     drop_m: Floats
+    beyond: Flags
 
     @classmethod
     def of(cls, lane: Lane, places_m: Floats, ground_m: Floats) -> _View:
@@ -202,6 +210,7 @@ class _View:
         behind_m, ahead_m = np.abs(middle_m - stations_m[next_ - 1]), np.abs(middle_m - stations_m[next_])
         between_m = stations_m[next_] - stations_m[next_ - 1]
         off_m = np.minimum(behind_m, ahead_m)
+        beyond = (middle_m < stations_m[0]) | (middle_m > stations_m[-1])
         gap_m = np.where(last - first > 1, between_m, 2.0 * off_m)
         near_at = np.where(ahead_m < behind_m, next_, next_ - 1)
         upright = _upright(lane.corners)
@@ -216,6 +225,7 @@ class _View:
         return cls(
             at, y_m - (left + right) / 2.0 * drop_m, (left - right) * drop_m,
             1.0 - gap_m / chord_m, last - first, off_m / chord_m, from_m, until_m, near_m, drop_m,
+            beyond,
         )  # fmt: skip
 
     def worst_gsd(self, sensor: CameraSensor) -> Floats:
@@ -247,24 +257,32 @@ class _Across:
 
     Parameters
     ----------
+    once
+        Whether a place need be in one photo only at edges: the nearest lane counts.
     forward, rank
         Of the lane that counts, and by what it does, the least of all: how far it is, lanes in one photo of
         which a place is behind those in two; where places need not be in two photos, how little is shared.
+    beyond
+        Whether it lies before the first photo of that lane, or behind the last.
     left_m, width_m, track
         (2, M): the nearest lane and the nearest of another track.
     """
 
+    once: bool
     forward: Floats
     rank: Floats
+    beyond: Flags
     left_m: Floats
     width_m: Floats
     track: Floats
 
     @classmethod
-    def none(cls, count: int) -> _Across:
+    def none(cls, count: int, *, once: bool) -> _Across:
         """Before any lane."""
         far = np.full((2, count), np.inf)
-        return cls(np.full(count, -np.inf), np.full(count, np.inf), far, far.copy(), far.copy())
+        nowhere = np.zeros(count, dtype=np.bool_)
+        none, first = np.full(count, -np.inf), np.full(count, np.inf)
+        return cls(once, none, first, nowhere, far, far.copy(), far.copy())
 
     def add(self, view: _View, track: int, *, onward: bool, nearest: bool) -> None:
         """One more lane.
@@ -279,9 +297,12 @@ class _Across:
         left_m = view.left_m if onward else -view.left_m
         away_m = np.abs(left_m)
         rank = away_m + np.where(view.photos > 1, 0.0, _LAST_M) if nearest else -view.forward
+        if self.once:
+            rank = away_m
         closer = rank < self.rank[view.at]
         self.rank[view.at[closer]] = rank[closer]
         self.forward[view.at[closer]] = view.forward[closer]
+        self.beyond[view.at[closer]] = view.beyond[closer]
         new = np.stack([left_m, view.width_m, np.full(len(left_m), float(track))])
         known = np.stack([self.left_m[:, view.at], self.width_m[:, view.at], self.track[:, view.at]])
         first, second = away_m < np.abs(known[0, 0]), away_m < np.abs(known[0, 1])
@@ -291,6 +312,15 @@ class _Across:
         known[:, 1] = np.where(~first & second & ~same, new, known[:, 1])
         known[:, 0] = np.where(first, new, known[:, 0])
         self.left_m[:, view.at], self.width_m[:, view.at], self.track[:, view.at] = known
+
+    def outside(self) -> Flags:
+        """Which places lie beside the outer one of the tracks, in view of it and of no other."""
+        seen = np.isfinite(self.track[0])
+        last = float(self.track[0][seen].max()) if seen.any() else 0.0
+        alone = seen & ~np.isfinite(self.track[1])
+        beyond = (self.track[0] == 0.0) & (self.left_m[0] <= 0.0)
+        beyond |= (self.track[0] == last) & (self.left_m[0] >= 0.0)
+        return np.asarray(alone & beyond, dtype=np.bool_)
 
     def side(self) -> Floats:
         """What of the strip the next lane sees again."""

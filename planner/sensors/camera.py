@@ -49,6 +49,9 @@ class CameraSensor:
         How far the aircraft may roll or pitch, and be off its line, for all of a region still to be seen.
     steady_overlap
         Whether the overlaps, too, are kept with these margins used up; otherwise on the planned line.
+    edge_overlap
+        Whether the side overlap is kept up to a region's edges; else these are in view of one lane at least,
+        no farther from it than from lane to lane.
     stabilised
         Whether the camera is kept in line with the course; otherwise it turns with the aircraft's nose.
     drift, toward_rad
@@ -75,6 +78,7 @@ class CameraSensor:
     pointing_margin_rad: float = 0.0
     position_margin_m: float = 0.0
     steady_overlap: bool = False
+    edge_overlap: bool = True
     stabilised: bool = False
     drift: float = 0.0
     toward_rad: float = 0.0

@@ -40,6 +40,7 @@ def read_camera(fields: Properties) -> CameraSensor | None:
     pointing_deg = fields.number("pointing_margin_deg", 0.0, minimum=0.0, maximum=MAX_POINTING_DEG)
     position_m = fields.number("position_margin_m", 0.0, minimum=0.0)
     stabilised = fields.flag("stabilised", False)
+    edge_overlap = fields.flag("edge_overlap", True)
     photo_mb = fields.number("photo_mb", None, above=0.0, maximum=LARGEST_PHOTO_MB)
     quality, sound = _quality(fields, spectrum)
     if name is None or optics is None or forward is None or side is None or tilt_deg is None or not sound:
@@ -69,7 +70,7 @@ def read_camera(fields: Properties) -> CameraSensor | None:
         None if known is None else known.name,
         pointing_margin_rad=math.radians(pointing_deg), position_margin_m=position_m,
         steady_overlap="pointing_margin_deg" in fields or "position_margin_m" in fields,
-        stabilised=stabilised, photo_mb=photo_mb,
+        edge_overlap=edge_overlap, stabilised=stabilised, photo_mb=photo_mb,
     )  # fmt: skip
 
 

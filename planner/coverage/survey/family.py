@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -72,7 +72,8 @@ class Surveys:
     ) -> tuple[LaneTarget | FigureTarget, ...]:
         """The stops that see a region: its pieces, or figures, each as often as it is to be visited."""
         if region.pattern in FIGURES:
-            parts = (figure_target(part, sensor, height_m, around) for part in region.split())
+            whole = replace(sensor, edge_overlap=True)
+            parts = (figure_target(part, whole, height_m, around) for part in region.split())
             return tuple(target for target in parts for _ in range(region.revisits))
         trial = Pieces(sensor, height_m, around)
         if region.pattern == "crosshatch":
@@ -88,7 +89,8 @@ class Surveys:
     ) -> bool:
         """Whether lanes over some division of it, or a figure, may be flown."""
         if region.pattern in FIGURES:
-            parts = (figure_target(part, sensor, height_m, around) for part in region.split())
+            whole = replace(sensor, edge_overlap=True)
+            parts = (figure_target(part, whole, height_m, around) for part in region.split())
             return all(part.can_be_flown() for part in parts)
         trial = Pieces(sensor, height_m, around)
         pieces = divided(region, trial, whole=True, enough=never)

@@ -33,7 +33,8 @@ class Frames:
         How far to either side of a lane all is seen.
     inset_m
         How far inside a region's edge the outermost lane may run: half a spacing, and no farther than it sees
-        the edge; where lanes overlap by half or more a spacing, and no farther than the next one sees it.
+        the edge; where lanes overlap by half or more a spacing, and no farther than the next one sees it; a
+        spacing, and no farther than it sees the edge itself, where the overlap need not be kept there.
     photos_m, least_m
         Between photos at most, and at least for the camera to take them.
     """
@@ -83,6 +84,8 @@ def frames(camera: CameraSensor, height_m: float, angles_rad: Floats) -> Frames:
     spacing_m, half_m = lesser(camera.lane_spacing_m), lesser(camera.half_width_m)
     # What one lane alone sees counts as if the next were as far from it on the other side.
     beside_m = half_m - spacing_m if camera.side_overlap >= TWICE else np.minimum(half_m, spacing_m / 2.0)
+    if not camera.edge_overlap:
+        beside_m = half_m
     least_m = -lesser(lambda _, angle_rad: -camera.least_spacing_m(angle_rad))
     photos_m = lesser(camera.photo_spacing_m)
     return Frames(spacing_m, half_m, np.minimum(spacing_m, beside_m), photos_m, least_m)
@@ -97,6 +100,9 @@ def runs(camera: CameraSensor, height_m: float, angles_rad: Floats) -> Runs:
     line = (each(camera.run_in_m), each(camera.run_out_m))
     seen = (each(camera.seen_in_m), each(camera.seen_out_m))
     beside = (each(camera.kept_in_m), each(camera.kept_out_m))
+    if not camera.edge_overlap:
+        interval_m = each(camera.photo_spacing_m)
+        line, beside = (np.maximum(seen[0], -interval_m), np.maximum(seen[1], -interval_m)), seen
     return Runs(*(run_m + SPARE_M for run_m in (*line, *beside, *seen)))
 
 

@@ -5,7 +5,8 @@ inside its edges, the others no more than a spacing d apart, n = ⌈(w − 2e) /
 On their own lines the first and the last photo lie half an interval inside; lanes go farther where ground
 between two would not be in two photos of the one and in view of the other. So places at the edges of a region
 are seen from two lanes and twice, as those between lanes and photos are. What n lanes have to spare is taken
-from their distances or from e.
+from their distances or from e. Of a camera that need not keep its overlap at the edges (``edge_overlap``)
+each lane answers for the ground halfway to the next one, and the outer ones for all up to the edge.
 """
 
 from __future__ import annotations
@@ -124,7 +125,7 @@ def lanes_at(survey: Survey, angles_rad: Floats, etas: Floats, count: int) -> La
     )  # fmt: skip
     edges = edges_of(survey.ground)
     line_m = strip_extents(edges, angles_rad, places_m - LINE_M, places_m + LINE_M)
-    paired = count > 1 and survey.camera.side_overlap >= TWICE
+    paired = count > 1 and survey.camera.side_overlap >= TWICE and survey.camera.edge_overlap
     if paired:
         low, high = cells_m[..., :-1], cells_m[..., 1:]
         # What lies so near to a lane the one beyond it sees, too.

@@ -169,6 +169,7 @@ PROOFS: dict[tuple[str, str], tuple[Document, Document]] = {
     ("sensor", "pointing_margin_deg"): (small(), sensor(pointing_margin_deg=3.0)),
     ("sensor", "position_margin_m"): (small(), sensor(position_margin_m=20.0)),
     ("sensor", "stabilised"): (small(wind=WIND), sensor(small(wind=WIND), stabilised=True)),
+    ("sensor", "edge_overlap"): (camera(), camera(edge_overlap=False)),
     ("sensor", "model"): (camera(), camera(model="DJI Zenmuse P1 24 mm")),
     ("sensor", "focal_length_m"): (by_figures(), by_figures(focal_length_m=0.03)),
     ("sensor", "pixel_pitch_m"): (by_figures(), by_figures(pixel_pitch_m=3e-6)),

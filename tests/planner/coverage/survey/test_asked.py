@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import math
 import re
 from typing import Any
 
 import pytest
+from shapely import union_all
+from shapely.affinity import rotate, translate
+from shapely.geometry import Polygon
+from shapely.geometry import box as shapely_box
 
 from planner.errors import InfeasibleError, ScenarioError
 from planner.frames import LocalFrame
@@ -94,3 +99,35 @@ def test_a_round_obstacle_is_told_what_it_can_be() -> None:
     (finding,) = (f for f in caught.value.findings if f.feature == "mast")
     assert "no_fly" in finding.fix
     assert "radius_m" in finding.fix
+
+
+@pytest.mark.parametrize(
+    "corners",
+    [
+        [(0, 0), (400, 30), (430, 290), (20, 240)],
+        [(0, 0), (380, 120), (60, 330)],
+        [(0, 0), (400, 0), (400, 140), (170, 150), (150, 330), (0, 320)],
+    ],
+)
+def test_edges_may_be_left_to_one_lane(corners: list[tuple[float, float]]) -> None:
+    """Not longer then, nothing refused, and each photo's own ground put together is still all of it."""
+    flown = {}
+    for kept in (True, False):
+        made = field(None, {"edge_overlap": kept}, type="multirotor")
+        del made["vehicles"][0]["max_bank_deg"]
+        ring = [list(FRAME.to_wgs84(corner)) for corner in (*corners, corners[0])]
+        made["features"][0]["geometry"] = {"type": "Polygon", "coordinates": [ring]}
+        scenario = read_scenario(made)
+        plan = make_plan(scenario)
+        assert not plan.violations
+        flown[kept] = plan.metrics.length_m
+        prints = []
+        for collect, photos in zip(plan.collects, plan.photos, strict=True):
+            places_m = FRAME.to_local([place[:2] for place in photos.places])
+            course_rad = math.radians(90.0 - collect.heading_deg)
+            ahead = 100.0 * EYE["pixel_pitch_m"] / EYE["focal_length_m"] * EYE["image_px"][1] / 2.0
+            beside = ahead * EYE["image_px"][0] / EYE["image_px"][1]
+            frame = rotate(shapely_box(-ahead, -beside, ahead, beside), course_rad, (0, 0), use_radians=True)
+            prints += [translate(frame, *place_m) for place_m in places_m]
+        assert Polygon(corners).difference(union_all(prints)).area < 1.0
+    assert flown[False] < flown[True]
