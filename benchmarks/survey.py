@@ -10,7 +10,8 @@ Parts, each with rows of its own:
     free; its lines alone, and with the 10 m that it flies on beyond each for a multirotor; ours with overlaps
     kept up to the edges, and there as such items leave them.
 ``convex``
-    Random convex regions: metres from the first lane to the last over area / spacing and the least turns.
+    Random convex regions: metres from the first lane to the last over area / spacing and the least turns,
+    and what of the rest is longer lanes, and slanted edges that turns go along.
 ``photos``
     Random regions in winds up to 60 % of the speed: how often each place of a grid of 1 m is seen, by how
     many lanes, and what neighbouring photos share at least; by a geometry of the benchmark's own.
@@ -245,22 +246,35 @@ def _left(angle_rad: float) -> Floats:
 
 def convex(count: int, seed: int) -> Iterator[Row]:
     """See the module."""
-    for radius_m in (10.0, 30.0):
-        over = []
+    for edge_overlap, radius_m in itertools.product((True, False), (10.0, 30.0)):
+        over, lanes_over, slants_over = [], [], []
+        camera = replace(camera_for(40.0), edge_overlap=edge_overlap)
         for k in range(count):
             rng = np.random.default_rng([seed, k])
             area = random_convex(rng, (float(rng.uniform(8.0, 40.0)) * 40.0) ** 2)
-            lines = lines_of(surveyed(area, camera_for(40.0), radius_m))
+            lines = lines_of(surveyed(area, camera, radius_m))
             least_m = area.area / 40.0 + (len(lines) - 1) * least_turn_m(40.0, radius_m)
-            over.append(math.fsum(flown_m(lines, radius_m)) / least_m)
+            lanes_m, turns_m = flown_m(lines, radius_m)
+            over.append((lanes_m + turns_m) / least_m)
+            lanes_over.append((lanes_m - area.area / 40.0) / least_m)
+            slants_over.append(slants_m(lines) / least_m)
         yield {
             "bench": "survey-convex",
             "radius_m": radius_m,
+            "edge_overlap": edge_overlap,
             "regions": count,
             "mean_over_bound": round(float(np.mean(over)), 4),
             "worst_over_bound": round(max(over), 4),
             "past_3_percent": sum(each > 1.03 for each in over),
+            "of_that_lanes": round(float(np.mean(lanes_over)), 4),
+            "of_that_slants": round(float(np.mean(slants_over)), 4),
         }
+
+
+def slants_m(lines: Floats) -> float:
+    """How far along them lanes begin before or behind the ends of those flown before: of slanted edges."""
+    ahead = (lines[0, 1] - lines[0, 0]) / np.hypot(*(lines[0, 1] - lines[0, 0]))
+    return float(np.abs((lines[1:, 0] - lines[:-1, 1]) @ ahead).sum())
 
 
 def least_turn_m(spacing_m: float, radius_m: float) -> float:

@@ -113,3 +113,18 @@ def test_photos_left_out_are_missed_over_terrain() -> None:
     assert looked_at(asked, scenario, every_other, 4.0).forward_kept < asked.forward - 0.05
     few = replace(plan, photos=tuple(replace(p, places=p.places[:2]) for p in plan.photos))
     assert looked_at(asked, scenario, few, 4.0).unseen > 0
+
+
+def test_slants_are_how_far_ends_lie_apart_along_lanes() -> None:
+    """Three lanes to and fro that each begin 15 m behind where the one before ended."""
+    lines = np.array(
+        [[[0.0, 0.0], [100.0, 0.0]], [[115.0, 40.0], [15.0, 40.0]], [[30.0, 80.0], [130.0, 80.0]]]
+    )
+    assert survey.slants_m(lines) == pytest.approx(30.0)
+
+
+def test_ground_seen_from_lines_is_as_wide_as_photos_and_as_much_longer() -> None:
+    """From 100 m a photo of 3 : 2 with lanes of 40 m at 60 % is 100 by 66.7 m."""
+    camera = survey.camera_for(40.0, 0.6)
+    seen = survey.seen_from([np.array([[0.0, 0.0], [0.0, 200.0]])], camera)
+    assert seen.bounds == pytest.approx((-50.0, -100.0 / 3.0, 50.0, 200.0 + 100.0 / 3.0))
