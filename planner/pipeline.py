@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
 from shapely.geometry import LineString, MultiLineString
 
@@ -15,6 +16,7 @@ from planner.check.edge import near_edge
 from planner.errors import Finding
 from planner.metrics import measure
 from planner.plan import LeftOut, Plan
+from planner.profile.items import items_of, too_many
 from planner.progress import Progress, Stop, never, silent
 from planner.publish import Chart, assemble, fence, uncovered
 from planner.scenario import Scenario
@@ -23,6 +25,9 @@ from planner.tasks.registry import task_of
 from planner.tasks.task import Answer, Controls
 from planner.together import Part, together
 from planner.version import __version__
+
+if TYPE_CHECKING:
+    from planner.tasks.fleet.task import FleetAnswer
 
 Clock = Callable[[], float]
 
@@ -83,6 +88,17 @@ def make_plan(
         return _fleet_plan(scenario, controls, watch)
     answer = task_of(scenario.task).answer(scenario, controls)
     setting = answer.setting
+    aircraft = setting.model.aircraft
+    count = items_of(answer.composed.flight, len(answer.passes), aircraft)
+    if scenario.task == "collect" and count > aircraft.most_items:
+        from planner.tasks.fleet.splitting import in_sorties
+
+        several = in_sorties(scenario, answer, count, controls)
+        if several is not None:
+            return _of_several(scenario, several, controls, watch)
+    if count > aircraft.most_items:
+        told = too_many(aircraft.name, count, aircraft.most_items)
+        answer = replace(answer, dropped=(*answer.dropped, told))
     chart = Chart(scenario.frame, setting.level)
     with watch.stage("publish"):
         draft = _draft(scenario, chart, answer)
@@ -157,11 +173,17 @@ def _judged(
 def _fleet_plan(scenario: Scenario, controls: Controls, watch: _Stopwatch) -> Plan:
     """The plan of several flights."""
     # Here: one flight needs no search for routes of many.
-    from planner.tasks.fleet.flights import answer_of
     from planner.tasks.fleet.search import search_together
     from planner.tasks.fleet.task import fleet
 
     found = (search_together if scenario.task == "search" else fleet)(scenario, controls)
+    return _of_several(scenario, found, controls, watch)
+
+
+def _of_several(scenario: Scenario, found: FleetAnswer, controls: Controls, watch: _Stopwatch) -> Plan:
+    """The plan of several flights that were found."""
+    from planner.tasks.fleet.flights import answer_of
+
     whole = Chart(scenario.frame, scenario.level)
     with watch.stage("publish"):
         parts = []

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,6 +18,7 @@ from planner.check.coverage import TIME_TOLERANCE_S
 from planner.check.times import edges_s
 from planner.plan import FlownPath, LonLat, Plan, Violation
 from planner.scenario import Scenario
+from planner.vehicle.aircraft import Aircraft
 from planner.wishes import Separation
 
 Floats = NDArray[np.float64]
@@ -133,7 +134,7 @@ def _batteries(scenario: Scenario, plan: Plan) -> Iterator[Violation]:
     """No more flights than batteries, each begun a turnaround after the one before has ended."""
     for aircraft in scenario.aircraft:
         paths = sorted((p for p in plan.paths if p.vehicle == aircraft.name), key=lambda p: p.start_s)
-        if len(paths) > aircraft.batteries:
+        if len(paths) > aircraft.batteries and not _on_one_battery(aircraft, paths):
             more = len(paths) - aircraft.batteries
             yield Violation(
                 "batteries",
@@ -160,6 +161,20 @@ def _batteries(scenario: Scenario, plan: Plan) -> Iterator[Violation]:
                     short_s,
                     "s",
                 )
+
+
+def _on_one_battery(aircraft: Aircraft, paths: Sequence[FlownPath]) -> bool:
+    """Whether one battery is enough for flights together, one after the other and none begun in the air."""
+    if aircraft.batteries > 1 or aircraft.aloft is not None:
+        return False
+    if any(one.end_s > other.start_s + TIME_TOLERANCE_S for one, other in itertools.pairwise(paths)):
+        return False
+    used = (
+        (math.fsum(path.length_m for path in paths), aircraft.max_range_m),
+        (math.fsum(path.duration_s for path in paths), aircraft.max_flight_time_s),
+        (math.fsum(path.energy_wh or math.inf for path in paths), aircraft.usable_wh),
+    )
+    return all(most is None or total <= most for total, most in used)
 
 
 def _near(scenario: Scenario, one: Trace, other: Trace, kept: Separation) -> Iterator[Violation]:

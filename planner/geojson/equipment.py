@@ -14,6 +14,7 @@ from planner.sensors.registry import KINDS
 from planner.vehicle.aircraft import (
     CORNER_RADIUS_M,
     DEFAULT_RESERVE,
+    MOST_ITEMS,
     Aircraft,
     Aloft,
     turn_radius_from_bank_m,
@@ -25,6 +26,8 @@ from planner.wishes import Method, Objective
 
 #: No aircraft is thought higher over its home.
 HIGHEST_ALOFT_M = 30_000.0
+#: Of a mission: enough for a few passes with their turns.
+LEAST_ITEMS = 20
 VEHICLE_TYPES = ("fixed_wing", "multirotor", "vtol")
 AUTOPILOTS = ("ardupilot", "px4")
 
@@ -79,6 +82,7 @@ def read_aircraft(raw: Any, index: int, findings: Findings) -> Aircraft | None:
     turnaround_s = fields.number("turnaround_s", 0.0, minimum=0.0)
     if batteries == 1:
         fields.unused("turnaround_s", "is the time between flights, and it has one battery")
+    max_items = _fewer_items(fields, autopilot, kind)
     aloft = _aloft(fields, owner, kind, findings)
     finish: Any = fields.choice("finish", ("auto", "land", "return", "loiter"), "auto")
     if "reserve" in fields and energy_wh is None:
@@ -113,8 +117,23 @@ def read_aircraft(raw: Any, index: int, findings: Findings) -> Aircraft | None:
         name, kind, autopilot, airspeed_m_s, radius_m, max_climb_deg, energy_wh, power, range_m, time_s,
         settle_m, base, reserve=reserve, finish=finish,
         min_airspeed_m_s=slowest_m_s, sensors=sensors, batteries=batteries, turnaround_s=turnaround_s or 0.0,
-        aloft=aloft,
+        aloft=aloft, max_items=max_items,
     )  # fmt: skip
+
+
+def _fewer_items(fields: Fields, autopilot: Any, kind: Any) -> int | None:
+    """How many items of a mission are to be had at most, where that is said."""
+    asked = fields.integer("max_items", 0, minimum=LEAST_ITEMS)
+    usual = MOST_ITEMS.get((autopilot, kind == "multirotor"), 0)
+    if usual and asked > usual:
+        fields.wrong(
+            "max_items",
+            f"is {asked}, and {autopilot} is uploaded {usual} at most",
+            f"Give {usual} or fewer, or leave it out.",
+            rule="out-of-range",
+        )
+        return None
+    return asked or None
 
 
 def _aloft(fields: Fields, owner: str, kind: str | None, findings: Findings) -> Aloft | None:

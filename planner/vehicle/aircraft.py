@@ -19,6 +19,15 @@ DEFAULT_RESERVE = 0.2
 #: near as autopilots pass a waypoint (WPNAV_RADIUS, NAV_ACC_RAD), flown as slowly as that asks for.
 CORNER_RADIUS_M = 2.0
 
+#: Items of a mission that an autopilot holds, by its name and whether it flies ArduCopter: what ArduPlane and
+#: ArduCopter 4.6 told; PX4's boards of unknown size.
+MOST_ITEMS: dict[tuple[Autopilot, bool], int] = {
+    ("ardupilot", False): 655,
+    ("ardupilot", True): 650,
+    ("px4", False): 500,
+    ("px4", True): 500,
+}
+
 #: Planned arcs are this much wider than the aircraft's limit, so that no rounding makes a turn too tight.
 TURN_RADIUS_MARGIN = 1.001
 
@@ -74,6 +83,8 @@ class Aircraft:
         How many flights it can make, each with all of its energy, and the time between two of them.
     aloft
         Where it is if it flies already; None on the ground.
+    max_items
+        How many items of a mission its autopilot holds; None for what is usual.
     """
 
     name: str
@@ -101,6 +112,17 @@ class Aircraft:
         return self.sensors is None or sensor in self.sensors
 
     aloft: Aloft | None = None
+    max_items: int | None = None
+
+    @property
+    def most_items(self) -> int:
+        """How many items of a mission its autopilot holds."""
+        return self.max_items or MOST_ITEMS[self.autopilot, self.hovers]
+
+    @property
+    def limited(self) -> bool:
+        """Whether anything says how long one flight may be."""
+        return (self.usable_wh, self.max_range_m, self.max_flight_time_s) != (None, None, None)
 
     @property
     def hovers(self) -> bool:

@@ -43,7 +43,10 @@ def test_the_paper_s_stages_keep_the_hard_constraints(number: int) -> None:
     assert plan.hard_violations == ()
     assert min(plan.metrics.coverage.values()) >= 0.9999
     assert {t.method for t in plan.transits} == {"ssas"}
-    assert not plan.warnings
+    # SSAS turns so often that the third is more than ArduPlane holds: its 679 items are said to be too many.
+    said = [warning for warning in plan.warnings if "too-many-items" in warning]
+    assert plan.warnings == tuple(said)
+    assert len(said) == (number == 3)
 
 
 def test_smoothing_by_shortcuts_is_shorter_than_by_fillets() -> None:

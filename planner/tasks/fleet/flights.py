@@ -14,6 +14,7 @@ from planner.fleet.waiting import Due, Timing, holds, least_hold_s, timing
 from planner.metrics import used
 from planner.plan import LeftOut
 from planner.profile.compose import Composed
+from planner.profile.items import items_of
 from planner.progress import silent
 from planner.publish import Leg
 from planner.route import Anchor, CollectPass, Pose
@@ -83,6 +84,11 @@ def over(crew: Crew, flown: Flown) -> tuple[Excess, ...]:
     return exceeded(crew.setting.model.aircraft, flown.use)
 
 
+def items_in(crew: Crew, flown: Flown) -> int:
+    """How many items the mission of a flight has at most."""
+    return items_of(flown.composed.flight, len(flown.passes), crew.aircraft)
+
+
 def in_best_order(crew: Crew, number: int, jobs: Sequence[tuple[Job, int]], controls: Controls) -> Flown:
     """A flight whose jobs may be done at any time.
 
@@ -116,6 +122,20 @@ def in_given_order(crew: Crew, number: int, jobs: Sequence[tuple[Job, int]], con
     with controls.stage("routing"):
         order = in_order(crew, jobs, controls)
     return _through(crew, number, jobs, order, (), controls)
+
+
+def by_passes(crew: Crew, number: int, passes: Sequence[CollectPass], controls: Controls) -> Flown:
+    """A flight by passes in the order given, whatever they are of.
+
+    Raises
+    ------
+    InfeasibleError
+        Where no line leads from one to the next.
+    """
+    transits = Transits.of(crew.setting, crew.asked.objective, chosen_methods(crew.alone.method))
+    with controls.stage("transit"):
+        composed, legs, notes = transits.through(passes, silent, controls.stop)
+    return _flown(crew, number, (), composed, legs, tuple(passes), notes, transits.methods)
 
 
 def straight_home(crew: Crew, number: int, controls: Controls, wait_s: float = 0.0) -> Flown:

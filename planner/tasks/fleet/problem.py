@@ -21,6 +21,8 @@ WaysOf = Mapping[tuple[str, int], Ways]
 #: A target that need not be seen is worth this many seconds for a priority of one: it is left out where it
 #: does not fit, and not for its cost.
 WORTH_S = 1e5
+#: Flights of an aircraft whose battery lasts for ever.
+MOST_TRIPS = 20
 
 
 @dataclass(slots=True)
@@ -28,13 +30,15 @@ class Lessons:
     """What flights took against what was thought, by the number of a crew.
 
     ``besides_s`` is what each flight takes more, ``power`` the mean power by that at cruise, ``factors`` are
-    of all times in the air once one was late, ``spare`` of what one flight may take.
+    of all times in the air once one was late, ``spare`` of what one flight may take. ``most_s`` is how long
+    one may last so that its mission has no more items than its autopilot holds.
     """
 
     besides_s: dict[int, float] = field(default_factory=dict)
     power: dict[int, float] = field(default_factory=dict)
     factors: dict[int, float] = field(default_factory=dict)
     spare: dict[int, float] = field(default_factory=dict)
+    most_s: dict[int, float] = field(default_factory=dict)
 
     def learn(self, told_s: Mapping[int, Sequence[float]]) -> None:
         """By how much each crew's flights took longer than was thought."""
@@ -48,6 +52,10 @@ class Lessons:
     def tighten(self, crew: int, part: float) -> None:
         """A flight was over a limit: the next ones are planned with less."""
         self.spare[crew] = self.spare.get(crew, 1.0) * part
+
+    def shorten(self, crew: int, flown_s: float, part: float) -> None:
+        """A flight of so long had too many items: the next ones last this part of it at most."""
+        self.most_s[crew] = min(self.most_s.get(crew, math.inf), part * flown_s)
 
     def factor(self, crew: int) -> float:
         """Of times in the air."""
@@ -183,18 +191,23 @@ def _member(
         crew.travel(seconds, lessons.power.get(number, 1.0)),
         own[0],
         (own[1],),
-        max_flight_s=_limit(aircraft.max_flight_time_s, spare),
+        max_flight_s=min(_limit(aircraft.max_flight_time_s, spare), lessons.most_s.get(number, math.inf)),
         range_m=_limit(aircraft.max_range_m, spare),
         energy_wh=_limit(aircraft.usable_wh, spare) if crew.power_w is not None else math.inf,
         waiting_w=crew.power_w or 0.0,
-        trips=trips_of(aircraft),
+        trips=trips_of(aircraft) if number in lessons.most_s else aircraft.batteries,
         turnaround_s=aircraft.turnaround_s,
     )
 
 
 def trips_of(aircraft: Aircraft) -> int:
-    """How many flights an aircraft may make: one that must come down elsewhere than it starts makes one."""
-    return aircraft.batteries
+    """How many flights an aircraft may make of what its autopilot does not hold as one mission.
+
+    As many as it has batteries; where nothing says how long one lasts, as many as it takes.
+    """
+    if aircraft.batteries > 1 or aircraft.limited or aircraft.aloft is not None:
+        return aircraft.batteries
+    return MOST_TRIPS
 
 
 def _limit(value: float | None, spare: float) -> float:

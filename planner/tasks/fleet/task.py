@@ -6,28 +6,26 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from planner.coverage.registry import family_of
 from planner.errors import Finding, InfeasibleError
 from planner.fleet.assignment import Assignment, Trip
 from planner.fleet.assignment import LeftOut as Unassigned
 from planner.fleet.problem import Problem
 from planner.plan import Assigned, LeftOut
 from planner.scenario import Scenario
-from planner.sensors.base import Sensor
-from planner.sensors.camera import CameraSensor
 from planner.tasks.fleet.aloft import homewards
 from planner.tasks.fleet.barred import BarredError, barred, infeasible
-from planner.tasks.fleet.crews import Crew, crews_of, most_s, not_seen, takes_s, ways_of
+from planner.tasks.fleet.crews import Crew, crews_of, not_seen, ways_of
 from planner.tasks.fleet.deciding import decided, decided_by, methods_of
-from planner.tasks.fleet.flights import Flown, Order, in_best_order, in_given_order, in_order, over
+from planner.tasks.fleet.flights import Flown, Order, in_best_order, in_given_order, in_order, items_in, over
 from planner.tasks.fleet.jobs import Job, jobs_of
+from planner.tasks.fleet.parts import Cutting
 from planner.tasks.fleet.placing import CROWDED, Errand, LateError, Sortie, cost_of, placed, powers_of
-from planner.tasks.fleet.problem import Lessons, problem_of
-from planner.tasks.fleet.told import told_of
+from planner.tasks.fleet.problem import Lessons, problem_of, trips_of
+from planner.tasks.fleet.told import told_of, too_many_items
 from planner.tasks.methods import chosen_methods
 from planner.tasks.task import Controls
 from planner.tasks.urban import cut_by_obstacles, lanes_cut
-from planner.wishes import Region, Separation
+from planner.wishes import Separation
 
 #: Rounds of assignment and flight, and of those that gave a plan.
 MOST_ROUNDS, ROUNDS = 8, 2
@@ -35,8 +33,6 @@ MOST_ROUNDS, ROUNDS = 8, 2
 FEW = 1
 #: Times thought and flown that are this near teach nothing.
 NEAR = 0.03
-#: A region is cut where it takes so much more than an even share of all work, or than one flight can give.
-MORE_THAN_EVEN, OF_A_FLIGHT = 1.3, 0.8
 #: After a flight over a limit, or late, the next are thought this much the longer besides.
 TIGHTER = 0.98
 
@@ -67,24 +63,38 @@ class FleetAnswer:
 Key = tuple[int, tuple[tuple[str, int], ...]]
 
 
-def fleet(scenario: Scenario, controls: Controls) -> FleetAnswer:
+def fleet(scenario: Scenario, controls: Controls, lessons: Lessons | None = None) -> FleetAnswer:
     """Who does what, when, and the flights that do it.
+
+    Parameters
+    ----------
+    lessons
+        What is known beforehand.
 
     Raises
     ------
     InfeasibleError
         Where a required region cannot be done, with what binds and what would help.
     """
-    return _Rounds(scenario, controls).best()
+    rounds = _Rounds(scenario, controls, lessons or Lessons())
+    try:
+        return rounds.best()
+    except InfeasibleError:
+        if rounds.too_long is None:
+            raise
+        # Too many items are no reason to have no plan.
+        return rounds.too_long
 
 
 class _Rounds:
     """The rounds of one scenario: what is known by crew and job, and what was flown."""
 
-    def __init__(self, scenario: Scenario, controls: Controls) -> None:
+    def __init__(self, scenario: Scenario, controls: Controls, lessons: Lessons) -> None:
         self._scenario, self._controls = scenario, controls
         self._separation = scenario.kept_apart
-        self._lessons = Lessons()
+        self._lessons = lessons
+        #: The last answer that was given up for its items alone.
+        self.too_long: FleetAnswer | None = None
         self._flown: dict[Key, Flown] = {}
         self._orders: dict[Key, Order] = {}
         self._given_up: dict[str, Finding] = {}
@@ -93,13 +103,13 @@ class _Rounds:
             self._crews = crews_of(scenario)
             self._parts: dict[str, int] = {}
             self._spread()
-            self._parts = self._cuts()
+            self._parts = self._cutting.first()
             if self._parts:
                 self._spread()
 
     def _spread(self) -> None:
         named = {region.name: region for region in self._scenario.regions}
-        shared_m = {name: self._shared_m(named[name]) for name in self._parts}
+        shared_m = {name: self._cutting.shared_m(named[name]) for name in self._parts}
         self._jobs = jobs_of(self._scenario.regions, self._parts, shared_m)
         ways, self._why = ways_of(self._crews, self._jobs)
         self._ways = {key: found for key, found in ways.items() if key not in self._barred}
@@ -142,9 +152,11 @@ class _Rounds:
                 continue
             if sorties is None:
                 continue
-            found.append(
-                (cost_of(sorties, self._scenario.objective), self._answer(jobs, problem, assigned, sorties))
-            )
+            answer = self._answer(jobs, problem, assigned, sorties)
+            if self._shortened(sorties):
+                self.too_long = answer
+                continue
+            found.append((cost_of(sorties, self._scenario.objective), answer))
             if near or len(found) >= ROUNDS or self._controls.enough():
                 break
         if not found:
@@ -253,6 +265,20 @@ class _Rounds:
         self._lessons.power.update(powers_of(self._crews, sorties))
         return (None if tighter else sorties), far <= NEAR
 
+    def _shortened(self, sorties: Sequence[Sortie]) -> bool:
+        """Whether a flight has more items than are held and can be two; the next ones are shorter then."""
+        long = False
+        for sortie in sorties:
+            crew = self._crews[sortie.flown.crew]
+            part = crew.aircraft.most_items / items_in(crew, sortie.flown)
+            if part < 1.0 and trips_of(crew.aircraft) > 1:
+                self._lessons.shorten(sortie.flown.crew, sortie.flown.duration_s, TIGHTER * part)
+                long = True
+        if long:
+            self._parts = self._cutting.first() | self._parts
+            self._spread()
+        return long
+
     def _errand(self, jobs: Sequence[Job], trip: Trip) -> Errand:
         key = _key(jobs, trip)
         done = tuple((jobs[visit.target], visit.number) for visit in trip.visits)
@@ -304,48 +330,9 @@ class _Rounds:
             self._given_up[job.of] = not_seen(job, error)
         return error
 
-    def _cuts(self) -> dict[str, int]:
-        """In how many parts regions are cut at first."""
-        times_s = {job.of: takes_s(job, self._crews, self._ways) for job in self._jobs}
-        even_s = math.fsum(s for s in times_s.values() if math.isfinite(s)) / len(self._crews)
-        parts = {}
-        for job in self._jobs:
-            time_s = times_s[job.of]
-            if not math.isfinite(time_s):
-                continue
-            able = [c for c in range(len(self._crews)) if (job.region.name, c) in self._ways]
-            shares = math.ceil(time_s / even_s) if time_s > MORE_THAN_EVEN * even_s and len(able) > 1 else 1
-            flight_s = min(most_s(self._crews[c]) for c in able)
-            flights = math.ceil(time_s / (OF_A_FLIGHT * flight_s)) if math.isfinite(flight_s) else 1
-            count = min(max(min(shares, len(able)), flights), self._most_parts(job.region))
-            if count > 1:
-                parts[job.of] = count
-        return parts
-
-    def _seen_by(self, region: Region) -> tuple[Sensor, float] | None:
-        """The sensor of a region, and its height over the ground; None where nobody sees it."""
-        names = {job.region.name for job in self._jobs if job.of == region.name}
-        able = [crew for name, crew in self._ways if name in names]
-        if not able:
-            return None
-        setting = self._crews[able[0]].setting
-        level = setting.level.of(region)
-        return setting.suite.over(region.sensor, region.area, setting.airspace, level)
-
-    def _most_parts(self, region: Region) -> int:
-        """As many as it takes passes; what is seen more than once is whole."""
-        seen = self._seen_by(region)
-        if seen is None or region.revisits > 1 or region.pattern not in ("auto", "lanes"):
-            return 1
-        sensor, height_m = seen
-        return max(family_of(sensor).fewest_passes(region, sensor, height_m)[0], 1)
-
-    def _shared_m(self, region: Region) -> float:
-        """What photos of two parts have to see both, for their overlap."""
-        seen = self._seen_by(region)
-        if seen is None or not isinstance(seen[0], CameraSensor):
-            return 0.0
-        return seen[0].side_overlap * seen[0].swath_m(seen[1])
+    @property
+    def _cutting(self) -> Cutting:
+        return Cutting(self._crews, self._jobs, self._ways, self._lessons.most_s)
 
     def _cut_more(self, jobs: Sequence[Job], lacking: Sequence[Unassigned]) -> bool:
         """One part more of each region that did not fit; whether there was any."""
@@ -354,7 +341,9 @@ class _Rounds:
         for each in lacking:
             job = jobs[each.target]
             count = self._parts.get(job.of, 1) + 1
-            if each.limit in ("flight-time", "range", "energy") and count <= self._most_parts(whole[job.of]):
+            if each.limit in ("flight-time", "range", "energy") and count <= self._cutting.most_parts(
+                whole[job.of]
+            ):
                 more[job.of] = count
         if not more:
             return False
@@ -375,6 +364,7 @@ class _Rounds:
                 *dropped,
                 Finding(job.of, f"not-seen-{each.limit}", each.message, each.relaxation, "warning"),
             )
+        dropped = (*dropped, *(told for s in sorties for told in too_many_items(self._crews, s.flown)))
         unique = {each.roi: each for each in left}
         told = told_of(problem, assigned, decided_by(self._scenario.method), self._controls.stop)
         methods = methods_of(self._scenario.method)

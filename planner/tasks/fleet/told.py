@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
+
+from planner.errors import Finding
 from planner.fleet.assignment import Assignment
 from planner.fleet.auto.build import tables
 from planner.fleet.bound import lower_bound
 from planner.fleet.problem import Problem
 from planner.fleet.schedule import worth_of_all
 from planner.plan import Assigned
+from planner.profile.items import too_many
 from planner.progress import Stop, never
+from planner.tasks.fleet.crews import Crew
+from planner.tasks.fleet.flights import Flown, items_in
 
 #: Of more targets no bound is looked for: it would take longer than a second.
 MOST_TARGETS = 30
@@ -33,3 +39,11 @@ def told_of(problem: Problem, assigned: Assignment, method: str, stop: Stop = ne
     bound_s = min(max(bound_s, 0.0), objective_s)
     gap = round(1.0 - bound_s / objective_s, 6)
     return Assigned(method, assigned.status, round(objective_s, 3), round(bound_s, 3), gap)
+
+
+def too_many_items(crews: Sequence[Crew], flown: Flown) -> Iterator[Finding]:
+    """What is said of a flight whose mission its autopilot does not hold."""
+    aircraft = crews[flown.crew].aircraft
+    count = items_in(crews[flown.crew], flown)
+    if count > aircraft.most_items:
+        yield too_many(aircraft.name, count, aircraft.most_items)
