@@ -11,6 +11,7 @@ from shapely import difference, get_parts, intersection, union_all
 from shapely.geometry import MultiPolygon, Polygon
 from shapely.geometry.base import BaseGeometry
 
+from planner.airspace.built import bare_ground
 from planner.check.footprints import footprint
 from planner.check.heights import HEIGHT_TOLERANCE_M
 from planner.check.places import middle
@@ -30,26 +31,27 @@ TIME_TOLERANCE_S = 0.01
 def covered(
     scenario: Scenario, plan: Plan
 ) -> tuple[dict[str, float], dict[str, Polygon | MultiPolygon], list[Violation]]:
-    """Fraction of each region seen, what is left of it in the local frame, and the violations."""
+    """Fraction of each region's bare ground seen, what of it is not, in the local frame, and violations."""
     coverage: dict[str, float] = {}
     unseen: dict[str, Polygon | MultiPolygon] = {}
     violations = []
     seen_by = [(collect, footprint(scenario, collect, plan)) for collect in plan.collects]
     for region in scenario.regions:
+        asked = bare_ground(region.area, scenario.airspace, scenario.level.of(region))
         own = [
             (collect, ground)
             for collect, ground in seen_by
             if ground.intersects(region.area) and counts(scenario, region, collect)
         ]
         if region.revisit_after_s > 0.0:
-            seen = seen_apart(region, own)
+            seen = seen_apart(region, own, asked)
         else:
             seen = seen_times([ground for _, ground in own], region.revisits)
         # A millimetre of slack: coordinates are rounded to a hundredth of one.
-        rest = difference(region.area, seen.buffer(1e-3), grid_size=GRID_M)
-        fraction = max(0.0, 1.0 - rest.area / region.area.area)
+        rest = difference(asked, seen.buffer(1e-3), grid_size=GRID_M)
+        fraction = max(0.0, 1.0 - rest.area / asked.area)
         coverage[region.name] = fraction
-        if rest.area <= UNSEEN_FRACTION * region.area.area:
+        if rest.area <= UNSEEN_FRACTION * asked.area:
             coverage[region.name] = 1.0
             continue
         polygons = [part for part in getattr(rest, "geoms", [rest]) if isinstance(part, Polygon)]
@@ -69,7 +71,9 @@ def covered(
     return coverage, unseen, violations
 
 
-def seen_apart(region: Region, seen_by: Sequence[tuple[Collect, BaseGeometry]]) -> BaseGeometry:
+def seen_apart(
+    region: Region, seen_by: Sequence[tuple[Collect, BaseGeometry]], asked: BaseGeometry
+) -> BaseGeometry:
     """What the last visit sees of a region whose visits lie apart; all of it where there are enough.
 
     A visit ends as soon as all is seen; the next one begins with the first collect that is late enough.
@@ -81,8 +85,8 @@ def seen_apart(region: Region, seen_by: Sequence[tuple[Collect, BaseGeometry]]) 
             continue
         seen = union_all([seen, ground], grid_size=GRID_M)
         until_s = max(until_s, collect.end_s)
-        rest = difference(region.area, seen.buffer(1e-3), grid_size=GRID_M)
-        if rest.area <= UNSEEN_FRACTION * region.area.area:
+        rest = difference(asked, seen.buffer(1e-3), grid_size=GRID_M)
+        if rest.area <= UNSEEN_FRACTION * asked.area:
             visits += 1
             if visits == region.revisits:
                 return seen

@@ -10,6 +10,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from planner.airspace.built import bare_ground
 from planner.airspace.shapes import hard_shapes
 from planner.check.camera_print import nose_off_rad, photo_corners
 from planner.check.coverage import counts
@@ -46,7 +47,7 @@ def surveyed(scenario: Scenario, plan: Plan) -> tuple[dict[str, Surveyed], list[
         ]
         if not lanes:
             continue
-        places_m = grid_over(region.area)
+        places_m = grid_over(bare_ground(region.area, scenario.airspace, scenario.level.of(region)))
         ground_m, flown_over_m = _ground(scenario, places_m)
         lanes = [replace(lane, altitudes_m=lane.altitudes_m + flown_over_m) for lane in lanes]
         seen = look(places_m, ground_m, lanes, sensor)

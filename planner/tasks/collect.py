@@ -25,7 +25,7 @@ from planner.routing.greedy.route import li2018_route
 from planner.routing.joint.route import Search, joint_route
 from planner.routing.legs import Legs
 from planner.scenario import Scenario
-from planner.tasks.cells import by_cells
+from planner.tasks.cells import by_cells, left_m2
 from planner.tasks.hidden import Sight, hidden_findings, see_hidden
 from planner.tasks.limits import Dropped, within_limits
 from planner.tasks.methods import chosen_methods
@@ -33,7 +33,7 @@ from planner.tasks.prizes import Offer
 from planner.tasks.setting import Setting, seeing
 from planner.tasks.task import NOT_SEEN, Answer, Controls, Task
 from planner.tasks.transits import Transits
-from planner.tasks.urban import cut_by_obstacles, lanes_cut, leaves_ground, refuse_filled, swept
+from planner.tasks.urban import cut_by_obstacles, lanes_cut, leaves_ground, left_of, refuse_filled, swept
 from planner.vehicle.limits import Use
 
 Passes = tuple[CollectPass, ...]
@@ -132,7 +132,9 @@ def _found(asked: Seeing, setting: Setting, methods: dict[str, str], seed: int, 
     if not cut_by_obstacles(asked):
         refuse_filled(asked)
         cells = by_cells(asked, _search(asked, setting, seed, sight, controls))
-        return (cells, ()) if cells else _joint(asked, setting, seed, sight, controls)
+        if cells and not left_of(asked, cells):
+            return cells, ()
+        return _joint(asked, setting, seed, sight, controls)
     return _among_obstacles(asked, setting, seed, sight, controls)
 
 
@@ -141,7 +143,7 @@ def _among_obstacles(
 ) -> Found:
     """Lanes over cells of the open ground, or sweeps round what cuts it, whichever tour is shorter.
 
-    Where both leave ground unseen, lanes across all of it if those leave none.
+    Where both leave ground unseen, lanes across all of it if those leave none; else what leaves least.
 
     Raises
     ------
@@ -152,18 +154,28 @@ def _among_obstacles(
     search = _search(asked, setting, seed, None, controls)
     cells = by_cells(asked, search)
     try:
-        found = swept(asked, setting, "auto", seed, controls.progress, controls.stop)
+        found: Found | None = swept(asked, setting, "auto", seed, controls.progress, controls.stop)
     except InfeasibleError:
-        return (cells, ()) if cells else _joint(asked, setting, seed, sight, controls)
-    if cells and (leaves_ground(found[1]) or search.legs.tour_m(cells) <= search.legs.tour_m(found[0])):
-        return cells, ()
-    if not leaves_ground(found[1]):
+        found = None
+    whole = cells is not None and not left_of(asked, cells)
+    if cells and whole:
+        shorter = found is not None and search.legs.tour_m(cells) <= search.legs.tour_m(found[0])
+        if found is None or leaves_ground(found[1]) or shorter:
+            return cells, ()
+    if found is not None and not leaves_ground(found[1]):
         return found
     try:
-        lanes = _joint(asked, setting, seed, sight, controls)
+        lanes: Found | None = _joint(asked, setting, seed, sight, controls)
     except InfeasibleError:
-        return found
-    return found if lanes[1] else lanes
+        if found is None and cells is None:
+            raise
+        lanes = None
+    if lanes is not None and (found is None or not lanes[1]):
+        return lanes
+    if cells and (found is None or left_m2(asked, cells) < left_m2(asked, found[0])):
+        return cells, left_of(asked, cells)
+    assert found is not None
+    return found
 
 
 def _joint(asked: Seeing, setting: Setting, seed: int, sight: Sight | None, controls: Controls) -> Found:

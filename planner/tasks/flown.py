@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
+from planner.airspace.built import bare_ground
 from planner.as_flown import coverage, looks
 from planner.as_flown.photo_judge import PhotoJudge
 from planner.as_flown.track import Record, TrackSample
@@ -32,6 +34,10 @@ def sortie_looks(scenario: Scenario, plan: Plan, records: Sequence[Record]) -> t
 
 
 def _asked(scenario: Scenario) -> coverage.Asked:
-    return coverage.Asked(
-        scenario.frame, scenario.regions, scenario.suite, scenario.aircraft, scenario.airspace
+    """Of regions the ground that nothing stands on, as the judge of plans asks for."""
+    airspace = scenario.airspace
+    regions = tuple(
+        replace(region, area=bare_ground(region.area, airspace, scenario.level.of(region)))
+        for region in scenario.regions
     )
+    return coverage.Asked(scenario.frame, regions, scenario.suite, scenario.aircraft, airspace)

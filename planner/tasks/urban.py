@@ -58,7 +58,7 @@ def swept(
             rule = f"{NOT_SEEN}{error.constraint}"
             findings.append(Finding(error.feature, rule, error.message, error.relaxation, "warning"))
             continue
-        left_m2 = unseen_m2(region, own)
+        left_m2 = unseen_m2(region, asked.airspace, level, own)
         if left_m2 > LEFT_PART * region.area.area:
             findings.append(_left(region.name, left_m2))
         passes += own
@@ -117,6 +117,16 @@ def refuse_filled(asked: Seeing) -> None:
 def _open_ground(asked: Seeing, region: Region, area: BaseGeometry) -> BaseGeometry:
     margin_m = asked.airspace.clearance_m + TRANSIT_MARGIN_M
     return open_ground(area, asked.airspace, asked.level.of(region), margin_m)
+
+
+def left_of(asked: Seeing, passes: tuple[CollectPass, ...]) -> tuple[Finding, ...]:
+    """What is to be said of regions that passes leave ground of."""
+    found = []
+    for region in asked.regions:
+        left_m2 = unseen_m2(region, asked.airspace, asked.level.of(region), passes)
+        if left_m2 > LEFT_PART * region.area.area:
+            found.append(_left(region.name, left_m2))
+    return tuple(found)
 
 
 def leaves_ground(findings: tuple[Finding, ...]) -> bool:

@@ -8,7 +8,8 @@ Boustrophedon Coverage Path Planning as a Generalized Traveling Salesman Problem
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
 
 import shapely
 from shapely.geometry import Polygon
@@ -31,6 +32,8 @@ from planner.sensors.camera import CameraSensor
 
 #: Smaller cells are seen from their neighbours'.
 LEAST_CELL_M2 = 1.0
+#: Pieces of ground that is left are seen with this much round them.
+LEFT_MARGIN_M = 0.05
 #: Of more cells the tour is left to sweeps.
 MOST_CELLS = 60
 
@@ -62,6 +65,33 @@ def cell_targets(
             if pieces is None or len(found) + len(pieces) > MOST_CELLS:
                 return None
             found += [trial.target(visit) for piece in pieces for visit in visits(piece, trial)]
+    return tuple(found)
+
+
+def left_targets(asked: Seeing, around: Surroundings, left: Iterable[BaseGeometry]) -> tuple[Target, ...]:
+    """A target for each piece of ground that is left of each region, to be seen from beside it.
+
+    Parameters
+    ----------
+    left
+        Of each region of what is asked, in its order.
+
+    Raises
+    ------
+    InfeasibleError
+        Where some piece cannot be seen from where one may fly.
+    """
+    found: list[Target] = []
+    for region, ground in zip(asked.regions, left, strict=True):
+        level = asked.level.of(region)
+        there = asked.at(level, around)
+        for piece in shapely.get_parts(ground):
+            hull = piece.buffer(LEFT_MARGIN_M, join_style="mitre").convex_hull
+            whole = replace(region, area=hull)
+            sensor, height_m = asked.suite.over(region.sensor, hull, asked.airspace, level)
+            if isinstance(sensor, CameraSensor):
+                (part,) = split_region(whole)
+                found.append(Pieces(sensor, height_m, there).target(replace(part, axes=())))
     return tuple(found)
 
 

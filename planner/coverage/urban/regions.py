@@ -12,6 +12,7 @@ from shapely.geometry.base import BaseGeometry
 from shapely.ops import nearest_points
 
 from planner.airspace.airspace import Airspace, Level
+from planner.airspace.built import bare_ground
 from planner.airspace.shapes import banded_shapes
 from planner.airspace.zones import TRANSIT_MARGIN_M
 from planner.coverage.merge import polygons_of
@@ -108,10 +109,19 @@ def top_over(area: BaseGeometry, airspace: Airspace, level: Level) -> float:
     return max(tops_m, default=-math.inf)
 
 
-def unseen_m2(region: Region, passes: tuple[CollectPass, ...]) -> float:
-    """How much of a region's ground no pass sees."""
+def unseen_m2(region: Region, airspace: Airspace, level: Level, passes: tuple[CollectPass, ...]) -> float:
+    """How much of a region's bare ground no pass sees."""
+    return float(unseen_of(region, airspace, level, passes).area)
+
+
+def unseen_of(
+    region: Region, airspace: Airspace, level: Level, passes: tuple[CollectPass, ...]
+) -> BaseGeometry:
+    """What of a region's bare ground no pass sees."""
     seen = shapely.union_all([each.footprint for each in passes], grid_size=1e-6)
-    return float(shapely.difference(region.area, seen, grid_size=1e-6).area)
+    ground = bare_ground(region.area, airspace, level)
+    left: BaseGeometry = shapely.difference(ground, seen, grid_size=1e-6)
+    return left
 
 
 def _posed(
