@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import zipfile
 import zlib
+from collections import Counter
 from pathlib import PurePosixPath
 
 from app.imports.errors import RegionFileError, file_error
@@ -36,7 +37,8 @@ def unpack(data: bytes, wanted: tuple[str, ...]) -> dict[str, bytes]:
     Raises
     ------
     RegionFileError
-        Rules ``archive-damaged``, ``archive-too-large``, ``archive-path``, ``archive-encrypted``.
+        Rules ``archive-damaged``, ``archive-too-large``, ``archive-path``, ``archive-encrypted``,
+        ``archive-twice``.
     """
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
@@ -75,6 +77,13 @@ def _judge(members: list[zipfile.ZipInfo]) -> None:
             raise file_error(
                 "archive-encrypted", f"{name[:80]!r} is encrypted", "pack the files without a password"
             )
+    twice = [name for name, count in Counter(member.filename for member in members).items() if count > 1]
+    if twice:
+        raise file_error(
+            "archive-twice",
+            f"the archive holds {twice[0][:80]!r} more than once, and which is meant is not known",
+            "pack each file once",
+        )
     total = sum(member.file_size for member in members)
     if total > MAX_TOTAL_BYTES:
         raise file_error(

@@ -132,7 +132,14 @@ def _layers(members: dict[str, bytes]) -> dict[str, dict[str, bytes]]:
     for name, content in members.items():
         if _ending(name) in _SHAPEFILES:
             stem = str(PurePosixPath(name).with_suffix(""))
-            by_stem.setdefault(stem.casefold(), {})[_ending(name)] = content
+            files = by_stem.setdefault(stem.casefold(), {})
+            if _ending(name) in files:
+                raise file_error(
+                    "archive-twice",
+                    f"the archive holds two files {name[:80]!r}, and which is meant is not known",
+                    "pack each file once",
+                )
+            files[_ending(name)] = content
             if _ending(name) == ".shp":
                 named[stem.casefold()] = stem
     return {named[stem]: files for stem, files in by_stem.items() if ".shp" in files}

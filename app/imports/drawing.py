@@ -19,7 +19,9 @@ from planner.geojson.sheet import MOST_LONGITUDE_DEG, continued, wrapped_deg
 
 #: A ring that crosses itself more often is taken for its convex hull.
 _MOST_CROSSINGS = 100
-_AT_ONCE = 8
+_LONG_RING = 5_000
+#: Pieces looked at together: few at first, as each of a scribble's meets most others.
+_AT_FIRST, _AT_ONCE = 1, 512
 
 
 def closed(shape: Shape, role: str) -> Shape:
@@ -68,12 +70,14 @@ def mended(shape: Shape) -> Shape | None:
     """
     near_deg = shape.parts[0][0][0][0]
     rings = [continued(ring, near_deg) for ring in shape.parts[0]]
-    if Polygon(rings[0], rings[1:]).is_valid:
+    # Of a long scribble it takes minutes to find that it is none of a polygon.
+    few = len(rings[0]) < _LONG_RING or _crosses_seldom(rings[0])
+    if few and Polygon(rings[0], rings[1:]).is_valid:
         return None
     outer = Polygon(rings[0])
-    if not outer.is_valid:
+    if not few or not outer.is_valid:
         ring = LineString([*rings[0], rings[0][0]])
-        few = _crosses_seldom(rings[0])
+        few = few and _crosses_seldom(rings[0])
         faces = unary_union(list(polygonize([unary_union(ring)]).geoms)) if few else None
         whole = faces if isinstance(faces, Polygon) else convex_hull(ring)
         if not isinstance(whole, Polygon):
@@ -87,11 +91,13 @@ def _crosses_seldom(ring: list[LonLat]) -> bool:
     corners = np.array([*ring, ring[0]])
     pieces = np.asarray(shapely.linestrings(np.stack([corners[:-1], corners[1:]], axis=1)))
     tree = STRtree(pieces)
-    found = 0
-    for start in range(0, len(pieces), _AT_ONCE):
-        found += len(tree.query(pieces[start : start + _AT_ONCE], predicate="crosses")[0])
+    found = start = 0
+    count = _AT_FIRST
+    while start < len(pieces):
+        found += len(tree.query(pieces[start : start + count], predicate="crosses")[0])
         if found > 2 * _MOST_CROSSINGS:
             return False
+        start, count = start + count, min(2 * count, _AT_ONCE)
     return True
 
 

@@ -18,6 +18,7 @@ _SEPARATOR = b"\x1e"
 
 def read_json_file(data: bytes, crs: str | None, notes: Notes) -> tuple[str, list[Shape]]:
     """The format, and the shapes."""
+    data = _as_utf8(data)
     text = data.lstrip(b"\xef\xbb\xbf \t\r\n")
     try:
         document = None if text.startswith(_SEPARATOR) else read_json(data)
@@ -40,6 +41,16 @@ def read_json_file(data: bytes, crs: str | None, notes: Notes) -> tuple[str, lis
     if esri_json.is_esri(document):
         return "esrijson", esri_json.shapes_of(document, crs, notes)
     return "geojson", plain.shapes_of(document, crs, notes)
+
+
+def _as_utf8(data: bytes) -> bytes:
+    """The text in UTF-8 where its mark says that it is in UTF-16, as PowerShell writes it; else as it is."""
+    if data[:2] not in (b"\xff\xfe", b"\xfe\xff") or data[:4] == b"\xff\xfe\x00\x00":
+        return data
+    try:
+        return data.decode("utf-16").encode()
+    except UnicodeError as error:
+        raise file_error("json-syntax", f"the text is no UTF-16: {error}", "send UTF-8") from error
 
 
 def _has_lines(text: bytes) -> bool:

@@ -96,8 +96,11 @@ def _boxes_within(
     inner: list[NDArray[np.int64]] = []
     outer: list[NDArray[np.int64]] = []
     left = MAX_PAIRS
-    for start in range(0, len(polygons), 500):
-        some = np.arange(start, min(start + 500, len(polygons)))
+    start, count = 0, 1
+    while start < len(polygons):
+        # Few at first: each of many that lie in each other has as many pairs as there are rings.
+        some = np.arange(start, min(start + count, len(polygons)))
+        start, count = start + count, min(2 * count, 512)
         a, b = tree.query(shapely.box(*boxes[some].T))
         a = some[a]
         within = (a != b) & sound[a] & sound[b]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import re
 from collections.abc import Iterator
@@ -16,6 +17,8 @@ from app.imports.notes import Notes
 from app.imports.plain import drawn
 from app.imports.shapes import Shape, labelled, moved
 
+#: Deeper than any geometry: collections within collections.
+MAX_DEPTH = 50
 _KIND = r"(?:MULTI)?(?:POINT|LINESTRING|POLYGON)|GEOMETRYCOLLECTION|LINEARRING"
 _BEGINNING = re.compile(rf"\s*(?:SRID\s*=\s*(\d{{1,6}})\s*;\s*)?(?:{_KIND})\b[\s(ZME]", re.IGNORECASE)
 _TOKEN = re.compile(r"[()]|[A-Za-z]+")
@@ -46,6 +49,9 @@ def shapes_of_wkt(text: str, name: str, crs: str | None, notes: Notes) -> list[S
     if head is None:
         raise file_error("wkt", f"{name or 'a geometry'} is {text.strip()[:40]!r}", "write well-known text")
     body = text[text.index(";") + 1 :] if head[1] else text
+    if _depth(body) > MAX_DEPTH:
+        message = f"{name or 'a geometry'} has brackets within brackets over {MAX_DEPTH} deep"
+        raise file_error("wkt", message, "write its parts as geometries of their own")
     try:
         with np.errstate(all="ignore"):
             geometry = json.loads(shapely.to_geojson(shapely.force_2d(shapely.from_wkt(body.strip()))))
@@ -54,6 +60,11 @@ def shapes_of_wkt(text: str, name: str, crs: str | None, notes: Notes) -> list[S
     system = crs or (head[1] if head[1] not in (None, "0") else None)
     move = mover(written_crs(system), notes) if system else None
     return labelled([moved(Shape(s.kind, s.parts, name), move) for s in drawn(geometry, name)])
+
+
+def _depth(text: str) -> int:
+    """Of its brackets, as deep as they go."""
+    return max(itertools.accumulate((1 if c == "(" else -1 for c in text if c in "()"), initial=0))
 
 
 def _pieces(text: str) -> Iterator[str]:

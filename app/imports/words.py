@@ -7,9 +7,13 @@ an incursion. Words for the other roles have to be all that the text says.
 
 from __future__ import annotations
 
+import contextlib
+import html
 import re
 import unicodedata
+from collections.abc import Iterator
 from functools import lru_cache
+from urllib.parse import unquote
 
 #: Stems that begin a word, by language; blanks stand for blanks, hyphens, underscores and changes of case.
 _FORBID = (
@@ -29,28 +33,34 @@ _FORBID = (
     # German
     r"\w*verbot\w*|\w*verbuet\w*|kein\w* (?:uber)?fl[iu]\w*"
     r"|flugbeschrank\w*|luftsperr\w*|\w*sperrgebiet\w*|sperr\w*|\w*gefahr\w*|kontrollzone\w*"
-    r"|nicht (?:uber)?flieg\w*|ausschluss\w*|meid\w*",
+    r"|nicht (?:uber|be)?flieg\w*|ausschluss\w*|meid\w*"
+    r"|\w*gesperrt\w*|\w*flugsperr\w*|\w*sperrb(?:ezirk|ereich)\w*",
     # French
     r"interdi\w*|reglement\w*|danger\w*|survol interdit|zones? (?:p|r|d)\b|eviter|evitement"
-    r"|hors limites?|defendu\w*",
+    r"|hors limites?|defendu\w*|(?:ne pas|non) (?:survol\w*|voler|entrer)|pas de survol|zit|zrt",
     # Italian, Spanish, Portuguese, Catalan, Romanian
     r"viet\w*|divieto\w*|interdet\w*|regolamentat\w*|pericol\w*|riservat\w*|prohib\w*|proib\w*|restring\w*"
     r"|restrit\w*|restric\w*|peligr\w*|perig\w*|vedad\w*|no vol\w*|no sobrevol\w*|evitar\w*|interzis\w*"
-    r"|interzic\w*",
+    r"|interzic\w*"
+    r"|no vuel\w*|sin vuelo\w*|non (?:vol\w*|sorvol\w*|entrare)|nao (?:voar|sobrevo\w*|entrar)|sem voo\w*",
     # Dutch, Scandinavian, Finnish
     r"verboden|verbode|vl[iu]e?gverbod\w*|bannsv\w*|flugbann\w*|beperk\w*|gevaar\w*|forbud\w*|forbudt|forbjud\w*|flygforbud\w*|flyveforbud\w*"
-    r"|flyforbud\w*|restrik\w*|farlig\w*|fareomrad\w*|kielle\w*|kielto\w*|lentokiel\w*|rajoit\w*|vaara\w*",
+    r"|flyforbud\w*|restrik\w*|farlig\w*|fareomrad\w*|kielle\w*|kielto\w*|lentokiel\w*|rajoit\w*|vaara\w*"
+    r"|geen vlieg\w*|niet (?:vliegen|betreden)|ikke fly\w*|flyg ej|flyv ikke|ei saa",
     # Polish, Czech, Slovak, Slovene, Croatian, Hungarian, Turkish, Baltic
     r"zakaz\w*|zabron\w*|ogranicz\w*|niebezp\w*|omezen\w*|obmedzen\w*|nebezp\w*|zabran\w*|omejit\w*"
     r"|prepoved\w*"
     r"|ogranicen\w*|opasn\w*|zabranj\w*|tilos\w*|tilalom\w*|tilalm\w*|tiltott\w*|korlatoz\w*|veszely\w*|yasak\w*|kisitl\w*|tehlike\w*"
     r"|draudz\w*|ribojim\w*|aizlieg\w*|ierobezo\w*|keelat\w*|\w*keelu\w*|qadagan\w*|taqiqla\w*"
-    r"|ndaluar\w*|ndalohet|ndalim\w*|piirang\w*|ohtlik\w*",
+    r"|ndaluar\w*|ndalohet|ndalim\w*|piirang\w*|ohtlik\w*"
+    r"|bezlet\w*|neleta\w*|nie (?:lata\w*|wlat\w*)|\w*keeld|ucus yasag\w*|yasag\w*",
     # Indonesian, Malay, Vietnamese, Filipino, Swahili, Basque, Irish, Welsh, Maltese
     r"larang\w*|terlarang\w*|dilarang\w*|cam bay|(?:vung|khu vuc|khu) cam|han che|nguy hiem|bawal\w*"
-    r"|marufuku|hairuhusiwi|debeka\w*|toirmisc\w*|cosctha|dim hedfan|gwahardd\w*|projbit\w*",
+    r"|marufuku|hairuhusiwi|debeka\w*|toirmisc\w*|cosctha|dim hedfan|gwahardd\w*|projbit\w*"
+    r"|jangan terbang|khong bay",
     # Russian, Ukrainian, Bulgarian, Serbian, Greek
     r"запрет\w*|запрещ\w*|ограничен\w*|опасн\w*|бесполет\w*|заборон\w*|обмежен\w*|небезпеч\w*|забран\w*|забрањ\w*"
+    r"|(?:не|нельзя) (?:лета|влета|літа|заліта)\w*|закрыт\w*|закрит\w*"
     r"|тыиым\w*|хориот\w*|хориг\w*"
     r"|απαγορ\w*|περιορισ\w*|επικινδυν\w*",
 )  # fmt: skip
@@ -58,6 +68,9 @@ _FORBID = (
 _FORBID_ANYWHERE = (
     "禁飞", "禁飛", "限飞", "限飛", "禁止", "禁区", "禁區", "限制",
     "限高", "管制", "管控", "危险", "危險", "净空", "淨空",
+    "勿飞", "勿飛", "勿入", "不可飞", "不可飛", "飛行不可", "不得飞", "비행불가",
+    "عدم الطيران", "منع الطيران", "איסור", "งดบิน",
+    "नो फ्लाई", "नो-फ्लाई",
     "飛行禁止", "制限", "規制", "立入禁止", "비행금지", "금지", "제한", "위험", "관제권", "통제",
     "ممنوع", "محظور", "حظر", "خطر", "مقيد", "ממנוע", "אסור", "מסוכן", "מוגבל", "ห้าม", "จำกัด", "อันตราย",
     "निषिद्ध", "निषेध", "प्रतिबंध", "वर्जित", "मनाही", "बंदी", "খতরা", "নিষিদ্ধ", "নিষেধ", "தடை",
@@ -79,7 +92,8 @@ _INSIDE = re.compile(
 _EITHER = re.compile(
     r"\b(?:geo ?fenc\w*|fenc(?:e|es|ing)|d ?fence|geo ?zones?|geographical zones?|airspaces?"
     r"|luftraum\w*|clotur\w*"
-    r"|conditional|u ?space|cerca virtual|geocerca\w*|geovall\w*)\b|围栏|圍欄|空域|ジオフェンス|空域|공역"
+    r"|conditional|cta|tma|u ?space"
+    r"|cerca virtual|geocerca\w*|geovall\w*)\b|围栏|圍欄|空域|ジオフェンス|空域|공역"
 )
 #: How states number prohibited, restricted and danger areas: EGD012, ED-R 37A, R-5503.
 _DESIGNATOR = re.compile(r"(?:[A-Z]{2}[ -]?[RPD][ -]?\d{1,4}|[RPDW]-\d{2,5})[A-Z]?(?![A-Za-z0-9])")
@@ -115,9 +129,10 @@ _PHRASES = {
     "importance": ("importance",),
 }  # fmt: skip
 ROLE_OF_PHRASE = {phrase: role for role, phrases in _PHRASES.items() for phrase in phrases}
-_CAMEL = re.compile(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
+_CAMEL = re.compile(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Z])(?=[A-Z](?!s(?![a-z]))[a-z])")
 _NO_WORD = re.compile(r"[\W_]+")
 _DIGITS = re.compile(r"(?<=[^\W\d_])(?=\d)|(?<=\d)(?=[^\W\d_])")
+_PERCENT = re.compile(r"%[0-9A-Fa-f]{2}")
 _SPACED_NFZ = re.compile(r"\bn f z\b")
 _LETTERS = str.maketrans(
     {
@@ -134,8 +149,15 @@ _LETTERS = str.maketrans(
         "’": "",
     }
 )
+#: Letters that look like another alphabet's: Cyrillic and Greek ones, and the Latin ones they look like.
+_ALIKE = (
+    "авеѕіјкмнорстухαβεικνορτυχ",
+    "abesijkmhopctyxabeiknoptyx",
+)
+_TO_LATIN = str.maketrans(*_ALIKE)
+_TO_CYRILLIC = str.maketrans("abesijkmhopctyx", "авеѕіјкмнорстух")
 _FALSE = frozenset({"", "0", "0.0", "no", "n", "false", "f", "none", "null", "nan", "off", "nein", "non"})
-_LONGEST = 20_000
+_LONGEST, _OVERLAP = 20_000, 100
 
 
 def plain(text: str) -> str:
@@ -148,7 +170,7 @@ def plain(text: str) -> str:
 def _plain(text: str) -> str:
     bare = text
     if not text.isascii():
-        folded = unicodedata.normalize("NFKD", text)
+        folded = unicodedata.normalize("NFKD", _seen(text))
         bare = "".join(c for c in folded if not unicodedata.combining(c) or c > "\u0900")
         bare = unicodedata.normalize("NFC", bare)
     bare = _CAMEL.sub(" ", bare.translate(_LETTERS))
@@ -156,9 +178,16 @@ def _plain(text: str) -> str:
     return _SPACED_NFZ.sub("nfz", _DIGITS.sub(" ", bare)).strip()
 
 
+def _pieces(text: str) -> Iterator[str]:
+    """The whole text, a long one in parts that overlap by more than a phrase: what forbids may stand last."""
+    yield text[:_LONGEST]
+    for start in range(_LONGEST, len(text), _LONGEST):
+        yield text[start - _OVERLAP : start + _LONGEST]
+
+
 def forbids(text: str) -> str | None:
     """The word that forbids flying there; None where there is none."""
-    return _forbids(text[:_LONGEST])
+    return next(filter(None, map(_forbids, _pieces(text))), None)
 
 
 def keeps_inside(text: str) -> str | None:
@@ -168,14 +197,41 @@ def keeps_inside(text: str) -> str | None:
 
 def says_either(text: str) -> str | None:
     """A word of restriction that leaves open in which sense, or denies it."""
-    return _says_either(text[:_LONGEST])
+    return next(filter(None, map(_says_either, _pieces(text))), None)
+
+
+def _seen(text: str) -> str:
+    """Without characters that are not seen: soft hyphens, joiners, marks of direction."""
+    return "".join(c for c in text if unicodedata.category(c) != "Cf")
+
+
+def _readings(text: str) -> Iterator[str]:
+    """The text, and what it may have been before another program wrote it down."""
+    yield text
+    if "&" in text or "<" in text:
+        yield html.unescape(re.sub(r"<[^<>]*>", " ", text))
+    if _PERCENT.search(text):
+        yield unquote(text)
+    if text.isascii():
+        return
+    for page in ("latin-1", "cp1252"):
+        # UTF-8 that was read as a page of single bytes.
+        with contextlib.suppress(UnicodeError):
+            yield text.encode(page).decode("utf-8")
+    yield "".join(" " if unicodedata.category(c) == "Cf" else c for c in text)
+    bare = plain(text)
+    yield bare.translate(_TO_LATIN)
+    yield bare.translate(_TO_CYRILLIC)
 
 
 @lru_cache(maxsize=512)
 def _forbids(text: str) -> str | None:
-    words = _NEGATED.sub(" ", plain(text))
-    found = _FORBIDDEN.search(words) or _ANYWHERE.search(unicodedata.normalize("NFKC", text))
-    return found.group().strip() if found else None
+    for reading in _readings(text):
+        words = _NEGATED.sub(" ", plain(reading))
+        found = _FORBIDDEN.search(words) or _ANYWHERE.search(unicodedata.normalize("NFKC", _seen(reading)))
+        if found:
+            return found.group().strip()
+    return None
 
 
 @lru_cache(maxsize=512)

@@ -28,6 +28,8 @@ from planner.wishes import Method, Objective
 HIGHEST_ALOFT_M = 30_000.0
 #: Of a mission: enough for a few passes with their turns.
 LEAST_ITEMS = 20
+#: Arcs of less are points.
+LEAST_RADIUS_M = 0.001
 VEHICLE_TYPES = ("fixed_wing", "multirotor", "vtol")
 AUTOPILOTS = ("ardupilot", "px4")
 
@@ -236,7 +238,7 @@ def kept_m(aircraft: Iterable[Aircraft | None]) -> float:
 
 def _turn_radius_m(fields: Fields, airspeed_m_s: float | None, kind: str | None) -> float | None:
     """The widest of the turn radii that the given limits demand."""
-    radius_m = fields.number("min_turn_radius_m", None, above=0.0)
+    radius_m = fields.number("min_turn_radius_m", None, minimum=LEAST_RADIUS_M)
     bank_deg = fields.number("max_bank_deg", None, above=0.0, below=85.0)
     load_factor = fields.number("max_load_factor", None, above=1.0)
     if airspeed_m_s is None:

@@ -25,6 +25,10 @@ POINT_TARGET_RADIUS_M = 1.0
 DISC_QUADRANT = 32
 #: Altitudes below this are a slip of the pen.
 LOWEST_M = 1.0
+#: Of a corridor: places are rounded to less.
+LEAST_WIDTH_M = 0.001
+#: Headings that a region may be limited to: each is looked at.
+MOST_APPROACHES = 360
 #: Where the scale of NIIRS ends.
 HIGHEST_NIIRS = 9.0
 #: More visits than this are a slip of the pen: each is a stop of the tour.
@@ -112,7 +116,7 @@ def read_region(raw: RawFeature, frame: LocalFrame, findings: Findings) -> Regio
     if kind in ("Polygon", "MultiPolygon"):
         area = shapes.area(raw.name, raw.geometry, frame, findings)
     elif kind in ("LineString", "MultiLineString"):
-        width_m = fields.number("width_m", above=0.0)
+        width_m = fields.number("width_m", minimum=LEAST_WIDTH_M)
         axis = shapes.line(raw.name, raw.geometry, frame, findings)
         if axis is not None and shapely.get_num_coordinates(axis) > MANY:
             axis = LineString(axis.simplify(EXACT_M[0] / 2.0).coords)
@@ -186,7 +190,13 @@ def _headings(fields: Fields) -> tuple[float, ...] | None:
     if value is None:
         return None
     if not isinstance(value, list) or not value or not all(is_finite(v) and 0.0 <= v <= 360.0 for v in value):
-        fields.wrong("approach_deg", f"is {value!r}", "Give a list of headings in degrees, 0 to 360.")
+        fields.wrong(
+            "approach_deg", f"is {repr(value)[:80]}", "Give a list of headings in degrees, 0 to 360."
+        )
+        return None
+    if len(value) > MOST_APPROACHES:
+        message = f"has {len(value)} headings, more than {MOST_APPROACHES}"
+        fields.wrong("approach_deg", message, "Give fewer, or none for any.", rule="too-many-headings")
         return None
     return tuple(float(v) for v in value)
 

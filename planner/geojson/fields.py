@@ -24,6 +24,10 @@ REQUIRED = Required.REQUIRED
 T = TypeVar("T", float, str)
 
 LARGEST = sys.float_info.max
+#: Beyond the first and, of what has to be above 0, below the second is no number in a unit of ours.
+MOST, LEAST = 1e12, 1e-12
+#: Of batteries, revisits, rotors; and characters of a name or another text.
+MOST_COUNTED, MOST_CHARACTERS = 10_000, 1_000
 
 
 def is_finite(value: Any) -> bool:
@@ -115,6 +119,9 @@ class Fields:
     ) -> float | None:
         """A finite number within bounds; ``minimum``/``maximum`` may be reached, ``above``/``below`` not.
 
+        None is beyond ``MOST`` or, where it has to be above 0, below ``LEAST``: no unit of ours needs it, and
+        squares and quotients of such numbers are none.
+
         Returns the default, or None after a finding, when it is absent or wrong.
         """
         value = self.raw(name)
@@ -127,6 +134,14 @@ class Fields:
             self.wrong(name, "must be finite", "Replace NaN or Infinity by a number.", rule="not-finite")
             return None
         number = float(value)
+        if abs(number) > MOST or (above == 0.0 and 0.0 < number < LEAST):
+            self.wrong(
+                name,
+                f"is {number:g}, which no number in a unit of its name is",
+                f"Give a value of {MOST:g} at most, and of {LEAST:g} at least where it is above 0.",
+                rule="out-of-range",
+            )
+            return None
         if number < minimum or number > maximum or number <= above or number >= below:
             low = (
                 f"≥ {minimum:g}" if math.isfinite(minimum) else f"> {above:g}" if math.isfinite(above) else ""
@@ -141,18 +156,17 @@ class Fields:
             return None
         return number
 
-    def integer(self, name: str, default: int, *, minimum: int) -> int:
-        """A whole number at least ``minimum``; the default after a finding."""
+    def integer(self, name: str, default: int, *, minimum: int, maximum: int = MOST_COUNTED) -> int:
+        """A whole number from ``minimum`` to ``maximum``; the default after a finding."""
         value = self.raw(name)
         if value is None:
             return default
         if not is_finite(value) or value != int(value):
             self.wrong(name, f"must be a whole number, not {value!r}", "Give a whole number.")
             return default
-        if value < minimum:
-            self.wrong(
-                name, f"is {value}, must be ≥ {minimum}", f"Give {minimum} or more.", rule="out-of-range"
-            )
+        if not minimum <= value <= maximum:
+            bounds = f"from {minimum} to {maximum}"
+            self.wrong(name, f"is {value:g}, must be {bounds}", f"Give one {bounds}.", rule="out-of-range")
             return default
         return int(value)
 
@@ -171,6 +185,10 @@ class Fields:
             return self._absent(name, default, "text")
         if not isinstance(value, str) or not value:
             self.wrong(name, f"must be text, not {_kind(value)}", "Write it in quotes.")
+            return None
+        if len(value) > MOST_CHARACTERS:
+            message = f"has {len(value)} characters, more than {MOST_CHARACTERS}"
+            self.wrong(name, message, "Shorten it.", rule="too-long")
             return None
         return value
 

@@ -54,11 +54,14 @@ CRS84 = (
     "urn:ogc:def:crs:EPSG::4326",
 )
 
+#: What generators of random numbers take.
+MOST_SEED = 2**32 - 1
+
 
 def scenario_hash(document: Mapping[str, Any]) -> str:
     """SHA-256 of the document in canonical JSON (sorted keys, no spaces)."""
     canonical = json.dumps(document, sort_keys=True, separators=(",", ":"), ensure_ascii=False)
-    return hashlib.sha256(canonical.encode()).hexdigest()
+    return hashlib.sha256(canonical.encode(errors="surrogatepass")).hexdigest()
 
 
 def read_scenario(document: Any, terrains: Terrains | None = None) -> Scenario:
@@ -167,7 +170,7 @@ def _read(document: Any, findings: Findings, terrains: Terrains | None) -> Scena
     clearance_m = top.number("clearance_m", equipment.kept_m(aircraft), minimum=0.0)
     budget_s = top.number("time_budget_s", None, above=0.0)
     name = top.text("name", "scenario")
-    seed = top.integer("seed", 0, minimum=0)
+    seed = top.integer("seed", 0, minimum=0, maximum=MOST_SEED)
     wind = equipment.read_wind(document.get("wind"), findings)
     objective = equipment.read_objective(document.get("objective"), findings)
     method = equipment.read_method(document.get("method"), findings)

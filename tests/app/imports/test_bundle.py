@@ -162,6 +162,9 @@ def test_scribbles_and_deep_links_have_an_end() -> None:
         (feature,) = import_regions(kml(placemark("NFZ", mark))).collection["features"]
         hull = MultiPoint(places).convex_hull
         assert shape(feature["geometry"]).symmetric_difference(hull).area < 1e-9
+    long = [(8.0 + dice.random(), 47.0 + dice.random()) for _ in range(20_000)]
+    (feature,) = import_regions(kml(placemark("NFZ", polygon([*long, long[0]])))).collection["features"]
+    assert shape(feature["geometry"]).symmetric_difference(MultiPoint(long).convex_hull).area < 1e-9
     chain = {f"{n}.kml": kml(link(f"{n + 1}.kml")) for n in range(60)}
     with pytest.raises(RegionFileError) as caught:
         import_regions(packed(chain))
@@ -191,3 +194,19 @@ def test_archives_in_archives_are_opened_once() -> None:
     assert names_of(import_regions(packed({"a.zip": inner}))) == ["a"]
     with pytest.raises(RegionFileError):
         import_regions(packed({"b.zip": packed({"a.zip": inner})}))
+
+
+def test_of_files_that_an_archive_holds_twice_none_is_dropped() -> None:
+    """A zone behind a region of the same path is refused by name; of shapefiles in any case."""
+    zone, field = kml(placemark("NFZ", polygon(RING))), kml(placemark("field", polygon(RING)))
+    buffer = BytesIO()
+    with zipfile.ZipFile(buffer, "w") as archive:
+        archive.writestr("doc.kml", zone)
+        with pytest.warns(UserWarning, match="Duplicate"):
+            archive.writestr("doc.kml", field)
+    shapes = shapefiles([[RING]], ["x"])
+    cased = packed({f"fields{e}": d for e, d in shapes.items()} | {"FIELDS.SHP": shapes[".shp"]})
+    for data in (buffer.getvalue(), cased):
+        with pytest.raises(RegionFileError) as caught:
+            import_regions(data)
+        assert [finding.rule for finding in caught.value.findings] == ["archive-twice"]

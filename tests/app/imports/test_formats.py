@@ -382,3 +382,23 @@ def test_reference_systems_of_geojson_are_followed(name: str) -> None:
         "features"
     ]
     assert shape(made["geometry"]).symmetric_difference(wanted).area < 1e-4 * wanted.area
+
+
+def test_collections_within_collections_have_an_end() -> None:
+    """Well-known text of thousands of brackets within brackets is refused before anything follows them."""
+    for deep in (5_000, 1_000_000):
+        data = b"GEOMETRYCOLLECTION(" * deep + b"POINT(8 47)" + b")" * deep
+        with pytest.raises(RegionFileError) as caught:
+            import_regions(data)
+        assert [finding.rule for finding in caught.value.findings] == ["wkt"]
+
+
+@pytest.mark.parametrize("codec", ["utf-16", "utf-8-sig"])
+def test_geojson_of_windows_is_read(codec: str) -> None:
+    """As PowerShell and editors write it: with a mark ahead, in UTF-16 or UTF-8."""
+    drawn = {"type": "Polygon", "coordinates": [[[8, 47], [8, 48], [9, 48], [8, 47]]]}
+    text = json.dumps(
+        {"type": "Feature", "properties": {"name": "запрет"}, "geometry": drawn}, ensure_ascii=False
+    )
+    (feature,) = import_regions(text.encode(codec)).collection["features"]
+    assert (feature["id"], feature["properties"]["role"]) == ("запрет", "no_fly")

@@ -40,6 +40,10 @@ FORBIDDING = (
     "ห้ามบิน", "cấm bay", "khu vực cấm", "उड़ान निषेध क्षेत्र", "repülési tilalom", "bannsvæði",
     "lennukeeluala", "eremu debekatua", "bawal lumipad", "نو فلائی زون", "აკრძალული ზონა", "արգելված գոտի",
     "ұшуға тыйым", "нисэх хориотой", "verbode gebied", "zonë e ndaluar", "забрањена зона",
+    "gesperrt", "não voar", "zona de no vuelo", "ne pas survoler", "bezletová zóna", "uçuş yasağı",
+    "закрытая зона", "geen vliegzone", "lennukeeld", "नो फ्लाई ज़ोन", "请勿飞行", "NFZs", "ＮＦＺ",
+    "No\u00adFly", "no\u200bfly\u200bzone", "З\u200bА\u200bП\u200bР\u200bЕ\u200bТ", "fo\u0308rbjudet",
+    "nо flу zоnе", "No%20Fly",
     "Fluchverbuetszon", "kein Überflug", "RPZ", "closed area", "ຫ້າມບິນ", "ហាមហោះ", "የተከለከለ",
 )  # fmt: skip
 HARMLESS = (
@@ -55,6 +59,13 @@ HARMLESS = (
     "Feld R-1",
     "DJI P4",
     "dangle",
+    "Talsperre",
+    "Zitrone",
+    "Ei saari",
+    "A&B farm",
+    "100% coverage",
+    "Größe",
+    "Поле",
 )
 
 
@@ -121,6 +132,22 @@ def test_words_of_restriction_forbid(word: str) -> None:
         assert shape(feature["geometry"]).equals(Polygon(RING)), (place, outline)
         assert "role_in_doubt" not in feature["properties"], (place, outline)
         assert found.shapes[0].why
+
+
+def test_text_that_was_read_in_a_wrong_code_page_forbids() -> None:
+    """UTF-8 that another program took for Latin-1 or Windows-1252 means what it meant; so does HTML."""
+    assert forbids("förbjudet".encode().decode("latin-1"))
+    assert forbids("запрет".encode().decode("latin-1"))
+    assert forbids("interdit de survol – été".encode().decode("cp1252"))
+    assert forbids("<b>No&nbsp;Fly</b>")
+
+
+def test_what_forbids_may_stand_last_in_a_long_text() -> None:
+    """A description of a megabyte that ends in words of restriction is a no-fly zone in doubt."""
+    data, more = written("a word " * 150_000 + "no fly zone", "kml value", False)
+    (feature,) = became(data, **more).collection["features"]
+    assert feature["properties"]["role"] == "no_fly"
+    assert feature["properties"]["role_in_doubt"]
 
 
 @pytest.mark.parametrize("word", HARMLESS)
