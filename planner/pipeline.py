@@ -203,6 +203,9 @@ def _of_several(scenario: Scenario, found: FleetAnswer, controls: Controls, watc
             {region.name: region.priority for region in scenario.regions},
         )
         home, end = whole.lonlats([scenario.start.position, scenario.end.position])
+        if len(draft.vehicles) == 1:
+            # What is read as the plan of one flight is flown from where that begins to where it ends.
+            home, end = draft.vehicles[0].home or home, draft.vehicles[0].end or end
         warnings = tuple(str(finding) for finding in found.dropped) + draft.warnings
         draft = replace(draft, home=home, end=end, methods=found.methods, warnings=warnings)
         draft = replace(draft, metrics=replace(draft.metrics, assignment=found.assigned))

@@ -72,6 +72,7 @@ class Scenario:
         """Where an aircraft starts, and where it ends."""
         base = next((base for base in self.bases if base.name == aircraft.base), None)
         ends = (self.start, self.end) if base is None else (base, Terminal(base.name, base.position))
+        ends = (ends[0], next(iter(self._named(aircraft)), ends[1]))
         if aircraft.aloft is None:
             return ends
         aloft = aircraft.aloft
@@ -82,6 +83,20 @@ class Scenario:
         return replace(
             ends[0], position=place, angle_rad=angle_rad, over_home_m=aloft.height_m, home=ends[0].ground
         ), ends[1]
+
+    def _named(self, aircraft: Aircraft) -> tuple[Terminal, ...]:
+        named = {base.name: Terminal(base.name, base.position) for base in self.bases}
+        return tuple(named[name] for name in aircraft.end_bases or () if name in named)
+
+    def landings_of(self, aircraft: Aircraft) -> tuple[Terminal, ...]:
+        """Where an aircraft may end: at any of the bases that it names, else at its one end."""
+        return self._named(aircraft) or (self.ends_of(aircraft)[1],)
+
+    def landing_at(self, aircraft: Aircraft, end: Terminal) -> Scenario:
+        """What one aircraft may be asked, as ``of_one``, if it ends there."""
+        alone = self.of_one(aircraft)
+        plain = tuple(replace(each, base=None, end_bases=None) for each in alone.aircraft)
+        return replace(alone, start=self.ends_of(aircraft)[0], end=end, aircraft=plain, bases=())
 
     def of_one(self, aircraft: Aircraft) -> Scenario:
         """What one of several aircraft may be asked: the regions its sensors see, from its own ends.
@@ -116,7 +131,7 @@ class Scenario:
         return (
             len(self.aircraft) > 1
             or self.method.routing == "stecz2020"
-            or any(aircraft.batteries > 1 for aircraft in self.aircraft)
+            or any(aircraft.batteries > 1 or aircraft.end_bases is not None for aircraft in self.aircraft)
             or any(region.time_window_s is not None for region in self.regions)
             or any(region.revisit_after_s > 0.0 for region in self.regions)
         )
@@ -124,8 +139,9 @@ class Scenario:
     def terminals(self) -> tuple[Terminal, ...]:
         """Every place where a flight starts or ends, those of one place once."""
         found: dict[tuple[float, float], Terminal] = {}
-        for terminal in (end for aircraft in self.aircraft for end in self.ends_of(aircraft)):
-            found.setdefault(terminal.position, terminal)
+        for aircraft in self.aircraft:
+            for terminal in (self.ends_of(aircraft)[0], *self.landings_of(aircraft)):
+                found.setdefault(terminal.position, terminal)
         return tuple(found.values())
 
     @property

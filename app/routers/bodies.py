@@ -70,8 +70,9 @@ SCENARIO_SCHEMA: dict[str, Any] = {
             "items": {"type": "object"},
             "minItems": 1,
             "description": "Of several each has a name of its own, and may have sensors (those on board), a "
-            "base, and batteries with turnaround_s between flights. Work whose mission has more items than "
-            "the autopilot holds (max_items, ArduPlane 655, ArduCopter 650, PX4 500) is flown in several.",
+            "base, end_bases of which it lands at one, and batteries with turnaround_s between flights. Work "
+            "whose mission has more items than the autopilot holds (max_items, ArduPlane 655, "
+            "ArduCopter 650, PX4 500) is flown in several.",
         },
         "separation": {
             "type": "object",

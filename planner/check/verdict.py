@@ -34,8 +34,9 @@ from planner.check.photo_quality import surveyed
 from planner.check.searched import Found, searched
 from planner.check.stretches import Measured
 from planner.check.times import line_s
-from planner.plan import Plan, Surveyed, Violation
+from planner.plan import FlownPath, Plan, Surveyed, Violation
 from planner.scenario import Scenario
+from planner.vehicle.aircraft import Aircraft
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,7 +82,7 @@ def judge(scenario: Scenario, plan: Plan) -> Verdict:
     asked, published = scenario, plan
     for flown in published.paths:
         aircraft = next(a for a in asked.aircraft if a.name == flown.vehicle)
-        scenario, plan = asked.of_one(aircraft), published.of(flown.vehicle, flown.sortie)
+        scenario, plan = _asked_of(asked, aircraft, flown), published.of(flown.vehicle, flown.sortie)
         (path,), aircraft = plan.paths, aircraft.in_wind(asked.wind.speed_m_s)
         vehicle = next(v for v in plan.vehicles if v.name == path.vehicle)
         line_m = scenario.frame.to_local([place[:2] for place in path.line])
@@ -154,6 +155,15 @@ def judge(scenario: Scenario, plan: Plan) -> Verdict:
             violations.append(Violation("length", "metrics", message, off_m, "m"))
     seen = (None, None, None) if found is None else (found.area_m2, found.importance, found.total)
     return Verdict(tuple(violations), length_m, tightest_m, coverage, unseen, surveys, *seen)
+
+
+def _asked_of(asked: Scenario, aircraft: Aircraft, flown: FlownPath) -> Scenario:
+    """What an aircraft was asked, had it been to land at the one of its landings where it came down."""
+    if aircraft.end_bases is None:
+        return asked.of_one(aircraft)
+    lands = asked.frame.to_local([flown.line[-1][:2]])[0]
+    ends = asked.landings_of(aircraft)
+    return asked.landing_at(aircraft, min(ends, key=lambda end: math.dist(end.position, lands)))
 
 
 def _begins_m(scenario: Scenario, home_ground_m: float) -> tuple[float, float]:

@@ -79,7 +79,8 @@ def read_aircraft(raw: Any, index: int, findings: Findings) -> Aircraft | None:
     steady_m = 0.0 if steady is None or airspeed_m_s is None else steady.settle_s * airspeed_m_s
     settle_m = fields.number("settle_m", steady_m, minimum=0.0)
     base = fields.text("base", None)
-    sensors = _on_board(fields)
+    end_bases = _names(fields, "end_bases", "bases, or leave it out to land where it starts")
+    sensors = _names(fields, "sensors", "sensors, or leave it out for all")
     batteries = fields.integer("batteries", 1, minimum=1)
     turnaround_s = fields.number("turnaround_s", 0.0, minimum=0.0)
     if batteries == 1:
@@ -95,6 +96,12 @@ def read_aircraft(raw: Any, index: int, findings: Findings) -> Aircraft | None:
             "has no power model",
             "Add power, or cruise_power_w for a constant one; or leave energy_wh out.",
             rule="no-power-model",
+        )
+    if end_bases is not None and batteries not in (None, 1):
+        fields.wrong(
+            "end_bases",
+            f"names where it lands, and its {batteries} batteries are changed where it starts",
+            "Set batteries to 1, or leave end_bases out.",
         )
     if aloft is not None and batteries not in (None, 1):
         fields.wrong(
@@ -119,7 +126,7 @@ def read_aircraft(raw: Any, index: int, findings: Findings) -> Aircraft | None:
         name, kind, autopilot, airspeed_m_s, radius_m, max_climb_deg, energy_wh, power, range_m, time_s,
         settle_m, base, reserve=reserve, finish=finish,
         min_airspeed_m_s=slowest_m_s, sensors=sensors, batteries=batteries, turnaround_s=turnaround_s or 0.0,
-        aloft=aloft, max_items=max_items,
+        aloft=aloft, max_items=max_items, end_bases=end_bases,
     )  # fmt: skip
 
 
@@ -194,12 +201,12 @@ def _stored_wh(fields: Fields) -> float | None:
     return energy_wh
 
 
-def _on_board(fields: Fields) -> tuple[str, ...] | None:
-    value = fields.raw("sensors")
+def _names(fields: Fields, name: str, of: str) -> tuple[str, ...] | None:
+    value = fields.raw(name)
     if value is None:
         return None
     if not isinstance(value, list) or not value or not all(isinstance(v, str) and v for v in value):
-        fields.wrong("sensors", f"is {value!r}", "Give a list of names of sensors, or leave it out for all.")
+        fields.wrong(name, f"is {value!r}", f"Give a list of names of {of}.")
         return None
     return tuple(dict.fromkeys(value))
 

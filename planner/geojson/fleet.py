@@ -76,10 +76,29 @@ def check_fleet(scenario: Scenario, bases: Sequence[Terminal], objective: Any, f
             findings.warning(
                 "objective", "not-used", f"{name} weighs several flights, and there is one", "Remove it."
             )
+    known = {base.name for base in bases}
+    for aircraft in scenario.aircraft:
+        for name in aircraft.end_bases or ():
+            if name not in known:
+                findings.error(
+                    f"vehicle {aircraft.name}",
+                    "unknown-base",
+                    f"may land at the base {name!r}, which is not here",
+                    f"Use some of: {', '.join(sorted(known))}." if known else "Add a Point of role base.",
+                )
+        if aircraft.end_bases is not None and _circles(aircraft):
+            findings.error(
+                f"vehicle {aircraft.name}",
+                "finish-not-apart",
+                f"ends its flight circling (finish {aircraft.finish}), and is to land at a base",
+                "Set finish to land, or leave it out.",
+            )
     used = {end.position for end in scenario.terminals()}
     for base in bases:
         if base.position not in used:
-            findings.warning(base.name, "not-used", "is a base that no vehicle starts from", "Remove it.")
+            findings.warning(
+                base.name, "not-used", "is a base that no vehicle starts from or lands at", "Remove it."
+            )
     sensors = [sensor.name for sensor in scenario.sensors]
     for aircraft in scenario.aircraft:
         for name in aircraft.sensors or ():

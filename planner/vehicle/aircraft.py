@@ -70,6 +70,8 @@ class Aircraft:
         Steepest climb or descent.
     base
         Name of the base it starts from; None for the scenario's start.
+    end_bases
+        Names of the bases it may land at, whichever suits; None for where it starts, or the scenario's end.
     wind_m_s
         Steady wind it flies in, from any direction, slower than ``airspeed_m_s``.
     finish
@@ -113,6 +115,7 @@ class Aircraft:
 
     aloft: Aloft | None = None
     max_items: int | None = None
+    end_bases: tuple[str, ...] | None = None
 
     @property
     def most_items(self) -> int:

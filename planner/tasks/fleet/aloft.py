@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from typing import Protocol
 
@@ -9,6 +10,7 @@ from planner.errors import InfeasibleError
 from planner.fleet.assignment import Trip
 from planner.fleet.separation import Apart, Track
 from planner.fleet.waiting import least_hold_s
+from planner.route import Terminal
 from planner.tasks.fleet.crews import Crew
 from planner.tasks.fleet.flights import Flown, Order, straight_home, with_waits
 from planner.tasks.fleet.jobs import Job
@@ -86,7 +88,7 @@ def home_apart(
     known = crew.setting.ends[0].angle_rad is not None
     for circles in (0.0, *CIRCLES) if known else (0.0,):
         try:
-            flown = straight_home(crew, number, controls, circles * once_s)
+            flown = straight_home(crew.landing(_nearest(crew)), number, controls, circles * once_s)
         except InfeasibleError:
             if circles == 0.0:
                 raise
@@ -124,8 +126,13 @@ def homewards(crews: Sequence[Crew], trips: Sequence[Trip], controls: Controls) 
     found = []
     for number, crew in enumerate(crews):
         if busy and number not in busy and crew.aircraft.aloft is not None:
-            flown = straight_home(crew, number, controls)
+            flown = straight_home(crew.landing(_nearest(crew)), number, controls)
             length_m, duration_s, energy_wh = flown.use.length_m, flown.use.duration_s, flown.use.energy_wh
             trip = Trip(number, 0, 0, 0.0, duration_s, (), length_m, energy_wh or 0.0, 0.0)
             found.append((trip, flown))
     return found
+
+
+def _nearest(crew: Crew) -> Terminal:
+    """Of the places where it may land, from where it is."""
+    return min(crew.landings, key=lambda end: math.dist(end.position, crew.ends[0].position))

@@ -55,6 +55,8 @@ class Crew:
         Its own, the start with the run that a flight begins with.
     power_w
         At cruise; None without a power model.
+    landings
+        Where it may end, the end of ``ends`` first.
     """
 
     aircraft: Aircraft
@@ -64,6 +66,7 @@ class Crew:
     around: Surroundings
     ends: tuple[Terminal, Terminal]
     power_w: float | None
+    landings: tuple[Terminal, ...]
 
     @classmethod
     def of(cls, scenario: Scenario, aircraft: Aircraft) -> Crew:
@@ -75,7 +78,8 @@ class Crew:
             ``"wind"``: it is not faster than the wind.
         """
         # A battery is changed, or the next one takes off, where an aircraft has landed.
-        shared = len(scenario.aircraft) > 1 or aircraft.batteries > 1
+        several = aircraft.batteries > 1 or aircraft.end_bases is not None
+        shared = len(scenario.aircraft) > 1 or several
         landing = replace(aircraft, finish="land") if shared and aircraft.finish == "auto" else aircraft
         alone = replace(scenario.of_one(aircraft), aircraft=(landing,))
         setting = Setting.of(alone)
@@ -91,13 +95,24 @@ class Crew:
             asked.surroundings(),
             with_run(setting.ends, setting.level.height_m, model),
             None if power is None else power.power_w(state),
+            scenario.landings_of(aircraft),
         )
+
+    def landing(self, end: Terminal) -> Crew:
+        """The same that ends at another of its landings."""
+        if end == self.ends[1]:
+            return self
+        plain = replace(self.aircraft, base=None, end_bases=None)
+        start = self.alone.ends_of(self.aircraft)[0]
+        alone = replace(self.alone, start=start, end=end, bases=(), aircraft=(plain,))
+        setting = replace(self.setting, ends=(self.setting.ends[0], end))
+        return replace(self, alone=alone, setting=setting, ends=(self.ends[0], end))
 
     @property
     def kind(self) -> tuple[object, ...]:
         """What the ways of two crews are the same by."""
         plain = replace(
-            self.aircraft, name="", base=None, energy_wh=None, power=None, max_range_m=None,
+            self.aircraft, name="", base=None, end_bases=None, energy_wh=None, power=None, max_range_m=None,
             max_flight_time_s=None, batteries=1, turnaround_s=0.0, reserve=0.0,
         )  # fmt: skip
         return (plain, self.setting.suite)
@@ -144,13 +159,13 @@ class Crew:
         slopes = (climb_slope_rad(model), sink_slope_rad(model))
         return sum(height_m / math.tan(slope) for slope in slopes) / model.airspeed_m_s / 2.0
 
-    def seconds(self, entries: Floats, exits: Floats) -> tuple[Floats, Floats, Floats]:
-        """Between ways (N, N), from the start (N,), and to the end (N,): seconds."""
-        start, end = self.ends
+    def seconds(self, entries: Floats, exits: Floats) -> tuple[Floats, Floats, tuple[Floats, ...]]:
+        """Between ways (N, N), from the start (N,), and to each landing (N,): seconds."""
+        start = self.ends[0]
         discs, speed_m_s = self.around.discs, self.setting.model.airspeed_m_s
         between = estimates(exits, entries, self.around, discs) / speed_m_s
         out = from_start(start, self.around, entries, discs) / speed_m_s
-        home = to_end(end, self.around, exits, discs) / speed_m_s
+        home = tuple(to_end(end, self.around, exits, discs) / speed_m_s for end in self.landings)
         return between, out, home
 
     def travel(self, seconds: Floats, power: float) -> Travel:

@@ -17,7 +17,7 @@ from planner.profile.compose import Composed
 from planner.profile.items import items_of
 from planner.progress import silent
 from planner.publish import Leg
-from planner.route import Anchor, CollectPass, Pose
+from planner.route import Anchor, CollectPass, Pose, Terminal
 from planner.routing.joint.chain import layers_of
 from planner.routing.joint.tours import Choice, Tours
 from planner.tasks.collect import collect
@@ -59,6 +59,8 @@ class Flown:
         Of each job, when it begins and ends.
     waited_s
         Of its time in circles.
+    ends
+        Where it starts and ends; None for its crew's.
     """
 
     crew: int
@@ -72,6 +74,7 @@ class Flown:
     methods: dict[str, str]
     order: Order
     waited_s: float = 0.0
+    ends: tuple[Terminal, Terminal] | None = None
 
     @property
     def duration_s(self) -> float:
@@ -365,11 +368,19 @@ def _flown(
         used(composed.flight, setting.model, setting.level),
         methods,
         Order(tuple(passes), tuple(firsts)),
+        ends=setting.ends,
     )
 
 
 def answer_of(crew: Crew, flown: Flown, left_out: tuple[LeftOut, ...] = ()) -> Answer:
     """A flight as the answer of one aircraft."""
     return Answer(
-        crew.setting, flown.composed, flown.legs, flown.passes, flown.methods, (), flown.notes, left_out
+        crew.setting if flown.ends is None else replace(crew.setting, ends=flown.ends),
+        flown.composed,
+        flown.legs,
+        flown.passes,
+        flown.methods,
+        (),
+        flown.notes,
+        left_out,
     )

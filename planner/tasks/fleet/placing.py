@@ -12,6 +12,7 @@ import numpy as np
 from planner.errors import InfeasibleError
 from planner.fleet.assignment import Trip
 from planner.fleet.separation import Apart, Track, step_m, track_of
+from planner.route import Terminal
 from planner.tasks.fleet.aloft import held_apart, home_apart
 from planner.tasks.fleet.crews import Crew
 from planner.tasks.fleet.flights import SPARE_S, Flown, Order, with_waits
@@ -44,12 +45,20 @@ class Errand:
         The flight where nothing binds its times; None where its order is given.
     order
         Its passes where its order is given.
+    landing
+        Where it ends; None for its crew's end.
     """
 
     trip: Trip
     jobs: tuple[tuple[Job, int], ...]
     flown: Flown | None = None
     order: Order | None = None
+    landing: Terminal | None = None
+
+    def crew(self, crews: Sequence[Crew]) -> Crew:
+        """Whose it is, ending where it does."""
+        own = crews[self.trip.member]
+        return own if self.landing is None else own.landing(self.landing)
 
 
 @dataclass(frozen=True, slots=True)
@@ -206,7 +215,7 @@ def _in_turn(
     """
     clock = _Clock(apart)
     for errand in order:
-        crew = crews[errand.trip.member]
+        crew = errand.crew(crews)
         ready_s = clock.ready_s(errand.trip.member, crew.aircraft.turnaround_s)
         if crew.aircraft.aloft is not None and (waiting or errand.flown is None):
             if not _put_aloft(clock, crew, errand, separation, controls):

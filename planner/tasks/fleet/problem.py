@@ -9,7 +9,9 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from planner.fleet.assignment import Trip
 from planner.fleet.problem import Alternative, Member, Objective, Problem, Service, Target
+from planner.route import Terminal
 from planner.tasks.fleet.crews import Crew, Ways
 from planner.tasks.fleet.jobs import Job
 from planner.vehicle.aircraft import Aircraft
@@ -103,19 +105,29 @@ def problem_of(
     )
 
 
-def _bases(crews: Sequence[Crew]) -> tuple[tuple[str, ...], list[int], list[int]]:
+def _bases(crews: Sequence[Crew]) -> tuple[tuple[str, ...], list[int], list[tuple[int, ...]]]:
     """Names of all places where flights start and end, and which of them is whose."""
     known: dict[tuple[float, float], int] = {}
     names: list[str] = []
+
+    def number(terminal: Terminal) -> int:
+        if terminal.position not in known:
+            known[terminal.position] = len(names)
+            names.append(terminal.name)
+        return known[terminal.position]
+
     starts: list[int] = []
-    ends: list[int] = []
+    ends: list[tuple[int, ...]] = []
     for crew in crews:
-        for terminal, numbers in zip(crew.ends, (starts, ends), strict=True):
-            if terminal.position not in known:
-                known[terminal.position] = len(names)
-                names.append(terminal.name)
-            numbers.append(known[terminal.position])
+        starts.append(number(crew.ends[0]))
+        ends.append(tuple(number(landing) for landing in crew.landings))
     return tuple(names), starts, ends
+
+
+def landing_of(crews: Sequence[Crew], trip: Trip) -> Terminal:
+    """Where a flight that was assigned ends."""
+    _, _, ends = _bases(crews)
+    return crews[trip.member].landings[ends[trip.member].index(trip.end_base)]
 
 
 def _targets(
@@ -165,7 +177,7 @@ def _member(
     crew: Crew,
     number: int,
     base_count: int,
-    own: tuple[int, int],
+    own: tuple[int, tuple[int, ...]],
     nodes: Sequence[Node],
     ways: WaysOf,
     jobs: Sequence[Job],
@@ -181,8 +193,9 @@ def _member(
         seconds[np.ix_(rows, rows)] = between
         half_s = (crew.besides_s + lessons.besides_s.get(number, 0.0)) / 2.0
         seconds[own[0], rows] = np.maximum(out + half_s, 0.0)
-        seconds[rows, own[1]] = np.maximum(home + half_s, 0.0)
-    seconds[own[0], own[1]] = 0.0
+        for end, home_s in zip(own[1], home, strict=True):
+            seconds[rows, end] = np.maximum(home_s + half_s, 0.0)
+    seconds[own[0], list(own[1])] = 0.0
     np.fill_diagonal(seconds, 0.0)
     seconds = seconds * lessons.factor(number)
     aircraft, spare = crew.setting.model.aircraft, lessons.spare.get(number, 1.0)
@@ -190,7 +203,7 @@ def _member(
         aircraft.name,
         crew.travel(seconds, lessons.power.get(number, 1.0)),
         own[0],
-        (own[1],),
+        own[1],
         max_flight_s=min(_limit(aircraft.max_flight_time_s, spare), lessons.most_s.get(number, math.inf)),
         range_m=_limit(aircraft.max_range_m, spare),
         energy_wh=_limit(aircraft.usable_wh, spare) if crew.power_w is not None else math.inf,

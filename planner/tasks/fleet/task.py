@@ -20,7 +20,7 @@ from planner.tasks.fleet.flights import Flown, Order, in_best_order, in_given_or
 from planner.tasks.fleet.jobs import Job, jobs_of
 from planner.tasks.fleet.parts import Cutting
 from planner.tasks.fleet.placing import CROWDED, Errand, LateError, Sortie, cost_of, placed, powers_of
-from planner.tasks.fleet.problem import Lessons, problem_of, trips_of
+from planner.tasks.fleet.problem import Lessons, landing_of, problem_of, trips_of
 from planner.tasks.fleet.told import told_of, too_many_items
 from planner.tasks.methods import chosen_methods
 from planner.tasks.task import Controls
@@ -61,6 +61,8 @@ class FleetAnswer:
 
 
 Key = tuple[int, tuple[tuple[str, int], ...]]
+#: The same, and the number of the base where it ends.
+Landed = tuple[int, tuple[tuple[str, int], ...], int]
 
 
 def fleet(scenario: Scenario, controls: Controls, lessons: Lessons | None = None) -> FleetAnswer:
@@ -95,8 +97,8 @@ class _Rounds:
         self._lessons = lessons
         #: The last answer that was given up for its items alone.
         self.too_long: FleetAnswer | None = None
-        self._flown: dict[Key, Flown] = {}
-        self._orders: dict[Key, Order] = {}
+        self._flown: dict[Landed, Flown] = {}
+        self._orders: dict[Landed, Order] = {}
         self._given_up: dict[str, Finding] = {}
         self._barred: set[tuple[str, int]] = set()
         with controls.stage("options"):
@@ -280,16 +282,16 @@ class _Rounds:
         return long
 
     def _errand(self, jobs: Sequence[Job], trip: Trip) -> Errand:
-        key = _key(jobs, trip)
+        key = (*_key(jobs, trip), trip.end_base)
         done = tuple((jobs[visit.target], visit.number) for visit in trip.visits)
-        crew = self._crews[trip.member]
+        crew = self._crews[trip.member].landing(landing_of(self._crews, trip))
         try:
             return self._flown_or_ordered(crew, trip, done, key)
         except InfeasibleError as error:
             raise BarredError(trip.member, done, error) from error
 
     def _flown_or_ordered(
-        self, crew: Crew, trip: Trip, done: tuple[tuple[Job, int], ...], key: Key
+        self, crew: Crew, trip: Trip, done: tuple[tuple[Job, int], ...], key: Landed
     ) -> Errand:
         bound = any(
             job.region.time_window_s is not None or job.region.revisit_after_s > 0.0 for job, _ in done
@@ -298,11 +300,11 @@ class _Rounds:
             if key not in self._orders:
                 with self._controls.stage("routing"):
                     self._orders[key] = in_order(crew, done, self._controls)
-            return Errand(trip, done, order=self._orders[key])
+            return Errand(trip, done, order=self._orders[key], landing=crew.ends[1])
         if key not in self._flown:
             fly = in_best_order if self._wants_all(crew, done) else in_given_order
             self._flown[key] = fly(crew, trip.member, done, self._controls)
-        return Errand(trip, done, flown=self._flown[key])
+        return Errand(trip, done, flown=self._flown[key], landing=crew.ends[1])
 
     def _wants_all(self, crew: Crew, done: Sequence[tuple[Job, int]]) -> bool:
         """Whether a flight's regions ask for more than the best pass or sweep over each in turn."""

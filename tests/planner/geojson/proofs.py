@@ -136,6 +136,7 @@ PROOFS: dict[tuple[str, str], tuple[Document, Document]] = {
     ("vehicle", "batteries"): (vehicle(max_range_m=1000.0), vehicle(max_range_m=1000.0, batteries=4)),
     ("vehicle", "turnaround_s"): (vehicle(batteries=1), vehicle(batteries=1, turnaround_s=60.0)),
     ("vehicle", "max_items"): (small(), vehicle(max_items=25)),
+    ("vehicle", "end_bases"): (based(), vehicle(based(), end_bases=["B0"])),
     ("vehicle", "in_flight"): (small(), aloft()),
     ("in_flight", "lon_deg"): (aloft(), aloft(lon_deg=200.0)),
     ("in_flight", "lat_deg"): (aloft(), aloft(lat_deg=100.0)),
