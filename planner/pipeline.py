@@ -150,6 +150,20 @@ def _judged(
     with watch.stage("check"):
         verdict = judge(scenario, draft)
         near = tuple(str(finding) for finding in near_edge(scenario, draft))
+    if scenario.task == "search":
+        # Here: collecting needs nothing of searches.
+        from planner.tasks.most import most
+
+        with watch.stage("bound"):
+            found = most(scenario)
+        if found is not None:
+            area_m2, worth = found
+            total = verdict.importance_total
+            importance = None if total is None else min(worth, total)
+            draft = replace(
+                draft,
+                metrics=replace(draft.metrics, area_seen_bound_m2=area_m2, importance_bound=importance),
+            )
     reasons = {name: f.message for f in dropped for name in f.feature.split("+")}
     controls.progress("done", 1.0)
     return replace(

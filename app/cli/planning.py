@@ -101,7 +101,9 @@ def with_raster(document: dict[str, Any], path: str, member: str) -> tuple[dict[
 
     name = document.get(member) or Path(path).stem
     try:
-        terrain = read_raster(read_bytes(path), Path(path).name, str(name))
+        terrain = read_raster(
+            read_bytes(path), Path(path).name, str(name), "none" if member == "importance_raster" else None
+        )
     except RefusedError as error:
         raise CommandError(str(error), Exit.BAD_INPUT, error.findings) from error
     return document | {member: str(name)}, terrain

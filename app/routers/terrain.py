@@ -40,12 +40,15 @@ async def post_terrain(
     name: Annotated[str | None, Query(min_length=1, max_length=200, description="What to call it.")] = None,
     vertical_datum: Annotated[
         VerticalDatum | None,
-        Query(description="Of the heights, where the file does not say or says it wrongly."),
+        Query(
+            description="Of the heights, where the file does not say or says it wrongly; `none` for values "
+            "that are no heights: importance, in any unit, of any size."
+        ),
     ] = None,
 ) -> TerrainOut:
     """GeoTIFF, DTED or SRTM HGT in any horizontal reference system; heights in metres.
 
-    Scenarios name it by the `id` of the answer, in their member `terrain`.
+    Scenarios name it by the `id` of the answer, in their member `terrain`, or `importance_raster`.
     """
     record, new = await terrain.add(await request.body(), filename, name, vertical_datum)
     response.headers["Location"] = f"/api/v1/terrain/{record.id}"

@@ -27,6 +27,8 @@ Bounds = tuple[float, float, float, float]
 MAX_POSTS = 4_000_000
 #: Posts are no closer together than this: finer relief changes no plan.
 MIN_STEP_M = 1.0
+#: Datum of rasters whose values are no heights.
+NO_DATUM = "none"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -45,7 +47,7 @@ class Terrain:
     nodata
         What stands where there is no height, besides NaN; None for nothing.
     datum
-        Of the heights, e.g. ``"EGM96"``.
+        Of the heights, e.g. ``"EGM96"``; ``NO_DATUM`` where values are none.
     """
 
     name: str

@@ -10,7 +10,7 @@ from typing import Any
 
 from shapely.geometry import Polygon
 
-from planner.airspace.terrain import Terrains, find_terrain
+from planner.airspace.terrain import NO_DATUM, Terrains, find_terrain
 from planner.errors import ScenarioError
 from planner.geojson import equipment, features
 from planner.geojson.extent import check_bbox, frame_of, within
@@ -160,6 +160,11 @@ def _read(document: Any, findings: Findings, terrains: Terrains | None) -> Scena
             "scenario", "unknown-terrain", f"names the terrain {terrain_name!r}, which is not here",
             "Send the raster first and name it by its id; without terrain the ground is flat at the height "
             "of home.",
+        )  # fmt: skip
+    if terrain is not None and terrain.datum == NO_DATUM:
+        findings.error(
+            "scenario", "no-heights", f"names the terrain {terrain_name!r}, whose values are no heights",
+            "Name an elevation raster; one of importance is an importance_raster.",
         )  # fmt: skip
     following = top.flag("terrain_following", False)
     if following and terrain_name is None:

@@ -36,7 +36,9 @@ from planner.wishes import (
 )
 
 #: A raster's local cells are no finer than this, and of the ground's longer side no fewer and no more.
-LEAST_CELL_M, LEAST_CELLS, MOST_CELLS = 1.0, 100, 500
+LEAST_CELL_M, LEAST_CELLS, MOST_CELLS = 1.0, 100, 1_000
+#: A local cell of a finer raster is the mean of so many values to a side of it at most.
+MOST_WITHIN = 8
 #: How uncertain a place is, what drifts and for how long: beyond these is a slip of the pen.
 LEAST_SPREAD_M, MOST_SPREAD_M, MOST_DRIFT_M_S, MOST_ELAPSED_S = 1.0, 1e5, 20.0, 7 * 86_400.0
 #: What methods of search know drift, walk over importance, or begin as the published horizon does.
@@ -275,7 +277,12 @@ def _local(
     east = west_m + (np.arange(columns) + 0.5) * cell_m
     north = south_m + (np.arange(rows) + 0.5) * cell_m
     places = np.stack(np.meshgrid(east, north), axis=-1)
-    scores = raster.heights_at(scenario.frame.to_wgs84(places.reshape(-1, 2)).reshape(places.shape))
+    within = min(MOST_WITHIN, math.ceil(cell_m / raster.resolution_m - 1e-9))
+    scores = np.zeros(places.shape[:2])
+    for north_part, east_part in np.ndindex(within, within):
+        off_m = cell_m * ((np.array([east_part, north_part]) + 0.5) / within - 0.5)
+        lonlats = scenario.frame.to_wgs84((places + off_m).reshape(-1, 2)).reshape(places.shape)
+        scores += raster.heights_at(lonlats) / within**2
     shapely.prepare(ground)
     inside = shapely.contains_xy(ground, places[..., 0], places[..., 1])
     known = np.isfinite(scores) & inside

@@ -106,7 +106,8 @@ class Metrics:
     threats left out, and ``gap`` by what part of its length this one is longer; None without a bound.
     Of a search ``area_seen_m2`` is the ground seen of what is searched, each place once, and
     ``importance_collected`` what that is worth where importance is given, of ``importance_total`` in all;
-    None of other tasks.
+    no flight within the limits sees more than ``area_seen_bound_m2``, nor collects more than
+    ``importance_bound``; None of other tasks, and of what drifts.
     ``photos`` counts those of all cameras, ``photos_mb`` is about what they take to be stored; None where
     there are none on board. ``surveys`` tells by region what they give. Of several aircraft or sorties all
     are sums; ``vehicles`` tells of each aircraft, ``last_landing_s`` when the last is down, ``assignment``
@@ -126,6 +127,8 @@ class Metrics:
     area_seen_m2: float | None = None
     importance_collected: float | None = None
     importance_total: float | None = None
+    area_seen_bound_m2: float | None = None
+    importance_bound: float | None = None
     planning_time_s: dict[str, float] = field(default_factory=dict)
     lower_bound_m: float | None = None
     gap: float | None = None

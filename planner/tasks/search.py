@@ -22,6 +22,7 @@ from planner.search.choose import PUBLISHED, REFINED, Search
 from planner.search.programme import Pricing, Programme
 from planner.search.room import Room
 from planner.search.swaths import Looking
+from planner.tasks.budget import limits_of, per_m_of
 from planner.tasks.flying import Station
 from planner.tasks.methods import chosen_methods
 from planner.tasks.setting import Setting
@@ -29,7 +30,6 @@ from planner.tasks.task import Answer, Controls, Task
 from planner.tasks.transits import Transits
 from planner.tasks.worth import drifted, ground_of, worth_of
 from planner.vehicle.aircraft import Aircraft
-from planner.vehicle.energy import FlightState
 from planner.vehicle.limits import Use, exceeded
 
 #: Cells of the worth of ground: so many to the swath's width, no more to a side, no finer.
@@ -87,7 +87,7 @@ def reach(scenario: Scenario, controls: Controls) -> tuple[float, float]:
         Where it cannot come to its end, or sees nothing.
     """
     setting = Setting.of(scenario)
-    asked = _asked(scenario, setting)
+    asked = asked_of(scenario, setting)
     if next(asked.flyable(), None) is None:
         _refuse_blocked(asked, math.inf, setting.model.aircraft)
     transits = Transits.of(setting, scenario.objective, chosen_methods(scenario.method))
@@ -106,7 +106,7 @@ def sought(scenario: Scenario, controls: Controls) -> Sought:
     setting = Setting.of(scenario)
     methods = chosen_methods(scenario.method) | {"search": "patterns", "coverage": "none", "routing": "none"}
     transits = Transits.of(setting, scenario.objective, methods)
-    asked = replace(_asked(scenario, setting), stop=controls.stop, seed=scenario.seed)
+    asked = replace(asked_of(scenario, setting), stop=controls.stop, seed=scenario.seed)
     spare_m, lead_s = _spare(transits, scenario, controls)
     if scenario.importance.drift is not None:
         asked = _drifting(asked, scenario, spare_m, lead_s)
@@ -152,13 +152,14 @@ def refuse_unsearchable(scenario: Scenario) -> None:
     """
     setting = Setting.of(scenario)
     transits = Transits.of(setting, scenario.objective, chosen_methods(scenario.method))
-    asked = _asked(scenario, setting)
+    asked = asked_of(scenario, setting)
     if next(asked.flyable(), None) is None:
         _refuse_blocked(asked, math.inf, setting.model.aircraft)
     _spare(transits, scenario, None)
 
 
-def _asked(scenario: Scenario, setting: Setting) -> Search:
+def asked_of(scenario: Scenario, setting: Setting) -> Search:
+    """What one aircraft is asked to search, nothing of it tried yet."""
     regions = scenario.regions
     ground = ground_of(shapely.union_all([region.area for region in regions]))
     level = setting.level.of(regions[0])
@@ -207,32 +208,9 @@ def _cell_m(ground: Polygon | MultiPolygon, width_m: float) -> float:
     return max(LEAST_CELL_M, side_m / MOST_CELLS, min(width_m / CELLS_ACROSS, side_m / 40.0))
 
 
-def _per_m(aircraft: Aircraft, above_sea_m: float) -> dict[str, float]:
-    """What a metre through the air takes of each limit, in level flight."""
-    state = FlightState(aircraft.airspeed_m_s, above_sea_m=above_sea_m)
-    energy_wh = (
-        0.0 if aircraft.power is None else aircraft.power.power_w(state) / aircraft.airspeed_m_s / 3600.0
-    )
-    return {"range": 1.0, "flight-time": 1.0 / aircraft.airspeed_m_s, "energy": energy_wh}
-
-
-def _limits(aircraft: Aircraft, use: Use) -> dict[str, tuple[float, float, str]]:
-    """What is used, what there is, and the unit, of each limit that there is."""
-    rows = {
-        "range": (use.length_m, aircraft.max_range_m, "m"),
-        "flight-time": (use.duration_s, aircraft.max_flight_time_s, "s"),
-        "energy": (use.energy_wh, aircraft.usable_wh, "Wh"),
-    }
-    return {
-        name: (used_, limit, unit)
-        for name, (used_, limit, unit) in rows.items()
-        if used_ is not None and limit is not None
-    }
-
-
 def _part(aircraft: Aircraft, use: Use) -> float:
     """What part of the limit that is nearest is used; 0 without any."""
-    return max((taken / limit for taken, limit, _ in _limits(aircraft, use).values()), default=0.0)
+    return max((taken / limit for taken, limit, _ in limits_of(aircraft, use).values()), default=0.0)
 
 
 def _spare(transits: Transits, scenario: Scenario, controls: Controls | None) -> tuple[float, float]:
@@ -251,8 +229,8 @@ def _spare(transits: Transits, scenario: Scenario, controls: Controls | None) ->
     over = Station(end.name, Anchor(*_over_end(scenario, setting)))
     composed, _, _ = transits.by((over,), silent, stop)
     use = used(composed.flight, setting.model, setting.level)
-    per_m = _per_m(aircraft, setting.level.amsl_m)
-    for name, (taken, limit, unit) in _limits(aircraft, use).items():
+    per_m = per_m_of(aircraft, setting.level.amsl_m)
+    for name, (taken, limit, unit) in limits_of(aircraft, use).items():
         if taken > limit:
             short = taken - limit
             metres = f", {short / per_m[name]:.0f} m of flight" if unit != "m" and per_m[name] > 0.0 else ""
@@ -266,7 +244,7 @@ def _spare(transits: Transits, scenario: Scenario, controls: Controls | None) ->
             )
     spare = [
         (limit - taken) / per_m[name]
-        for name, (taken, limit, _) in _limits(aircraft, use).items()
+        for name, (taken, limit, _) in limits_of(aircraft, use).items()
         if per_m[name] > 0.0
     ]
     away_m = math.dist(start.position, end.position)

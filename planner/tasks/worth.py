@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import shapely
+from numpy.typing import NDArray
 from shapely import affinity
 from shapely.geometry import MultiPolygon, Polygon
 from shapely.geometry.base import BaseGeometry
@@ -14,10 +15,14 @@ from shapely.geometry.base import BaseGeometry
 from planner.scenario import Scenario
 from planner.search.seen import missed_before, moved_on
 from planner.search.values import Worth, worth_of_ground
-from planner.wishes import Importance
+from planner.wishes import Importance, ImportanceRaster
+
+Floats = NDArray[np.float64]
 
 #: Places on a raster's edge, but for rounding, are on it.
 EDGE = 1e-9
+#: A cell's worth is the mean of so many places to a side of it at most.
+MOST_WITHIN = 8
 
 
 def ground_of(shape: BaseGeometry) -> Polygon | MultiPolygon:
@@ -43,13 +48,22 @@ def worth_of(scenario: Scenario, ground: Polygon | MultiPolygon, cell_m: float) 
         scores += point.score * np.exp(-0.5 * off**2)
     raster = importance.raster
     if raster is not None:
-        rows, columns = raster.scores.shape
-        row = np.floor((north - raster.south_m) / raster.cell_m + EDGE).astype(np.int64)
-        column = np.floor((east - raster.west_m) / raster.cell_m + EDGE).astype(np.int64)
-        inside = (row >= 0) & (row < rows) & (column >= 0) & (column < columns)
-        found = raster.scores[np.clip(row, 0, rows - 1), np.clip(column, 0, columns - 1)]
-        scores += np.where(inside, found, 0.0)
+        # The mean over each cell: one of the raster's is often much smaller.
+        within = min(MOST_WITHIN, math.ceil(cell_m / raster.cell_m - EDGE))
+        for north_part, east_part in np.ndindex(within, within):
+            off_m = cell_m * ((np.array([east_part, north_part]) + 0.5) / within - 0.5)
+            scores += _on_raster(raster, east + off_m[0], north + off_m[1]) / within**2
     return worth_of_ground(ground, cell_m, scores * left)
+
+
+def _on_raster(raster: ImportanceRaster, east_m: Floats, north_m: Floats) -> Floats:
+    """Scores of the raster's cells that places lie in, 0 outside of it."""
+    rows, columns = raster.scores.shape
+    row = np.floor((north_m - raster.south_m) / raster.cell_m + EDGE).astype(np.int64)
+    column = np.floor((east_m - raster.west_m) / raster.cell_m + EDGE).astype(np.int64)
+    inside = (row >= 0) & (row < rows) & (column >= 0) & (column < columns)
+    found = raster.scores[np.clip(row, 0, rows - 1), np.clip(column, 0, columns - 1)]
+    return np.where(inside, found, 0.0)
 
 
 def drifted(importance: Importance, time_s: float) -> Importance:

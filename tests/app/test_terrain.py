@@ -142,6 +142,20 @@ def test_refused_files(content: bytes, filename: str, rule: str, monkeypatch: py
     assert [finding.rule for finding in caught.value.findings] == [rule]
 
 
+def test_values_that_are_no_heights_are_taken_as_they_are() -> None:
+    """Importance of any size, in any unit; as heights the same file is refused, and infinity always."""
+    georeference = {"crs": "EPSG:4326", "transform": from_origin(0, 0, 0.1, 0.1)}
+    content = written(np.full((5, 5), 3e7, np.float32), **georeference)
+    with pytest.raises(RefusedError, match="heights run"):
+        read_raster(content, "x.tif", "x")
+    found = read_raster(content, "x.tif", "x", "none")
+    assert (found.datum, float(found.heights_m.max())) == ("none", 3e7)
+    endless = written(np.full((5, 5), np.inf, np.float32), **georeference)
+    with pytest.raises(RefusedError) as caught:
+        read_raster(endless, "x.tif", "x", "none")
+    assert [finding.rule for finding in caught.value.findings] == ["not-finite"]
+
+
 @hypothesis_settings(max_examples=100, deadline=None)
 @given(st.integers(0, 2**32 - 1))
 def test_broken_files_are_refused_or_read(seed: int) -> None:

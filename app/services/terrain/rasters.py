@@ -19,12 +19,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.services.errors import RefusedError
-from planner.airspace.terrain import Terrain
+from planner.airspace.terrain import NO_DATUM, Terrain
 from planner.errors import Finding
 from planner.geojson.sheet import MOST_LONGITUDE_DEG
 
 Affine = tuple[float, float, float, float, float, float]
-VerticalDatum = Literal["EGM96", "EGM2008", "ellipsoid"]
+VerticalDatum = Literal["EGM96", "EGM2008", "ellipsoid", "none"]
 
 DRIVERS = ("GTiff", "DTED", "SRTMHGT")
 #: Rows times columns; an SRTM tile of one second has 13 million.
@@ -53,13 +53,14 @@ def read_raster(content: bytes, filename: str, name: str, datum: VerticalDatum |
     name
         Of the terrain.
     datum
-        Of the heights, for files that do not say; overrides what they say.
+        Of the heights, for files that do not say; overrides what they say. ``"none"`` for values that are no
+        heights, importance for one: any finite number in any unit.
 
     Raises
     ------
     RefusedError
         Rules ``raster-format``, ``no-georeference``, ``raster-too-large``, ``no-heights``,
-        ``implausible-heights``, ``height-unit``, ``geoid-grid-missing``.
+        ``implausible-heights``, ``height-unit``, ``geoid-grid-missing``, ``not-finite``.
     """
     import rasterio
     from pyproj.exceptions import ProjError
@@ -77,7 +78,7 @@ def read_raster(content: bytes, filename: str, name: str, datum: VerticalDatum |
         warnings.simplefilter("ignore", rasterio.errors.NotGeoreferencedWarning)
         try:
             with MemoryFile(content, filename=safe) as memory, _opened(memory.name) as dataset:
-                heights, affine, stated = _posts(dataset)
+                heights, affine, stated = _posts(dataset, metres=datum != NO_DATUM)
         except (rasterio.errors.RasterioError, CPLE_BaseError, ProjError, ValueError) as error:
             # Broken files end in any of these: GDAL's refusals, reference systems that are none, bad text.
             _refuse(
@@ -86,16 +87,21 @@ def read_raster(content: bytes, filename: str, name: str, datum: VerticalDatum |
                 "Send an elevation file in one of these formats, whole.",
             )
     _check_place(heights, affine)
+    if datum == NO_DATUM and np.isinf(heights).any():
+        _refuse("not-finite", "it has values of infinity", "Correct them, or declare them as nodata.")
     heights = np.where(np.isfinite(heights), heights, np.float32(np.nan)).astype(np.float32)
     known = np.isfinite(heights)
     if not known.any():
         _refuse("no-heights", "every post is without height", "Send a raster with heights.")
     low_m, high_m = float(np.nanmin(heights)), float(np.nanmax(heights))
+    if datum == NO_DATUM:
+        return Terrain(name, heights, affine, None, datum)
     if low_m < LOWEST_M or high_m > HIGHEST_M:
         _refuse(
             "implausible-heights",
             f"heights run from {low_m:g} to {high_m:g} m",
-            "Send heights in metres, with the value of missing posts declared as nodata.",
+            "Send heights in metres, with the value of missing posts declared as nodata; values that are no "
+            "heights with vertical_datum=none.",
         )
     chosen = datum or stated
     if chosen == "ellipsoid":
@@ -135,8 +141,14 @@ def _opened(path: str) -> Any:
     raise failure
 
 
-def _posts(dataset: Any) -> tuple[NDArray[np.float32], Affine, str]:
-    """Heights, affine of the posts' centres in WGS 84 degrees, and the datum of the heights."""
+def _posts(dataset: Any, *, metres: bool = True) -> tuple[NDArray[np.float32], Affine, str]:
+    """Heights, affine of the posts' centres in WGS 84 degrees, and the datum of the heights.
+
+    Parameters
+    ----------
+    metres
+        Whether values in another unit are refused.
+    """
     if dataset.crs is None or dataset.transform.is_identity:
         _refuse(
             "no-georeference",
@@ -162,7 +174,7 @@ def _posts(dataset: Any) -> tuple[NDArray[np.float32], Affine, str]:
             "Send elevation, not an image.",
         )
     unit = (dataset.units[0] or "").lower()
-    if unit not in ("", "m", "metre", "meter", "metres", "meters"):
+    if metres and unit not in ("", "m", "metre", "meter", "metres", "meters"):
         _refuse("height-unit", f"its heights are in {unit}", "Send heights in metres.")
     heights = dataset.read(1, masked=True).astype(np.float32).filled(np.nan)
     transform = dataset.transform

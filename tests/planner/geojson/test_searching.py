@@ -6,6 +6,7 @@ import pytest
 from planner.airspace.terrain import Terrain
 from planner.errors import ScenarioError
 from planner.geojson import read_scenario
+from planner.tasks.worth import worth_of
 from planner.validate import findings, read_valid
 from tests.planner.search.searches import LAT_DEG, LON_DEG, WING, document, feature, lonlat, rectangle
 
@@ -147,6 +148,29 @@ def test_a_raster_is_what_the_ground_is_worth():
     south, north = local.scores[1, 1], local.scores[-2, 1]
     assert south == pytest.approx(1.0, abs=0.1)
     assert north > 3.0
+
+
+def test_a_fine_raster_is_worth_its_mean():
+    """A chessboard of squares finer than any cell: no cell misses what lies between."""
+    rows, columns = np.indices((900, 900))
+    board = (100.0 * ((rows + columns) % 2)).astype(np.float32)
+    step = 0.02 / 900
+    terrain = Terrain("worth", board, (step, 0.0, LON_DEG - 0.002, 0.0, step, LAT_DEG - 0.002))
+    scenario = read_scenario(document(importance_raster="worth"), {"worth": terrain})
+    (region,) = scenario.regions
+    local = scenario.importance.raster
+    assert local.scores.sum() * local.cell_m**2 == pytest.approx(50.0 * region.area.area, rel=0.02)
+    coarse = worth_of(scenario, region.area, 40.0)
+    inside = coarse.scores[2:-2, 2:-2]
+    assert inside.min() > 40.0
+    assert inside.max() < 60.0
+
+
+def test_importance_is_no_terrain():
+    """A raster sent as one of no heights is refused where it is to be flown over."""
+    hills = Terrain("worth", np.ones((4, 4), np.float32), raster([[1.0, 1.0]] * 2).affine, None, "none")
+    asked = document(terrain="worth", importance_raster="worth")
+    assert ("scenario", "no-heights") in rules(asked, {"worth": hills})
 
 
 @pytest.mark.parametrize(

@@ -39,6 +39,8 @@ def test_a_search_comes_home_with_its_reserve(vehicle, sensor, altitude_m):
         plan.metrics.area_seen_m2 / scenario.area.area, rel=1e-4
     )
     assert plan.metrics.importance_collected is None
+    assert plan.metrics.importance_bound is None
+    assert plan.metrics.area_seen_m2 <= plan.metrics.area_seen_bound_m2 <= scenario.area.area * 1.01
     assert with_bound(scenario, plan) == plan
     assert read_plan(write_plan(plan)).metrics == plan.metrics
     assert encode(plan).mission
@@ -55,6 +57,7 @@ def test_importance_draws_the_search():
     seen = shapely.union_all(prints).intersection(wanted).area
     assert seen > 0.9 * wanted.area
     assert plan.metrics.importance_collected == pytest.approx(2.5 * seen, rel=1e-3)
+    assert plan.metrics.importance_collected <= plan.metrics.importance_bound
 
 
 @pytest.mark.parametrize("name", ["importance", "snyder2021"])
