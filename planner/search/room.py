@@ -12,7 +12,8 @@ from shapely.geometry import LineString, MultiPolygon, Point, Polygon, box
 from shapely.geometry.base import BaseGeometry
 
 from planner.airspace.airspace import Airspace, Level
-from planner.airspace.surroundings import surroundings
+from planner.airspace.surroundings import MARGIN_M, surroundings
+from planner.airspace.zones import AREA, TRANSIT_MARGIN_M, keep_out
 from planner.vehicle.model import FlightModel
 from planner.wishes import Objective
 
@@ -39,12 +40,15 @@ class Room:
         Where the centre of a turn may be.
     radius_m, settle_m
         Of its turns, and straight flight before each pass.
+    zones
+        What is kept out of by name, margins included, the area's outside among it.
     """
 
     free: BaseGeometry
     turning: BaseGeometry
     radius_m: float
     settle_m: float
+    zones: tuple[tuple[str, BaseGeometry], ...] = ()
 
     @classmethod
     def of(
@@ -68,7 +72,23 @@ class Room:
         turning = free.buffer(-model.turn_radius_m)
         for shape in (free, turning):
             shapely.prepare(shape)
-        return cls(free, turning, model.turn_radius_m, model.settle_m)
+        kept = keep_out(airspace, level, MARGIN_M, edge_m=TRANSIT_MARGIN_M)
+        zones: list[tuple[str, BaseGeometry]] = [
+            (disc.name, Point(disc.east_m, disc.north_m).buffer(disc.radius_m)) for disc in kept.discs
+        ]
+        zones += [(zone.name, zone.polygon) for zone in kept.polygons]
+        if kept.area is not None:
+            zones.append((AREA, ground.envelope.buffer(2.0 * model.turn_radius_m).difference(kept.area)))
+        return cls(free, turning, model.turn_radius_m, model.settle_m, tuple(zones))
+
+    def blocking(self, ground: BaseGeometry) -> tuple[str, ...]:
+        """Names of what leaves no pass over ground, or no turn beside it: most of it first."""
+        found: dict[str, float] = {}
+        for name, zone in self.zones:
+            share_m2 = zone.buffer(self.radius_m).intersection(ground).area
+            if share_m2 > 0.0:
+                found[name] = found.get(name, 0.0) + share_m2
+        return tuple(sorted(found, key=lambda name: (-found[name], name)))
 
     def flyable(self, lines: Floats) -> list[list[tuple[Place, Place]]]:
         """Of each of several lines (N, 2, 2) the parts that may be flown as passes, in flight order."""

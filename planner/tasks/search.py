@@ -10,6 +10,7 @@ import numpy as np
 import shapely
 from shapely.geometry import MultiPolygon, Polygon
 
+from planner.airspace.zones import AREA
 from planner.errors import InfeasibleError
 from planner.metrics import used
 from planner.profile.compose import Composed
@@ -43,6 +44,8 @@ ENOUGH, MOST = 0.99, 0.997
 MOST_IMPROVED, LEAST_BETTER = 3, 1e-3
 #: A flight that nothing limits looks for what drifts for so many times what sees all ground once.
 UNLIMITED = 1.5
+#: So much of what blocks is named.
+NAMED = 5
 #: Ends no farther apart are one place to what hovers, which flies this far at least.
 HOVERED_M = 5.0
 
@@ -227,7 +230,19 @@ def _spare(transits: Transits, scenario: Scenario, controls: Controls | None) ->
     aircraft, (start, end) = setting.model.aircraft, setting.ends
     stop = (lambda: False) if controls is None else controls.stop
     over = Station(end.name, Anchor(*_over_end(scenario, setting)))
-    composed, _, _ = transits.by((over,), silent, stop)
+    try:
+        composed, _, _ = transits.by((over,), silent, stop)
+    except InfeasibleError as error:
+        if error.constraint != AREA:
+            raise
+        raise InfeasibleError(
+            AREA,
+            start.name,
+            f"has no room in the area for its flight's ends, of turns of {setting.model.turn_radius_m:.0f} m "
+            f"in this wind, from {start.name} to {end.name}: {error.message}",
+            "Start and end farther from the area's edge, widen it, or fly with tighter turns.",
+            error.where_enu_m,
+        ) from error
     use = used(composed.flight, setting.model, setting.level)
     per_m = per_m_of(aircraft, setting.level.amsl_m)
     for name, (taken, limit, unit) in limits_of(aircraft, use).items():
@@ -268,11 +283,15 @@ def _refuse_blocked(asked: Search, spare_m: float, aircraft: Aircraft) -> None:
     place = asked.ground.representative_point()
     where = (float(place.x), float(place.y))
     if next(asked.flyable(), None) is None:
+        blocking = asked.room.blocking(asked.ground)
+        listed = ", ".join(blocking[:NAMED]) + (
+            f" and {len(blocking) - NAMED} more" * (len(blocking) > NAMED)
+        )
         raise InfeasibleError(
             "blocked",
             name,
-            f"nothing of it can be seen: area, zones and turns of {asked.room.radius_m:.0f} m leave no pass "
-            f"over it from {asked.looking.height_m:.0f} m",
+            f"nothing of it can be seen: {listed or 'its shape'} and turns of "
+            f"{asked.room.radius_m:.0f} m leave no pass over it from {asked.looking.height_m:.0f} m",
             "Widen the area, move what blocks it, or fly at another altitude or with tighter turns.",
             where,
         )

@@ -49,6 +49,30 @@ def test_what_no_search_can_keep_is_refused(asked, found):
     assert found in rules(asked)
 
 
+def test_what_blocks_a_search_is_named():
+    """The zones that leave no pass, most of it first, and not one that is far away."""
+    over = document(
+        rectangle("no_fly", 450, 300, 1400, 1100, name="wide"),
+        rectangle("obstacle", 300, 380, 480, 820, name="mast", height_m=300),
+        rectangle("no_fly", 60, 700, 100, 760, name="far"),
+        rectangle("roi", 420, 400, 1100, 800, name="R"),
+    )
+    (said,) = [f.message for f in findings(over) if f.rule == "blocked"]
+    assert "wide, mast" in said
+    assert "far" not in said
+
+
+def test_a_start_at_the_edge_is_named_where_its_flight_has_no_room():
+    """In strong wind the circle that a return ends in reaches out of the area: the start is named."""
+    asked = document(wind={"speed_m_s": 11, "from_deg": 90}, method={"search": "parallel"})
+    asked["features"][1] = feature("start", "Point", lonlat(600.0, 15.0), name="pad")
+    (said,) = [f for f in findings(asked) if f.severity == "error"]
+    assert (said.feature, said.rule) == ("pad", "area")
+    assert "no room" in said.message
+    asked["features"][1] = feature("start", "Point", lonlat(600.0, 450.0), name="pad")
+    assert rules(asked) == set()
+
+
 KNOWN = feature("importance", "Point", lonlat(600, 450), score=1.0, spread_m=100.0, name="K")
 DRIFT = {"speed_m_s": 0.5, "toward_deg": 90.0}
 
