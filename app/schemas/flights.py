@@ -49,6 +49,7 @@ class FlightOut(BaseModel):
     vehicle_name: str
     plan_id: str | None
     plan_vehicle: str | None
+    plan_sortie: int = Field(description="Which of that vehicle's flights in the plan it followed.")
     state: Literal["flying", "ended", "interrupted"]
     started_at: datetime
     ended_at: datetime | None

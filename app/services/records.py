@@ -168,6 +168,8 @@ class FlightRecord:
     ----------
     plan_id, plan_vehicle
         The plan last uploaded to the vehicle and its name there; None when none was.
+    plan_sortie
+        Which of its flights there.
     state
         ``interrupted``: the service ended, or the vehicle vanished, before the flight did.
     payload
@@ -199,6 +201,7 @@ class FlightRecord:
     energy: FlownEnergy | None = None
     logs: tuple[str, ...] = ()
     link: tuple[LinkEvent, ...] = ()
+    plan_sortie: int = 1
 
 
 @dataclass(frozen=True, slots=True)

@@ -43,7 +43,7 @@ from planner.as_flown.track import Gap, Record, silences
 from planner.as_flown.track import TrackSample as Place
 from planner.geojson import read_scenario
 from planner.geojson.geometry import written
-from planner.plan import Plan
+from planner.plan import FlownPath, Plan
 from planner.scenario import Scenario
 from planner.tasks.flown import sortie_coverage
 
@@ -264,13 +264,20 @@ def _told(sortie: Sortie, plan: Plan) -> dict[str, Any]:
             asdict(phase)
             for flight in sortie.flights[:1]
             if alone
-            for path in plan.paths
-            if path.vehicle == flight.record.plan_vehicle or len(plan.paths) == 1
+            for path in _paths_of(flight.record, plan)
             for phase in flown_phases(path, flight.samples)
         ],
         "seen_fraction": SEEN_FRACTION,
         "energy": [_energy(flight, plan) for flight in sortie.flights],
     }
+
+
+def _paths_of(record: FlightRecord, plan: Plan) -> list[FlownPath]:
+    """The line of a plan that a flight followed, of its own sortie; none where the plan has no such."""
+    if len(plan.paths) == 1:
+        return list(plan.paths)
+    own = (record.plan_vehicle, record.plan_sortie)
+    return [path for path in plan.paths if (path.vehicle, path.sortie) == own]
 
 
 def _gaps(sortie: Sortie, gaps_of: Sequence[Sequence[Gap]]) -> list[dict[str, Any]]:
@@ -313,7 +320,7 @@ def _not_counted(sortie: Sortie, result: FlownCoverage) -> list[tuple[dict[str, 
 def _energy(flight: Flown, plan: Plan) -> dict[str, Any]:
     """What the plan says a flight takes, and what its batteries told."""
     record = flight.record
-    paths = [p for p in plan.paths if p.vehicle == record.plan_vehicle or len(plan.paths) == 1]
+    paths = _paths_of(record, plan)
     drawn = record.energy
     return {
         "flight": record.id,

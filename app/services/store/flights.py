@@ -55,6 +55,7 @@ def _record(row: FlightRow, points: int, photos: int) -> FlightRecord:
         ),
         energy=None if row.energy is None else FlownEnergy(**row.energy),
         logs=tuple(row.logs or ()),
+        plan_sortie=row.plan_sortie or 1,
         link=tuple(
             LinkEvent(**(kept | {"at": datetime.fromisoformat(kept["at"])})) for kept in row.link or ()
         ),
@@ -99,6 +100,7 @@ class FlightStore:
         plan_vehicle: str | None,
         payload: str | None = None,
         started_at: datetime | None = None,
+        plan_sortie: int = 1,
     ) -> str:
         """A new flight; returns its id. It starts now, unless it was flown at another time."""
         flight_id = str(uuid.uuid4())
@@ -110,6 +112,7 @@ class FlightStore:
                     vehicle_name=vehicle_name,
                     plan_id=plan_id,
                     plan_vehicle=plan_vehicle,
+                    plan_sortie=plan_sortie,
                     payload=payload,
                     state="flying",
                     started_at=started_at or now(),

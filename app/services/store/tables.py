@@ -148,6 +148,7 @@ class FlightRow(Base):
     vehicle_name: Mapped[str] = mapped_column(String(200))
     plan_id: Mapped[str | None] = mapped_column(String(36), index=True)
     plan_vehicle: Mapped[str | None] = mapped_column(String(200))
+    plan_sortie: Mapped[int | None] = mapped_column(Integer)
     payload: Mapped[str | None] = mapped_column(String(200))
     state: Mapped[str] = mapped_column(String(12))
     started_at: Mapped[datetime] = mapped_column(UtcTime)

@@ -52,6 +52,8 @@ class HeldPlan:
         Where the vehicle shows that; None where it shows it nowhere.
     gimbal
         What points the sensor, as the upload said it.
+    sortie
+        Which of the vehicle's flights in the plan.
     """
 
     plan_id: str
@@ -59,6 +61,7 @@ class HeldPlan:
     payload: str | None = None
     output: SensorOutput | None = None
     gimbal: str | None = None
+    sortie: int = 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -196,6 +199,7 @@ class FlightRecorder:
                 plan.plan_vehicle if plan else None,
                 plan.payload if plan else None,
                 _moment(self._recorder, 0),
+                plan.sortie if plan else 1,
             )
         except StorageError:
             # What is heard is kept: the flight begins with it once the database takes it.

@@ -351,7 +351,7 @@ class Vehicle(Heard):
         """Take it that the vehicle holds a plan as these items, and find out where it shows its payload."""
         payload = DEFAULT_PAYLOAD if held.payload is None else parse_payload(held.payload)
         output = await self.safety.output(self.client, payload)
-        self.held = HeldPlan(held.plan_id, held.plan_vehicle, held.payload, output, held.gimbal)
+        self.held = HeldPlan(held.plan_id, held.plan_vehicle, held.payload, output, held.gimbal, held.sortie)
         self.safety.hold(payload, passes_of(items, payload, self.state.autopilot), len(items))
         self.client.show_sensor(output)
         # It may fly at once: what shows its payload must be listened to by then.

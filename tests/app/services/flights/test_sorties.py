@@ -17,8 +17,10 @@ from app.services.store.flights import FlightStore
 from app.services.store.tables import FlightRow
 from app.settings import Settings
 from tests.app.conftest import fake_house, serving
+from tests.app.services.flights.test_phases import recorded as along
 from tests.app.services.flights.test_refly import Flown, track_of
 from tests.app.test_problems import check_problem
+from tests.planner.scenarios import small
 
 BEGAN = datetime(2026, 5, 1, 12, 0, tzinfo=UTC)
 
@@ -162,3 +164,34 @@ async def test_plans_that_were_not_flown_have_no_coverage(flown: Flown) -> None:
     check_problem(await flown.client.get("/api/v1/plans/none/coverage"), 404)
     check_problem(await flown.client.get(f"/api/v1/plans/{flown.plan_id}/coverage"), 409)
     check_problem(await flown.client.post(f"/api/v1/plans/{flown.plan_id}/refly"), 409)
+
+
+async def test_a_later_sortie_is_held_against_its_own_phases(settings: Settings) -> None:
+    """Of a mission in several flights the second has its own phases and energy, flown in their times."""
+    document = small()
+    document["vehicles"][0] |= {"max_items": 25, "cruise_power_w": 200.0}
+    app = create_app(settings, fake_house)
+    async with serving(app) as client:
+        record = (await client.post("/api/v1/plans", json=document, params={"wait": 60})).json()
+        assert record["state"] == "done", record
+        plan = plan_of((await client.get(f"/api/v1/plans/{record['id']}/plan.geojson")).text)
+        assert [path.sortie for path in plan.paths] == [1, 2]
+        store = FlightStore(app.state.house.database)
+        told = []
+        for path in plan.paths:
+            flight_id = await store.begin(
+                "vehicle", "uav", record["id"], path.vehicle, plan_sortie=path.sortie
+            )
+            await store.add(flight_id, along(path, 1.0))
+            await store.end(flight_id, "ended")
+            place = f"/api/v1/flights/{flight_id}"
+            assert (await client.get(place)).json()["plan_sortie"] == path.sortie
+            told.append((await client.get(place + "/coverage.geojson")).json())
+    for path, each in zip(plan.paths, told, strict=True):
+        assert [p["kind"] for p in each["phases"]] == [p.kind for p in path.phases]
+        for phase, own in zip(each["phases"], path.phases, strict=True):
+            assert phase["planned_s"] == pytest.approx(own.end_s - own.start_s)
+            assert phase["flown_s"] == pytest.approx(phase["planned_s"], abs=4.0)
+        (energy,) = each["energy"]
+        assert energy["planned_wh"] == pytest.approx(path.energy_wh, rel=1e-3)
+    assert plan.paths[0].energy_wh != pytest.approx(plan.paths[1].energy_wh, rel=1e-2)

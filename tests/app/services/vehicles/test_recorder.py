@@ -339,3 +339,18 @@ async def test_a_flight_that_begins_as_its_link_is_lost_is_closed(slow: SlowStor
     await recorder.look(client, PLAN)
     assert recorder.flight_id is None
     assert [flight.state for flight in await slow.newest(9, 0, None)] == ["interrupted"]
+
+
+async def test_each_sortie_is_a_flight_of_its_own(recorder: FlightRecorder, store: FlightStore) -> None:
+    """The mission of the next sortie, uploaded between two flights, is what the second is held against."""
+    client = Client()
+    kept = []
+    for sortie in (1, 2):
+        client.told = FLIGHT
+        await recorder.look(client, replace(PLAN, sortie=sortie))
+        assert recorder.flight_id is not None
+        kept.append(recorder.flight_id)
+        client.hear(sortie)
+        client.told = GROUND
+        await recorder.look(client, replace(PLAN, sortie=sortie))
+    assert [(await store.get(flight_id)).plan_sortie for flight_id in kept] == [1, 2]
