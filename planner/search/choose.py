@@ -128,7 +128,7 @@ class Search:
                 moved = False
                 for strips in _moves(best.strips, part, width_m):
                     raise_if(self.stop)
-                    sweeps = tuple(self._sweeps(strips, best.look))
+                    sweeps = tuple(self.sweeps_over(strips, best.look))
                     if not sweeps:
                         continue
                     laid = Laid(best.family, sweeps, strips, best.look)
@@ -147,7 +147,7 @@ class Search:
             for strip in strips:
                 key = strip.tobytes()
                 if key not in known:
-                    known[key] = tuple(self._sweeps(strip[None], start.look))
+                    known[key] = tuple(self.sweeps_over(strip[None], start.look))
                 sweeps += known[key]
             laid = Laid(REFINED, tuple(sweeps), strips, start.look)
             return next(iter(self._cut(laid, budget_m, thin=False)), None)
@@ -160,7 +160,7 @@ class Search:
         """A pattern to and fro for as long as the budget lasts, where looks again find something."""
         if self.detection >= 1.0 or way.cost_m > ROOM_AGAIN * budget_m or not way.whole:
             return
-        back = tuple(self._sweeps(way.strips[::-1, ::-1], way.look))
+        back = tuple(self.sweeps_over(way.strips[::-1, ::-1], way.look))
         sweeps, strips = way.whole, way.strips
         rounds = min(MOST_AGAIN, math.ceil(budget_m / max(way.cost_m, 1.0)))
         for number in range(rounds):
@@ -204,7 +204,7 @@ class Search:
                 if self.family not in (None, REFINED, pattern.family):
                     continue
                 for look in self.looking.looks:
-                    sweeps = tuple(self._sweeps(pattern.strips, look))
+                    sweeps = tuple(self.sweeps_over(pattern.strips, look))
                     if sweeps:
                         yield Laid(pattern.family, sweeps, pattern.strips, look)
 
@@ -221,7 +221,7 @@ class Search:
         for strips in walked(name, self.worth, width_m, self.room.free, ends, budget_m):
             raise_if(self.stop)
             for look in self.looking.looks:
-                sweeps = tuple(self._sweeps(strips, look))
+                sweeps = tuple(self.sweeps_over(strips, look))
                 if sweeps:
                     yield Laid(name, sweeps, strips, look)
 
@@ -231,7 +231,7 @@ class Search:
             return
         strips = horizon_strips(self.family, self.ground, self.worth, width_m, self.pricing, budget_m)
         for look in self.looking.looks:
-            sweeps = tuple(self._sweeps(strips, look)) if len(strips) else ()
+            sweeps = tuple(self.sweeps_over(strips, look)) if len(strips) else ()
             if sweeps:
                 yield Laid(self.family, sweeps, strips, look)
 
@@ -242,11 +242,11 @@ class Search:
         for name, strips in drifting_strips(self.drifting, self.pricing, width_m, budget_m, self.seed):
             raise_if(self.stop)
             for look in self.looking.looks:
-                sweeps = tuple(self._sweeps(strips, look)) if len(strips) else ()
+                sweeps = tuple(self.sweeps_over(strips, look)) if len(strips) else ()
                 if sweeps:
                     yield Laid(name, sweeps, strips, look)
 
-    def _sweeps(self, strips: Floats, look: Look) -> Iterator[Sweep]:
+    def sweeps_over(self, strips: Floats, look: Look) -> Iterator[Sweep]:
         """The passes that see strips, looking to one side, where they may be flown."""
         along = strips[:, 1] - strips[:, 0]
         lengths_m = np.hypot(*along.T)

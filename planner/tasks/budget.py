@@ -1,10 +1,32 @@
-"""What limits a flight, and what a metre of it takes."""
+"""What limits a flight, what a metre of it takes, and flights that were tried."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
+from planner.profile.compose import Composed
+from planner.publish import Leg
+from planner.route import CollectPass
+from planner.search.programme import Programme
 from planner.vehicle.aircraft import Aircraft
 from planner.vehicle.energy import FlightState
 from planner.vehicle.limits import Use
+
+#: A flight that uses more than this part of what it may is not flown: the judge reckons by the vertices of
+#: the published line, by a thousandth or so another way.
+MOST = 0.997
+
+
+@dataclass(frozen=True, slots=True)
+class Flight:
+    """One programme of a search, flown."""
+
+    programme: Programme
+    passes: tuple[CollectPass, ...]
+    composed: Composed
+    legs: tuple[Leg, ...]
+    notes: tuple[str, ...]
+    use: Use
 
 
 def per_m_of(aircraft: Aircraft, above_sea_m: float) -> dict[str, float]:
@@ -28,3 +50,8 @@ def limits_of(aircraft: Aircraft, use: Use) -> dict[str, tuple[float, float, str
         for name, (used_, limit, unit) in rows.items()
         if used_ is not None and limit is not None
     }
+
+
+def part_used(aircraft: Aircraft, use: Use) -> float:
+    """What part of the limit that is nearest is used; 0 without any."""
+    return max((taken / limit for taken, limit, _ in limits_of(aircraft, use).values()), default=0.0)

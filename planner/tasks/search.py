@@ -13,33 +13,31 @@ from shapely.geometry import MultiPolygon, Polygon
 from planner.airspace.zones import AREA
 from planner.errors import InfeasibleError
 from planner.metrics import used
-from planner.profile.compose import Composed
 from planner.progress import silent
-from planner.publish import Leg
-from planner.route import Anchor, CollectPass
+from planner.route import Anchor
 from planner.scenario import Scenario
 from planner.search.belief.drifting import Drifting, believed
 from planner.search.choose import PUBLISHED, REFINED, Search
 from planner.search.programme import Pricing, Programme
 from planner.search.room import Room
 from planner.search.swaths import Looking
-from planner.tasks.budget import limits_of, per_m_of
+from planner.tasks.budget import MOST, Flight, limits_of, part_used, per_m_of
 from planner.tasks.flying import Station
+from planner.tasks.leftover import filled
 from planner.tasks.methods import chosen_methods
 from planner.tasks.setting import Setting
 from planner.tasks.task import Answer, Controls, Task
 from planner.tasks.transits import Transits
 from planner.tasks.worth import drifted, ground_of, worth_of
 from planner.vehicle.aircraft import Aircraft
-from planner.vehicle.limits import Use, exceeded
+from planner.vehicle.limits import exceeded
 
 #: Cells of the worth of ground: so many to the swath's width, no more to a side, no finer.
 CELLS_ACROSS, MOST_CELLS, LEAST_CELL_M = 8.0, 160, 0.5
 #: So many of the best programmes are flown, each in so many lengths.
 FLOWN, LENGTHS = 6, 6
-#: A flight that uses this part of what it may is long enough; more than the other is not flown: the judge
-#: reckons by the vertices of the published line, by a thousandth or so another way.
-ENOUGH, MOST = 0.99, 0.997
+#: A flight that uses this part of what it may is long enough.
+ENOUGH = 0.99
 #: The best flight is improved so often, for so much more at least.
 MOST_IMPROVED, LEAST_BETTER = 3, 1e-3
 #: A flight that nothing limits looks for what drifts for so many times what sees all ground once.
@@ -48,18 +46,6 @@ UNLIMITED = 1.5
 NAMED = 5
 #: Ends no farther apart are one place to what hovers, which flies this far at least.
 HOVERED_M = 5.0
-
-
-@dataclass(frozen=True, slots=True)
-class _Flight:
-    """One programme flown."""
-
-    programme: Programme
-    passes: tuple[CollectPass, ...]
-    composed: Composed
-    legs: tuple[Leg, ...]
-    notes: tuple[str, ...]
-    use: Use
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -131,16 +117,17 @@ def answer_to(one: Sought, controls: Controls) -> Answer:
     """
     setting, asked = one.setting, one.asked
 
-    def fly(programme: Programme) -> _Flight:
+    def fly(programme: Programme) -> Flight:
         passes = tuple(asked.looking.collect(s.start, s.end, s.look) for s in programme.sweeps)
         composed, legs, notes = one.transits.through(passes, silent, controls.stop)
         use = used(composed.flight, setting.model, setting.level)
-        return _Flight(programme, passes, composed, legs, notes, use)
+        return Flight(programme, passes, composed, legs, notes, use)
 
     with controls.stage("transit"):
         best = _best(one.ranked, asked, one.spare_m, fly, setting.model.aircraft, controls)
         if asked.family in (None, REFINED) and best.programme.family not in PUBLISHED:
             best = _improved(best, asked, fly, setting.model.aircraft, controls)
+            best = filled(best, asked, fly, setting.model.aircraft, controls.enough)
     methods = one.transits.methods | {"search": best.programme.family}
     return Answer(setting, best.composed, best.legs, best.passes, methods, (), best.notes)
 
@@ -209,11 +196,6 @@ def _cell_m(ground: Polygon | MultiPolygon, width_m: float) -> float:
     west_m, south_m, east_m, north_m = ground.bounds
     side_m = max(east_m - west_m, north_m - south_m)
     return max(LEAST_CELL_M, side_m / MOST_CELLS, min(width_m / CELLS_ACROSS, side_m / 40.0))
-
-
-def _part(aircraft: Aircraft, use: Use) -> float:
-    """What part of the limit that is nearest is used; 0 without any."""
-    return max((taken / limit for taken, limit, _ in limits_of(aircraft, use).values()), default=0.0)
 
 
 def _spare(transits: Transits, scenario: Scenario, controls: Controls | None) -> tuple[float, float]:
@@ -310,12 +292,12 @@ def _best(
     ranked: Sequence[Programme],
     asked: Search,
     spare_m: float,
-    fly: Callable[[Programme], _Flight],
+    fly: Callable[[Programme], Flight],
     aircraft: Aircraft,
     controls: Controls,
-) -> _Flight:
+) -> Flight:
     """The best programmes flown, each as long as the limits allow; the one that sees most."""
-    best: _Flight | None = None
+    best: Flight | None = None
     refused: InfeasibleError | None = None
     flown = 0
     for programme in ranked:
@@ -339,18 +321,18 @@ def _best(
 
 
 def _improved(
-    best: _Flight,
+    best: Flight,
     asked: Search,
-    fly: Callable[[Programme], _Flight],
+    fly: Callable[[Programme], Flight],
     aircraft: Aircraft,
     controls: Controls,
-) -> _Flight:
+) -> Flight:
     """The best flight's strips moved each by itself for as long as what is then flown sees more."""
     for _ in range(MOST_IMPROVED):
         if controls.enough():
             break
         # What was left over is given to the passes.
-        budget_m = best.programme.cost_m * max(1.0, MOST / max(_part(aircraft, best.use), 1e-9))
+        budget_m = best.programme.cost_m * max(1.0, MOST / max(part_used(aircraft, best.use), 1e-9))
         better = asked.shifted(best.programme, budget_m)
         if better.worth <= best.programme.worth * (1.0 + LEAST_BETTER):
             break
@@ -368,15 +350,15 @@ def _as_long_as_can_be(
     programme: Programme,
     asked: Search,
     spare_m: float,
-    fly: Callable[[Programme], _Flight],
+    fly: Callable[[Programme], Flight],
     aircraft: Aircraft,
-) -> _Flight | None:
+) -> Flight | None:
     """A programme cut to what limits allow of the flight itself, halving between too long and too short."""
-    best: _Flight | None = None
+    best: Flight | None = None
     short_m, long_m, budget_m = 0.0, math.inf, spare_m
     for _ in range(LENGTHS):
         flight = fly(programme)
-        part = _part(aircraft, flight.use)
+        part = part_used(aircraft, flight.use)
         if part <= MOST and not exceeded(aircraft, flight.use):
             if best is None or flight.programme.worth >= best.programme.worth:
                 best = flight

@@ -1,10 +1,10 @@
 """Lines that find a target most likely and soonest, for one aircraft or several.
 
 Anytime: the standard patterns are flown in many shapes (spacing, course, size, along with the drift), the
-best of them varied and kept; then the line of one aircraft after the other is planned anew by a beam search
-over lines of bounded curvature, from some place along it on, the others' looks taken off, and kept where the
-whole gets better. What counts is how likely the target is found on average over the flight, and that no
-standard pattern is ahead at any quarter of it.
+best of them varied and kept, then changed corner by corner; then the line of one aircraft after the other is
+planned anew by a beam search over lines of bounded curvature, from some place along it on, the others' looks
+taken off, and kept where the whole gets better. What counts is how likely the target is found on average
+over the flight, and that no standard pattern is ahead at any quarter of it.
 """
 
 from __future__ import annotations
@@ -17,9 +17,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from planner.search.belief.indexed import Indexed, Running, flown_by
 from planner.search.belief.kernels import beam_line
+from planner.search.belief.legs import improve, reached
 from planner.search.belief.lines import homeward
-from planner.search.belief.patterns import LEGGED, PATTERNS, Searcher, Shape, pattern_lines
+from planner.search.belief.patterns import LEGGED, PATTERNS, Searcher, Shape, pattern_corners, pattern_lines
 from planner.search.belief.success import missed, success
 from planner.search.belief.target import Belief, Target
 
@@ -28,7 +30,9 @@ Bools = NDArray[np.bool_]
 Lines = list[Floats]
 
 #: Places that the plan is judged by, and that lines are searched by.
-PLACES, SEARCHED = 2_048, 256
+PLACES, SEARCHED = 16_384, 256
+#: Edges of what is seen are so wide for them, in distances between places where they lie closest.
+SOFT = 0.5
 #: Times at which success is looked at, and quarters among them.
 TIMES = 24
 #: Shapes that each pattern is tried in.
@@ -36,12 +40,12 @@ SPACINGS, COURSES, SIZES = (0.8, 1.0, 1.25), 4, (0.7, 1.0)
 WIDTH = 16
 #: From, to: pull of what lies about, the distance at which it pulls half in swaths, what being early counts.
 MANNERS = ((0.03, 1.0), (1.0, 8.0), (0.02, 2.0))
-#: Lines planned anew, of each start and of the best.
-FIRST, ROUNDS = 25, 100
-#: Shapes that are varied, how often, and how many of them are planned anew.
-SHAPES, LAST, VARIED, IMPROVED = 4, 2, 40, 2
+#: Changes of corners, of each start and of the best; then lines planned anew.
+FIRST, LEGS, ROUNDS = 600, 3_000, 15
+#: Shapes that are varied, how often.
+SHAPES, LAST, VARIED = 3, 2, 40
 #: A standard pattern is behind by this margin at each quarter, or that counts so much.
-MARGIN, BEHIND = 0.015, 8.0
+MARGIN, BEHIND = 0.012, 8.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -101,13 +105,13 @@ def auto(
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Tried:
-    """A pattern in a shape, its lines and their value."""
+    """A pattern in a shape, its corners and their lines' value."""
 
     value: float
     last: float
     name: str
     shape: Shape
-    lines: Lines
+    corners: list[Floats]
 
 
 class _Search:
@@ -127,6 +131,9 @@ class _Search:
         self._belief = Belief.drawn(target, PLACES, seed)
         until_s = max(one.until_s for one in searchers)
         self._times = until_s * np.arange(1, TIMES + 1) / TIMES
+        apart_m = math.sqrt(math.tau / PLACES) * target.error_m(0.5 * until_s)
+        half_m = min(one.half_width_m for one in searchers)
+        self._indexed = Indexed.of(self._belief, self._times, half_m, min(SOFT * apart_m, half_m))
         self._quarters = np.arange(TIMES // 4 - 1, TIMES, TIMES // 4)
         drift = target.drift_m_s
         self._course = math.atan2(drift[1], drift[0]) - 0.5 * math.pi
@@ -135,48 +142,59 @@ class _Search:
             for name in PATTERNS
             if self._clear(lines := pattern_lines(name, target, searchers, Shape(course_rad=self._course)))
         ]
+        # Legs that touch lose by soft edges, and the manuals' do: what they find is reckoned without.
+        sharp = replace(self._indexed, soft_m=0.0)
         self._ahead = np.max(
-            [self._success(lines)[self._quarters] for lines in standard], axis=0, initial=0.0
+            [sharp.success(lines, searchers)[self._quarters] for lines in standard], axis=0, initial=0.0
         )
 
     def found(self) -> Found:
-        kept = self._shaped() or [self._from_nothing()]
         generator = np.random.default_rng(self._seed)
-        best = max(
-            (self._improved(*one, FIRST, generator) for one in kept),
-            key=lambda one: one[0],
-        )
-        best = self._improved(*best, ROUNDS, generator)
-        return Found(tuple(best[1]), self._times, self._success(best[1]))
+        starts = [(self._running(self._flown(corners)), corners) for corners in self._shaped()]
+        for running, corners in starts:
+            self._legs(running, corners, FIRST, generator)
+        if starts:
+            best, corners = max(starts, key=lambda one: one[0].value)
+            self._legs(best, corners, LEGS, generator)
+        else:
+            best = self._running(self._from_nothing())
+        self._improve(best, ROUNDS, generator)
+        lines = best.lines
+        return Found(tuple(lines), self._times, success(lines, self._searchers, self._belief, self._times))
 
-    def _from_nothing(self) -> tuple[float, Lines]:
+    def _running(self, lines: Lines) -> Running:
+        return Running(self._indexed, self._searchers, self._worth, lines)
+
+    def _flown(self, corners: list[Floats]) -> Lines:
+        return [flown_by(each, one) for each, one in zip(corners, self._searchers, strict=True)]
+
+    def _legs(
+        self, running: Running, corners: list[Floats], tries: int, generator: np.random.Generator
+    ) -> None:
+        """Corner by corner."""
+        improve(running, corners, self._searchers, self._free.clear, tries, generator, self._enough)
+
+    def _from_nothing(self) -> Lines:
         """Lines where no pattern may be flown: one after the other."""
         lines: Lines = []
         for index in range(len(self._searchers)):
             lines.append(self._again(lines, index, 0.0, (0.3, 3.0, 1.0)))
-        return self._value(lines), lines
+        return lines
 
-    def _improved(
-        self, value: float, lines: Lines, rounds: int, generator: np.random.Generator
-    ) -> tuple[float, Lines]:
+    def _improve(self, running: Running, rounds: int, generator: np.random.Generator) -> None:
         """Lines planned anew, one at a time from some part of its flight on, where the whole gets better."""
         for _ in range(rounds):
             if self._enough():
-                break
-            index = int(generator.integers(len(lines)))
+                return
+            index = int(generator.integers(len(running.lines)))
             part = float(max(0.0, generator.uniform(-0.2, 0.9)))
             manner = tuple(np.exp(generator.uniform(*np.log(MANNERS).T)).tolist())
-            line = self._again(lines, index, part, manner)
-            again = [*lines[:index], line, *lines[index + 1 :]]
-            if self._free.clear(line) and (worth := self._value(again)) > value + 1e-6:
-                lines, value = again, worth
-        return value, lines
+            line = self._again(running.lines, index, part, manner)
+            if self._free.clear(line):
+                running.better(index, line, 1e-6)
 
     def _success(self, lines: Lines) -> Floats:
-        return success(lines, self._searchers, self._belief, self._times)
-
-    def _value(self, lines: Lines) -> float:
-        return self._worth(self._success(lines))
+        return self._indexed.success(lines, self._searchers)
 
     def _worth(self, by_time: Floats) -> float:
         margins = by_time[self._quarters] - self._ahead
@@ -185,8 +203,8 @@ class _Search:
     def _clear(self, lines: Lines) -> bool:
         return all(self._free.clear(line) for line in lines)
 
-    def _shaped(self) -> list[tuple[float, Lines]]:
-        """The best of the patterns in many shapes, each then varied."""
+    def _shaped(self) -> list[list[Floats]]:
+        """Corners of the best of the patterns in many shapes, each then varied."""
         tried = [one for name, shape in self._shapes() if (one := self._tried(name, shape))]
         tried.sort(key=lambda one: -one.value)
         kept = tried[:SHAPES]
@@ -203,18 +221,20 @@ class _Search:
                     best = other
             kept[index] = best
         kept.sort(key=lambda one: -one.value)
-        return [(one.value, one.lines) for one in kept[:IMPROVED]]
+        return [one.corners for one in kept]
 
     def _tried(self, name: str, shape: Shape) -> _Tried | None:
         """One pattern flown; None where something is in the way, or there is no time left to try it."""
         if self._some and self._enough():
             return None
-        lines = pattern_lines(name, self._target, self._searchers, shape)
+        drawn = pattern_corners(name, self._target, self._searchers, shape)
+        corners = [reached(each, one) for each, one in zip(drawn, self._searchers, strict=True)]
+        lines = self._flown(corners)
         if not self._clear(lines):
             return None
         self._some = True
         by_time = self._success(lines)
-        return _Tried(self._worth(by_time), float(by_time[-1]), name, shape, lines)
+        return _Tried(self._worth(by_time), float(by_time[-1]), name, shape, corners)
 
     def _shapes(self) -> Iterator[tuple[str, Shape]]:
         plain = Shape(course_rad=self._course)
@@ -242,15 +262,20 @@ class _Search:
         others = [k for k in range(len(lines)) if k != index]
         known = [lines[k] for k in others]
         searchers = [self._searchers[k] for k in others]
-        left = missed(known, searchers, self._belief, self._times[-1:])[0]
+        # A line fits the places that it is searched by: others each time.
+        first = SEARCHED * int(self._block.integers(max(1, PLACES // SEARCHED)))
+        whole, some = self._belief, slice(first, first + SEARCHED)
+        belief = Belief(whole.places_m[some], whole.drifts_m_s[some], whole.weights[some])
+        left = missed(known, searchers, belief, self._times[-1:])[0]
         line = lines[index] if index < len(lines) else None
-        return self._line(self._searchers[index], line, part, left, manner)
+        return self._line(self._searchers[index], line, part, belief, left, manner)
 
     def _line(
         self,
         one: Searcher,
         line: Floats | None,
         part: float,
+        belief: Belief,
         left: Floats,
         manner: tuple[float, ...],
     ) -> Floats:
@@ -263,22 +288,19 @@ class _Search:
             begin, here = kept[-2], kept[-1]
             pose = np.array([here[0], here[1], math.atan2(here[1] - begin[1], here[0] - begin[0])])
             start_s = float(here[2])
-            seen = missed([kept], [one], self._belief, self._times[-1:])[0]
+            seen = missed([kept], [one], belief, self._times[-1:])[0]
             left = left * seen
         else:
             datum = self._target.datum_m(0.0)
             away = math.atan2(datum[1] - one.base_m[1], datum[0] - one.base_m[0])
             pose = np.array([*one.base_m, away])
-        # A line fits the places that it is searched by: others each time.
-        first = SEARCHED * int(self._block.integers(max(1, PLACES // SEARCHED)))
-        some = slice(first, first + SEARCHED)
-        weights = (self._belief.weights * left)[some]
+        weights = belief.weights * left
         poses, _ = beam_line(
             pose,
             start_s,
             np.asarray(one.base_m),
-            np.ascontiguousarray(self._belief.places_m[some]),
-            np.ascontiguousarray(self._belief.drifts_m_s[some]),
+            np.ascontiguousarray(belief.places_m),
+            np.ascontiguousarray(belief.drifts_m_s),
             np.ascontiguousarray(weights / max(weights.sum(), 1e-300)),
             one.half_width_m,
             1.0 - one.detection,

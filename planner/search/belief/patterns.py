@@ -74,7 +74,7 @@ class Shape:
     datum_part
         The part of the search at whose time the datum is taken, where it does not.
     outward
-        Whether legs side by side are flown from the middle one on, to one side, then to the other.
+        Whether legs side by side are flown from the one nearest to the datum on, to one side, then the other.
     """
 
     spacing: float = 1.0
@@ -101,6 +101,19 @@ def pattern_lines(
     name: str, target: Target, searchers: tuple[Searcher, ...], shape: Shape = Shape()
 ) -> list[Floats]:
     """Lines (M, 3), one an aircraft, each home in time."""
+    return [
+        homeward(
+            timed(rounded(corners, one.turn_radius_m), one.speed_m_s),
+            one.base_m, one.speed_m_s, one.turn_radius_m, one.until_s,
+        )
+        for corners, one in zip(pattern_corners(name, target, searchers, shape), searchers, strict=True)
+    ]  # fmt: skip
+
+
+def pattern_corners(
+    name: str, target: Target, searchers: tuple[Searcher, ...], shape: Shape = Shape()
+) -> list[Floats]:
+    """Corners (K, 2), one array an aircraft, from its base on, for longer than it may fly."""
     until_s = max(one.until_s for one in searchers)
     middle_s = shape.datum_part * until_s
     datum = np.array(target.datum_m(0.0 if shape.drifting else middle_s))
@@ -112,17 +125,15 @@ def pattern_lines(
         for one in searchers
     )
     side_m = shape.size * min(math.sqrt(swept_m2), 2.0 * ERRORS * target.error_m(middle_s))
-    lines = []
+    found = []
     for index, one in enumerate(searchers):
         corners = _corners(name, one, index, len(searchers), side_m, shape)
         cosine, sine = math.cos(shape.course_rad), math.sin(shape.course_rad)
         turned = corners @ np.array([[cosine, sine], [-sine, cosine]]) + datum
         if shape.drifting:
             turned = _along(turned, one, target)
-        points = rounded(np.concatenate([[one.base_m], turned]), one.turn_radius_m)
-        line = timed(points, one.speed_m_s)
-        lines.append(homeward(line, one.base_m, one.speed_m_s, one.turn_radius_m, one.until_s))
-    return lines
+        found.append(np.concatenate([[one.base_m], turned]))
+    return found
 
 
 def _along(corners: Floats, one: Searcher, target: Target) -> Floats:
@@ -156,23 +167,24 @@ def _corners(name: str, one: Searcher, index: int, count: int, side_m: float, sh
     long_m, wide_m = (side_m, slice_m) if along or count > 1 else (side_m, side_m)
     if along:
         # Legs along the slice's longer side.
-        offsets = _offsets(wide_m, spacing_m, shape.outward) + west_m
+        offsets = _offsets(west_m, wide_m, spacing_m, shape.outward)
         ends = (-0.5 * long_m, 0.5 * long_m)
         rows = [((o, ends[k % 2]), (o, ends[1 - k % 2])) for k, o in enumerate(offsets)]
     else:
         # Legs across it, creeping along from one end.
-        offsets = _offsets(long_m, spacing_m, shape.outward) - 0.5 * long_m
+        offsets = _offsets(-0.5 * long_m, long_m, spacing_m, shape.outward)
         ends = (west_m, west_m + slice_m)
         rows = [((ends[k % 2], o), (ends[1 - k % 2], o)) for k, o in enumerate(offsets)]
     return np.array([corner for row in rows for corner in row])
 
 
-def _offsets(wide_m: float, spacing_m: float, outward: bool) -> Floats:
+def _offsets(first_m: float, wide_m: float, spacing_m: float, outward: bool) -> Floats:
+    """Of legs side by side from an edge on, in flight order."""
     count = max(1, round(wide_m / spacing_m))
-    order = np.arange(count)
+    offsets: Floats = first_m + (np.arange(count) + 0.5) * wide_m / count
     if outward:
-        order = np.concatenate([order[count // 2 :], order[: count // 2][::-1]])
-    offsets: Floats = (order + 0.5) * wide_m / count
+        nearest = int(np.argmin(np.abs(offsets)))
+        offsets = np.concatenate([offsets[nearest:], offsets[:nearest][::-1]])
     return offsets
 
 

@@ -10,7 +10,7 @@ from shapely.geometry import Polygon
 from mavlink.encoding.encode import encode
 from planner.geojson import read_plan, read_scenario, write_plan
 from planner.pipeline import make_plan, with_bound
-from tests.planner.search.searches import COPTER, RADAR, WING, document, feature, lonlat, rectangle
+from tests.planner.search.searches import CAMERA, COPTER, RADAR, WING, document, feature, lonlat, rectangle
 
 
 def seen_m2(scenario, plan):
@@ -131,3 +131,34 @@ def test_refined_sees_no_less_than_patterns():
         for name in ("parallel", "creeping", "refined")
     }
     assert worth["refined"] >= max(worth.values()) * (1.0 - 1e-9)
+
+
+@pytest.mark.parametrize("sensor", [CAMERA, RADAR], ids=["camera", "radar"])
+@pytest.mark.parametrize("tiny", [(1100, 800, 1110, 808), (1150, 50, 1152, 52)])
+def test_a_tiny_region_beside_a_large_one_is_seen_where_there_is_energy(sensor, tiny):
+    """It is no part of any pattern over both; what a pattern leaves of the large one is seen, too."""
+    asked = document(
+        rectangle("roi", 100.0, 100.0, 700.0, 700.0, name="large"),
+        rectangle("roi", *tiny, name="tiny"),
+        vehicle=WING | {"energy_wh": 60}, sensor=sensor, altitude_m=120,
+    )  # fmt: skip
+    asked["features"][0] = rectangle("area", -800.0, -800.0, 2200.0, 2000.0)
+    plan = make_plan(read_scenario(asked))
+    assert plan.hard_violations == ()
+    assert plan.metrics.coverage == {"large": 1.0, "tiny": 1.0}
+    assert plan.metrics.energy_wh <= 0.8 * 60
+
+
+def test_what_cannot_be_reached_with_the_energy_left_stays_unseen():
+    """With little energy a far small region is left out, and the flight is no longer for it."""
+    asked = document(
+        rectangle("roi", 100.0, 100.0, 500.0, 500.0, name="large"),
+        rectangle("roi", 6100.0, 100.0, 6110.0, 110.0, name="far"),
+        vehicle=WING | {"energy_wh": 16},
+    )
+    asked["features"][0] = rectangle("area", -800.0, -800.0, 7200.0, 2000.0)
+    plan = make_plan(read_scenario(asked))
+    assert plan.hard_violations == ()
+    assert plan.metrics.coverage["far"] == pytest.approx(0.0, abs=1e-6)
+    assert plan.metrics.coverage["large"] > 0.5
+    assert plan.metrics.energy_wh <= 0.8 * 16

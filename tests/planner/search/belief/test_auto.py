@@ -23,8 +23,9 @@ def few_tries(monkeypatch: pytest.MonkeyPatch) -> None:
     for name, value in (
         ("PLACES", 512),
         ("SEARCHED", 128),
-        ("FIRST", 5),
-        ("ROUNDS", 15),
+        ("FIRST", 30),
+        ("LEGS", 200),
+        ("ROUNDS", 5),
         ("VARIED", 5),
         ("COURSES", 2),
     ):
