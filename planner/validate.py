@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from typing import Any, Literal
 
@@ -16,6 +16,8 @@ from planner.scenario import Scenario
 from planner.tasks.search import refuse_unsearchable
 from planner.tasks.setting import Setting, seeing
 from planner.tasks.urban import cut_by_obstacles, lanes_cut, refuse_filled
+from planner.vehicle.aircraft import Aircraft
+from planner.vehicle.model import FlightModel
 
 #: From so many passes on planning takes tens of seconds, then minutes.
 MANY_PASSES = 120
@@ -105,7 +107,16 @@ def _unseen_by_all(scenario: Scenario) -> tuple[Finding, ...]:
     names = {region.name for region in scenario.regions}
     said: dict[str, list[tuple[Finding, ...]]] = {}
     found: list[Finding] = []
+    grounded = {
+        name: error for aircraft in scenario.aircraft for name, error in _grounded(scenario, aircraft)
+    }
+    if len(grounded) == len(scenario.aircraft):
+        return tuple(_finding(error, True) for error in grounded.values())
     for aircraft in scenario.aircraft:
+        if aircraft.name in grounded:
+            # Others may do its work: whether they can is for planning to find.
+            found.append(_finding(grounded[aircraft.name], aircraft.aloft is not None))
+            continue
         alone = scenario.of_one(aircraft)
         own = unseeable(alone)
         found += [finding for finding in own if finding.feature not in names]
@@ -115,6 +126,14 @@ def _unseen_by_all(scenario: Scenario) -> tuple[Finding, ...]:
     for each in said.values():
         found += each[0] if all(each) else ()
     return tuple(dict.fromkeys(found))
+
+
+def _grounded(scenario: Scenario, aircraft: Aircraft) -> Iterator[tuple[str, InfeasibleError]]:
+    """Its name and why, of an aircraft that the wind keeps on the ground."""
+    try:
+        FlightModel.of(aircraft, scenario.wind, scenario.level.amsl_m - scenario.level.height_m)
+    except InfeasibleError as error:
+        yield aircraft.name, error
 
 
 def _unsearchable(scenario: Scenario) -> tuple[Finding, ...]:

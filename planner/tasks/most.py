@@ -6,6 +6,7 @@ import math
 
 import shapely
 
+from planner.errors import InfeasibleError
 from planner.scenario import Scenario
 from planner.search.most import Sweeping, most_found
 from planner.tasks.budget import limits_of, per_m_of
@@ -28,7 +29,13 @@ def most(scenario: Scenario) -> tuple[float, float] | None:
         alone = scenario.of_one(aircraft) if scenario.is_fleet else scenario
         if not alone.regions:
             continue
-        setting = Setting.of(alone)
+        try:
+            setting = Setting.of(alone)
+        except InfeasibleError as error:
+            if error.constraint != "wind":
+                raise
+            # It stays on the ground, and finds nothing.
+            continue
         asked = asked_of(alone, setting)
         own, wind_m_s = setting.model.aircraft, setting.model.wind.speed_m_s
         per_m = per_m_of(own, setting.level.amsl_m)

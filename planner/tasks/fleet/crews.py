@@ -23,6 +23,7 @@ from planner.tasks.setting import Setting, seeing
 from planner.vehicle.aircraft import Aircraft
 from planner.vehicle.energy import FlightState
 from planner.vehicle.manners import manners_of
+from planner.wishes import Region
 
 Floats = NDArray[np.float64]
 
@@ -188,9 +189,65 @@ def _best(entries: Floats, exits: Floats, inner_m: Floats) -> Ways:
     return Ways(np.asarray(entries)[kept], np.asarray(exits)[kept], np.asarray(inner_m)[kept])
 
 
-def crews_of(scenario: Scenario) -> tuple[Crew, ...]:
-    """One for each aircraft."""
-    return tuple(Crew.of(scenario, aircraft) for aircraft in scenario.aircraft)
+def crews_of(
+    scenario: Scenario, some: Sequence[Aircraft] | None = None
+) -> tuple[tuple[Crew, ...], tuple[Finding, ...]]:
+    """One for each aircraft that can fly in the wind, and what is said of those that stay on the ground.
+
+    Parameters
+    ----------
+    some
+        Of the scenario's aircraft; None for all.
+
+    Raises
+    ------
+    InfeasibleError
+        ``"wind"``: none can, or one that flies already cannot.
+    """
+    crews: list[Crew] = []
+    said: list[Finding] = []
+    refused: InfeasibleError | None = None
+    for aircraft in scenario.aircraft if some is None else some:
+        try:
+            crews.append(Crew.of(scenario, aircraft))
+        except InfeasibleError as error:
+            if error.constraint != "wind" or aircraft.aloft is not None:
+                raise
+            refused = refused or error
+            said.append(not_flown(aircraft.name, error))
+    if refused is not None and not crews:
+        raise refused
+    return tuple(crews), tuple(said)
+
+
+def not_flown(name: str, error: InfeasibleError) -> Finding:
+    """What is said of an aircraft that stays on the ground."""
+    message = f"does not fly: {error.message}" if error.feature == name else f"does not fly: {error}"
+    return Finding(name, f"not-flown-{error.constraint}", message, error.relaxation, "warning")
+
+
+def left_by(
+    grounded: Sequence[Finding], crews: Sequence[Crew], regions: Iterable[Region]
+) -> dict[str, Finding]:
+    """Regions that only aircraft see which stay on the ground, by their names, and what is said of them.
+
+    Raises
+    ------
+    InfeasibleError
+        Where one is required.
+    """
+    able = {region.name for crew in crews for region in crew.alone.regions}
+    why = "; ".join(f"{finding.feature} {finding.message}" for finding in grounded)
+    found: dict[str, Finding] = {}
+    for region in regions if grounded else ():
+        if region.name in able:
+            continue
+        message = f"is seen by none that flies: {why}"
+        error = InfeasibleError("wind", region.name, message, grounded[0].fix)
+        if region.required:
+            raise error
+        found[region.name] = not_seen(Job(region, region.name), error)
+    return found
 
 
 def ways_of(

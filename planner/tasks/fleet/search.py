@@ -18,7 +18,7 @@ from planner.fleet.assignment import Trip
 from planner.metrics import used
 from planner.scenario import Scenario
 from planner.search.values import Worth
-from planner.tasks.fleet.crews import Crew
+from planner.tasks.fleet.crews import Crew, crews_of
 from planner.tasks.fleet.flights import Flown, Order
 from planner.tasks.fleet.placing import Errand, placed
 from planner.tasks.fleet.task import FleetAnswer
@@ -53,10 +53,9 @@ def search_together(scenario: Scenario, controls: Controls) -> FleetAnswer:
     InfeasibleError
         Where no aircraft can search anything.
     """
-    crews = tuple(
-        Crew.of(scenario, aircraft) for aircraft in scenario.aircraft if scenario.of_one(aircraft).regions
-    )
-    dropped: list[Finding] = []
+    seeing = tuple(aircraft for aircraft in scenario.aircraft if scenario.of_one(aircraft).regions)
+    crews, grounded = crews_of(scenario, seeing)
+    dropped: list[Finding] = list(grounded)
     shares: list[_Share] = []
     refused: InfeasibleError | None = None
     longest_s = 0.0

@@ -14,7 +14,7 @@ from planner.plan import Assigned, LeftOut
 from planner.scenario import Scenario
 from planner.tasks.fleet.aloft import homewards
 from planner.tasks.fleet.barred import BarredError, barred, infeasible
-from planner.tasks.fleet.crews import Crew, crews_of, not_seen, ways_of
+from planner.tasks.fleet.crews import Crew, crews_of, left_by, not_seen, ways_of
 from planner.tasks.fleet.deciding import decided, decided_by, methods_of
 from planner.tasks.fleet.flights import Flown, Order, in_best_order, in_given_order, in_order, items_in, over
 from planner.tasks.fleet.jobs import Job, jobs_of
@@ -102,7 +102,8 @@ class _Rounds:
         self._given_up: dict[str, Finding] = {}
         self._barred: set[tuple[str, int]] = set()
         with controls.stage("options"):
-            self._crews = crews_of(scenario)
+            self._crews, self._grounded = crews_of(scenario)
+            self._given_up |= left_by(self._grounded, self._crews, scenario.regions)
             self._parts: dict[str, int] = {}
             self._spread()
             self._parts = self._cutting.first()
@@ -358,6 +359,7 @@ class _Rounds:
     ) -> FleetAnswer:
         dropped = (*self._why.values(), *self._given_up.values())
         left = [LeftOut(f.feature, f.rule.removeprefix("not-seen-")) for f in dropped]
+        dropped = (*self._grounded, *dropped)
         for each in assigned.left_out:
             job = jobs[each.target]
             margin = each.margin if math.isfinite(each.margin) else None

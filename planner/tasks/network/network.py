@@ -21,7 +21,7 @@ from planner.route import CollectPass, Pose
 from planner.routing.joint.chain import estimates, from_start, to_end
 from planner.scenario import Scenario
 from planner.sensors.worth import Worth, worth_of
-from planner.tasks.fleet.crews import Crew
+from planner.tasks.fleet.crews import Crew, crews_of
 from planner.tasks.fleet.jobs import along_rad
 from planner.tasks.network.candidates import HIDDEN_PART, View, part_of
 from planner.tasks.network.segments import Line, Looked, Network, RecognitionSegment, angle_of
@@ -70,7 +70,7 @@ def network_of(scenario: Scenario, plan: Plan, only: Sequence[str] = (), stop: S
     CancelledError
         When ``stop`` says so.
     """
-    crews = tuple(Crew.of(scenario, aircraft) for aircraft in scenario.aircraft)
+    crews, _ = crews_of(scenario)
     kinds: dict[tuple[object, ...], list[Crew]] = {}
     for crew in crews:
         kinds.setdefault(crew.kind, []).append(crew)
