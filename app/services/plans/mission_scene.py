@@ -7,6 +7,8 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from typing import Any, NoReturn, cast
 
+import numpy as np
+from pyproj import Geod
 from shapely import make_valid
 from shapely.geometry import Point, Polygon
 from shapely.geometry.base import BaseGeometry
@@ -33,6 +35,7 @@ from planner.vehicle.energy import STANDARD_GRAVITY_M_S2
 Terrains = Callable[[str], Terrain | None]
 #: A circle of this radius holds the whole Earth.
 _HALF_ROUND_M = 20_100_000.0
+_WGS84, _CORNERS = Geod(ellps="WGS84"), 256
 #: The ground is looked at so far beyond the mission's places.
 _GROUND_MARGIN_M = 2_000.0
 #: What vehicles come with (AIRSPEED_CRUISE and ROLL_LIMIT_DEG of ArduPlane 4.6, FW_AIRSPD_TRIM and FW_R_LIM
@@ -242,7 +245,7 @@ def _fenced(scenario: Scenario, mission: Mission) -> tuple[Fence, Scenario]:
             radius_m = min(shape[0].param1, _HALF_ROUND_M)
             disc = Point(*centre).buffer(radius_m, quad_segs=64)
             if command == Command.NAV_FENCE_CIRCLE_INCLUSION:
-                inclusions.append((ZonePolygon(name, _ring(scenario, disc)), disc))
+                inclusions.append((ZonePolygon(name, _round(ring[0], radius_m)), disc))
             else:
                 circles.append(ZoneCircle(name, ring[0], radius_m))
                 zones.append(NoFlyZone(name, None, (float(centre[0]), float(centre[1])), radius_m))
@@ -275,11 +278,15 @@ def _place(item: MissionItem) -> LonLat:
     return item.y / 1e7, item.x / 1e7
 
 
-def _ring(scenario: Scenario, disc: Polygon) -> tuple[LonLat, ...]:
-    return tuple(
-        (float(lon_deg), float(lat_deg))
-        for lon_deg, lat_deg in scenario.frame.to_wgs84(list(disc.exterior.coords)[:-1])
+def _round(centre: LonLat, radius_m: float) -> tuple[LonLat, ...]:
+    """Corners of a circle, along geodesics: one that is half round the Earth has none in a projection."""
+    lon_deg, lat_deg, _ = _WGS84.fwd(
+        np.full(_CORNERS, centre[0]),
+        np.full(_CORNERS, centre[1]),
+        np.linspace(0.0, 360.0, _CORNERS, endpoint=False),
+        np.full(_CORNERS, radius_m),
     )
+    return tuple(zip(lon_deg.tolist(), lat_deg.tolist(), strict=True))
 
 
 def _document(mission: Mission, choice: FileChoice, aircraft: Aircraft, start: LonLat, fence: Fence) -> str:

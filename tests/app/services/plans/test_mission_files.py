@@ -297,3 +297,13 @@ def test_spoiled_files_are_judged_or_refused() -> None:
         brief = brief_of(made.plan, made.scenario, MissionChoice(autopilot="ardupilot", vehicle_type="vtol"))
         mission_findings(brief.mission, list(MissionType))
     assert 0 < judged < 60
+
+
+@pytest.mark.parametrize("command", [5003, 5004])
+@pytest.mark.parametrize("radius", ["1e400", "1e300", "2e7", "1e7"])
+def test_circles_round_the_earth_are_judged(command: int, radius: str) -> None:
+    """An inclusion that holds the whole Earth keeps nothing out; an exclusion that does forbids all."""
+    (circle,) = rows((4.0, 5.0), command=command)
+    circle = circle.replace(f"\t{command}\t0\t", f"\t{command}\t{radius}\t")
+    found = broken(filed(file(*ROUTE, circle), COPTER))
+    assert ("hard-zone" in found, "area" in found) == (command == 5004, False)
