@@ -237,7 +237,7 @@ export interface Upload {
   override_reason: string | null;
   preflight: Preflight | null;
   /** Of a mission replaced in flight: where the aircraft goes on, and what it skips. */
-  in_flight?: { message: string } | null;
+  in_flight?: { message: string; item: number | null } | null;
 }
 
 /** What the service knows of the mission last sent to a vehicle. */

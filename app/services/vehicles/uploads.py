@@ -202,7 +202,10 @@ def judge_upload(
         message = "the plan begins in the air, and the vehicle is on the ground: it has no take-off"
         dangers.append(Finding("vehicle", "vehicle-on-ground", message, "plan from the ground, or override"))
     # A plan made to begin in the air is meant to be taken up in flight.
-    if is_flying(state) and not (aloft and set(parts) == {"mission"}):
+    if is_flying(state) and aloft and set(parts) != {"mission"}:
+        message = "the vehicle is in flight, and a fence or rally points are not replaced under it"
+        dangers.append(Finding("vehicle", "vehicle-flying", message, "send the mission alone, or override"))
+    elif is_flying(state) and not aloft:
         message = "the vehicle is in flight and would follow the new mission at once"
         dangers.append(Finding("vehicle", "vehicle-flying", message, "wait until it has landed, or override"))
     if dangers and override is None:

@@ -23,7 +23,11 @@ function tell(vehicle: Vehicle, order: Order, answer: CommandAnswer): void {
 }
 
 async function give(vehicle: Vehicle, order: Order, seq: number | null = null): Promise<void> {
-  if ((await ask(saying(vehicle, order, seq))) === null) return;
+  if ((await ask(saying(vehicle, order, seq))) !== null) await giveNow(vehicle, order, seq);
+}
+
+/** Give an order that has been asked back. */
+export async function giveNow(vehicle: Vehicle, order: Order, seq: number | null = null): Promise<void> {
   const armFirst = order.name === "start" && !vehicle.state.armed ? { arm_first: true as const } : {};
   lookSoon();
   try {

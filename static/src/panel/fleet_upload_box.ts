@@ -10,6 +10,7 @@ import { freshness } from "../freshness";
 import { keepNow } from "../keeping";
 import { findingText, report } from "../notices";
 import { open } from "../plans";
+import { goesOn } from "./goes_on";
 import type { Finding, Upload, UploadOutcome } from "../types";
 
 interface Told {
@@ -42,11 +43,13 @@ function line(name: string, told: Told): HTMLElement {
 }
 
 function answer(result: FleetUpload): HTMLElement {
+  const sent = Object.values(result.vehicles).flatMap(({ vehicle_id, upload }) => (upload ? [{ id: vehicle_id, upload }] : []));
   return h(
     "div",
     { id: "fleet-result", "data-outcome": result.outcome, "data-verified": String(result.verified) },
     h("p", { class: result.verified ? "good" : "warning" }, `${VERDICT[result.outcome]}${result.verified ? "; all read back equal" : ""}.`),
     h("ul", { class: "findings" }, ...Object.entries(result.vehicles).map(([name, told]) => line(name, told))),
+    goesOn(sent.map(({ upload }) => upload), sent.map(({ id }) => id)),
   );
 }
 

@@ -42,6 +42,8 @@ export function replanBox(): HTMLElement {
   box.id = "replan-box";
   const ticks = new Map<string, HTMLInputElement>();
   let asking = false;
+  /** What the operator said; else it follows whether any of them flies. */
+  let chosen = "";
 
   const send = async (): Promise<void> => {
     const shown = open.value;
@@ -94,10 +96,10 @@ export function replanBox(): HTMLElement {
     if (now !== key) {
       const other = !key.startsWith(JSON.stringify([shown.record.id]).slice(0, -1));
       key = now;
-      const before = other ? "" : from.value;
+      if (other) chosen = "";
       fill(from, flying.length > 0 ? h("option", { value: "flights" }, "where they are now") : null, h("option", { value: "plan" }, "the plan, at a time"));
       from.title = flying.length > 0 ? `In flight: ${flying.join(", ")}` : "None of them is known to fly this plan";
-      from.value = flying.length > 0 && before !== "plan" ? "flights" : "plan";
+      from.value = flying.length > 0 && chosen !== "plan" ? "flights" : "plan";
       if (flying.length > 0) box.open = true;
       if (other) {
         const crew = crewOf(shown.plan);
@@ -116,7 +118,10 @@ export function replanBox(): HTMLElement {
     }
     update();
   };
-  from.addEventListener("change", update);
+  from.addEventListener("change", () => {
+    chosen = from.value;
+    update();
+  });
   minutes.addEventListener("input", update);
   // The slider of the plan's clock says when, too.
   clock_s.watch((at_s) => {

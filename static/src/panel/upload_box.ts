@@ -6,14 +6,16 @@ import { encoding } from "../encoding";
 import { preflight, readVehicle, upload, watched, type Override } from "../fleet";
 import { freshness } from "../freshness";
 import { hearing } from "../hearing";
-import { planName } from "../holding";
+import { inFlight, planName } from "../holding";
 import { keepNow } from "../keeping";
 import { attempt, findingText, report } from "../notices";
 import { pathsOf } from "../phases";
 import { open } from "../plans";
+import { scenarios } from "../scenario";
 import type { Part, Vehicle } from "../types";
 import { endBox } from "./end_box";
 import { encodingFields } from "./encoding_fields";
+import { goesOn } from "./goes_on";
 import { readiness } from "./readiness";
 import { uploadAnswer } from "./upload_answer";
 
@@ -59,7 +61,7 @@ export function uploadBox(edit: () => void): { controls: HTMLElement; answers: H
     const vehicle = watched.value;
     const plan = open.value;
     if (!vehicle || !plan || freshness.value.state === "stale") return;
-    const chosen = (Object.keys(parts) as Part[]).filter((name) => parts[name].checked);
+    const chosen = (Object.keys(parts) as Part[]).filter((name) => parts[name].checked && !parts[name].disabled);
     go.disabled = true;
     fill(result, h("p", {}, `Uploading to ${vehicle.name} …`));
     try {
@@ -110,6 +112,12 @@ export function uploadBox(edit: () => void): { controls: HTMLElement; answers: H
     return vehicle.operation ? `At work: ${vehicle.operation}` : "";
   };
 
+  /** A plan from the air takes the place of the mission alone: a fence is not replaced under an aircraft. */
+  const aloft = (): boolean => {
+    const vehicle = watched.value;
+    return vehicle !== null && inFlight(vehicle) && (scenarios.document.value.vehicles ?? []).some((member) => member["in_flight"] !== undefined);
+  };
+
   let shownNumber: string | null = null;
   let shownSubject = subject();
   const update = (): void => {
@@ -118,7 +126,8 @@ export function uploadBox(edit: () => void): { controls: HTMLElement; answers: H
     const reason = shut();
     const { state, reason: stale } = freshness.value;
     check.disabled = reason !== "";
-    go.disabled = reason !== "" || state === "stale" || !Object.values(parts).some((box) => box.checked);
+    parts.fence.disabled = parts.rally.disabled = aloft();
+    go.disabled = reason !== "" || state === "stale" || !Object.values(parts).some((box) => box.checked && !box.disabled);
     const words = reason || (state === "stale" ? `This plan cannot go up: it is out of date. ${stale}` : "");
     why.className = state === "stale" ? "error" : "quiet";
     if (why.textContent !== words) why.textContent = words;
@@ -130,7 +139,7 @@ export function uploadBox(edit: () => void): { controls: HTMLElement; answers: H
     const number = vehicle?.upload ? `${vehicle.id}/${vehicle.upload.number}/${vehicle.upload.outcome}/${vehicle.upload.verified}` : null;
     if ((turned || number !== shownNumber) && busy === null) {
       shownNumber = number;
-      fill(result, vehicle?.upload ? uploadAnswer(vehicle.upload, open.value?.record.id) : null, vehicle?.upload?.in_flight ? h("p", { class: "warning", id: "goes-on" }, vehicle.upload.in_flight.message) : null);
+      fill(result, vehicle?.upload ? uploadAnswer(vehicle.upload, open.value?.record.id) : null, vehicle?.upload ? goesOn([vehicle.upload], [vehicle.id]) : null);
     }
   };
   open.watch((shown) => {

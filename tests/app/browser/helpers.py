@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+import httpx
 from playwright.sync_api import Page
 
-from tests.app.browser.conftest import EXAMPLES
+from tests.app.browser.conftest import EXAMPLES, Service
 
 
 def ask(page: Page, expression: str) -> Any:
@@ -57,3 +60,19 @@ def feature(page: Page, name: str) -> dict[str, Any] | None:
     """A feature of the scenario being edited."""
     found = [f for f in ask(page, "scenario()")["features"] if f["id"] == name]
     return found[0] if found else None
+
+
+@contextmanager
+def connected(service: Service, *names: str, speedup: int = 50) -> Iterator[list[str]]:
+    """Simulated vehicles of these names, for as long as they are needed: their ids."""
+    path = service.address + "/api/v1/vehicles"
+    ids: list[str] = []
+    try:
+        for name in names:
+            answer = httpx.post(path, json={"name": name, "url": f"sim:?speedup={speedup}"}, timeout=60.0)
+            answer.raise_for_status()
+            ids.append(answer.json()["id"])
+        yield ids
+    finally:
+        for vehicle in ids:
+            httpx.delete(f"{path}/{vehicle}?in_flight=true", timeout=60.0).raise_for_status()

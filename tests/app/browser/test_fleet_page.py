@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-import httpx
 import pyproj
 import pytest
 from playwright.sync_api import Page, expect
 
 from tests.app.browser.conftest import Service
-from tests.app.browser.helpers import ask, on_screen, open_scenario
+from tests.app.browser.helpers import ask, connected, on_screen, open_scenario
 
 pytestmark = pytest.mark.browser
 
@@ -63,22 +60,6 @@ def _fleet() -> dict[str, Any]:
         "objective": {"length": 0.0},
         "separation": {"horizontal_m": 100.0, "vertical_m": 20.0},
     }
-
-
-@contextmanager
-def connected(service: Service, *names: str) -> Iterator[None]:
-    """Simulated vehicles of these names, for as long as they are needed."""
-    path = service.address + "/api/v1/vehicles"
-    ids = []
-    try:
-        for name in names:
-            answer = httpx.post(path, json={"name": name, "url": "sim:?speedup=50"}, timeout=60.0)
-            answer.raise_for_status()
-            ids.append(answer.json()["id"])
-        yield
-    finally:
-        for vehicle in ids:
-            httpx.delete(f"{path}/{vehicle}", timeout=60.0).raise_for_status()
 
 
 def test_all_aircraft_are_where_the_plan_has_them(page: Page, service: Service, tmp_path: Path) -> None:

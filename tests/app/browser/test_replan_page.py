@@ -5,11 +5,12 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import httpx
 import pytest
 from playwright.sync_api import Page, expect
 
 from tests.app.browser.conftest import EXAMPLES, Service
-from tests.app.browser.helpers import ask, open_scenario
+from tests.app.browser.helpers import ask, connected, open_scenario
 
 pytestmark = pytest.mark.browser
 
@@ -78,3 +79,32 @@ def test_what_a_flight_cannot_take_over_is_named(page: Page) -> None:
     page.get_by_role("tab", name="Plan").click()
     expect(page.locator("#replan")).to_be_disabled()
     expect(page.locator("#replan-why")).to_contain_text("altitude_m")
+
+
+def test_an_aircraft_in_flight_takes_the_new_mission_and_begins_it(page: Page, service: Service) -> None:
+    """From where it is now; it goes on amid the new mission, is told so, and begins it once ordered."""
+    open_scenario(page)
+    page.get_by_role("tab", name="Plan").click()
+    before = ask(page, "plan()")
+    page.click("#plan-start")
+    first = _planned(page, before and before["id"])
+    with connected(service, "solo", speedup=10) as (vehicle,):
+        at = f"{service.address}/api/v1/vehicles/{vehicle}"
+        httpx.post(f"{at}/mission", json={"plan_id": first}, timeout=60.0).raise_for_status()
+        start = {"command": "start", "arm_first": True}
+        httpx.post(f"{at}/commands", json=start, timeout=60.0).raise_for_status()
+        page.get_by_role("tab", name="Fly").click()
+        page.get_by_role("radio", name="solo").check()
+        page.wait_for_function("window.swathplan.vehicle().flight !== null")
+        page.wait_for_function("window.swathplan.vehicle().item > 3")
+        page.get_by_role("tab", name="Plan").click()
+        expect(page.locator("#replan-from")).to_have_value("flights")
+        page.click("#replan")
+        second = _planned(page, first)
+        assert "in_flight" in service.get(f"/api/v1/plans/{second}/scenario").json()["vehicles"][0]
+        page.get_by_role("tab", name="Fly").click()
+        page.click("#upload")
+        page.click("[data-begin]")
+        page.click("#dialog-go")
+        page.wait_for_function("window.swathplan.vehicle().item <= 3")
+        assert httpx.get(at, timeout=20.0).json()["plan_id"] == second
