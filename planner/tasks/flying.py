@@ -17,7 +17,7 @@ from planner.dubins.path import Path, Segment, join
 from planner.errors import InfeasibleError
 from planner.profile.change import Changed, Layers, changed, kept
 from planner.profile.compose import Composed, compose, times_of
-from planner.profile.ends import Surround, climb_slope_rad, down, sink_slope_rad, up
+from planner.profile.ends import Surround, circle_radius_m, climb_slope_rad, down, sink_slope_rad, up
 from planner.profile.finish import finish_of
 from planner.profile.following import Following
 from planner.profile.heights import Heights
@@ -31,6 +31,9 @@ from planner.vehicle.model import FlightModel
 
 #: Take-off, climbing turns and approaches keep this far: they are held less well than lines.
 MANOEUVRE_MARGIN_M = 20.0
+
+#: From its middle a flight comes so far until it is on its last circle, in radii of that.
+ROUND_RADII = 2.5
 
 #: A flyable line between two anchors clear of zones; raises InfeasibleError.
 Connector = Callable[[Anchor, Anchor, KeepOut], Path]
@@ -200,20 +203,19 @@ def fly_whole(
     first_m, last_m = passes[0][1].knots[0][1], passes[-1][1].knots[-1][1]
     climb_m = top.level.height_m / math.tan(climb_slope_rad(model))
     if start.over_home_m is None:
-        rising = made(
-            lambda connector: up(
-                start,
-                top.home_ground_m,
-                goal,
-                model,
-                _topped(
-                    layers.around(top, top.ground, connector, lambda path: cut(path, 0.0, climb_m)),
-                    first_m,
-                    start.position,
-                    following,
-                ),
-            )
-        )
+
+        def risen(connector: Connector) -> Rise:
+            around = layers.around(top, top.ground, connector, lambda path: cut(path, 0.0, climb_m))
+            if following is None:
+                return up(start, top.home_ground_m, goal, model, around)
+            over = replace(around, raised=following.over_leg)
+
+            def to(top_m: float) -> Rise:
+                return up(start, top.home_ground_m, goal, model, replace(over, top_m=top_m))
+
+            return following.rising(to, first_m, start.position)
+
+        rising = made(risen)
     else:
         # In the air already: on from there as from one pass to the next.
         aloft, from_m = Anchor(*start.position, start.angle_rad), levels.home_ground_m + start.over_home_m
@@ -243,24 +245,24 @@ def fly_whole(
     sink_m = top.level.height_m / math.tan(sink_slope_rad(model))
     grounds_m = (top.home_ground_m, top.ground_m(end.position))
     finish = finish_of(model.aircraft, start, end)
-    falling = made(
-        lambda connector: down(
-            end,
-            start.ground,
-            grounds_m,
-            origin,
-            model,
-            _topped(
-                layers.around(
-                    top, top.ground, connector, lambda path: cut(path, path.length_m - sink_m, path.length_m)
-                ),
-                last_m,
-                end.position,
-                following,
-            ),
-            finish,
+
+    def fallen(connector: Connector) -> Rise:
+        low = layers.around(
+            top, top.ground, connector, lambda path: cut(path, path.length_m - sink_m, path.length_m)
         )
-    )
+        where = (end, start.ground, grounds_m, origin, model)
+        if following is None:
+            return down(*where, low, finish)
+        over = replace(low, raised=following.over_leg)
+        circles = model.aircraft.type != "multirotor" and finish != "land"
+
+        def to(top_m: float) -> Rise:
+            return down(*where, replace(over, top_m=top_m), finish)
+
+        at = start.ground if finish == "return" else end.position
+        return following.falling(to, last_m, at, ROUND_RADII * circle_radius_m(model) if circles else 0.0)
+
+    falling = made(fallen)
     if following is not None:
         falling = following.over_fall(falling, last_m)
     times = times_of(model, levels.datum_amsl_m)
@@ -355,16 +357,6 @@ def _followed(
     zones = layers.zones(levels, None, TRANSIT_MARGIN_M)
     around = layers.around(levels, levels.level.lowest, connector, lambda path: path)
     return following.leg(partial(connector, start, goal), *between_m, model, around, zones)
-
-
-def _topped(
-    around: Surround, station_m: float, place: tuple[float, float], following: Following | None
-) -> Surround:
-    """What a way up or down is placed in: over ground that is followed as high as either end asks."""
-    if following is None:
-        return around
-    top_m = max(station_m, following.surface_m(place))
-    return replace(around, top_m=top_m, raised=following.over_leg)
 
 
 def _leaves(station: Station, arrived: Path) -> Anchor:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
@@ -186,3 +187,45 @@ def test_what_hovers_follows_steep_ground_by_flying_slower() -> None:
     assert all(
         each.hard for each in told if each.constraint == "collect-height" and "the most" in each.message
     )
+
+
+@pytest.mark.parametrize(
+    ("kind", "up_deg", "slope", "home_m", "height_m"),
+    [
+        ("multirotor", 90.0, 0.2, (-300.0, -300.0), 90.0),
+        ("fixed_wing", 180.0, 0.2, (-300.0, -300.0), 90.0),
+        ("fixed_wing", 270.0, 0.2, (-300.0, -300.0), 90.0),
+        ("fixed_wing", 120.0, 0.1, (-761.0, 180.0), 60.0),
+    ],
+)
+def test_from_a_home_on_a_slope_nothing_is_too_steep_or_too_low(
+    kind: str, up_deg: float, slope: float, home_m: tuple[float, float], height_m: float
+) -> None:
+    """Climbs on the spot over steep ground, passes below what is kept over home, the circle at the end."""
+    frame = LocalFrame(9.0, 47.0)
+    east, north = math.cos(math.radians(up_deg)), math.sin(math.radians(up_deg))
+    ground = raster(lambda e, n: 800.0 + slope * (e * east + n * north), frame, half_deg=0.06, posts=601)
+    corners = [(0.0, 0.0), (300.0, 0.0), (300.0, 300.0), (0.0, 300.0), (0.0, 0.0)]
+    field = {"type": "Polygon", "coordinates": [[list(frame.to_wgs84(corner)) for corner in corners]]}
+    start = {"type": "Point", "coordinates": list(frame.to_wgs84(home_m))}
+    asked = {
+        "type": "FeatureCollection",
+        "features": [
+            {"type": "Feature", "id": "field", "geometry": field, "properties": {"role": "roi"}},
+            {"type": "Feature", "id": "home", "geometry": start, "properties": {"role": "start"}},
+        ],
+        "vehicles": [
+            {"name": "a", "type": kind, "airspeed_m_s": 15.0}
+            | ({"min_turn_radius_m": 60.0} if kind == "fixed_wing" else {})
+        ],
+        "sensors": [
+            {
+                "name": "c", "type": "camera", "focal_length_m": 0.035, "pixel_pitch_m": 4e-6,
+                "image_px": [6000, 4000], "side_overlap": 0.5, "stabilised": True,
+            }
+        ],
+        "terrain": "t", "terrain_following": True, "altitude_reference": "terrain",
+        "altitude_m": height_m, "clearance_m": 40.0,
+    }  # fmt: skip
+    plan = make_plan(read_scenario(asked, {"t": ground}))
+    assert plan.hard_violations == ()
