@@ -1,7 +1,7 @@
 """Coverage among obstacles: methods by name on twenty pinned maps.
 
 ``swathplan bench urban --json``; ``--option maps=["table-1"]`` and ``--option methods=["majeed2019"]`` for
-some of them.
+some of them; ``--option maps=["real-bubenec"]`` for real houses (see ``urban_real``).
 """
 
 from __future__ import annotations
@@ -11,6 +11,8 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from benchmarks.urban_maps import NAMES, UrbanMap, named
+from benchmarks.urban_real import NAME as REAL
+from benchmarks.urban_real import real
 from planner.coverage.urban.free import free_space
 from planner.coverage.urban.measures import measure
 from planner.coverage.urban.methods import METHODS
@@ -31,7 +33,7 @@ def run(
     for method in asked:
         METHODS[method](small.urban)
     for name in (maps,) if isinstance(maps, str) else maps:
-        found = named(name)
+        found = real() if name == REAL else named(name)
         for method in asked:
             yield _row(found, method, repeats)
 
