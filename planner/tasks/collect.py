@@ -27,7 +27,7 @@ from planner.routing.legs import Legs
 from planner.scenario import Scenario
 from planner.tasks.cells import by_cells, left_m2
 from planner.tasks.hidden import Sight, hidden_findings, see_hidden
-from planner.tasks.limits import Dropped, within_limits
+from planner.tasks.limits import Dropped, short_of_energy, within_limits
 from planner.tasks.methods import chosen_methods
 from planner.tasks.prizes import Offer
 from planner.tasks.setting import Setting, seeing
@@ -83,6 +83,9 @@ def collect(scenario: Scenario, controls: Controls) -> Answer:
         (scenario.start.position, scenario.end.position),
         partial(_offer, asked, setting, scenario.seed) if methods["routing"] == "joint" else None,
     )
+    short = short_of_energy(flight, setting.model.aircraft, (scenario.start.position, scenario.end.position))
+    if short is not None:
+        raise short
     dropped = flight.dropped + tuple(_over(each) for each in left)
     sight = Sight.of(asked.regions, setting.suite, setting.airspace, setting.level)
     if sight is not None:

@@ -24,6 +24,8 @@ Point = tuple[float, float]
 TRIED_AGAIN = 4
 #: Lengths of route tried, and what of one that turned out too long is asked for next.
 LENGTHS, SHORTER = 4, 0.998
+#: No more regions are named in one sentence.
+MOST_NAMED = 6
 #: Saving less way than this is saving none.
 LEAST_SAVING_M = 1.0
 
@@ -147,6 +149,39 @@ def within_limits(
         raise refused
     rest = min(found, key=lambda each: (each.lost(optional), each.flight.use.length_m))
     return rest.flight, _listed(rest, optional)
+
+
+def short_of_energy(flight: Flight, aircraft: Aircraft, ends: tuple[Point, Point]) -> InfeasibleError | None:
+    """What is said of a flight that its battery does not bring home; None where it does.
+
+    Range and time are what somebody allows, and a plan over them is told with what it is over by; a flight
+    without the energy for it is none.
+    """
+    short = next((each for each in exceeded(aircraft, flight.use) if each.constraint == "energy"), None)
+    if short is None or aircraft.energy_wh is None:
+        return None
+    passes = flight.passes
+    names = dict.fromkeys(name for collect in passes for name in collect.regions)
+    whole_m = _straight_m(passes, ends)
+    enough = []
+    for name in names if len(names) > 1 and whole_m > 0.0 else ():
+        rest = flight.use.scaled(_straight_m(_without(passes, {name}), ends) / whole_m)
+        if rest.energy_wh is not None and rest.energy_wh <= short.limit:
+            enough.append((rest.energy_wh, name))
+    more_wh = math.ceil(10.0 * short.margin / (1.0 - aircraft.reserve)) / 10.0
+    ways = [f"Give it {more_wh:.1f} Wh more energy_wh"]
+    if aircraft.aloft is None:
+        ways.append("or batteries to change")
+    if enough:
+        ways.append(f"or leave out {max(enough)[1]} (required false)")
+    seen = ", ".join(names) if len(names) <= MOST_NAMED else f"{len(names)} regions"
+    return InfeasibleError(
+        "energy",
+        aircraft.name,
+        f"takes {short.used:.1f} Wh to see {seen} and come home, {short.limit:.1f} Wh may be used of its "
+        f"{aircraft.energy_wh:g} Wh: {short.margin:.1f} Wh too little",
+        ", ".join(ways) + ".",
+    )
 
 
 def _listed(rest: _Rest[F], optional: Mapping[str, float]) -> tuple[Dropped, ...]:

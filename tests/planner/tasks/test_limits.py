@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from typing import Any
 
 import numpy as np
@@ -89,9 +90,9 @@ def test_the_reserve_is_kept() -> None:
     assert needed_wh is not None
     enough, short = needed_wh / 0.8 * 1.001, needed_wh / 0.8 * 0.999
     assert plan(document(region, cruise_power_w=POWER_W, energy_wh=enough)).violations == ()
-    assert [
-        v.constraint for v in plan(document(region, cruise_power_w=POWER_W, energy_wh=short)).violations
-    ] == ["energy"]
+    with pytest.raises(InfeasibleError, match="to see R and come home") as refused:
+        plan(document(region, cruise_power_w=POWER_W, energy_wh=short))
+    assert refused.value.constraint == "energy"
     kept = document(region, cruise_power_w=POWER_W, energy_wh=short, reserve=0.1)
     assert plan(kept).violations == ()
 
@@ -115,6 +116,31 @@ def test_what_is_required_is_flown_beyond_the_limit_and_that_is_a_violation() ->
     found = plan(asked)
     assert left_out(found) == {"O"}
     assert [v.constraint for v in found.hard_violations] == ["range"]
+
+
+def test_what_the_battery_does_not_bring_home_is_refused_with_what_would_help() -> None:
+    """By how much it is too little, and what is nearest: so much more energy, or the one region left out."""
+    regions = [roi("R", 0.0, 0.0), roi("FAR", 0.0, 9.0)]
+    whole = plan(document(*regions, cruise_power_w=POWER_W))
+    needed_wh = whole.paths[0].energy_wh
+    assert needed_wh is not None
+    asked = document(*regions, cruise_power_w=POWER_W, energy_wh=round(needed_wh, 1))
+    with pytest.raises(InfeasibleError) as refused:
+        plan(asked)
+    found = refused.value
+    assert (found.constraint, found.feature) == ("energy", asked["vehicles"][0]["name"])
+    told = re.fullmatch(
+        r"Give it ([0-9.]+) Wh more energy_wh, or batteries to change, or leave out FAR \(required false\)\.",
+        found.relaxation,
+    )
+    assert told is not None
+    more_wh = float(told[1])
+    assert more_wh == pytest.approx(needed_wh / 0.8 - needed_wh, abs=0.2)
+    asked["vehicles"][0]["energy_wh"] += more_wh
+    assert plan(asked).violations == ()
+    asked["vehicles"][0]["energy_wh"] -= more_wh
+    next(f for f in asked["features"] if f["id"] == "FAR")["properties"]["required"] = False
+    assert left_out(plan(asked)) == {"FAR"}
 
 
 def test_nothing_to_fly_is_refused_by_the_limit() -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from typing import Any
 
@@ -12,9 +11,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.optimize import brentq
 
+from planner.check import judge
 from planner.check.energy import line_wh
-from planner.errors import ScenarioError
-from planner.geojson import read_scenario, write_plan
+from planner.errors import InfeasibleError, ScenarioError
+from planner.geojson import read_scenario
 from planner.pipeline import make_plan
 from planner.plan import Plan
 from planner.vehicle.energy import DragPolar, FlightState, PowerTable, Rotors
@@ -110,7 +110,7 @@ def test_the_energy_of_a_plan_is_that_of_its_line(kind: str, wind: dict[str, flo
 
 
 def test_a_battery_that_does_not_suffice_is_told() -> None:
-    """The plan's own energy less a watt-hour, by its reserve: a hard violation of the limit, by how much."""
+    """The plan's own energy less a watt-hour, by its reserve: there is no plan, and by how much is said."""
     plan, _ = planned("multirotor", ROTORS)
     assert plan.metrics.energy_wh is not None
     document = small()
@@ -118,11 +118,14 @@ def test_a_battery_that_does_not_suffice_is_told() -> None:
         "type": "multirotor", "power": ROTORS, "max_climb_deg": 6.0, "reserve": 0.25,
         "energy_wh": (plan.metrics.energy_wh - 1.0) / 0.75,
     }  # fmt: skip
-    short = make_plan(read_scenario(document))
-    (found,) = short.violations
-    assert (found.constraint, found.hard, found.unit) == ("energy", True, "Wh")
-    assert found.amount == pytest.approx(1.0, abs=0.02 * plan.metrics.energy_wh)
-    assert json.dumps(write_plan(short))
+    with pytest.raises(InfeasibleError, match=r"[0-9.]+ Wh too little") as refused:
+        make_plan(read_scenario(document))
+    assert refused.value.constraint == "energy"
+    assert ": 1.0 Wh too little" in refused.value.message
+    # The judge finds the same of a plan made for a larger battery.
+    found = judge(read_scenario(document), plan).violations
+    assert [(each.constraint, each.hard, each.unit) for each in found] == [("energy", True, "Wh")]
+    assert found[0].amount == pytest.approx(1.0, abs=0.02 * plan.metrics.energy_wh)
 
 
 @pytest.mark.parametrize(
