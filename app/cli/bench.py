@@ -44,6 +44,35 @@ class Benchmark(StrEnum):
     THREE = "three"
 
 
+#: What each of them shows.
+ABOUT = {
+    Benchmark.SAR: "The SAR paper's four cases: ours, the paper's stages, zigzags",
+    Benchmark.SAR_SEARCH: "How likely somebody at sea is found, beside manuals' patterns",
+    Benchmark.SCALE: "Many regions and wide ones: seconds, memory, length, gap",
+    Benchmark.BOUND: "Random scenarios: the gap of plans to their bound",
+    Benchmark.LINK: "Uploads over loopback beside MAVSDK's client",
+    Benchmark.TRANSIT: "Transits among 30 circles beside OMPL",
+    Benchmark.SURVEY: "Camera surveys beside other programs', every photo looked at",
+    Benchmark.QUALITY: "Image quality beside figures of other geometry",
+    Benchmark.KERNELS: "Dubins lengths a second: compiled, numpy, OMPL",
+    Benchmark.START: "The first plan of a service just started, beside a later one",
+    Benchmark.ISOLATION: "Heartbeats and orders while every endpoint is kept busy",
+    Benchmark.READS: "How long reads of a running service take",
+    Benchmark.URBAN: "Coverage among obstacles: methods on twenty pinned maps",
+    Benchmark.VALIDATE: "What judging large scenarios takes: time and memory",
+    Benchmark.SEARCH: "Search on stored energy: ours beside the published horizon",
+    Benchmark.ORIENTEERING: "The most reward within a budget, on a file of others",
+    Benchmark.SMOOTHING: "Turns at a waypoint: how far each strays, how long it is",
+    Benchmark.MILP: "Trajectories among threats by the printed program, beside ours",
+    Benchmark.IMPORTANCE: "Importance on grids beside the published algorithm, and a bound",
+    Benchmark.VRPTW: "Routing with time windows, on a file with its published cost",
+    Benchmark.SEPARATION: "Whether aircraft of one plan come nearer than is to be kept",
+    Benchmark.FLEET: "Who does what: the printed model and ours, small cases and large",
+    Benchmark.REPLAN: "How soon a flight has a new plan",
+    Benchmark.THREE: "Three simulated aircraft in the air, planned anew in the middle",
+}
+
+
 def _options(pairs: list[str]) -> dict[str, Any]:
     options: dict[str, Any] = {}
     for pair in pairs:
@@ -132,4 +161,6 @@ def bench(
 
 def register(cli: typer.Typer) -> None:
     """Add the command."""
-    cli.command()(bench)
+    # After the mark lines are set as they stand.
+    told = "\b\n" + "\n".join(f"{name.value:13}{ABOUT[name]}" for name in Benchmark)
+    cli.command(epilog=told)(bench)

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+from app.cli.bench import ABOUT, Benchmark
 from app.routers.bodies import EXAMPLE
 from tests.app.cli.conftest import ROOT, Command
 
@@ -22,6 +23,18 @@ def test_help_lists_every_command() -> None:
     commands = ("serve", "plan", "validate", "export", "upload", "download", "convert", "import", "sim")
     commands = (*commands, "bench", "demo", "audit", "flown")
     assert all(f" {name} " in ended.stdout for name in commands)
+
+
+def test_help_says_what_every_benchmark_shows() -> None:
+    """Each module of benchmarks that can be run by name stands there by itself, with a line on it."""
+    command = [sys.executable, "-m", "app.cli", "bench", "--help"]
+    ended = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=30, check=True)
+    lines = [line.split() for line in ended.stdout.splitlines()]
+    told = {words[0]: " ".join(words[1:]) for words in lines if words}
+    files = [file for file in (ROOT / "benchmarks").glob("*.py") if "\ndef run(" in file.read_text()]
+    names = {file.stem.replace("_", "-") for file in files}
+    assert names == {benchmark.value for benchmark in Benchmark}
+    assert {name: told[name] for name in names} == {each.value: ABOUT[each] for each in Benchmark}
 
 
 @pytest.mark.parametrize("name", ["serve", "upload"])
