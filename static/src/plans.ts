@@ -34,7 +34,9 @@ export const planUrl = (id: string, file: string): string => apiUrl(`/plans/${en
 
 export async function refresh(): Promise<void> {
   const records = await list<PlanRecord>("/plans", "plans");
-  recent.set([...records].sort((a, b) => (b.created_at ?? "").localeCompare(a.created_at ?? "")));
+  const sorted = [...records].sort((a, b) => (b.created_at ?? "").localeCompare(a.created_at ?? ""));
+  // Where nothing is other nothing is drawn anew: what is pointed at stays.
+  if (JSON.stringify(sorted) !== JSON.stringify(recent.value)) recent.set(sorted);
 }
 
 /** What went wrong with a plan, as a problem document. */
@@ -192,10 +194,11 @@ export async function startReplan(id: string, body: Replan): Promise<void> {
 
 const CHECK_MS = 5000;
 
-/** Ask again every while, and whenever an edit of this tab has been kept. */
+/** Ask again every while, and whenever an edit of this tab has been kept; plans that others posted are listed then, too. */
 export function keepOpenFresh(): void {
   const look = async (): Promise<void> => {
     try {
+      await refresh();
       await refreshOpen();
     } catch {
       // The loss of the service shows by itself; a plan deleted elsewhere goes with the next listing.

@@ -218,6 +218,17 @@ def test_a_cancelled_upload_says_what_is_held(page: Page, planned: str, service:
     expect(cell(page, "uploaded")).to_have_text("ANOTHER PLAN")
 
 
+def test_plans_of_others_are_listed_unasked(page: Page, planned: str, service: Service) -> None:
+    """A plan that another client posts, and one that it deletes, come and go in the list of the page."""
+    go_to(page, "Plan")
+    other = CASE_1 | {"name": "posted elsewhere"}
+    made = httpx.post(f"{service.address}/api/v1/plans?wait=60", json=other, timeout=90.0).json()
+    line = page.locator("#recent button", has_text="posted elsewhere")
+    expect(line).to_have_count(1, timeout=LIMIT_MS)
+    assert httpx.delete(f"{service.address}/api/v1/plans/{made['id']}", timeout=20.0).status_code < 300
+    expect(line).to_have_count(0, timeout=LIMIT_MS)
+
+
 def test_new_leaves_nothing_behind(page: Page, planned: str) -> None:
     """New clears the plan, what is compared and seen, the history and the notices; a reload stays new."""
     go_to(page, "Scenario")
