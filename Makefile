@@ -34,7 +34,7 @@ lint: $(VENV)/.installed-dev ## ruff
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 
-types: $(VENV)/.installed-dev ## mypy --strict
+types: $(VENV)/.installed-dev ## mypy --strict; of tests and benches names, imports and arguments
 	$(BIN)/mypy
 
 imports: $(VENV)/.installed-dev ## The import rules of docs/architecture.md

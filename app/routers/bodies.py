@@ -7,10 +7,17 @@ from pathlib import Path
 from typing import Any
 
 from planner.geojson.equipment import METHODS
+from planner.geojson.features import LOWEST_M
+from planner.geojson.fields import MOST
+from planner.geojson.scenario_reader import MOST_SEED
+from planner.geojson.searching import LEAST_SPREAD_M, MOST_ELAPSED_S, MOST_SCORE, MOST_SPREAD_M
+from planner.wishes import HIGHEST_M
 
 EXAMPLE: dict[str, Any] = json.loads(
     (Path(__file__).resolve().parents[1] / "examples" / "scenario.geojson").read_text(encoding="utf-8")
 )
+
+HEIGHT_M = {"type": "number", "minimum": LOWEST_M, "maximum": HIGHEST_M}
 
 SCENARIO_SCHEMA: dict[str, Any] = {
     "title": "Scenario",
@@ -51,12 +58,14 @@ SCENARIO_SCHEMA: dict[str, Any] = {
                             "score": {
                                 "type": "number",
                                 "minimum": 0,
+                                "maximum": MOST_SCORE,
                                 "description": "Of importance: what seeing a square metre is worth; of a "
                                 "Point, at the point.",
                             },
                             "spread_m": {
                                 "type": "number",
-                                "minimum": 1,
+                                "minimum": LEAST_SPREAD_M,
+                                "maximum": MOST_SPREAD_M,
                                 "description": "Of importance that is a Point: standard deviation, in each "
                                 "direction, of the normal distribution that its score falls off by.",
                             },
@@ -78,19 +87,20 @@ SCENARIO_SCHEMA: dict[str, Any] = {
             "type": "object",
             "description": "What several vehicles keep from each other at every instant: one of the two.",
             "properties": {
-                "horizontal_m": {"type": "number", "minimum": 0, "default": 100},
-                "vertical_m": {"type": "number", "minimum": 0, "default": 30},
+                "horizontal_m": {"type": "number", "minimum": 0, "maximum": MOST, "default": 100},
+                "vertical_m": {"type": "number", "minimum": 0, "maximum": MOST, "default": 30},
             },
         },
         "sensors": {"type": "array", "items": {"type": "object"}, "minItems": 1},
         "altitude_m": {
             "type": "number",
-            "minimum": 1,
+            "minimum": LOWEST_M,
+            "maximum": HIGHEST_M,
             "description": "Absent: the planner chooses heights by gsd_m, min_resolution_m or min_niirs of "
             "the regions, or up to max_height_m.",
         },
-        "min_height_m": {"type": "number", "description": "Over ground, of heights that are chosen."},
-        "max_height_m": {"type": "number", "description": "Over ground: no pass is higher."},
+        "min_height_m": {**HEIGHT_M, "description": "Over ground, of heights that are chosen."},
+        "max_height_m": {**HEIGHT_M, "description": "Over ground: no pass is higher."},
         "altitude_reference": {"enum": ["amsl", "home", "terrain"], "default": "terrain"},
         "terrain": {"type": "string", "description": "Id of an uploaded elevation raster."},
         "terrain_following": {"type": "boolean", "default": False},
@@ -141,6 +151,7 @@ SCENARIO_SCHEMA: dict[str, Any] = {
                         "elapsed_s": {
                             "type": "number",
                             "minimum": 0,
+                            "maximum": MOST_ELAPSED_S,
                             "default": 0,
                             "description": "How long before the search's start it was there.",
                         },
@@ -152,6 +163,7 @@ SCENARIO_SCHEMA: dict[str, Any] = {
         "clearance_m": {
             "type": "number",
             "minimum": 0,
+            "maximum": MOST,
             "description": "Kept from everything hard (no_fly, obstacle, hard threats), beside, over and "
             "under it, and over terrain. Absent: what the vehicle's autopilot is flown off its line "
             "(30 m ArduPlane, 20 m PX4's wings, 5 m multirotors), 30 m over terrain. 0 is 0.",
@@ -161,8 +173,8 @@ SCENARIO_SCHEMA: dict[str, Any] = {
             "type": "object",
             "properties": {stage: {"enum": list(names)} for stage, names in METHODS.items()},
         },
-        "seed": {"type": "integer"},
-        "time_budget_s": {"type": "number", "exclusiveMinimum": 0},
+        "seed": {"type": "integer", "minimum": 0, "maximum": MOST_SEED},
+        "time_budget_s": {"type": "number", "exclusiveMinimum": 0, "maximum": MOST},
     },
 }
 
