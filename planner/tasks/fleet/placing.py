@@ -240,6 +240,13 @@ def _in_turn(
 def _put_aloft(clock: _Clock, crew: Crew, errand: Errand, separation: Separation, controls: Controls) -> bool:
     """Place a flight that has begun; whether it can be kept apart from those placed, in time."""
     of = partial(_track, crew, separation=separation)
+    if not errand.jobs and errand.flown is not None and errand.flown.order and errand.flown.order.passes:
+        # A search has no jobs to wait before, and is not to be given up for its way home.
+        track = clock.apart.add(of(errand.flown))
+        if clock.first_s(track, 0.0) > 0.0:
+            return False
+        clock.put(errand, errand.flown, 0.0, track)
+        return True
     if not errand.jobs:
         found = home_apart(clock, crew, errand.trip.member, of, controls)
     else:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -17,7 +17,9 @@ from planner.errors import Finding, InfeasibleError
 from planner.fleet.assignment import Trip
 from planner.metrics import used
 from planner.scenario import Scenario
+from planner.search.seen import missed_before
 from planner.search.values import Worth
+from planner.tasks.fleet.aloft import homewards
 from planner.tasks.fleet.crews import Crew, crews_of
 from planner.tasks.fleet.flights import Flown, Order
 from planner.tasks.fleet.placing import Errand, placed
@@ -25,12 +27,19 @@ from planner.tasks.fleet.task import FleetAnswer
 from planner.tasks.search import answer_to, reach, sought
 from planner.tasks.task import Answer, Controls
 from planner.tasks.worth import drifted, ground_of, worth_of
+from planner.wishes import Seen
 
 #: Ends nearer to each other than this part of the ground's width say nothing of which part is whose.
 APART = 0.1
 #: The worth of ground is added up by cells, so many across all bands.
 CELLS = 200
+#: One after the other finds so many times as much as bands do, or bands are kept.
+MUCH_BETTER = 1.01
 Floats = NDArray[np.float64]
+_NO_ROOM = InfeasibleError(
+    "separation", "its line", "comes too near to the others' wherever it searches; it flies to its end",
+    "Lower separation, or plan it anew later.",
+)  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,14 +101,69 @@ def search_together(scenario: Scenario, controls: Controls) -> FleetAnswer:
             "sensor", "scenario", "no aircraft has a sensor on board to search with",
             "Add a sensor to the sensors of a vehicle.",
         )  # fmt: skip
-    flown = {share: _flown(crews[share.crew], share, answer) for share, answer in answers.items()}
-    errands = [Errand(_trip(share, flown[share]), (), flown[share]) for share in answers]
+    ways = [answers]
+    if any(crew.aircraft.aloft is not None for crew in crews):
+        # Bands do not lie as those lie that are in the air already.
+        turns = _in_turn(crews, list(answers), controls)
+        if turns is not None and _found(scenario, turns) > _found(scenario, answers) * MUCH_BETTER:
+            ways.insert(0, turns)
+        # Where none of that keeps them apart, fewer search, and the others fly to their ends.
+        ways += [dict(list(answers.items())[:many]) for many in range(len(answers) - 1, 0, -1)]
     separation = scenario.kept_apart
-    with controls.stage("separation"):
-        sorties = placed(crews, errands, separation, controls, scenario.seed)
+    for number, answers in enumerate(ways):
+        flown = {share: _flown(crews[share.crew], share, answer) for share, answer in answers.items()}
+        errands = [Errand(_trip(share, flown[share]), (), flown[share]) for share in answers]
+        trips = [errand.trip for errand in errands]
+        try:
+            errands += [Errand(trip, (), home) for trip, home in homewards(crews, trips, controls)]
+            with controls.stage("separation"):
+                sorties = placed(crews, errands, separation, controls, scenario.seed)
+            break
+        except InfeasibleError:
+            if number == len(ways) - 1:
+                raise
+    dropped += [_stays(crews[share.crew], _NO_ROOM) for share in ways[0] if share not in answers]
     families = dict.fromkeys(answer.methods["search"] for answer in answers.values())
     methods = next(iter(answers.values())).methods | {"search": "+".join(families)}
     return FleetAnswer(crews, sorties, methods, tuple(dict.fromkeys(dropped)), (), separation)
+
+
+def _in_turn(
+    crews: Sequence[Crew], shares: Sequence[_Share], controls: Controls
+) -> dict[_Share, Answer] | None:
+    """Each over all that those before it leave; None where one can do nothing of that, or it drifts."""
+    answers: dict[_Share, Answer] = {}
+    looks: list[Seen] = []
+    for share in shares:
+        alone = _after(crews[share.crew].alone, looks)
+        if alone.importance.drift is not None or not alone.regions:
+            return None
+        try:
+            answers[share] = answer_to(sought(alone, controls), controls)
+        except InfeasibleError:
+            return None
+        looks += [Seen(each.footprint) for each in answers[share].passes]
+    return answers
+
+
+def _after(alone: Scenario, looks: Sequence[Seen]) -> Scenario:
+    """What an aircraft is asked when others have looked."""
+    importance = replace(alone.importance, seen=(*alone.importance.seen, *looks))
+    if importance.detection < 1.0:
+        return replace(alone, importance=importance)
+    seen = shapely.union_all([look.area for look in looks])
+    left = [(region, ground_of(shapely.difference(region.area, seen))) for region in alone.regions]
+    return replace(alone, regions=tuple(replace(r, area=area) for r, area in left if not area.is_empty))
+
+
+def _found(scenario: Scenario, answers: Mapping[_Share, Answer]) -> float:
+    """What all looks together find of the ground's worth, by cells."""
+    ground = ground_of(shapely.union_all([region.area for region in scenario.regions]))
+    west, south, east, north = ground.bounds
+    worth = worth_of(scenario, ground, max(east - west, north - south) / CELLS)
+    looks = tuple(Seen(each.footprint) for answer in answers.values() for each in answer.passes)
+    left = missed_before(replace(scenario.importance, seen=looks), worth.centres_m)
+    return float((worth.scores * (1.0 - left)).sum())
 
 
 def shared_out(

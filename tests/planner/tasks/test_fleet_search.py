@@ -9,7 +9,7 @@ from shapely.geometry import Polygon
 from planner.geojson import read_plan, read_scenario, write_plan
 from planner.pipeline import make_plan
 from planner.validate import findings
-from tests.planner.search.searches import WING, document
+from tests.planner.search.searches import WING, document, lonlat, rectangle
 
 SMALL = WING | {"energy_wh": 14}
 
@@ -60,3 +60,44 @@ def test_an_aircraft_that_cannot_search_stays_at_home():
     assert plan.violations == ()
     none = findings(shared(empty | {"name": "a"}, empty))
     assert {f.feature for f in none if f.severity == "error"} == {"a", "b"}
+
+
+def in_the_air(**members):
+    """Two near one rich place."""
+    rich = rectangle("importance", 450.0, 100.0, 750.0, 800.0, score=2.0)
+    rest = rectangle("importance", 0.0, 0.0, 1200.0, 900.0, score=0.1)
+    vehicles = []
+    for name, north_m in (("a", 250.0), ("b", 650.0)):
+        lon_deg, lat_deg = lonlat(300.0, north_m)
+        place = {"lon_deg": lon_deg, "lat_deg": lat_deg, "height_m": 100.0, "heading_deg": 90.0}
+        vehicles.append(SMALL | {"name": name, "energy_wh": 9, "in_flight": place})
+    asked = document(rich, rest, method={"search": "parallel"}, **members) | {"vehicles": vehicles}
+    scenario = read_scenario(asked)
+    plan = make_plan(scenario)
+    assert plan.hard_violations == ()
+    prints = {
+        name: shapely.union_all(
+            [Polygon(scenario.frame.to_local(f.ring)) for f in plan.footprints if f.vehicle == name]
+        ).intersection(scenario.area)
+        for name in ("a", "b")
+    }
+    return plan, prints
+
+
+def test_aircraft_in_the_air_both_search_and_hardly_anything_twice():
+    """Kept apart by little, each sees some of it, and what the other saw is left to it."""
+    plan, prints = in_the_air(separation={"horizontal_m": 5.0, "vertical_m": 2.0})
+    smaller_m2 = min(each.area for each in prints.values())
+    assert smaller_m2 > 0.0
+    assert prints["a"].intersection(prints["b"]).area < 0.2 * smaller_m2
+    assert 0.0 < plan.metrics.importance_collected <= plan.metrics.importance_bound
+
+
+def test_one_that_comes_too_near_wherever_it_searches_flies_home_and_says_so():
+    """The other's search is not given up with it."""
+    plan, prints = in_the_air()
+    assert {path.vehicle for path in plan.paths} == {"a", "b"}
+    assert plan.metrics.importance_collected > 0.0
+    idle = [name for name, seen in prints.items() if seen.is_empty]
+    assert idle
+    assert all(any(name in warning and "too near" in warning for warning in plan.warnings) for name in idle)
