@@ -28,13 +28,15 @@ from mavlink.encoding.stops import MERGE_M, Stop, stops_along
 from mavlink.encoding.switching import Switching, switching_of
 from mavlink.encoding.task import Task, task_of
 from mavlink.wire.items import Command, Frame, MissionItem, MissionType
-from planner.plan import LonLat, Plan
+from planner.plan import LonLat, PathSegment, Plan
 
 __all__ = ["EncodeError", "EncodeOptions", "Mission", "encode"]
 
 _DEFAULT = EncodeOptions()
 #: Arcs of multirotors this tight are corners: the plan means that they turn on the spot.
 CORNER_M = 2.1
+#: From where a plan was made in flight to where its mission is taken up.
+TAKEN_UP_S = 3.0
 #: Kept free round a waypoint that lies off the path.
 _MARGIN_M = 20.0
 
@@ -76,7 +78,14 @@ def encode(
     switching = switching_of(task)
     pointing = pointings_of(task)
     first, last = beginning(task), ending(task)
-    as_turn = flown_round(task)
+    # Taken up in flight a mission is begun late: what lies that near is behind by then, and would be flown
+    # back to, or round once more.
+    behind_m = TAKEN_UP_S * task.vehicle.airspeed_m_s if task.path.phase("take_off") is None else 0.0
+    turns = flown_round(task)
+
+    def as_turn(segment: PathSegment) -> bool:
+        return turns(segment) and segment.start_m >= behind_m
+
     stops = stops_along(
         task.path,
         task.collects,
@@ -90,6 +99,7 @@ def encode(
         switching.on_delay_m,
         CORNER_M if task.hovers else 0.0,
     )
+    stops = tuple(s for s in stops if s.along_m >= behind_m or s.on or s.off or s.turns is not None)
     # A plan over the sea knows how high its home lies.
     known_m = task.home_altitude_m if plan.altitude_reference == "amsl" else 0.0
     home_m = options.home_altitude_m or known_m
