@@ -232,7 +232,7 @@ class CircleFollower:
     def course_error_rad(self, state: AircraftState, place: Place) -> float:
         """How far the circle's course abeam of the aircraft is from the one that it is left on for a place.
 
-        As ArduPlane reckons since 4.2: from a point of the circle straight to a place outside it; a place
+        As ArduPlane reckons: from a point of the circle straight to a place outside it; a place
         inside is left for a little before it is abeam. Source: ``ModeLoiter::isHeadingLinedUp``.
         """
         c_n, c_e = offset_m(state.lat_deg, state.lon_deg, self._centre.lat_deg, self._centre.lon_deg)
