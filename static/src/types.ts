@@ -94,6 +94,9 @@ export interface Metrics {
   area_seen_m2?: number | null;
   importance_collected?: number | null;
   importance_total?: number | null;
+  /** What no flight sees or collects more than. */
+  area_seen_bound_m2?: number | null;
+  importance_bound?: number | null;
 }
 
 export interface PlanRecord {

@@ -125,7 +125,9 @@ function result({ record, plan, items, madeFrom }: OpenPlan, view: PlanView): HT
       [
         ["Length", metres(m.length_m)],
         ...(m.area_seen_m2 == null ? [] : [["Ground seen", number(m.area_seen_m2 / 1e6, 3, "km²")] as [string, string]]),
+        ...(m.area_seen_bound_m2 == null ? [] : [["No flight sees more than", number(m.area_seen_bound_m2 / 1e6, 3, "km²")] as [string, string]]),
         ...(m.importance_collected == null ? [] : [["Importance collected", m.importance_total ? `${percent(m.importance_collected / m.importance_total)} of ${number(m.importance_total, 0)}` : number(m.importance_collected, 0)] as [string, string]]),
+        ...(m.importance_bound == null ? [] : [["No flight collects more than", m.importance_total ? percent(m.importance_bound / m.importance_total) : number(m.importance_bound, 0)] as [string, string]]),
         ["Collecting", metres(m.collection_length_m)],
         ["Duty cycle", percent(m.duty_cycle)],
         ["Path length ratio", number(m.path_length_ratio, 3)],

@@ -7,7 +7,7 @@ import { groundWords } from "../survey/readout";
 import type { Member } from "../types";
 import { number as shown } from "../units";
 import { goToField } from "./field_findings";
-import { choiceField, numberField, suggestField, type Field } from "./fields";
+import { choiceField, numberField, suggestField, tickField, type Field } from "./fields";
 import { choice, member, name, number, tick, tidy } from "./members";
 
 type Kind = "sar" | "camera";
@@ -99,6 +99,15 @@ function presetField(index: number): Field {
   return { element: h("div", { class: "field wide" }, h("label", { for: select.id }, "Published figures of"), select), sync };
 }
 
+/** Absent is to keep the overlap up to the edges. */
+function edges(index: number): Field {
+  const { get, set } = member("sensors", index, "edge_overlap");
+  return tickField({
+    id: `sensors-${index}-edge_overlap`, label: "One photo is enough at edges", hint: "As surveys of other programs do it: fewer lanes, less overlap along a region's edges",
+    get: () => get<boolean>() === false, set: (value) => set(value ? false : undefined),
+  });
+}
+
 function radar(index: number): Field[] {
   return [
     presetField(index),
@@ -181,6 +190,7 @@ function camera(index: number): Field[] {
       : []),
     number("sensors", index, "forward_overlap", "Forward overlap", "%", { scale: PERCENT, max: 99, placeholder: String(FORWARD_OVERLAP * PERCENT), hint: "Of a photo, what the next one sees again" }),
     number("sensors", index, "side_overlap", "Side overlap", "%", { scale: PERCENT, max: 99, placeholder: String(SIDE_OVERLAP * PERCENT), hint: "Of a photo, what the next lane's see again" }),
+    edges(index),
     number("sensors", index, "tilt_deg", "Tilt", "°", { min: -90, max: 90, placeholder: "0", hint: "From straight down forwards" }),
     choice("sensors", index, "trigger", "Photos", [["distance", "by distance"], ["time", "by time"], ["video", "a video of each pass"]]),
     ...(sensorAt(index)?.["trigger"] === "video" ? [] : [number("sensors", index, "min_interval_s", "Shortest interval", "s", { placeholder: figures ? "not known" : "the maker's" })]),

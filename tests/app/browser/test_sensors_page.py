@@ -44,6 +44,10 @@ def test_what_it_sees_from_the_altitude_is_told(camera: Page) -> None:
     put(camera, "#s-altitude_m", "150")
     put(camera, "#sensors-0-side_overlap", "60")
     assert ask(camera, "scenario()")["sensors"][0]["side_overlap"] == 0.6
+    camera.check("#sensors-0-edge_overlap")
+    assert ask(camera, "scenario()")["sensors"][0]["edge_overlap"] is False
+    camera.uncheck("#sensors-0-edge_overlap")
+    assert "edge_overlap" not in ask(camera, "scenario()")["sensors"][0]
     gsd_m = PITCH_M / FOCAL_M * 150.0
     speed_m_s = ask(camera, "scenario()")["vehicles"][0]["airspeed_m_s"]
     seen = camera.locator("#sensors-0-seen")
