@@ -12,7 +12,7 @@ import { attempt, findingText, report } from "../notices";
 import { pathsOf } from "../phases";
 import { open } from "../plans";
 import { scenarios } from "../scenario";
-import type { Part, Vehicle } from "../types";
+import type { Part, Upload, Vehicle } from "../types";
 import { endBox } from "./end_box";
 import { encodingFields } from "./encoding_fields";
 import { goesOn } from "./goes_on";
@@ -57,6 +57,7 @@ export function uploadBox(edit: () => void): { controls: HTMLElement; answers: H
     if (subject() === about) fill(checked, found ? readiness(found) : null);
   };
 
+  const tell = (answer: Upload, id: string): void => fill(result, uploadAnswer(answer, open.value?.record.id), goesOn([answer], [id]));
   const send = async (override: Override | null): Promise<void> => {
     const vehicle = watched.value;
     const plan = open.value;
@@ -68,7 +69,7 @@ export function uploadBox(edit: () => void): { controls: HTMLElement; answers: H
       // The service compares the plan with the scenario it keeps: an edit just undone has to be there.
       await keepNow();
       const answer = await upload(vehicle.id, plan.record.id, ofPlan(), chosen, encoding.value, override);
-      if (watched.value?.id === vehicle.id) fill(result, uploadAnswer(answer, open.value?.record.id));
+      if (watched.value?.id === vehicle.id) tell(answer, vehicle.id);
     } catch (error) {
       const overruled = error instanceof ApiError && !override && OVERRULED.some((ending) => error.problem.type?.endsWith(ending));
       if (overruled) await offerOverride(error as ApiError, vehicle);
@@ -139,7 +140,8 @@ export function uploadBox(edit: () => void): { controls: HTMLElement; answers: H
     const number = vehicle?.upload ? `${vehicle.id}/${vehicle.upload.number}/${vehicle.upload.outcome}/${vehicle.upload.verified}` : null;
     if ((turned || number !== shownNumber) && busy === null) {
       shownNumber = number;
-      fill(result, vehicle?.upload ? uploadAnswer(vehicle.upload, open.value?.record.id) : null, vehicle?.upload ? goesOn([vehicle.upload], [vehicle.id]) : null);
+      if (vehicle?.upload) tell(vehicle.upload, vehicle.id);
+      else fill(result);
     }
   };
   open.watch((shown) => {
