@@ -283,6 +283,11 @@ def _settings(plan: Plan, vehicle: PlanVehicle, number: int, scenario: Scenario)
     """The aircraft that the plan is for, with the parameters that its preflight asks for."""
     lon_deg, lat_deg = vehicle.home
     needs = heights_of(plan, vehicle.name)
+    aircraft = next(each for each in scenario.aircraft if each.name == vehicle.name)
+    # Planned anew it may come down as steeply as it may at all, with the wind behind it.
+    steepest_m_s = (vehicle.airspeed_m_s + scenario.wind.speed_m_s) * math.tan(
+        math.radians(aircraft.max_climb_deg)
+    )
     return SimSettings(
         home=Place(lat_deg, lon_deg, GROUND_M),
         autopilot=vehicle.autopilot,
@@ -291,7 +296,7 @@ def _settings(plan: Plan, vehicle: PlanVehicle, number: int, scenario: Scenario)
         airspeed_m_s=vehicle.airspeed_m_s,
         turn_radius_m=vehicle.min_turn_radius_m,
         climb_m_s=RATES_SPARE * needs.climb_m_s,
-        sink_m_s=RATES_SPARE * needs.sink_m_s,
+        sink_m_s=RATES_SPARE * max(needs.sink_m_s, steepest_m_s),
         acceptance_m=PX4_EARLY_S * vehicle.airspeed_m_s if vehicle.autopilot == "px4" else 0.0,
         wind_m_s=scenario.wind.speed_m_s,
         wind_from_deg=WIND_FROM_DEG,

@@ -26,6 +26,8 @@ STEP_OF_KEPT, LEAST_STEP_M, MOST_STEP_M = 0.25, 5.0, 50.0
 MOST_STEP_S = 2.0
 #: Kept besides what is asked for: how well a place at a time is known.
 MARGIN_M, MARGIN_UP_M, MARGIN_S = 5.0, 1.0, 1.0
+#: Of the time flown, how much aircraft planned anew in the air may be early or late: ``docs/replan.md``.
+DRIFT = 0.02
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -93,10 +95,16 @@ def least_delay_s(placed: Sequence[Track], moving: Track, separation: Separation
 
 
 class Apart:
-    """Flights by number, and which delays of one behind another bring them near; kept once found."""
+    """Flights by number, and which delays of one behind another bring them near; kept once found.
 
-    def __init__(self, separation: Separation) -> None:
-        self._separation = separation
+    Parameters
+    ----------
+    drift
+        Of the time flown by then, how much they may be early or late.
+    """
+
+    def __init__(self, separation: Separation, drift: float = 0.0) -> None:
+        self._separation, self._drift = separation, drift
         self._tracks: list[Track] = []
         self._known: dict[tuple[int, int], Floats] = {}
 
@@ -119,13 +127,13 @@ class Apart:
 
     def _between(self, one: int, other: int) -> Floats:
         if (one, other) not in self._known:
-            found = _barred(self._tracks[one], self._tracks[other], self._separation)
+            found = _barred(self._tracks[one], self._tracks[other], self._separation, self._drift)
             self._known[one, other] = found
             self._known[other, one] = -found[::-1, ::-1]
         return self._known[one, other]
 
 
-def _barred(track: Track, moving: Track, separation: Separation) -> Floats:
+def _barred(track: Track, moving: Track, separation: Separation, drift: float) -> Floats:
     """Delays ruled out by one flight, (K, 2): from and until, those that overlap taken together."""
     if separation.horizontal_m <= 0.0 or separation.vertical_m <= 0.0:
         return np.empty((0, 2))
@@ -142,19 +150,22 @@ def _barred(track: Track, moving: Track, separation: Separation) -> Floats:
     rise_m = max(_steepest_m(one), _steepest_m(other))
     beside = np.abs(one[rows, 3] - other[columns, 3]) < separation.vertical_m + rise_m + MARGIN_UP_M
     delays_s = one[rows[beside], 0] - other[columns[beside], 0]
+    flown_s = np.maximum(one[rows[beside], 0], other[columns[beside], 0])
     # Between two places looked at the aircraft takes this long at most.
-    apart_s = _slowest_s(one) + _slowest_s(other) + MARGIN_S
-    return _together(delays_s, apart_s)
+    apart_s = _slowest_s(one) + _slowest_s(other) + MARGIN_S + drift * flown_s
+    return _together(delays_s - apart_s, delays_s + apart_s)
 
 
-def _together(delays_s: Floats, apart_s: float) -> Floats:
-    if not len(delays_s):
+def _together(firsts_s: Floats, lasts_s: Floats) -> Floats:
+    """Spans that overlap taken together, in order."""
+    if not len(firsts_s):
         return np.empty((0, 2))
-    ordered = np.sort(delays_s)
-    gaps = np.flatnonzero(np.diff(ordered) > 2.0 * apart_s)
-    firsts = ordered[np.concatenate([[0], gaps + 1])]
-    lasts = ordered[np.concatenate([gaps, [len(ordered) - 1]])]
-    return np.column_stack([firsts - apart_s, lasts + apart_s])
+    order = np.argsort(firsts_s)
+    firsts_s, reached_s = firsts_s[order], np.maximum.accumulate(lasts_s[order])
+    gaps = np.flatnonzero(firsts_s[1:] > reached_s[:-1])
+    begins = np.concatenate([[0], gaps + 1])
+    ends = np.concatenate([gaps, [len(firsts_s) - 1]])
+    return np.column_stack([firsts_s[begins], reached_s[ends]])
 
 
 def _longest_m(places: Floats) -> float:

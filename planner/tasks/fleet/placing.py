@@ -11,7 +11,7 @@ import numpy as np
 
 from planner.errors import InfeasibleError
 from planner.fleet.assignment import Trip
-from planner.fleet.separation import Apart, Track, step_m, track_of
+from planner.fleet.separation import DRIFT, Apart, Track, step_m, track_of
 from planner.route import Terminal
 from planner.tasks.fleet.aloft import held_apart, home_apart
 from planner.tasks.fleet.crews import Crew
@@ -152,7 +152,24 @@ def placed(
         ``"separation"``: no delay within its windows keeps a flight apart from the others.
         ``"window"``: there is no room to wait in.
     """
-    first = sorted(
+    if not errands:
+        return ()
+    aircraft = [crews[each.trip.member].aircraft for each in _in_the_air_first(crews, errands)]
+    best = None
+    # Those in the air cannot be put off once more: each may be early or late, where there is room for that.
+    for drift in (DRIFT, 0.0) if aircraft[0].aloft is not None else (0.0,):
+        try:
+            best = _placed(crews, errands, separation, controls, seed, Apart(separation, drift))
+        except (InfeasibleError, LateError):
+            if drift == 0.0:
+                raise
+        if best is not None:
+            return tuple(sorted(best.sorties, key=lambda each: (each.flown.crew, each.number)))
+    raise _too_near(aircraft, separation)
+
+
+def _in_the_air_first(crews: Sequence[Crew], errands: Sequence[Errand]) -> list[Errand]:
+    return sorted(
         errands,
         key=lambda each: (
             crews[each.trip.member].aircraft.aloft is None,
@@ -160,14 +177,23 @@ def placed(
             -each.trip.duration_s,
         ),
     )
-    apart = Apart(separation)
+
+
+def _placed(
+    crews: Sequence[Crew],
+    errands: Sequence[Errand],
+    separation: Separation,
+    controls: Controls,
+    seed: int,
+    apart: Apart,
+) -> _Clock | None:
+    """The best of the orders tried; None where some are too near in all of them."""
+    first = _in_the_air_first(crews, errands)
     tracks = {
         id(each): apart.add(_track(crews[each.trip.member], each.flown, separation))
         for each in errands
         if each.flown is not None
     }
-    if not errands:
-        return ()
     orders = [first]
     if len(tracks) == len(errands) > 1:
         rng = np.random.default_rng(seed)
@@ -194,9 +220,7 @@ def placed(
         clock = _in_turn(apart, order, crews, tracks, separation, controls, waiting=True)
         if clock is not None and (best is None or clock.cost_s < best.cost_s):
             best = clock
-    if best is None:
-        raise _too_near([crews[each.trip.member].aircraft for each in first], separation)
-    return tuple(sorted(best.sorties, key=lambda each: (each.flown.crew, each.number)))
+    return best
 
 
 def _in_turn(
