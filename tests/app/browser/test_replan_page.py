@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import httpx
@@ -88,7 +89,7 @@ def test_an_aircraft_in_flight_takes_the_new_mission_and_begins_it(page: Page, s
     before = ask(page, "plan()")
     page.click("#plan-start")
     first = _planned(page, before and before["id"])
-    with connected(service, "solo", speedup=10) as (vehicle,):
+    with connected(service, "solo", speedup=6) as (vehicle,):
         at = f"{service.address}/api/v1/vehicles/{vehicle}"
         httpx.post(f"{at}/mission", json={"plan_id": first}, timeout=60.0).raise_for_status()
         start = {"command": "start", "arm_first": True}
@@ -106,5 +107,6 @@ def test_an_aircraft_in_flight_takes_the_new_mission_and_begins_it(page: Page, s
         page.click("#upload")
         page.click("[data-begin]")
         page.click("#dialog-go")
-        page.wait_for_function("window.swathplan.vehicle().item <= 3")
+        # Where it flies to next is past soon; what was ordered of it stays.
+        page.get_by_text(re.compile("Go to item 1: solo (confirmed|took) it")).wait_for()
         assert httpx.get(at, timeout=20.0).json()["plan_id"] == second
