@@ -21,7 +21,9 @@ MINUTES = 9
 
 def _planned(page: Page, before: str | None = None) -> str:
     page.wait_for_function(
-        "before => window.swathplan.plan() && window.swathplan.plan().id !== before", arg=before
+        "before => window.swathplan.plan() && window.swathplan.plan().id !== before",
+        arg=before,
+        timeout=180_000,
     )
     found: str = ask(page, "plan()")["id"]
     return found
