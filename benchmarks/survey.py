@@ -25,7 +25,6 @@ from __future__ import annotations
 
 import itertools
 import math
-import resource
 import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
@@ -48,6 +47,7 @@ from benchmarks.survey_baselines import (
     with_turnaround,
 )
 from benchmarks.survey_overlap import overlap
+from benchmarks.survey_scale import scale
 from benchmarks.survey_shapes import random_convex, random_star
 from planner.airspace.surroundings import Surroundings
 from planner.airspace.values import Wind
@@ -56,9 +56,7 @@ from planner.coverage.survey.family import Surveys
 from planner.coverage.survey.targets import LaneTarget
 from planner.dubins.estimate_kernels import transit_costs
 from planner.dubins.kernels import dubins_lengths
-from planner.geojson import read_scenario
 from planner.orders_kernels import best_orders
-from planner.pipeline import make_plan
 from planner.progress import never
 from planner.route import CollectPass
 from planner.sensors.camera import CameraSensor
@@ -331,54 +329,6 @@ def side_kept(passes: Sequence[CollectPass], camera: CameraSensor) -> float:
         if len(offsets_m) > 1:
             least = min(least, 1.0 - float(np.diff(offsets_m).max()) / width_m)
     return least
-
-
-def scale() -> Iterator[Row]:
-    """See the module."""
-    make_plan(read_scenario(_square_km(0.4, 0.3)))
-    began = time.perf_counter()
-    plan = make_plan(read_scenario(_square_km(8.0, 5.0)), clock=time.perf_counter)
-    took_s = time.perf_counter() - began
-    yield {
-        "bench": "survey-scale",
-        "area_km2": 40.0,
-        "lanes": len(plan.collects),
-        "photos": sum(len(each.places) for each in plan.photos),
-        "coverage": min(plan.metrics.coverage.values()),
-        "violations": len(plan.violations),
-        "planning_s": round(took_s, 2),
-        "peak_mb": round(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0),
-    }
-
-
-def _square_km(wide_km: float, high_km: float) -> Row:
-    degree_km = 111.32
-    cos, sin = math.cos(math.radians(20.0)), math.sin(math.radians(20.0))
-    corners = [(0.0, 0.0), (wide_km, 0.0), (wide_km, high_km), (0.0, high_km), (0.0, 0.0)]
-    turned = [(cos * x - sin * y, sin * x + cos * y) for x, y in corners]
-    wide_km_deg = degree_km * math.cos(math.radians(48.0))
-    ring = [[11.0 + x / wide_km_deg, 48.0 + y / degree_km] for x, y in turned]
-    field = {"type": "Polygon", "coordinates": [ring]}
-    start = {"type": "Point", "coordinates": [10.99, 47.99]}
-    return {
-        "type": "FeatureCollection",
-        "name": "survey",
-        "features": [
-            {"type": "Feature", "id": "field", "properties": {"role": "roi"}, "geometry": field},
-            {"type": "Feature", "id": "start", "properties": {"role": "start"}, "geometry": start},
-        ],
-        "vehicles": [{"name": "wing", "airspeed_m_s": 20.0, "min_turn_radius_m": 60.0}],
-        "sensors": [
-            {
-                "name": "eye",
-                "type": "camera",
-                "focal_length_m": 0.024,
-                "pixel_pitch_m": 4e-6,
-                "image_px": [6000, 4000],
-            }
-        ],
-        "altitude_m": 180.0,
-    }
 
 
 def run(
