@@ -44,19 +44,24 @@ class Looked:
     heading_deg: float | None = None
 
 
+def footprint_of(scenario: Scenario, plan: Plan, collect: Collect) -> BaseGeometry:
+    """The ground that one pass of a plan sees, in the scenario's frame."""
+    return shapely.union_all(
+        [
+            Polygon(scenario.frame.to_local(f.ring), [scenario.frame.to_local(hole) for hole in f.holes])
+            for f in plan.footprints
+            if (f.vehicle, f.seq) == (collect.vehicle, collect.seq)
+        ]
+    )
+
+
 def planned_looks(scenario: Scenario, plan: Plan, at_s: float) -> list[Looked]:
     """The looks of a plan up to a time of its own; one that is being had then as far as it has come."""
     found = []
     for collect in plan.collects:
         if collect.start_s >= at_s:
             continue
-        shape = shapely.union_all(
-            [
-                Polygon(scenario.frame.to_local(f.ring), [scenario.frame.to_local(hole) for hole in f.holes])
-                for f in plan.footprints
-                if (f.vehicle, f.seq) == (collect.vehicle, collect.seq)
-            ]
-        )
+        shape = footprint_of(scenario, plan, collect)
         begin, end = scenario.frame.to_local([place[:2] for place in (collect.line[0], collect.line[-1])])
         part = min((at_s - collect.start_s) / max(collect.end_s - collect.start_s, 1e-9), 1.0)
         ground = _beginning(shape, end - begin, part)

@@ -15,7 +15,7 @@ from shapely.geometry.base import BaseGeometry
 
 from app.services.errors import ConflictError, RefusedError
 from app.services.flights.as_flown import SLIVER_M, SLIVER_M2
-from app.services.plans.looked import Looked, searched_on
+from app.services.plans.looked import Looked, footprint_of, searched_on
 from planner.errors import Finding
 from planner.geojson.geometry import areal, written
 from planner.plan import Plan
@@ -76,13 +76,9 @@ def seen_by_plan(scenario: Scenario, plan: Plan, at_s: float) -> dict[str, BaseG
     for collect in plan.collects:
         if collect.end_s > at_s:
             continue
-        shapes = [
-            Polygon(scenario.frame.to_local(f.ring), [scenario.frame.to_local(hole) for hole in f.holes])
-            for f in plan.footprints
-            if (f.vehicle, f.seq) == (collect.vehicle, collect.seq)
-        ]
+        shape = footprint_of(scenario, plan, collect)
         for name in collect.regions:
-            done.setdefault(name, []).extend(shapes)
+            done.setdefault(name, []).append(shape)
     return {name: union_all(shapes) for name, shapes in done.items()}
 
 

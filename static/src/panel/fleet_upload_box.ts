@@ -49,7 +49,7 @@ function answer(result: FleetUpload): HTMLElement {
     { id: "fleet-result", "data-outcome": result.outcome, "data-verified": String(result.verified) },
     h("p", { class: result.verified ? "good" : "warning" }, `${VERDICT[result.outcome]}${result.verified ? "; all read back equal" : ""}.`),
     h("ul", { class: "findings" }, ...Object.entries(result.vehicles).map(([name, told]) => line(name, told))),
-    goesOn(sent.map(({ upload }) => upload), sent.map(({ id }) => id)),
+    goesOn(sent),
   );
 }
 

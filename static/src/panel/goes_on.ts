@@ -11,8 +11,8 @@ const FIRST = 1;
 const BEGIN: Order = { name: "goto_item", label: `Go to item ${FIRST}`, title: "" };
 
 /** An aircraft goes on at the number it was at: of a new mission that is anywhere. */
-export function goesOn(uploads: Upload[], ids: string[]): HTMLElement | null {
-  const flying = uploads.flatMap((upload, index) => (upload.in_flight ? [{ id: ids[index] ?? "", ...upload.in_flight }] : []));
+export function goesOn(sent: { id: string; upload: Upload }[]): HTMLElement | null {
+  const flying = sent.flatMap(({ id, upload }) => (upload.in_flight ? [{ id, ...upload.in_flight }] : []));
   if (flying.length === 0) return null;
   const late = flying.filter(({ item }) => item === null || item > FIRST);
   const begin = async (): Promise<void> => {

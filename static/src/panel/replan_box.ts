@@ -6,8 +6,8 @@ import { button, fill, h, section } from "../dom";
 import { vehicles } from "../fleet";
 import { inFlight } from "../holding";
 import { findingText, report } from "../notices";
-import { open, running, startReplan } from "../plans";
-import { differences, wordsOf, type Replan } from "../replanning";
+import { open, running, startReplan, type OpenPlan } from "../plans";
+import { differences, wordsOf, type Differences, type Replan } from "../replanning";
 import { scenarios } from "../scenario";
 import type { Scenario, Vehicle } from "../types";
 
@@ -18,6 +18,9 @@ function flyers(): Vehicle[] {
   const id = open.value?.record.id;
   return vehicles.value.filter((vehicle) => !vehicle.replay && vehicle.flight_id !== null && vehicle.plan_id === id && inFlight(vehicle));
 }
+
+/** What the page's scenario has since become other than the one of the plan. */
+const since = ({ madeFrom }: OpenPlan): Differences => differences(JSON.parse(madeFrom) as Scenario, scenarios.document.value);
 
 export function replanBox(): HTMLElement {
   const changes = h("ul", { id: "replan-changes" });
@@ -48,7 +51,7 @@ export function replanBox(): HTMLElement {
   const send = async (): Promise<void> => {
     const shown = open.value;
     if (!shown) return;
-    const { add, remove, wind } = differences(JSON.parse(shown.madeFrom) as Scenario, scenarios.document.value);
+    const { add, remove, wind } = since(shown);
     const body: Replan = { add, remove, lost: [...ticks].filter(([, tick]) => tick.checked).map(([name]) => name) };
     if (wind !== undefined) body.wind = wind;
     if (from.value === "plan") body.at_s = Number(minutes.value) * 60;
@@ -65,10 +68,7 @@ export function replanBox(): HTMLElement {
       update();
     }
   };
-  const refusal = (): string => {
-    const shown = open.value;
-    if (!shown) return "";
-    const { refused } = differences(JSON.parse(shown.madeFrom) as Scenario, scenarios.document.value);
+  const refusal = ({ refused }: Differences): string => {
     if (refused.length > 0) return `What flies cannot take over what you changed of: ${[...new Set(refused)].join(", ")}. Undo that, or plan the whole scenario for a start from the ground.`;
     if (from.value === "plan" && (!minutes.checkValidity() || minutes.value === "")) return "Say at which minute of the plan.";
     if (ticks.size > 0 && [...ticks.values()].every(({ checked }) => checked)) return "No aircraft is left.";
@@ -77,44 +77,48 @@ export function replanBox(): HTMLElement {
   const update = (): void => {
     const shown = open.value;
     if (!shown) return;
-    const found = wordsOf(differences(JSON.parse(shown.madeFrom) as Scenario, scenarios.document.value));
+    const other = since(shown);
+    const found = wordsOf(other);
     fill(changes, ...(found.length > 0 ? found : ["nothing was changed: only what has been seen is left out"]).map((words) => h("li", {}, words)));
     when.hidden = from.value !== "plan";
     const busy = asking || (running.value !== null && MOVING.has(running.value.state));
-    const words = refusal();
+    const words = refusal(other);
     go.disabled = busy || words !== "";
     fill(go, asking ? "Asking the service …" : "Plan what is left");
     if (why.textContent !== words) why.textContent = words;
   };
-  let key = "";
+  let drawn: string | null = null;
+  /** Of another plan: its aircraft, and nothing chosen yet. */
+  const redraw = ({ record, plan }: OpenPlan): void => {
+    drawn = record.id;
+    chosen = "";
+    minutes.value = "0";
+    ticks.clear();
+    const crew = crewOf(plan);
+    fill(
+      lost,
+      ...(crew.length < 2 ? [] : crew).map((name, index) => {
+        const tick = h("input", { id: `lost-${index}`, type: "checkbox", onchange: update });
+        ticks.set(name, tick);
+        return h("div", { class: "field tick" }, tick, h("label", { for: `lost-${index}` }, `${name} flies no more`));
+      }),
+    );
+    fill(answer);
+  };
+  let flying: string | null = null;
   const draw = (): void => {
     const shown = open.value;
     box.hidden = shown === null;
     if (!shown) return;
-    const flying = flyers().map(({ name }) => name);
-    const now = JSON.stringify([shown.record.id, flying]);
-    if (now !== key) {
-      const other = !key.startsWith(JSON.stringify([shown.record.id]).slice(0, -1));
-      key = now;
-      if (other) chosen = "";
-      fill(from, flying.length > 0 ? h("option", { value: "flights" }, "where they are now") : null, h("option", { value: "plan" }, "the plan, at a time"));
-      from.title = flying.length > 0 ? `In flight: ${flying.join(", ")}` : "None of them is known to fly this plan";
-      from.value = flying.length > 0 && chosen !== "plan" ? "flights" : "plan";
-      if (flying.length > 0) box.open = true;
-      if (other) {
-        const crew = crewOf(shown.plan);
-        ticks.clear();
-        minutes.value = "0";
-        fill(
-          lost,
-          ...(crew.length < 2 ? [] : crew).map((name, index) => {
-            const tick = h("input", { id: `lost-${index}`, type: "checkbox", onchange: update });
-            ticks.set(name, tick);
-            return h("div", { class: "field tick" }, tick, h("label", { for: `lost-${index}` }, `${name} flies no more`));
-          }),
-        );
-        fill(answer);
-      }
+    const other = shown.record.id !== drawn;
+    if (other) redraw(shown);
+    const names = flyers().map(({ name }) => name).join(", ");
+    if (other || names !== flying) {
+      flying = names;
+      fill(from, names ? h("option", { value: "flights" }, "where they are now") : null, h("option", { value: "plan" }, "the plan, at a time"));
+      from.title = names ? `In flight: ${names}` : "None of them is known to fly this plan";
+      from.value = names && chosen !== "plan" ? "flights" : "plan";
+      if (names) box.open = true;
     }
     update();
   };

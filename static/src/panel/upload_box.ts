@@ -57,7 +57,7 @@ export function uploadBox(edit: () => void): { controls: HTMLElement; answers: H
     if (subject() === about) fill(checked, found ? readiness(found) : null);
   };
 
-  const tell = (answer: Upload, id: string): void => fill(result, uploadAnswer(answer, open.value?.record.id), goesOn([answer], [id]));
+  const tell = (answer: Upload, id: string): void => fill(result, uploadAnswer(answer, open.value?.record.id), goesOn([{ id, upload: answer }]));
   const send = async (override: Override | null): Promise<void> => {
     const vehicle = watched.value;
     const plan = open.value;
