@@ -71,7 +71,9 @@ const ticks = (end_s: number, height: number): SVGElement[] =>
 function tickWords(end_s: number): HTMLElement {
   const { every_s, at_s: all } = marks(end_s);
   const minutes = every_s < 3600 && end_s < 3600;
-  const words = all.map((at_s) => h("span", { style: `left:${((at_s / end_s) * 100).toFixed(2)}%` }, minutes ? `${Math.round(at_s / 60)} min` : clockWords(at_s).slice(0, -3)));
+  // The last may stand where its words would be cut off by the chart's end.
+  const place = (at_s: number): string => (at_s > 0.87 * end_s ? "right:0" : `left:${((at_s / end_s) * 100).toFixed(2)}%`);
+  const words = all.map((at_s) => h("span", { style: place(at_s) }, minutes ? `${Math.round(at_s / 60)} min` : clockWords(at_s).slice(0, -3)));
   return h("div", { class: "hours", "aria-hidden": "true" }, ...words);
 }
 
