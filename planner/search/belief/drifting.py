@@ -10,9 +10,8 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 from scipy.special import ndtri
-from scipy.stats.qmc import Sobol
 
-from planner.search.belief.target import Belief, Target
+from planner.search.belief.target import Belief, Target, evenly_spread
 from planner.search.kernels import drifting_gains
 from planner.search.programme import Pricing, Sweep
 from planner.search.seen import missed_before
@@ -138,12 +137,11 @@ def believed(importance: Importance, drift: Drift, count: int = PLACES, seed: in
 
 def _places_of(source: Source, count: int, seed: int) -> tuple[Floats, Floats]:
     """Places of one source as likely as each other, and beside each a normal number for its drift, (N, 2)."""
-    even = Sobol(4, scramble=True, seed=seed)
     if isinstance(source, ImportancePoint):
-        numbers = ndtri(even.random_base2(math.ceil(math.log2(count)))[:count])
+        numbers = ndtri(evenly_spread(count, seed))
         return np.asarray(source.position) + source.spread_m * numbers[:, :2], numbers[:, 2:]
     if isinstance(source, ImportanceRaster):
-        numbers = even.random_base2(math.ceil(math.log2(count)))[:count]
+        numbers = evenly_spread(count, seed)
         scores = source.scores.ravel()
         upto = np.cumsum(scores) / scores.sum()
         # The first number finds a cell, and what is left of it the place across the cell.
@@ -154,7 +152,7 @@ def _places_of(source: Source, count: int, seed: int) -> tuple[Floats, Floats]:
         return np.array([source.west_m, source.south_m]) + source.cell_m * across, ndtri(numbers[:, 2:])
     west_m, south_m, east_m, north_m = source.area.bounds
     share = source.area.area / ((east_m - west_m) * (north_m - south_m))
-    numbers = even.random_base2(math.ceil(math.log2(count / share)))
+    numbers = evenly_spread(2 ** math.ceil(math.log2(count / share)), seed)
     there = np.array([west_m, south_m]) + numbers[:, :2] * np.array([east_m - west_m, north_m - south_m])
     inside = shapely.contains_xy(source.area, there[:, 0], there[:, 1])
     return there[inside], ndtri(numbers[inside, 2:])

@@ -8,9 +8,18 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ndtri
-from scipy.stats.qmc import Sobol
 
 Floats = NDArray[np.float64]
+
+
+def evenly_spread(count: int, seed: int) -> Floats:
+    """Rows of four numbers between 0 and 1, (count, 4), spread by a scrambled Sobol sequence of the seed."""
+    # scipy.stats takes half a second to import, and few plans draw places.
+    from scipy.stats.qmc import Sobol
+
+    power = max(0, math.ceil(math.log2(count)))
+    even: Floats = Sobol(4, scramble=True, seed=seed).random_base2(power)[:count]
+    return even
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,8 +85,7 @@ class Belief:
 
         Counts are best powers of two; runs of places of such a length are evenly spread, too.
         """
-        power = max(0, math.ceil(math.log2(count)))
-        even = ndtri(Sobol(4, scramble=True, seed=seed).random_base2(power)[:count])
+        even = ndtri(evenly_spread(count, seed))
         drifts = np.asarray(target.drift_m_s) + target.drift_spread_m_s * even[:, 2:]
         places = np.asarray(target.last_known_m) + target.spread_m * even[:, :2]
         return cls(places + target.elapsed_s * drifts, drifts, np.full(count, 1.0 / count))
