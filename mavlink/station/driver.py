@@ -9,7 +9,7 @@ import asyncio
 import contextlib
 import math
 from collections import deque
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any, Final
 
@@ -28,11 +28,12 @@ from mavlink.station.forward.hub import Forwards
 from mavlink.station.identity import Identity
 from mavlink.station.jobs import Job
 from mavlink.station.list_ids import ListIds
-from mavlink.station.listener import Listener
 from mavlink.station.restarts import Restarts
 from mavlink.station.trust import Trust
 from mavlink.station.under_way import UnderWay
+from mavlink.station.watched import Watched
 from mavlink.transfer.command import CommandMachine, CommandOutcome
+from mavlink.transfer.items_wire import ITEM_REQUESTS
 from mavlink.transfer.machine import Machine, Progress
 from mavlink.transfer.outcome import Outcome
 from mavlink.wire.codec import Codec
@@ -44,7 +45,7 @@ _ACTIVE: Final = 4  # MAV_STATE_ACTIVE
 _MOST_WAITING: Final = 256
 
 
-class Driver(Believing):
+class Driver(Watched, Believing):
     """Drives machines over a link on behalf of one ground station and one vehicle.
 
     Parameters
@@ -65,7 +66,7 @@ class Driver(Believing):
         lost_after_s: float = 5.0,
         forwards: Forwards | None = None,
     ) -> None:
-        self.state = VehicleState()
+        super().__init__()
         self._link = link
         self.read_only = isinstance(link, ReplayLink)
         self._direct = link if isinstance(link, DirectLink) else None
@@ -89,8 +90,6 @@ class Driver(Believing):
         self._heard_s = -math.inf
         self._heartbeat_s = -math.inf
         self._under_way = UnderWay(clock, self._queue, self._wake)
-        self._watchers: set[asyncio.Event] = set()
-        self._recorders: set[Listener] = set()
         self.events = EventOrder()
         self.list_ids = ListIds()
         self.sensor = SensorWatch()
@@ -189,29 +188,11 @@ class Driver(Believing):
         self._set_state(VehicleState())
         self._trust.adopt(system_id)
 
-    @contextlib.contextmanager
-    def watching(self) -> Iterator[asyncio.Event]:
-        """An event that is set at every change of state, and at the end."""
-        changed = asyncio.Event()
-        self._watchers.add(changed)
-        try:
-            yield changed
-        finally:
-            self._watchers.discard(changed)
-
     @property
     def recording_clock(self) -> Callable[[], float | None] | None:
         """When what is heard was heard first, where the link is a recording; None of a live one."""
         link = self._link
         return (lambda: link.clock_s) if isinstance(link, ReplayLink) else None
-
-    def record(self, recorder: Listener) -> None:
-        """Feed whoever takes the vehicle's messages from now on."""
-        self._recorders.add(recorder)
-
-    def stop_recording(self, recorder: Listener) -> None:
-        """Stop feeding a recorder."""
-        self._recorders.discard(recorder)
 
     async def _run(self) -> None:
         if self._direct is not None:
@@ -235,12 +216,10 @@ class Driver(Believing):
 
     def _hear(self, data: bytes) -> None:
         """Take in and answer at once what a direct link brings; the task only lets time pass."""
-        assert self._direct is not None
         try:
             for message in self._codec.feed(data):
                 self._take(message)
-            while self._outgoing:
-                self._direct.send_now(self._outgoing.popleft())
+            self._send_now()
         except Exception as error:  # noqa: BLE001 - raised again in the task, whose business it is
             self._error = error
         if self._error is not None or self._next_deadline_s() < self._due_s:
@@ -271,6 +250,21 @@ class Driver(Believing):
             self._outgoing.extend([self._codec.pack(message) for message in messages])
         except CodecError as error:
             job.fail(error)
+        self._send_now()
+
+    def _send_now(self) -> None:
+        """Send on a direct link without waiting for the task; then make ready what is likely to be next."""
+        if self._direct is None:
+            return
+        try:
+            while self._outgoing:
+                self._direct.send_now(self._outgoing.popleft())
+        except LinkError as error:
+            self._error = error
+            self._wake()
+        likely = self._under_way.likely
+        if likely is not None:
+            self._codec.prepare(likely)
 
     def _wake(self) -> None:
         if self._timeout is not None and not self._timeout.expired():
@@ -309,6 +303,10 @@ class Driver(Believing):
                 self._change(self.sensor.watched(self.state, message, now_s))
             self._change(self._identity.watched(self.state, message, now_s))
             return
+        asks = self.state.connected and message.name in ITEM_REQUESTS
+        if asks:
+            # It tells nothing but what it waits for, and the aircraft waits: it is answered before all else.
+            self._answer(message, now_s)
         self._heard_s = now_s
         self.quality.heard(message.sequence, now_s)
         self._trust.heard(message, now_s)
@@ -326,10 +324,14 @@ class Driver(Believing):
             self._change(state)
         for recorder in self._recorders:
             recorder.take(message, self.state)
-        if message.fields.get("target_system", 0) not in (0, self._codec.system_id):
-            return  # meant for another ground station on the same link
-        answers = self._under_way.receive(message, now_s)
-        self._outgoing.extend([self._codec.pack(answer) for answer in answers])
+        if not asks:
+            self._answer(message, now_s)
+
+    def _answer(self, message: Message, now_s: float) -> None:
+        """What machines say to the vehicle's message, unless it is meant for another ground station."""
+        if message.fields.get("target_system", 0) in (0, self._codec.system_id):
+            answers = self._under_way.receive(message, now_s)
+            self._outgoing.extend([self._codec.pack(answer) for answer in answers])
 
     def _event_is_new(self, message: Message) -> bool:
         """Whether to read on; events that were lost on the way are asked for again."""
@@ -377,13 +379,3 @@ class Driver(Believing):
         self._failure = reason
         self._set_state(self.sensor.unknown(replace(self.state, connected=False)))
         self._under_way.abandon()
-
-    def _change(self, state: VehicleState) -> None:
-        """Take over a state that may be the same."""
-        if state is not self.state:
-            self._set_state(state)
-
-    def _set_state(self, state: VehicleState) -> None:
-        self.state = state
-        for changed in self._watchers:
-            changed.set()

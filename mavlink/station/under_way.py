@@ -55,6 +55,11 @@ class UnderWay:
                 due_s = queue[0].machine.deadline_s
         return due_s
 
+    @property
+    def likely(self) -> Message | None:
+        """What is likely to be sent next; None where nobody can tell."""
+        return None if self._transfer is None else self._transfer.machine.likely
+
     async def transfer(
         self, machine: Machine[Outcome], progress: Callable[[Progress], None] | None
     ) -> Outcome:
@@ -101,12 +106,18 @@ class UnderWay:
 
     def receive(self, message: Message, now_s: float) -> list[Message]:
         """Hand a message to the machines; gives back what an upload that is over still answers."""
-        for job in list(self._jobs()):
-            answers = job.machine.receive(message, now_s)
-            if answers:
-                self._queue(answers, job)
-            self._settle(job)
+        if self._transfer is not None:
+            self._hand(self._transfer, message, now_s)
+        for queue in list(self._commands.values()):
+            if queue:
+                self._hand(queue[0], message, now_s)
         return [] if self._lingering is None else self._lingering.receive(message, now_s)
+
+    def _hand(self, job: Job[Any], message: Message, now_s: float) -> None:
+        answers = job.machine.receive(message, now_s)
+        if answers:
+            self._queue(answers, job)
+        self._settle(job)
 
     def abandon(self) -> None:
         """End everything as unknown: the vehicle is not there any more."""

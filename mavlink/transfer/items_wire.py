@@ -12,6 +12,7 @@ from mavlink.wire.items import MissionItem, MissionType, degrees_e7
 from mavlink.wire.messages import Message, Value
 
 ITEM_NAMES: Final = frozenset({"MISSION_ITEM_INT", "MISSION_ITEM"})
+ITEM_REQUESTS: Final = frozenset({"MISSION_REQUEST_INT", "MISSION_REQUEST"})
 
 # In these frames x and y are metres × 1e4 on the integer wire (MAV_FRAME_LOCAL_*).
 _LOCAL_FRAMES: Final = frozenset({1, 4, 7, 8, 9, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21})

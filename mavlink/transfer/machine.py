@@ -93,6 +93,11 @@ class Machine(ABC, Generic[End]):
     def progress(self) -> Progress:
         """How far the transfer has come."""
 
+    @property
+    def likely(self) -> Message | None:
+        """The message that will most likely be sent next, to be made ready meanwhile; None where none is."""
+        return None
+
     @abstractmethod
     def start(self, now_s: float) -> list[Message]:
         """Begin; call once."""
@@ -127,4 +132,4 @@ class Machine(ABC, Generic[End]):
 
     def _concerns(self, message: Message) -> bool:
         """True for the target's messages about this transfer's mission type (absent from MAVLink 1: 0)."""
-        return self._from_target(message) and message.fields.get("mission_type", 0) == self.mission_type
+        return message.fields.get("mission_type", 0) == self.mission_type and self._from_target(message)

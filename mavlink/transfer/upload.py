@@ -12,14 +12,20 @@ from collections.abc import Sequence
 from enum import Enum, auto
 from typing import ClassVar, Final
 
-from mavlink.transfer.items_wire import item_message, opaque_id_of
+from mavlink.transfer.items_wire import ITEM_REQUESTS, item_message, opaque_id_of
 from mavlink.transfer.machine import DEFAULT_SETTINGS, Machine, Progress, TransferSettings
 from mavlink.transfer.outcome import Accepted, Outcome, Refused, Unknown, UnknownReason
 from mavlink.wire.items import MissionItem, MissionResult, MissionType
 from mavlink.wire.messages import Message
 
 
-class State(Enum):
+class _Quick(Enum):
+    """An enumeration whose members are looked up by what they are: by name takes a call of Python's."""
+
+    __hash__ = object.__hash__
+
+
+class State(_Quick):
     """Where an upload stands."""
 
     IDLE = auto()
@@ -31,7 +37,7 @@ class State(Enum):
     UNKNOWN = auto()
 
 
-class Event(Enum):
+class Event(_Quick):
     """What can happen to an upload."""
 
     START = auto()
@@ -125,6 +131,7 @@ class UploadMachine(Machine[Outcome]):
         self._never_asked = set(range(first, first + len(items)))
         self._reached = 0
         self._last_asked: int | None = None
+        self._ahead: tuple[int, Message] | None = None
         self._repeats = 0
         self._retries_left = settings.retries
         self._accepted_early = False
@@ -146,7 +153,7 @@ class UploadMachine(Machine[Outcome]):
         """Answer requests; take acknowledgements."""
         if not self._concerns(message):
             return []
-        if message.name in ("MISSION_REQUEST", "MISSION_REQUEST_INT"):
+        if message.name in ITEM_REQUESTS:
             return self._answer(message.integer("seq"), now_s)
         if message.name == "MISSION_ACK":
             self._acknowledge(message.integer("type"), opaque_id_of(message))
@@ -188,7 +195,22 @@ class UploadMachine(Machine[Outcome]):
                 self._give_up()
                 return []
             self._wait_for_vehicle(now_s)
-        return [item_message(self.items[seq - self._first], self.target_system, self.target_component)]
+        return [self._item(seq)]
+
+    @property
+    def likely(self) -> Message | None:
+        """The item after the one asked for last: vehicles ask in order."""
+        seq = self._first if self._last_asked is None else self._last_asked + 1
+        if not 0 <= seq - self._first < len(self.items):
+            return None
+        self._ahead = seq, self._item(seq)
+        return self._ahead[1]
+
+    def _item(self, seq: int) -> Message:
+        """The same message again, where it is the one made ahead."""
+        if self._ahead is not None and self._ahead[0] == seq:
+            return self._ahead[1]
+        return item_message(self.items[seq - self._first], self.target_system, self.target_component)
 
     def _acknowledge(self, result: int, opaque_id: int | None) -> None:
         if result == MissionResult.ACCEPTED:

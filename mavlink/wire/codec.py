@@ -14,7 +14,7 @@ import re
 import struct
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Any, Final, Literal
 
 from pymavlink.dialects.v20 import ardupilotmega as dialect
 
@@ -171,6 +171,7 @@ class Codec:
         self.refused_frames = 0
         self._sequence = 0
         self._buffer = b""
+        self._ready: tuple[Message, int, bytes] | None = None
 
     def pack(self, message: Message) -> bytes:
         """Encode as one MAVLink 2 frame from this codec's sender.
@@ -183,6 +184,26 @@ class Codec:
         CodecError
             The message or a field is not in the dialect, or a value does not fit its field.
         """
+        ready, self._ready = self._ready, None
+        if ready is not None and ready[0] is message and ready[1] == self._sequence and self.signing is None:
+            frame = ready[2]
+        else:
+            frame = self._frame(message)
+        self._sequence = (self._sequence + 1) & 0xFF
+        if self.signing is not None:
+            frame += self.signing.signature(frame)
+        if self.tap is not None and message.name not in _SECRET:
+            self.tap(frame)
+        return frame
+
+    def prepare(self, message: Message) -> None:
+        """Encode what is to be packed next, if it will be, before there is haste."""
+        if self.signing is None and (self._ready is None or self._ready[0] is not message):
+            with contextlib.suppress(CodecError):  # packing it will say so
+                self._ready = message, self._sequence, self._frame(message)
+
+    def _frame(self, message: Message) -> bytes:
+        """The next frame but for its signature."""
         layout = _BY_NAME.get(message.name)
         if layout is None:
             raise CodecError(f"no message is called {message.name!r} in the dialect")
@@ -203,18 +224,12 @@ class Codec:
             layout.message_id & 0xFFFF,
             layout.message_id >> 16,
         )
-        self._sequence = (self._sequence + 1) & 0xFF
         body = header + payload
-        frame = body + _crc(body[1:] + layout.crc_extra)
-        if self.signing is not None:
-            frame += self.signing.signature(frame)
-        if self.tap is not None and message.name not in _SECRET:
-            self.tap(frame)
-        return frame
+        return body + _crc(body[1:] + layout.crc_extra)
 
     def signed(self, frame: bytes) -> bytes | None:
         """Another sender's frame, signed from here where it is not; None where it cannot be."""
-        if self.signing is None or (frame[0] == _MAGIC_V2 and frame[2] & SIGNED):
+        if self.signing is None or _says_signed(frame):
             return frame
         layout = _BY_ID.get(int.from_bytes(frame[7:10], "little")) if frame[0] == _MAGIC_V2 else None
         if layout is None:
@@ -238,41 +253,39 @@ class Codec:
             end = frame_end(buffer, position)
             if end is None:
                 break
-            known = len(messages)
-            taken = self._decode(buffer, position, end, messages) if end > position else False
-            if taken:
-                frame, message = buffer[position:end], messages[-1] if len(messages) > known else None
-                if not self._trusts(frame, message):
-                    del messages[known:]
-                else:
-                    if self.tap is not None:
-                        self.tap(frame)
-                    if self.heard is not None:
-                        self.heard(frame, message)
-                position = end
-            else:
+            taken = self._decode(buffer, position, end) if end > position else False
+            if taken is False:
                 self.bad_frames += 1
                 position += 1
+                continue
+            frame = buffer[position:end]
+            position = end
+            if (self.signing is not None or _says_signed(frame)) and not self._trusts(frame, taken):
+                continue
+            if self.tap is not None:
+                self.tap(frame)
+            if self.heard is not None:
+                self.heard(frame, taken)
+            if taken is not None:
+                messages.append(taken)
         else:
             position = len(buffer)
         self._buffer = buffer[position:]
         return messages
 
     def _trusts(self, frame: bytes, message: Message | None) -> bool:
-        """Whether a frame is to be taken in for its signature."""
+        """Whether a frame that is signed, or should be, is to be taken in."""
         if self.signing is not None:
             verdict = self.signing.take(frame)
             self.refused_frames += verdict is not Verdict.GENUINE
-        elif frame[0] == _MAGIC_V2 and frame[2] & SIGNED:
-            verdict = Verdict.UNVERIFIED
         else:
-            return True
+            verdict = Verdict.UNVERIFIED
         if message is not None and self.noted is not None:
             self.noted(message, verdict)
         return verdict in (Verdict.GENUINE, Verdict.UNVERIFIED)
 
-    def _decode(self, buffer: bytes, start: int, end: int, messages: list[Message]) -> bool:
-        """Decode the frame at ``start``; False when it is none."""
+    def _decode(self, buffer: bytes, start: int, end: int) -> Message | Literal[False] | None:
+        """Decode the frame at ``start``: None when its message is not known, False when it is no frame."""
         signature = 0
         if buffer[start] == _MAGIC_V2:
             _, length, flags, _, sequence, system_id, component_id, low, high = _HEADER_V2.unpack_from(
@@ -289,7 +302,7 @@ class Codec:
             # Its checksum cannot be verified; believe it if something frame-like, or nothing, follows.
             believed = end == len(buffer) or buffer[end] in (_MAGIC_V1, _MAGIC_V2)
             self.unknown_frames += believed
-            return believed
+            return None if believed else False
         crc_at = end - signature - _CRC_BYTES
         if buffer[crc_at : crc_at + _CRC_BYTES] != _crc(buffer[start + 1 : crc_at] + layout.crc_extra):
             return False
@@ -300,8 +313,11 @@ class Codec:
             fields: dict[str, Value] = dict(zip(layout.names, flat, strict=True))
         else:
             fields = {field.name: _value(flat, field) for field in layout.fields}
-        messages.append(Message(layout.name, fields, system_id, component_id, sequence))
-        return True
+        return Message(layout.name, fields, system_id, component_id, sequence)
+
+
+def _says_signed(frame: bytes) -> bool:
+    return frame[0] == _MAGIC_V2 and bool(frame[2] & SIGNED)
 
 
 def _crc(data: bytes) -> bytes:
