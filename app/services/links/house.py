@@ -5,6 +5,8 @@ from __future__ import annotations
 import asyncio
 import time
 from functools import partial
+from importlib import import_module
+from typing import Final
 
 from app.services.desk import Desk
 from app.services.limits import Limits
@@ -16,6 +18,15 @@ from app.services.store.plans import PlanStore
 from app.services.terrain.ground import GroundService, terrain_folder
 from app.services.vehicles.station import Station
 from app.services.vehicles.times import DEFAULT_TIMES
+
+#: What an upload, a check before flight and heights of the ground need; the process with the links does not.
+_FOR_ORDERS: Final = (
+    "app.services.plans.filed_mission",
+    "app.services.terrain.sampling",
+    "app.services.vehicles.brief",
+    "mavlink.formats",
+    "planner.geojson",
+)
 
 
 class LinksHouse:
@@ -30,7 +41,8 @@ class LinksHouse:
     def __init__(self, limits: Limits) -> None:
         # The service that started this process has brought its tables up to date, and holds its lock.
         self._database = Database(limits.database, alone=False)
-        pool = WorkerPool(1, partial(work.limited, _nothing, limits.request_memory_bytes))
+        ready = partial(work.limited, ready_for_orders, limits.request_memory_bytes, behind=False)
+        pool = WorkerPool(1, ready)
         self._desk = Desk(pool, 1, limits.request_time_limit_s)
         library = PlanLibrary(PlanStore(self._database), self._desk)
         self.station = Station(
@@ -67,5 +79,11 @@ class LinksHouse:
         await self._database.close()
 
 
-def _nothing() -> None:
-    """Encoding needs no kernels."""
+def ready_for_orders() -> None:
+    """Load what reads and encodes plans, in the worker.
+
+    An order's time is for the order: a worker ended at its limit would begin the next one with nothing loaded
+    again, and on a busy machine none would ever be carried out.
+    """
+    for module in _FOR_ORDERS:
+        import_module(module)

@@ -18,7 +18,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from app.priority import stand_back
+from app.priority import go_usual, stand_back
 
 #: Reports closer together than this are dropped unless the stage changes.
 REPORT_INTERVAL_S = 0.05
@@ -76,9 +76,18 @@ def initialise() -> None:
     load()
 
 
-def limited(initialiser: Callable[[], None], memory_bytes: int) -> None:
-    """Begin a worker that may take so much memory more than it begins with (RLIMIT_AS)."""
-    stand_back()
+def limited(initialiser: Callable[[], None], memory_bytes: int, behind: bool = True) -> None:
+    """Begin a worker that may take so much memory more than it begins with (RLIMIT_AS).
+
+    Parameters
+    ----------
+    behind
+        Whether other processes go first; not where an order to a vehicle waits for it.
+    """
+    if behind:
+        stand_back()
+    else:
+        go_usual()
     initialiser()
     if not STATM.exists():
         # Without Linux's figures nobody can tell what it begins with; the limit of time holds all the same.
