@@ -81,6 +81,9 @@ class Target(Protocol):
             Where no option keeps the hard constraints.
         """
 
+    def key(self, picked: Any) -> tuple[float, ...]:
+        """What of one, a single row, those near it are found by."""
+
     def near(self, picked: Any, step_rad: float, step_eta: float, between: Between | None = None) -> Options:
         """Options round one, a single row, at steps of heading and offset; that one where there are none.
 

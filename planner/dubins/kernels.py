@@ -139,16 +139,27 @@ def _length_radii(
 @njit(cache=True)
 def dubins_length(e0: float, n0: float, a0: float, e1: float, n1: float, a1: float, radius: float) -> float:
     """Length in metres of the shortest line from pose (e0, n0, a0) to (e1, n1, a1), turns of ``radius``."""
-    return radius * _length_radii(
-        (e1 - e0) / radius,
-        (n1 - n0) / radius,
-        a0,
-        math.sin(a0),
-        math.cos(a0),
-        a1,
-        math.sin(a1),
-        math.cos(a1),
+    return dubins_length_by_sines(
+        e0, n0, a0, math.sin(a0), math.cos(a0), e1, n1, a1, math.sin(a1), math.cos(a1), radius
     )
+
+
+@njit(cache=True)
+def dubins_length_by_sines(
+    e0: float,
+    n0: float,
+    a0: float,
+    s0: float,
+    c0: float,
+    e1: float,
+    n1: float,
+    a1: float,
+    s1: float,
+    c1: float,
+    radius: float,
+) -> float:
+    """The same where sine and cosine of both angles are known."""
+    return radius * _length_radii((e1 - e0) / radius, (n1 - n0) / radius, a0, s0, c0, a1, s1, c1)
 
 
 @njit(cache=True, error_model="numpy")

@@ -190,7 +190,9 @@ def _of_sweeps(
     found = []
     for family in families.values():
         judge = _lane_judge(family[0][1], around)
-        best = best_sweeps(family[0][1], angles_rad, etas, judge, around.radius_m, around.discs, between)
+        variants = [side.variant for _, side in family]
+        how = (judge, around.radius_m, around.discs, between, variants)
+        best = best_sweeps(family[0][1], angles_rad, etas, *how)
         number = np.full(VARIANTS, -1, dtype=np.int64)
         for index, side in family:
             number[side.variant] = index

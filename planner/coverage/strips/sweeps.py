@@ -14,6 +14,7 @@ lane.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -221,14 +222,16 @@ def best_sweeps(
     radius_m: float,
     discs: Floats,
     between: Between | None = None,
+    variants: Sequence[int] = range(VARIANTS),
 ) -> Swept:
-    """The best order of lanes at each heading, for each variant; the best η only.
+    """The best order of lanes at each heading, for each of some variants; the best η only.
 
     The variant of ``sweep`` itself does not matter. Near the fewest lanes only: a heading that takes many
     more is left out. The best is that with what lies before and behind it, where that is known.
     """
     counts = sweep.lanes(angles_rad)
     found: list[Swept] = []
+    wanted = np.isin(np.arange(VARIANTS), variants)
     # Where a crab leaves no swath, no number of lanes sees the region.
     holds = _hold(sweep, angles_rad, counts)
     if not holds.any():
@@ -238,7 +241,7 @@ def best_sweeps(
     for count in kept:
         rows = np.flatnonzero(holds & (counts == count))
         lanes, orders, costs, poses = _solve(
-            sweep, angles_rad[rows], etas, int(count), judge, radius_m, discs, between
+            sweep, angles_rad[rows], etas, int(count), judge, wanted, radius_m, discs, between
         )
         entries, exits, cramped_m, before_m, behind_m = poses
         best_eta = np.argmin(costs, axis=1)
@@ -291,6 +294,7 @@ def _solve(
     etas: Floats,
     count: int,
     judge: Judge,
+    wanted: NDArray[np.bool_],
     radius_m: float,
     discs: Floats,
     between: Between | None,
@@ -313,6 +317,7 @@ def _solve(
         behind_m.reshape(problems),
         lanes.onward,
         lanes.onward,
+        wanted,
         False,
         _strides(sweep, radius_m),
         radius_m,

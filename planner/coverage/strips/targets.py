@@ -89,6 +89,17 @@ class StripTarget:
         kept = kept[:: math.ceil(len(kept) / MOST_ROOMY)]
         return finer.rows(kept)
 
+    def key(self, picked: Options) -> tuple[float, ...]:
+        """What those near an option are found by."""
+        # Where there is no second pass its offset is no number, and no such number is like another.
+        second = float(np.nan_to_num(picked.eta_second[0], nan=-1.0))
+        return (
+            float(picked.side[0]),
+            float(picked.angles_rad[0]),
+            float(picked.eta_first[0]),
+            second,
+        )
+
     def near(
         self, picked: Options, step_rad: float, step_eta: float, between: Between | None = None
     ) -> Options:

@@ -88,6 +88,10 @@ class FigureTarget:
             raise refusal(self.region, self.around)
         return found
 
+    def key(self, picked: FigureOptions) -> tuple[float, ...]:
+        """What those near an option are found by."""
+        return (float(picked.angles_rad[0]),)
+
     def near(
         self, picked: FigureOptions, step_rad: float, step_eta: float, between: Between | None = None
     ) -> FigureOptions:

@@ -203,6 +203,7 @@ def _of_count(
         behind_m.reshape(problems),
         np.ones(STATES, dtype=np.bool_),
         np.arange(STATES) == 0,
+        np.ones(VARIANTS, dtype=np.bool_),
         True,
         strides,
         around.radius_m,

@@ -64,6 +64,10 @@ class LaneTarget:
         kept = np.flatnonzero(self._with_room(finer))
         return finer.rows(kept) if len(kept) else options or finer
 
+    def key(self, picked: LaneOptions) -> tuple[float, ...]:
+        """What those near an option are found by."""
+        return (float(picked.angles_rad[0]), float(picked.etas[0]))
+
     def near(
         self, picked: LaneOptions, step_rad: float, step_eta: float, between: Between | None = None
     ) -> LaneOptions:

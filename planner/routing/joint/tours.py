@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -76,11 +76,15 @@ class _Pool:
 
 @dataclass(frozen=True, slots=True)
 class Tours:
-    """Targets, and where; tours from one end to the other choose one option of each."""
+    """Targets, and where; tours from one end to the other choose one option of each.
+
+    Many tours have the same options at most places: finer ones round these are found once.
+    """
 
     ends: tuple[Terminal, Terminal]
     around: Surroundings
     targets: Sequence[Target]
+    _known: dict[tuple[object, ...], Options | None] = field(default_factory=dict, repr=False)
 
     def refined(self, choice: Choice) -> Choice:
         """The same order with finer options round the chosen ones."""
@@ -97,8 +101,7 @@ class Tours:
         """The same order, the passes of each target in the order that is best for what it lies between."""
         step_rad, step_eta = FITTED_STEP_RAD, FITTED_STEP_ETA
         for _ in range(FITTINGS):
-            between = [self._between(choice, place) for place in range(len(choice.order))]
-            layers = self.layers(choice, step_rad, step_eta, between)
+            layers = self.layers(choice, step_rad, step_eta, fitting=True)
             cost_m, picked = layers.best()
             if cost_m < choice.cost_m:
                 choice = Choice.of(choice.order, layers.options, picked, cost_m)
@@ -165,20 +168,33 @@ class Tours:
         """The targets in a tour's order."""
         return [self.targets[index] for index in choice.order]
 
-    def layers(
-        self,
-        choice: Choice,
-        step_rad: float,
-        step_eta: float,
-        between: Sequence[Between | None] | None = None,
-    ) -> Layers:
-        """Options round the chosen ones, place by place."""
-        between = between or [None] * len(choice.order)
-        finer = [
-            target.near(picked, step_rad, step_eta, lies)
-            for target, picked, lies in zip(self.visited(choice), choice.picked, between, strict=True)
-        ]
+    def layers(self, choice: Choice, step_rad: float, step_eta: float, *, fitting: bool = False) -> Layers:
+        """Options round the chosen ones, place by place.
+
+        Parameters
+        ----------
+        fitting
+            Whether they are to be the best for what they lie between.
+        """
+        finer = [self._near(choice, place, step_rad, step_eta, fitting) for place in range(len(choice.order))]
         return layers_of(self.ends, self.around, finer, self.around.discs)
+
+    def _near(self, choice: Choice, place: int, step_rad: float, step_eta: float, fitting: bool) -> Options:
+        """Options round the one chosen at a place."""
+        number, picked = choice.order[place], choice.picked[place]
+        target = self.targets[number]
+        key: tuple[object, ...] = (number, target.key(picked), step_rad, step_eta)
+        between = None
+        if fitting:
+            between = self._between(choice, place)
+            before, behind = choice.picked[:place][-1:], choice.picked[place + 1 :][:1]
+            poses = [one.exits[0] for one in before], [one.entries[0] for one in behind]
+            key += tuple(np.concatenate([*some, np.empty(0)]).tobytes() for some in poses)
+        if key not in self._known:
+            found = target.near(picked, step_rad, step_eta, between)
+            self._known[key] = None if found is picked else found
+        known = self._known[key]
+        return picked if known is None else known
 
     def passes(self, choice: Choice) -> tuple[CollectPass, ...]:
         """A tour's passes in the order flown."""

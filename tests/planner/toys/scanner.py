@@ -115,6 +115,9 @@ class Target:
             raise InfeasibleError("area", self.region.label, "no pass may be flown", "enlarge the area")
         return found
 
+    def key(self, picked: Options) -> tuple[float, ...]:
+        return (float(picked.entries[0, 2]),)
+
     def near(
         self, picked: Options, step_rad: float, step_eta: float, between: Between | None = None
     ) -> Options:

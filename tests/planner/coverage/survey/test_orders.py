@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from planner.coverage.lanes_kernels import lane_orders, skipping
+from planner.coverage.lanes_kernels import VARIANTS, lane_orders, skipping
 from planner.dubins.words import shortest
 from planner.route import Pose
 
@@ -38,7 +38,8 @@ def solved(
     cramped_m = np.zeros((1, len(own_m), 2, 2))
     problem = (entries[None], exits[None], own_m[None], cramped_m, none, none)
     either, onward = np.ones(2, dtype=np.bool_), np.array([True, False])
-    costs, orders = lane_orders(*problem, either, onward, True, strides, radius_m, NOTHING)
+    every = np.ones(VARIANTS, dtype=np.bool_)
+    costs, orders = lane_orders(*problem, either, onward, every, True, strides, radius_m, NOTHING)
     return costs[0], orders[0]
 
 
