@@ -10,6 +10,7 @@ import numpy as np
 from numba.core.dispatcher import Dispatcher
 
 from planner.airspace.terrain import Terrain
+from planner.compiling import Compiling
 from planner.coverage.urban.methods import SEQUENCES
 from planner.fleet.prizes.choice import Choices, best_choice
 from planner.fleet.prizes.exact import exact_route
@@ -100,13 +101,20 @@ _SCENARIO: dict[str, Any] = {
 def load() -> None:
     """Load the kernels of a usual plan; where they had to be compiled for that, compile the others too.
 
-    A process that is to plan at once is ready sooner than by :func:`warm_up`.
+    A process that is to plan at once is ready sooner than by :func:`warm_up`. Of several that begin at
+    once where nothing is kept, one compiles.
     """
+    Compiling().once(_load)
+
+
+def _load() -> bool:
     one = [feature for feature in _SCENARIO["features"] if feature["id"] not in ("R1", "R2")]
     scenario = read_scenario(_SCENARIO | {"features": one})
     with_bound(scenario, make_plan(scenario))
-    if compiled():
-        warm_up()
+    if not compiled():
+        return False
+    warm_up()
+    return True
 
 
 def compiled() -> int:

@@ -12,6 +12,7 @@ import structlog
 from app.services.desk import Desk
 from app.services.errors import LinkError
 from app.services.flights.service import FlightService
+from app.services.getting_ready import tell_until_ready
 from app.services.limits import Limits
 from app.services.links.keeper import Keeper
 from app.services.plans import work
@@ -91,6 +92,7 @@ class House:
         self.audit = AuditStore(self.database)
         self.flights = FlightService(FlightStore(self.database), self.planning, self.desk)
         self.keeper = keeper
+        self._telling: asyncio.Task[None] | None = None
         self._station = (
             Station(
                 self.database,
@@ -140,10 +142,13 @@ class House:
     async def _open_all(self) -> None:
         self.pool.warm()
         self.desk.pool.warm()
+        self._telling = asyncio.create_task(tell_until_ready((self.pool, self.desk.pool)))
         await self.planning.start()
 
     async def close(self) -> None:
         """Stop everything, in the opposite order."""
+        if self._telling is not None:
+            self._telling.cancel()
         await self.let_go()
         await self.planning.stop()
         await self.desk.pool.stop()
