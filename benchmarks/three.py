@@ -54,7 +54,8 @@ Floats = NDArray[np.float64]
 
 def run(
     at_s: float | tuple[float, ...] = (150.0, 300.0, 450.0),
-    delay_s: float = 1.0,
+    delay_s: float = 2.0,
+    begins_in_s: float | None = None,
     wind_m_s: float = 0.0,
     paths: Path | None = None,
 ) -> Iterator[dict[str, Any]]:
@@ -66,6 +67,8 @@ def run(
         When the new plan is asked for, seconds after the first take-off; several of them one after the other.
     delay_s
         From the last telemetry that the new plan is made of to its missions going up.
+    begins_in_s
+        When the new plan is thought to begin, as the call for it takes it; None for its own choice.
     wind_m_s
         From the west, planned with and flown in.
     paths
@@ -85,7 +88,7 @@ def run(
     plan = make_plan(scenario)
     for time_s in at_s if isinstance(at_s, tuple) else (at_s,):
         folder = None if paths is None else paths / f"{time_s:g}"
-        flown = flight(document, scenario, plan, asked, time_s, delay_s, folder)
+        flown = flight(document, scenario, plan, asked, time_s, delay_s, folder, begins_in_s)
         yield from flown.rows()
         flown.judge()
 
@@ -102,6 +105,7 @@ def flight(
     at_s: float,
     delay_s: float,
     folder: Path | None,
+    begins_in_s: float | None = None,
 ) -> Together:
     """Fly a plan, plan anew at a time, and fly on.
 
@@ -118,7 +122,7 @@ def flight(
         tap = writers[vehicle.name].write if writers else None
         sky.add(Linked(vehicle.name, _settings(plan, vehicle, number, scenario), tap))
     try:
-        flown = _fly(sky, document, scenario, plan, changes, at_s, delay_s)
+        flown = _fly(sky, document, scenario, plan, changes, at_s, delay_s, begins_in_s)
     finally:
         for writer in writers.values():
             writer.close()
@@ -135,6 +139,7 @@ def _fly(
     changes: Changes,
     at_s: float,
     delay_s: float,
+    begins_in_s: float | None,
 ) -> Together:
     for path in plan.paths:
         sky.give(path.vehicle, encode(plan, path.vehicle))
@@ -146,20 +151,22 @@ def _fly(
     sky.until(begun_s + at_s)
     # What the new plan is made of is what was heard until now; they fly on while it is made.
     before = {name: each.cut_record() for name, each in sky.aircraft.items() if each.state.armed}
-    left = replan_of(_sortie(document, plan, before), Asked(None, {}, None, changes))
+    left = replan_of(_sortie(document, plan, before), Asked(None, {}, None, changes, begins_in_s))
     left_scenario = read_scenario(left)
     again = make_plan(left_scenario)
     sky.until(begun_s + at_s + delay_s)
-    again_s = sky.now_s
+    again_s = begun_s + at_s + left["replan"]["begins_in_s"]
     for path in sorted(again.paths, key=lambda path: path.start_s):
-        sky.until(again_s + path.start_s)
+        if path.vehicle not in before:
+            sky.until(again_s + path.start_s)
         sky.give(path.vehicle, encode(again, path.vehicle))
         if path.vehicle not in before:
             sky.start(path.vehicle)
     sky.until_landed(MOST_S)
     after = {name: each.record() for name, each in sky.aircraft.items() if each.places}
     seen = judged(_sortie(left, again, after), left_scenario, again)
-    return Together(scenario, plan, again, sky, begun_s, at_s, tuple(before), min(seen.fraction.values()))
+    least = min(seen.fraction.values())
+    return Together(scenario, plan, again, sky, begun_s, at_s, again_s - begun_s, tuple(before), least)
 
 
 @dataclass(frozen=True, slots=True)
@@ -172,6 +179,8 @@ class Together:
         As it was planned, and planned anew.
     begun_s
         On the sky's clock, when the first took off.
+    again_s
+        When the new plan was to begin, after the first took off.
     aloft
         Who flew when it was planned anew.
     least_seen
@@ -184,6 +193,7 @@ class Together:
     sky: Sky
     begun_s: float
     at_s: float
+    again_s: float
     aloft: tuple[str, ...]
     least_seen: float
 
@@ -207,6 +217,7 @@ class Together:
                 "autopilot": each.aircraft.settings.autopilot.value,
                 "items": [len(items) for items in each.given],
                 "airborne_s": round(each.places[-1][0] - each.places[0][0], 1) if each.places else 0.0,
+                "late_s": self.late_s(name),
                 "landed": not each.aircraft.armed and each.aircraft.mission_complete,
             }
         kept, nearest = self.scenario.kept_apart, self.nearest
@@ -222,6 +233,14 @@ class Together:
             "hard_violations": len(self.plan.hard_violations) + len(self.again.hard_violations),
             "least_seen": round(self.least_seen, 4),
         }
+
+    def late_s(self, name: str) -> float | None:
+        """How much later than planned anew one has landed: who turns back is late by a circle or more."""
+        path = next((path for path in self.again.paths if path.vehicle == name), None)
+        if path is None or not self.sky.aircraft[name].places:
+            return None
+        planned_s = self.begun_s + self.again_s + path.start_s + path.duration_s
+        return round(self.sky.aircraft[name].places[-1][0] - planned_s, 1)
 
     def judge(self) -> None:
         """Raise FlightError where two came too near, or one did not fly its mission to the end."""

@@ -15,7 +15,7 @@ from planner.check import judge
 from planner.check.edge import near_edge
 from planner.errors import Finding
 from planner.metrics import measure
-from planner.plan import LeftOut, Plan
+from planner.plan import LeftOut, Plan, Replanned
 from planner.profile.items import items_of, too_many
 from planner.progress import Progress, Stop, never, silent
 from planner.publish import Chart, assemble, fence, uncovered
@@ -177,6 +177,7 @@ def _judged(
             importance_total=verdict.importance_total,
             planning_time_s=dict(watch.seconds),
             left_out=left_out,
+            replan=None if scenario.going_on is None else Replanned(scenario.going_on.begins_in_s),
         ),
         warnings=draft.warnings + near,
         violations=verdict.violations,

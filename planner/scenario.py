@@ -19,7 +19,7 @@ from planner.route import Terminal
 from planner.sensors.base import Sensor
 from planner.sensors.suite import Suite
 from planner.vehicle.aircraft import Aircraft
-from planner.wishes import DEFAULT_SEPARATION, Importance, Method, Objective, Region, Separation
+from planner.wishes import DEFAULT_SEPARATION, GoingOn, Importance, Method, Objective, Region, Separation
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,6 +67,7 @@ class Scenario:
     bases: tuple[Terminal, ...] = ()
     separation: Separation | None = None
     importance: Importance = field(default_factory=Importance)
+    going_on: GoingOn | None = None
 
     def ends_of(self, aircraft: Aircraft) -> tuple[Terminal, Terminal]:
         """Where an aircraft starts, and where it ends."""

@@ -62,6 +62,19 @@ DEFAULT_SEPARATION = Separation(100.0, 30.0)
 
 
 @dataclass(frozen=True, slots=True)
+class GoingOn:
+    """What a plan takes the place of another for, while that is being flown.
+
+    Parameters
+    ----------
+    begins_in_s
+        From the call for it to its beginning, where aircraft in flight were then thought to be.
+    """
+
+    begins_in_s: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
 class Objective:
     """Weights of the cost terms: w1, w2, w3 of eq 25 (Li et al. 2018) and two more.
 

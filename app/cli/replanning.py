@@ -21,6 +21,15 @@ def replan(
             "until then is seen.",
         ),
     ] = None,
+    begins_in_s: Annotated[
+        float | None,
+        typer.Option(
+            min=0.0,
+            max=600.0,
+            help="Seconds from then until aircraft in flight fly the new plan; they fly on by the old one "
+            "meanwhile. Left out: as long as planning and upload take about.",
+        ),
+    ] = None,
     changes: Annotated[
         str | None,
         typer.Option(
@@ -59,6 +68,8 @@ def replan(
     asked: dict[str, Any] = {} if changes is None else dict(read_document(changes))
     if at_s is not None:
         asked["at_s"] = at_s
+    if begins_in_s is not None:
+        asked["begins_in_s"] = begins_in_s
     try:
         body = ReplanIn.model_validate(asked)
         flown = read_plan(read_document(plan))

@@ -9,6 +9,7 @@ from typing import Any
 from planner.geojson.equipment import METHODS
 from planner.geojson.features import LOWEST_M
 from planner.geojson.fields import MOST
+from planner.geojson.going_on import MOST_S as LATEST_S
 from planner.geojson.scenario_reader import MOST_SEED
 from planner.geojson.searching import LEAST_SPREAD_M, MOST_ELAPSED_S, MOST_SCORE, MOST_SPREAD_M
 from planner.wishes import HIGHEST_M
@@ -89,6 +90,19 @@ SCENARIO_SCHEMA: dict[str, Any] = {
             "properties": {
                 "horizontal_m": {"type": "number", "minimum": 0, "maximum": MOST, "default": 100},
                 "vertical_m": {"type": "number", "minimum": 0, "maximum": MOST, "default": 30},
+            },
+        },
+        "replan": {
+            "type": "object",
+            "description": "Of what is left of a plan being flown; POST /plans/{id}/replan writes it.",
+            "properties": {
+                "begins_in_s": {
+                    "type": "number",
+                    "minimum": 0,
+                    "maximum": LATEST_S,
+                    "default": 0,
+                    "description": "From the call to the plan's beginning, when in_flight is true.",
+                },
             },
         },
         "sensors": {"type": "array", "items": {"type": "object"}, "minItems": 1},

@@ -10,6 +10,7 @@ from app.schemas.base import Strict
 from app.services.plans.replanned import Changes
 from app.services.plans.replanning import Asked, Told
 from planner.geojson.equipment import HIGHEST_ALOFT_M
+from planner.geojson.going_on import MOST_S
 
 Degrees = Annotated[float, Field(ge=-180, le=180)]
 
@@ -65,6 +66,13 @@ class ReplanIn(Strict):
         default=[], description="Names of aircraft that fly no more."
     )
     wind: dict[str, Any] | None = Field(default=None, description="As in a scenario.")
+    begins_in_s: Annotated[float, Field(ge=0, le=MOST_S)] | None = Field(
+        default=None,
+        description="From now until aircraft in flight fly the new plan: planning, upload, order to begin. "
+        "It begins where their missions have them by then; passes that are over by then count as flown [2 s, "
+        "and 0.1 s for each item that their missions have about]. Scenario and metrics of the answer tell it "
+        "in `replan`.",
+    )
 
     def asked(self) -> Asked:
         """The value."""
@@ -74,4 +82,5 @@ class ReplanIn(Strict):
             {name: where.told() for name, where in self.vehicles.items()},
             self.seen,
             Changes(self.add, self.remove, self.lost, members),
+            self.begins_in_s,
         )

@@ -19,6 +19,8 @@ from planner.plan import FlownPath, PathSegment, PlanWind
 
 #: Circles that rise or fall by less are level.
 _LEVEL_M = 0.5
+#: Of one turn so much is counted; what is left of it is flown until the next place lies ahead.
+_COUNTED_OF_ONE = 0.75
 #: Courses over which the time of a circle in a wind is summed.
 _COURSES = 72
 
@@ -39,7 +41,10 @@ def hold_item(task: Task, turns: PathSegment) -> MissionItem:
         raise ValueError(f"the segment at {turns.start_m:g} m is no turn")
     item = circle_item(task, turns, Command.NAV_LOITER_UNLIM)
     if task.is_plane:
-        count = float(max(1, round(turns.turn_deg / 360.0)))
+        count = max(1.0, float(round(turns.turn_deg / 360.0)))
+        # Counted once it is on the circle: a whole turn may end past where the next place lies ahead, and is
+        # then followed by another. More than one turn is stored as a whole number.
+        count = _COUNTED_OF_ONE if count == 1.0 else count
         return replace(item, command=Command.NAV_LOITER_TURNS, param1=count, param4=1.0)
     above_sea_m = turns.end_altitude_m + (0.0 if task.frame == Frame.GLOBAL else task.options.home_altitude_m)
     speed_m_s = task.vehicle.airspeed_m_s * math.sqrt(widened(above_sea_m))

@@ -26,8 +26,8 @@ STEP_OF_KEPT, LEAST_STEP_M, MOST_STEP_M = 0.25, 5.0, 50.0
 MOST_STEP_S = 2.0
 #: Kept besides what is asked for: how well a place at a time is known.
 MARGIN_M, MARGIN_UP_M, MARGIN_S = 5.0, 1.0, 1.0
-#: Of the time flown, how much aircraft planned anew in the air may be early or late: ``docs/replan.md``.
-DRIFT = 0.02
+#: Rates that an autopilot is set to by those that its aircraft may need.
+RATES_SPARE = 1.1
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -38,13 +38,34 @@ class Track:
     ----------
     places
         float64, shape (N, 4): seconds, east_m, north_m, altitude_m.
+    early_s
+        float64, shape (N,): how much earlier each is reached where circles flown for height sink as fast as
+        the aircraft may, not as planned: autopilots leave them once they are down.
     """
 
     places: Floats
+    early_s: Floats
 
     def later(self, delay_s: float) -> Track:
         """The same flight begun later."""
-        return Track(self.places + np.array([delay_s, 0.0, 0.0, 0.0]))
+        return Track(self.places + np.array([delay_s, 0.0, 0.0, 0.0]), self.early_s)
+
+    def loose_s(self, drift: Drift) -> Floats:
+        """How early or late each place may be reached."""
+        return np.asarray(drift.part * self.places[:, 0] + (self.early_s if drift.sinking else 0.0))
+
+
+@dataclass(frozen=True, slots=True)
+class Drift:
+    """How early or late flights may be: a part of the time flown, and by sinking as fast as they may."""
+
+    part: float = 0.0
+    sinking: bool = False
+
+
+#: None; and, of aircraft planned anew in the air, the most that there is room for: ``docs/replan.md``.
+NO_DRIFT = Drift()
+DRIFTS = (Drift(0.02, sinking=True), Drift(0.02), NO_DRIFT)
 
 
 def step_m(separation: Separation) -> float:
@@ -58,7 +79,25 @@ def track_of(flight: Flight, model: FlightModel, apart_m: float) -> Track:
         _places(stretch, model, apart_m, flight.starts_s[k], flight.starts_s[k + 1])
         for k, stretch in enumerate(flight.stretches)
     ]
-    return Track(np.concatenate(rows))
+    steepest_m_s = (
+        RATES_SPARE
+        * (model.airspeed_m_s + model.wind.speed_m_s)
+        * math.tan(math.radians(model.aircraft.max_climb_deg))
+    )
+    early_s = [np.zeros(1)]
+    for stretch, places in zip(flight.stretches, rows, strict=True):
+        spent_s, sunk_m = places[:, 0] - places[0, 0], places[0, 3] - places[:, 3]
+        saved_s = (
+            np.maximum(spent_s - sunk_m / steepest_m_s, 0.0) if _goes_down(stretch) else np.zeros(len(places))
+        )
+        early_s.append(early_s[-1][-1] + saved_s)
+    return Track(np.concatenate(rows), np.concatenate(early_s[1:]))
+
+
+def _goes_down(stretch: Stretch) -> bool:
+    """Whether it is a circle, or more, flown for height."""
+    falls = stretch.end_altitude_m < stretch.start_altitude_m
+    return falls and stretch.segment is not None and abs(stretch.segment.turn_rad) >= math.tau - 1e-6
 
 
 def _places(stretch: Stretch, model: FlightModel, apart_m: float, from_s: float, until_s: float) -> Floats:
@@ -100,10 +139,10 @@ class Apart:
     Parameters
     ----------
     drift
-        Of the time flown by then, how much they may be early or late.
+        How early or late they may be.
     """
 
-    def __init__(self, separation: Separation, drift: float = 0.0) -> None:
+    def __init__(self, separation: Separation, drift: Drift = NO_DRIFT) -> None:
         self._separation, self._drift = separation, drift
         self._tracks: list[Track] = []
         self._known: dict[tuple[int, int], Floats] = {}
@@ -133,7 +172,7 @@ class Apart:
         return self._known[one, other]
 
 
-def _barred(track: Track, moving: Track, separation: Separation, drift: float) -> Floats:
+def _barred(track: Track, moving: Track, separation: Separation, drift: Drift) -> Floats:
     """Delays ruled out by one flight, (K, 2): from and until, those that overlap taken together."""
     if separation.horizontal_m <= 0.0 or separation.vertical_m <= 0.0:
         return np.empty((0, 2))
@@ -150,9 +189,9 @@ def _barred(track: Track, moving: Track, separation: Separation, drift: float) -
     rise_m = max(_steepest_m(one), _steepest_m(other))
     beside = np.abs(one[rows, 3] - other[columns, 3]) < separation.vertical_m + rise_m + MARGIN_UP_M
     delays_s = one[rows[beside], 0] - other[columns[beside], 0]
-    flown_s = np.maximum(one[rows[beside], 0], other[columns[beside], 0])
+    loose_s = np.maximum(track.loose_s(drift)[rows[beside]], moving.loose_s(drift)[columns[beside]])
     # Between two places looked at the aircraft takes this long at most.
-    apart_s = _slowest_s(one) + _slowest_s(other) + MARGIN_S + drift * flown_s
+    apart_s = _slowest_s(one) + _slowest_s(other) + MARGIN_S + loose_s
     return _together(delays_s - apart_s, delays_s + apart_s)
 
 

@@ -22,6 +22,7 @@ from planner.plan import (
     PlanCamera,
     PlanVehicle,
     PlanWind,
+    Replanned,
     Surveyed,
     Transit,
     Uncovered,
@@ -217,7 +218,14 @@ def _metrics(p: Mapping[str, Any]) -> Metrics:
     left_out = tuple(LeftOut(**each) for each in p.get("left_out", ()))
     vehicles = {name: VehicleMetrics(**each) for name, each in p.get("vehicles", {}).items()}
     told = None if p.get("assignment") is None else Assigned(**p["assignment"])
-    read = {"left_out": left_out, "surveys": surveys, "vehicles": vehicles, "assignment": told}
+    replan = None if p.get("replan") is None else Replanned(**p["replan"])
+    read = {
+        "left_out": left_out,
+        "surveys": surveys,
+        "vehicles": vehicles,
+        "assignment": told,
+        "replan": replan,
+    }
     return Metrics(**{**p, **read})
 
 

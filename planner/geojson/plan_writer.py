@@ -133,10 +133,12 @@ def _vehicle(vehicle: PlanVehicle) -> dict[str, Any]:
 
 
 def _metrics(metrics: Metrics) -> dict[str, Any]:
-    """What only several flights have is left out of one."""
+    """What only several flights have, or one made in flight, is left out of others."""
     written = asdict(metrics)
     if not metrics.vehicles:
         del written["vehicles"], written["last_landing_s"], written["assignment"]
+    if metrics.replan is None:
+        del written["replan"]
     return written
 
 

@@ -17,6 +17,7 @@ from planner.geojson.extent import check_bbox, frame_of, within
 from planner.geojson.far import near_features
 from planner.geojson.fields import Fields, Findings
 from planner.geojson.fleet import check_fleet, read_separation, start_of
+from planner.geojson.going_on import read_going_on
 from planner.geojson.heights import Heights, at_chosen_heights, tell_unused, with_wishes
 from planner.geojson.home import home_amsl_m, kept_clear
 from planner.geojson.plausible import check_plausible
@@ -45,6 +46,7 @@ MEMBERS = (
     "type", "features", "name", "bbox", "crs", "vehicles", "sensors", "altitude_m", "min_height_m",
     "max_height_m", "altitude_reference", "terrain", "terrain_following", "wind", "clearance_m", "objective",
     "task", "method", "seed", "time_budget_s", "separation", "importance_raster", "search",
+    "replan",
 )  # fmt: skip
 
 CRS84 = (
@@ -191,6 +193,7 @@ def _read(document: Any, findings: Findings, terrains: Terrains | None) -> Scena
     separation = read_separation(document.get("separation"), findings)
     if len(aircraft) == 1 and separation is not None:
         findings.warning("separation", "not-used", "is kept between aircraft, and there is one", "Remove it.")
+    going_on = read_going_on(document.get("replan"), findings)
     start = start_of(starts, bases, aircraft, raws, findings)
     if findings.errors or start is None or clearance_m is None:
         return None
@@ -222,6 +225,7 @@ def _read(document: Any, findings: Findings, terrains: Terrains | None) -> Scena
         max_height_m=heights.max_m,
         bases=tuple(bases) if len(aircraft) > 1 or any(one.end_bases for one in aircraft if one) else (),
         separation=separation if len(aircraft) > 1 else None,
+        going_on=going_on,
     )
     check_fleet(scenario, bases, document.get("objective"), findings)
     if task == "search":

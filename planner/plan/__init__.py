@@ -7,7 +7,7 @@ are plain numbers and tuples. Distances along a path (``start_m`` …) count fro
 from planner.plan.aboard import PlanCamera, PlanVehicle, PlanWind
 from planner.plan.fence import Fence, ZoneCircle, ZonePolygon
 from planner.plan.flown import Collect, FlownPath, PathSegment, Phase, Transit
-from planner.plan.metrics import Assigned, LeftOut, Metrics, VehicleMetrics, Violation
+from planner.plan.metrics import Assigned, LeftOut, Metrics, Replanned, VehicleMetrics, Violation
 from planner.plan.seen import Footprint, Photos, Surveyed, Uncovered
 from planner.plan.whole import Plan
 from planner.plan.words import (
@@ -41,6 +41,7 @@ __all__ = [
     "PlanCamera",
     "PlanVehicle",
     "PlanWind",
+    "Replanned",
     "Ring",
     "SegmentKind",
     "Surveyed",

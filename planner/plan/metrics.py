@@ -96,6 +96,19 @@ class Assigned:
 
 
 @dataclass(frozen=True, slots=True)
+class Replanned:
+    """What a plan made in flight is to the one before it.
+
+    Parameters
+    ----------
+    begins_in_s
+        From the call for it to its beginning: aircraft in flight have flown on by the old one until then.
+    """
+
+    begins_in_s: float
+
+
+@dataclass(frozen=True, slots=True)
 class Metrics:
     """What the plan costs and gives.
 
@@ -111,7 +124,7 @@ class Metrics:
     ``photos`` counts those of all cameras, ``photos_mb`` is about what they take to be stored; None where
     there are none on board. ``surveys`` tells by region what they give. Of several aircraft or sorties all
     are sums; ``vehicles`` tells of each aircraft, ``last_landing_s`` when the last is down, ``assignment``
-    how good it is; empty and None for one flight.
+    how good it is; empty and None for one flight. ``replan`` tells of a plan made in flight; else None.
     """
 
     length_m: float
@@ -142,3 +155,4 @@ class Metrics:
     vehicles: dict[str, VehicleMetrics] = field(default_factory=dict)
     last_landing_s: float | None = None
     assignment: Assigned | None = None
+    replan: Replanned | None = None

@@ -39,7 +39,7 @@ async def test_what_the_plan_has_seen_is_left_out_and_the_flight_goes_on_from_th
     gone = others[-1]["properties"]["roi"]
     new["id"] = "new"
     new["properties"].pop("name", None)
-    body = {"at_s": at_s, "remove": [gone], "add": [new]}
+    body = {"at_s": at_s, "remove": [gone], "add": [new], "begins_in_s": 0.0}
     answer = await client.post(f"/api/v1/plans/{record['id']}/replan", json=body, params={"wait": 60})
     assert (answer.status_code, answer.json().get("state")) == (202, "done"), answer.text
     again = (await client.get(answer.json()["links"]["plan.geojson"])).json()

@@ -37,7 +37,7 @@ def flown(folder: Path) -> three.Together:
     told = json.loads((three._example(f"{three.NAME}-changes.json")).read_text())
     scenario = read_scenario(document)
     changes = Changes(told["add"], told["remove"])
-    return three.flight(document, scenario, make_plan(scenario), changes, 300.0, 1.0, folder)
+    return three.flight(document, scenario, make_plan(scenario), changes, 300.0, 2.0, folder)
 
 
 def test_all_fly_on_by_the_new_plan_see_what_is_left_and_land(flown: three.Together) -> None:

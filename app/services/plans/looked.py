@@ -64,20 +64,21 @@ def planned_looks(scenario: Scenario, plan: Plan, at_s: float) -> list[Looked]:
         shape = footprint_of(scenario, plan, collect)
         begin, end = scenario.frame.to_local([place[:2] for place in (collect.line[0], collect.line[-1])])
         part = min((at_s - collect.start_s) / max(collect.end_s - collect.start_s, 1e-9), 1.0)
-        ground = _beginning(shape, end - begin, part)
+        ground = beginning(shape, end - begin, part)
         if not ground.is_empty:
             until_s = min(collect.end_s, at_s)
-            found.append(Looked(ground, collect.start_s, until_s, _heading_deg(scenario, collect)))
+            found.append(Looked(ground, collect.start_s, until_s, heading_deg(scenario, collect)))
     return found
 
 
-def _heading_deg(scenario: Scenario, collect: Collect) -> float:
+def heading_deg(scenario: Scenario, collect: Collect) -> float:
+    """In which direction it is flown."""
     begin, end = scenario.frame.to_local([place[:2] for place in (collect.line[0], collect.line[-1])])
     angle_rad = float(np.arctan2(*(end - begin)[::-1]))
     return scenario.frame.true_heading_deg(float(begin[0]), float(begin[1]), angle_rad)
 
 
-def _beginning(shape: BaseGeometry, way: NDArray[np.float64], part: float) -> BaseGeometry:
+def beginning(shape: BaseGeometry, way: NDArray[np.float64], part: float) -> BaseGeometry:
     """So much of ground along a way, from its rear on."""
     if part >= 1.0 or shape.is_empty:
         return shape

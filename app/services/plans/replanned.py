@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import copy
-import itertools
-import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -15,6 +13,7 @@ from shapely.geometry.base import BaseGeometry
 
 from app.services.errors import ConflictError, RefusedError
 from app.services.flights.as_flown import SLIVER_M, SLIVER_M2
+from app.services.plans.along import Now
 from app.services.plans.looked import Looked, footprint_of, searched_on
 from planner.errors import Finding
 from planner.geojson.geometry import areal, written
@@ -30,22 +29,6 @@ WHOLE = 0.999
 OF_THE_WHOLE = frozenset({"width_m", "radius_m"})
 #: Of energy that a reserve is part of, at least; less is none to fly on.
 LEAST_WH = 1e-6
-
-
-@dataclass(frozen=True, slots=True)
-class Now:
-    """Where an aircraft is, and what it has used: degrees, metres over home, course from true north.
-
-    ``energy_left_wh`` is what its battery holds; None where that is not known.
-    """
-
-    lon_deg: float
-    lat_deg: float
-    height_m: float
-    heading_deg: float | None
-    flown_m: float = 0.0
-    flown_s: float = 0.0
-    energy_left_wh: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,56 +65,6 @@ def seen_by_plan(scenario: Scenario, plan: Plan, at_s: float) -> dict[str, BaseG
     return {name: union_all(shapes) for name, shapes in done.items()}
 
 
-def where_planned(scenario: Scenario, plan: Plan, at_s: float) -> dict[str, Now]:
-    """Where a plan has its aircraft at a time of its own; those on the ground then are left out."""
-    found: dict[str, Now] = {}
-    home_m = scenario.level.altitude_m - scenario.level.height_m
-    for path in plan.paths:
-        if not path.start_s < at_s < path.start_s + path.duration_s:
-            continue
-        own = plan.of(path.vehicle, path.sortie)
-        marks = {(phase.start_s, phase.start_m) for phase in own.paths[0].phases}
-        marks |= {(collect.start_s, collect.start_m) for collect in own.collects}
-        knots = sorted(marks | {(path.duration_s, path.length_m)})
-        since_s = at_s - path.start_s
-        (s0, m0), (s1, m1) = next(
-            (a, b) for a, b in itertools.pairwise(knots) if a[0] <= since_s <= b[0] and b[0] > a[0]
-        )
-        along_m = m0 + (m1 - m0) * (since_s - s0) / (s1 - s0)
-        lon_deg, lat_deg, altitude_m, heading_deg = _on(scenario, path.line, along_m)
-        left_wh = None
-        share = since_s / path.duration_s
-        aircraft = next(a for a in scenario.aircraft if a.name == path.vehicle)
-        if aircraft.energy_wh is not None and path.energy_wh is not None:
-            left_wh = aircraft.energy_wh - share * path.energy_wh
-        height_m = altitude_m - home_m
-        if height_m <= 0.0:
-            continue
-        found[path.vehicle] = Now(lon_deg, lat_deg, height_m, heading_deg, along_m, since_s, left_wh)
-    return found
-
-
-def _on(
-    scenario: Scenario, line: Sequence[tuple[float, float, float]], along_m: float
-) -> tuple[float, float, float, float]:
-    """A place of a line by the distance along it, in three dimensions, and the course there."""
-    places = scenario.frame.to_local([place[:2] for place in line])
-    reached_m = 0.0
-    for k in range(len(line) - 1):
-        east_m, north_m = (places[k + 1] - places[k]).tolist()
-        step_m = math.hypot(east_m, north_m, line[k + 1][2] - line[k][2])
-        if reached_m + step_m >= along_m or k == len(line) - 2:
-            part = min(max((along_m - reached_m) / step_m, 0.0), 1.0) if step_m > 0.0 else 0.0
-            here = places[k] + part * (places[k + 1] - places[k])
-            lon_deg, lat_deg = (float(value) for value in scenario.frame.to_wgs84(here))
-            course_deg = scenario.frame.true_heading_deg(
-                float(here[0]), float(here[1]), math.atan2(north_m, east_m)
-            )
-            return lon_deg, lat_deg, line[k][2] + part * (line[k + 1][2] - line[k][2]), course_deg
-        reached_m += step_m
-    raise ValueError("a line has two places")
-
-
 def replanned(
     document: Mapping[str, Any],
     scenario: Scenario,
@@ -140,6 +73,7 @@ def replanned(
     at_s: float,
     changes: Changes,
     looks: Sequence[Looked] = (),
+    begins_in_s: float = 0.0,
 ) -> dict[str, Any]:
     """The scenario that is left.
 
@@ -155,6 +89,8 @@ def replanned(
         Seconds since the mission's start: windows count from now on.
     looks
         What a search has looked at; its regions stay as they are.
+    begins_in_s
+        How long after the call that is; where aircraft are, and what has been seen, is told for then.
 
     Raises
     ------
@@ -167,6 +103,7 @@ def replanned(
     made = copy.deepcopy(dict(document))
     made["name"] = f"{document.get('name') or 'flight'}-replan"
     made.update(copy.deepcopy(dict(changes.members)))
+    made["replan"] = {"begins_in_s": begins_in_s}
     coming = {_name(feature): feature for feature in changes.features}
     features: list[dict[str, Any]] = []
     for feature in made["features"]:

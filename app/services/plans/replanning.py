@@ -15,9 +15,10 @@ from shapely.geometry.base import BaseGeometry
 from app.services.documents import read_object
 from app.services.errors import ConflictError, RefusedError
 from app.services.flights.seen import Sortie, judged
-from app.services.plans.looked import Looked, flown_looks, planned_looks
+from app.services.plans.along import Now, Soon, ahead, allowance_s, where_planned
+from app.services.plans.looked import Looked, flown_looks, footprint_of, heading_deg, planned_looks
 from app.services.plans.missions import plan_of
-from app.services.plans.replanned import Changes, Now, replanned, seen_by_plan, where_planned
+from app.services.plans.replanned import Changes, replanned, seen_by_plan
 from app.services.records import FlightRecord, TrackSample
 from planner.errors import Finding
 from planner.geojson import read_scenario
@@ -57,12 +58,16 @@ class Asked:
         By name.
     seen
         GeoJSON areas that have been seen, of any region; None to take them from records, or from the plan.
+    begins_in_s
+        When, from now on, aircraft in flight take up the new plan: until then they fly on by the old one.
+        None for as long as planning it and sending it up takes about; ``along.allowance_s``.
     """
 
     at_s: float | None
     vehicles: Mapping[str, Told]
     seen: Sequence[Mapping[str, Any]] | None
     changes: Changes
+    begins_in_s: float | None = None
 
 
 def replan_of(sortie: Sortie, asked: Asked) -> dict[str, Any]:
@@ -117,10 +122,18 @@ def left_of(
             " which time of the plan (at_s)"
         )
     at_s = asked.at_s if asked.at_s is not None else max((n.flown_s for n in now.values()), default=0.0)
+    begins_in_s = asked.begins_in_s
+    if begins_in_s is None:
+        begins_in_s = allowance_s(plan, list(now))
+    now, soon = _ahead(scenario, plan, now, begins_in_s)
     as_flown = sortie if flying or (flights and asked.at_s is None) else None
     if scenario.task == "search":
         looks = _looks(scenario, plan, asked, as_flown, at_s)
-        return replanned(document, scenario, now, {}, at_s, asked.changes, looks)
+        looks += [
+            Looked(s.ground, at_s + s.in_s, at_s + s.until_s, heading_deg(scenario, s.collect)) for s in soon
+        ]
+        begins_s = at_s + begins_in_s
+        return replanned(document, scenario, now, {}, begins_s, asked.changes, looks, begins_in_s)
     if asked.seen is not None:
         ground = union_all([_area(shape, scenario, k) for k, shape in enumerate(asked.seen)])
         seen: Mapping[str, BaseGeometry] = {region.name: ground for region in scenario.regions}
@@ -128,7 +141,34 @@ def left_of(
         seen = judged(as_flown, scenario, plan).seen
     else:
         seen = seen_by_plan(scenario, plan, at_s)
-    return replanned(document, scenario, now, seen, at_s, asked.changes)
+        # What is being seen then is seen from its beginning.
+        soon = [replace(s, ground=footprint_of(scenario, plan, s.collect)) for s in soon]
+    seen = _and_soon(seen, soon)
+    return replanned(
+        document, scenario, now, seen, at_s + begins_in_s, asked.changes, begins_in_s=begins_in_s
+    )
+
+
+def _ahead(
+    scenario: Scenario, plan: Plan, now: Mapping[str, Now], by_s: float
+) -> tuple[dict[str, Now], list[Soon]]:
+    """Where aircraft are so much later, and what they see until then; those on no line of the plan stay."""
+    found: dict[str, Now] = {}
+    soon: list[Soon] = []
+    for name, place in now.items():
+        later = ahead(scenario, plan, name, place, by_s) if by_s > 0.0 else None
+        found[name] = place if later is None else later[0]
+        soon += [] if later is None else later[1]
+    return found, soon
+
+
+def _and_soon(seen: Mapping[str, BaseGeometry], soon: Sequence[Soon]) -> dict[str, BaseGeometry]:
+    """What has been seen of regions by then: of passes those alone that are over."""
+    found: dict[str, list[BaseGeometry]] = {name: [ground] for name, ground in seen.items()}
+    for each in soon:
+        for name in each.collect.regions if each.whole else ():
+            found.setdefault(name, []).append(each.ground)
+    return {name: union_all(grounds) for name, grounds in found.items()}
 
 
 def _looks(

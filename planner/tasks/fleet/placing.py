@@ -11,7 +11,7 @@ import numpy as np
 
 from planner.errors import InfeasibleError
 from planner.fleet.assignment import Trip
-from planner.fleet.separation import DRIFT, Apart, Track, step_m, track_of
+from planner.fleet.separation import DRIFTS, NO_DRIFT, Apart, Track, step_m, track_of
 from planner.route import Terminal
 from planner.tasks.fleet.aloft import held_apart, home_apart
 from planner.tasks.fleet.crews import Crew
@@ -157,11 +157,11 @@ def placed(
     aircraft = [crews[each.trip.member].aircraft for each in _in_the_air_first(crews, errands)]
     best = None
     # Those in the air cannot be put off once more: each may be early or late, where there is room for that.
-    for drift in (DRIFT, 0.0) if aircraft[0].aloft is not None else (0.0,):
+    for drift in DRIFTS if aircraft[0].aloft is not None else (NO_DRIFT,):
         try:
             best = _placed(crews, errands, separation, controls, seed, Apart(separation, drift))
         except (InfeasibleError, LateError):
-            if drift == 0.0:
+            if drift == NO_DRIFT:
                 raise
         if best is not None:
             return tuple(sorted(best.sorties, key=lambda each: (each.flown.crew, each.number)))

@@ -20,7 +20,8 @@ def line(
     length_m = float(np.hypot(end[0] - start[0], end[1] - start[1]))
     parts = np.linspace(0.0, 1.0, int(length_m / 10.0) + 1)
     places = np.array(start) + parts[:, None] * (np.array(end) - np.array(start))
-    return Track(np.column_stack([from_s + parts * length_m / 20.0, places, np.full(len(parts), altitude_m)]))
+    rows = np.column_stack([from_s + parts * length_m / 20.0, places, np.full(len(parts), altitude_m)])
+    return Track(rows, np.zeros(len(parts)))
 
 
 def least_m(one: Track, other: Track) -> float:

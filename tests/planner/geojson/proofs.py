@@ -245,6 +245,7 @@ PROOFS: dict[tuple[str, str], tuple[Document, Document]] = {
         member("task", "search"), small(task="search", importance_raster="elsewhere"),
     ),
     ("scenario", "seed"): (small(), member("seed", 5)),
+    ("replan", "begins_in_s"): (small(), member("replan", {"begins_in_s": 5.0})),
     ("scenario", "time_budget_s"): (many(1e9), many(1e-3)),
 }  # fmt: skip
 ROLES = ("roi", "threat", "no_fly", "obstacle", "end", "importance", "base", "start", "area")

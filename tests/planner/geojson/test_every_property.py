@@ -71,7 +71,17 @@ def _outcome(text: str) -> str:
 #: Members that hold the others, and what says which reader reads a feature.
 STRUCTURE = {
     ("scenario", name)
-    for name in ("type", "features", "vehicles", "sensors", "wind", "objective", "method", "separation")
+    for name in (
+        "type",
+        "features",
+        "vehicles",
+        "sensors",
+        "wind",
+        "objective",
+        "method",
+        "separation",
+        "replan",
+    )
 }
 
 

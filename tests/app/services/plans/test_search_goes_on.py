@@ -54,7 +54,7 @@ def asked(kind: str) -> tuple[dict[str, Any], Scenario, Plan]:
 def left(kind: str, **told: Any) -> dict[str, Any]:
     """What is left of it."""
     made, scenario, plan = asked(kind)
-    return left_of(made, scenario, plan, ReplanIn.model_validate(told).asked())
+    return left_of(made, scenario, plan, ReplanIn.model_validate({"begins_in_s": 0.0} | told).asked())
 
 
 def prints(scenario: Scenario, plan: Plan, until_s: float) -> list[Polygon]:
@@ -177,7 +177,7 @@ def test_what_drifts_is_looked_for_where_no_look_has_come_by() -> None:
     whole = searched(scenario, plan)
     assert old.importance + new.metrics.importance_collected > 0.95 * whole.importance
     # A second time on, looks of the first flight are longer ago.
-    later = left_of(on, again, new, ReplanIn.model_validate({"at_s": 10.0}).asked())
+    later = left_of(on, again, new, ReplanIn.model_validate({"at_s": 10.0, "begins_in_s": 0.0}).asked())
     assert later["search"]["seen"][0]["properties"]["ago_s"][0] == pytest.approx(
         on["search"]["seen"][0]["properties"]["ago_s"][0] + 10.0
     )
