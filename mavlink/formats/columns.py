@@ -8,6 +8,7 @@ say the same number, which the wire holds whole. What the integers cannot hold i
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import replace
 
 from mavlink.dialects.base import GLOBAL_FRAMES
@@ -82,6 +83,17 @@ def in_file(item: MissionItem) -> tuple[float, float]:
     if item.frame not in GLOBAL_FRAMES:
         return item.x, item.y
     return item.x / 1e7, item.y / 1e7
+
+
+def first_place(items: Iterable[MissionItem]) -> tuple[float, float] | None:
+    """Latitude and longitude of the first item that is somewhere; other numbers are passed over."""
+    for item in items:
+        if item.frame not in GLOBAL_FRAMES or item.command in NUMBERS_FOR_PLACE:
+            continue
+        place = in_file(item)
+        if all(map(math.isfinite, place)) and any(place) and lat_lon_problem(*place) is None:
+            return place
+    return None
 
 
 def placed_exactly(

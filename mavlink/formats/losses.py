@@ -73,6 +73,12 @@ def _in_waypoints(mission: Mission, notes: Notes) -> None:
     for kind in (MissionType.FENCE, MissionType.RALLY):
         if kind is not held and mission.items_of(kind):
             notes.add(f"the {_NAMES[kind]} has no place in a .waypoints file")
+    if held is not MissionType.MISSION and mission.dialect.home_row and mission.mission:
+        home = mission.mission[0]
+        if _parameters(home) != (0.0, 0.0, 0.0, 0.0) or not home.autocontinue or home.frame not in _AMSL:
+            notes.add(
+                "of home its place and height above the sea alone have a place beside a fence or rally points"
+            )
     told = mission.declared
     if told is not None and (told.mav_type, told.cruise_speed_m_s, told.hover_speed_m_s) != (
         None,
@@ -102,9 +108,15 @@ def _in_plan(mission: Mission, notes: Notes) -> None:
             notes.add(f"home's altitude in frame {home.frame} has no place in a .plan", "item", 0)
         if _parameters(home) != (0.0, 0.0, 0.0, 0.0):
             notes.add("home's parameters have no place in a .plan", "item", 0)
+    for name, items in (("fence", mission.fence), ("rally", mission.rally)):
+        for item in items:
+            if not item.autocontinue:
+                notes.add(f"autocontinue 0 has no place in a .plan's {name}", f"{name} item", item.seq)
     for item in mission.fence:
         first, *others = _parameters(item)
         alone = item.command == Command.NAV_FENCE_RETURN_POINT
+        if alone and item.seq < len(mission.fence) - 1:
+            notes.add("the place to return to stands behind the fence in a .plan", "fence item", item.seq)
         if any(others) or (alone and first):
             notes.add("further parameters of a fence have no place in a .plan", "fence item", item.seq)
         if item.z and not alone:

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, Final
 
 from mavlink.formats.errors import FormatError
 from mavlink.formats.places import lat_lon_problem
 from mavlink.wire.items import degrees_e7
+
+#: What a number of 32 bits holds at most.
+LARGEST: Final = 3.4028234e38
 
 
 def place_of(lat_deg: float, lon_deg: float, name: str) -> tuple[float, float]:
@@ -45,9 +48,12 @@ def number_of(value: Any, name: str) -> float:
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         raise FormatError(f"{name} is {value!r}, a number is meant")
     try:
-        return float(value)
+        number = float(value)
     except OverflowError:
-        raise FormatError(f"{name} is too large") from None
+        number = math.inf
+    if abs(number) > LARGEST:
+        raise FormatError(f"{name} is too large: vehicles hold numbers up to {LARGEST:.2g}")
+    return number
 
 
 def integer_of(value: Any, name: str) -> int:

@@ -17,7 +17,7 @@ from mavlink.dialects.mission import Mission, declared_by, home_item, numbered
 from mavlink.formats.columns import in_file, placed_exactly
 from mavlink.formats.errors import FormatError
 from mavlink.formats.notes import Notes
-from mavlink.formats.wpl_rows import lines_of
+from mavlink.formats.wpl_rows import lines_of, plain_number
 from mavlink.wire.items import Command, Frame, MissionItem, MissionType
 
 _PAIR = re.compile(r"[-+0-9.]+\s+[-+0-9.]+\s*(#.*)?")
@@ -117,7 +117,7 @@ def _numbers(words: list[str], count: int, number: int) -> tuple[float, ...]:
     if len(words) != count:
         raise FormatError(f"{count} numbers are meant, here are {len(words)}", number)
     try:
-        values = tuple(float(word) for word in words)
+        values = tuple(plain_number(word) for word in words)
     except ValueError as error:
         raise FormatError(f"{' '.join(words)[:40]!r} are no numbers", number) from error
     if not all(math.isfinite(value) for value in values):

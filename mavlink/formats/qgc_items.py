@@ -14,6 +14,7 @@ from mavlink.formats.notes import Notes
 from mavlink.formats.places import check_place
 from mavlink.formats.qgc_complex import expand
 from mavlink.formats.qgc_old import as_simple_item
+from mavlink.formats.qgc_unread import tell_item
 from mavlink.wire.items import Command, MissionItem
 
 _SIMPLE = "SimpleItem"
@@ -59,6 +60,7 @@ def read_items(mission: dict[str, Any], autopilot: Autopilot, notes: Notes) -> t
                 notes.add(f"{name}.doJumpId {jump_id} stands twice: items are numbered anew")
             numbers.simple.setdefault(jump_id, len(items) + first_seq)
         item = _item(name, entry, notes)
+        tell_item(entry, item, len(items) + first_seq, notes)
         if item.command == Command.DO_JUMP:
             jumps.append((len(items), name))
         items.append(item)
@@ -98,6 +100,8 @@ def _item(name: str, told: dict[str, Any], notes: Notes) -> MissionItem:
     if not 0 <= command <= 65535:
         raise FormatError(f"{name}.command {command} is none")
     frame = integer_of(entry.get("frame"), f"{name}.frame")
+    if not 0 <= frame <= 255:
+        raise FormatError(f"{name}.frame {frame} is none")
     values = _params(entry.get("params"), f"{name}.params", notes)
     first, second = values[4:6]
     if not (math.isnan(first) or math.isnan(second)):

@@ -65,7 +65,7 @@ def write_plan(mission: Mission) -> str:
     try:
         return json.dumps(document, indent=4, allow_nan=False) + "\n"
     except ValueError as error:
-        raise FormatError(f"JSON has no infinite numbers: {error}") from error
+        raise FormatError(f"a .plan has no infinite numbers, and none that are open here: {error}") from error
 
 
 def _vehicle(mission: Mission) -> dict[str, Any]:

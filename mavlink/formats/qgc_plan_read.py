@@ -8,15 +8,15 @@ from dataclasses import replace
 from typing import Any
 
 from mavlink.dialects import Autopilot, VehicleType
-from mavlink.dialects.base import GLOBAL_FRAMES
 from mavlink.dialects.mission import Declared, Mission, declared_by, home_item, numbered
-from mavlink.formats.columns import from_file, in_file
+from mavlink.formats.columns import first_place, from_file, in_file
 from mavlink.formats.errors import FormatError
 from mavlink.formats.members import integer_of, list_of, number_of, numbers_of, object_of, place_of
 from mavlink.formats.notes import Notes
 from mavlink.formats.qgc_fence import read_fence, read_rally
 from mavlink.formats.qgc_items import read_items
 from mavlink.formats.qgc_old import as_plan
+from mavlink.formats.qgc_unread import members_of, tell_unknown
 from mavlink.wire.items import MissionItem, MissionType
 
 _AUTOPILOTS: dict[int, Autopilot] = {3: "ardupilot", 12: "px4"}
@@ -49,6 +49,7 @@ def read_plan(
     """
     notes = Notes()
     root = as_plan(object_of(_document(text), "the file"), notes)
+    tell_unknown(root, notes)
     mission = object_of(root.get("mission"), "mission")
     declared = _declared(mission)
     named = _AUTOPILOTS.get(declared.firmware_type or _GENERIC)
@@ -84,11 +85,13 @@ def read_plan(
 
 def _document(text: str) -> Any:
     try:
-        return json.loads(text.removeprefix("\ufeff"))
+        return json.loads(text.removeprefix("\ufeff"), object_pairs_hook=members_of)
     except json.JSONDecodeError as error:
         raise FormatError(f"no JSON: {error.msg}", error.lineno) from error
     except RecursionError as error:
         raise FormatError("no plan: nested too deeply") from error
+    except FormatError:
+        raise
     except ValueError as error:
         raise FormatError("no plan: a number has too many digits") from error
 
@@ -145,11 +148,10 @@ def _home(mission: dict[str, Any], items: tuple[MissionItem, ...], notes: Notes)
         told = [*told, None]
     lat_deg, lon_deg, altitude_m = (math.nan,) * 3 if told is None else numbers_of(told, 3, name)
     if math.isnan(lat_deg) and math.isnan(lon_deg):
-        found = (in_file(item) for item in items if item.frame in GLOBAL_FRAMES)
-        places = [place for place in found if all(map(math.isfinite, place)) and any(place)]
-        where = "at the first place of the mission" if places else "not known"
+        place = first_place(items)
+        where = "not known" if place is None else "at the first place of the mission"
         notes.add(f"{name} is not told: home is {where}, its height is not known")
-        lat_deg, lon_deg = places[0] if places else (0.0, 0.0)
+        lat_deg, lon_deg = place or (0.0, 0.0)
         altitude_m = 0.0
     elif math.isnan(altitude_m):
         notes.add(f"{name} has no altitude: 0 is taken")

@@ -15,9 +15,10 @@ from dataclasses import dataclass, replace
 from mavlink.dialects import Autopilot, VehicleType
 from mavlink.dialects.base import CIRCLE_COMMANDS, GLOBAL_FRAMES, fence_shapes, is_polygon
 from mavlink.dialects.mission import Mission, declared_by, home_item, numbered
-from mavlink.formats.columns import for_file, in_file
+from mavlink.formats.columns import first_place, for_file, in_file
 from mavlink.formats.errors import FormatError
 from mavlink.formats.notes import Notes
+from mavlink.formats.places import check_place
 from mavlink.formats.wpl_rows import HEADER, HOMELESS, OLDEST, STRICT, Row, read_rows
 from mavlink.wire.items import Command, Frame, MissionItem, MissionType
 
@@ -89,7 +90,12 @@ def read_waypoints(
                 "the mark of the current item is left out: a mission begins with its first", "line", row.line
             )
     if home is None:
-        home = _assumed_home(rows, notes)
+        home = _assumed_home(rows, "there is no home row", notes)
+    elif not all(map(math.isfinite, in_file(home))):
+        home = _assumed_home(rows[1:], "the home row has no place", notes)
+    elif not math.isfinite(home.z):
+        notes.add("home has no altitude: 0 is taken")
+        home = replace(home, z=0.0)
     items = list(_mission(lists.mission, _Shift(rows, lists, autopilot, rows_ahead), notes))
     if autopilot == "ardupilot":
         items = [home, *items]
@@ -127,7 +133,10 @@ def _home(version: str, rows: list[Row], notes: Notes) -> tuple[MissionItem | No
     if not rows or version in (OLDEST, HOMELESS):
         return None, 0
     item, line = rows[0].item, rows[0].line
-    if item.command == _NO_COMMAND:
+    if item.command == _NO_COMMAND and item.frame in GLOBAL_FRAMES:
+        problem = check_place(Command.NAV_WAYPOINT, item.frame, *in_file(item))
+        if problem and all(map(math.isfinite, in_file(item))):
+            raise FormatError(problem, line, problem.split()[0])
         notes.add("home has command 0, 16 is meant", "line", line)
         return replace(item, command=int(Command.NAV_WAYPOINT)), 1
     if item.command != Command.NAV_WAYPOINT or item.frame not in GLOBAL_FRAMES:
@@ -141,14 +150,13 @@ def _home(version: str, rows: list[Row], notes: Notes) -> tuple[MissionItem | No
     return item, 1
 
 
-def _assumed_home(rows: list[Row], notes: Notes) -> MissionItem:
-    """Home at the first place of a file without a home row."""
-    places = (in_file(row.item) for row in rows if row.item.frame in GLOBAL_FRAMES)
-    found = next((place for place in places if all(map(math.isfinite, place)) and any(place)), None)
+def _assumed_home(rows: list[Row], why: str, notes: Notes) -> MissionItem:
+    """Home at the first place of a file that does not say where it is."""
+    found = first_place(row.item for row in rows)
     if found is None:
-        notes.add("there is no home row, and no item has a place: home is not known")
+        notes.add(f"{why}, and no item has a place: home is not known")
         return home_item((0.0, 0.0), 0.0)
-    notes.add("there is no home row: home is taken to be at the first place, its height is not known")
+    notes.add(f"{why}: home is taken to be at the first place, its height is not known")
     lat_deg, lon_deg = found
     return home_item((lon_deg, lat_deg), 0.0)
 
@@ -164,12 +172,23 @@ def _split(rows: list[Row], rows_ahead: int) -> _Lists:
     lists = _Lists([], [], [])
     for row in rows[rows_ahead:]:
         if row.item.command in _FENCE:
-            lists.fence.append(row)
+            lists.fence.append(_somewhere(row, "part of a fence"))
         elif row.item.command == Command.NAV_RALLY_POINT:
-            lists.rally.append(row)
+            lists.rally.append(_somewhere(row, "rally point"))
         else:
             lists.mission.append(row)
     return lists
+
+
+def _somewhere(row: Row, what: str) -> Row:
+    """The row, whose place is one: a corner left open would go to the vehicle as 0, 0."""
+    item = row.item
+    if item.frame not in GLOBAL_FRAMES:
+        raise FormatError(f"a {what} in frame {item.frame} has no place: 0 or 3 is meant", row.line, "frame")
+    for value, column in zip((*in_file(item), item.z), ("latitude", "longitude", "altitude"), strict=True):
+        if not math.isfinite(value):
+            raise FormatError(f"a {what} whose {column} is {value} has no place", row.line, column)
+    return row
 
 
 class _Shift:

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 from mavlink.formats.columns import from_file
 from mavlink.formats.errors import FormatError
+from mavlink.formats.members import LARGEST
 from mavlink.formats.notes import Notes
 from mavlink.formats.places import check_place
 from mavlink.wire.items import Command, MissionItem, MissionType
@@ -62,6 +63,19 @@ class Row:
 def lines_of(text: str) -> list[str]:
     """The lines of a text, whatever ends them, without a byte order mark."""
     return _LINE_END.split(text.removeprefix("\ufeff"))
+
+
+def plain_number(word: str) -> float:
+    """A number of ASCII digits: Python reads ``1_000`` and other alphabets' digits, other stations read 0.
+
+    Raises
+    ------
+    ValueError
+        It is none.
+    """
+    if "_" in word or not word.isascii():
+        raise ValueError(word)
+    return float(word)
 
 
 def read_rows(text: str, notes: Notes) -> tuple[str, list[Row]]:
@@ -115,6 +129,10 @@ def _row(line: str, number: int, seq: int, version: str, notes: Notes) -> Row:
         command = int(_OLDEST_COMMANDS[command])
     if not 0 <= command <= 65535:
         raise FormatError(f"command {command} is none", number, "command")
+    if not 0 <= frame <= 255:
+        raise FormatError(f"frame {frame} is none", number, "frame")
+    if _integer(fields, 11, number) not in (0, 1):
+        notes.add("autocontinue is neither 0 nor 1: it is taken for 1", "line", number)
     if index != seq and version != OLDEST:
         notes.add("rows are numbered in the order in which they stand", "line", number)
     param1, param2, param3, param4 = (_float(fields, column, number) for column in range(4, 8))
@@ -181,8 +199,16 @@ def _integer(fields: list[str], column: int, number: int) -> int:
 def _float(fields: list[str], column: int, number: int) -> float:
     found = fields[column]
     try:
-        return float(found)
+        value = plain_number(found)
+        if abs(value) > LARGEST:
+            message = (
+                f"{COLUMNS[column]} {found[:40]!r} is too large: vehicles hold numbers up to {LARGEST:.2g}"
+            )
+            raise FormatError(message, number, COLUMNS[column])
+    except FormatError:
+        raise
     except ValueError:
         comma = ": write a point for the comma" if _DECIMAL_COMMA.fullmatch(found) else ""
         message = f"{COLUMNS[column]} {found[:40]!r} is no number{comma}"
         raise FormatError(message, number, COLUMNS[column]) from None
+    return value

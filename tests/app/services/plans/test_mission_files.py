@@ -300,7 +300,7 @@ def test_spoiled_files_are_judged_or_refused() -> None:
 
 
 @pytest.mark.parametrize("command", [5003, 5004])
-@pytest.mark.parametrize("radius", ["1e400", "1e300", "2e7", "1e7"])
+@pytest.mark.parametrize("radius", ["3e38", "2e7", "1e7"])
 def test_circles_round_the_earth_are_judged(command: int, radius: str) -> None:
     """An inclusion that holds the whole Earth keeps nothing out; an exclusion that does forbids all."""
     (circle,) = rows((4.0, 5.0), command=command)
