@@ -14,6 +14,8 @@ from app.services.documents import read_json
 from app.services.errors import RefusedError
 
 _SEPARATOR = b"\x1e"
+#: One of them at least has what holds shapes.
+_MEMBERS = frozenset(("type", "features", "geometry", "geometries", "coordinates"))
 
 
 def read_json_file(data: bytes, crs: str | None, notes: Notes) -> tuple[str, list[Shape]]:
@@ -40,6 +42,11 @@ def read_json_file(data: bytes, crs: str | None, notes: Notes) -> tuple[str, lis
         return "geojson", shapes_of_zones(document, notes)
     if esri_json.is_esri(document):
         return "esrijson", esri_json.shapes_of(document, crs, notes)
+    if not _MEMBERS & document.keys():
+        told = ", ".join(str(key)[:30] for key in list(document)[:5]) or "none"
+        raise file_error(
+            "geojson", f"the JSON holds no shapes; its members: {told}", "export them as GeoJSON"
+        )
     return "geojson", plain.shapes_of(document, crs, notes)
 
 

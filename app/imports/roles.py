@@ -9,11 +9,21 @@ from typing import Literal
 from shapely import Polygon, contains_xy, prepare, union_all
 from shapely.geometry.base import BaseGeometry
 
+from app.imports.airspace import airspace_of
 from app.imports.buildings import standing
 from app.imports.options import NONE, ROLES, Choices, ImportOptions, RoleChoice
 from app.imports.rings import encloses
 from app.imports.shapes import Shape
-from app.imports.words import forbids, is_false, keeps_inside, plain, role_of, says_either, threatens
+from app.imports.words import (
+    forbids,
+    is_false,
+    keeps_inside,
+    permits_not,
+    plain,
+    role_of,
+    says_either,
+    threatens,
+)
 
 KINDS: dict[str, tuple[str, ...]] = {
     "roi": ("polygon", "line", "point"),
@@ -33,6 +43,8 @@ _TERMINALS = ("start", "end", "base")
 _SAYING = (
     "type", "kind", "class", "category", "zone_type", "zonetype", "area_type", "fence_type", "fencetype",
     "layer", "purpose", "usage", "restriction",
+    # of OpenStreetMap
+    "aeroway", "landuse", "military", "amenity", "leisure", "boundary",
 )  # fmt: skip
 #: Kinds of airspace by their letters.
 _LETTERS = frozenset(("P", "R", "D", "Q", "W"))
@@ -136,6 +148,9 @@ def _told(shape: Shape, options: ImportOptions) -> Verdict | None:
         return Verdict(
             "no_fly", f"its {letter} is {shape.properties[letter]!r}, as of a restricted area", "open"
         )
+    column = airspace_of(shape.properties, _OURS)
+    if column is not None:
+        return Verdict("no_fly", f"its {column[:40]} is a column of airspace", "open")
     for where, text in texts:
         if either := says_either(text):
             return Verdict("no_fly", f"{where} says {either!r}, which can mean either side", "open")
@@ -197,8 +212,8 @@ def _forbidden_by_value(shape: Shape) -> Iterator[_Forbidden]:
         if key in _OURS:
             continue
         if is_false(value):
-            # inclusion=false forbids, exclusion=false says nothing
-            if keeps_inside(key) and plain(value):
+            # inclusion=false and allowed=no forbid, exclusion=false says nothing
+            if (keeps_inside(key) and plain(value)) or permits_not(key, value):
                 yield f"its {key[:40]}", value, True
             continue
         word = forbids(value) or (None if says_either(value) else forbids(key))

@@ -56,6 +56,7 @@ _FORBID = (
     r"|bezlet\w*|neleta\w*|nie (?:lata\w*|wlat\w*)|\w*keeld|ucus yasag\w*|yasag\w*",
     # Indonesian, Malay, Vietnamese, Filipino, Swahili, Basque, Irish, Welsh, Maltese
     r"larang\w*|terlarang\w*|dilarang\w*|cam bay|(?:vung|khu vuc|khu) cam|han che|nguy hiem|bawal\w*"
+    r"|mamnuuc\w*|malpermes\w*"
     r"|marufuku|hairuhusiwi|debeka\w*|toirmisc\w*|cosctha|dim hedfan|gwahardd\w*|projbit\w*"
     r"|jangan terbang|khong bay",
     # Russian, Ukrainian, Bulgarian, Serbian, Greek
@@ -66,7 +67,7 @@ _FORBID = (
 )  # fmt: skip
 #: Of languages that put no blanks between words, or put endings before them: anywhere.
 _FORBID_ANYWHERE = (
-    "禁飞", "禁飛", "限飞", "限飛", "禁止", "禁区", "禁區", "限制",
+    "禁飞", "禁飛", "禁航", "限航", "限飞", "限飛", "禁止", "禁区", "禁區", "限制",
     "限高", "管制", "管控", "危险", "危險", "净空", "淨空",
     "勿飞", "勿飛", "勿入", "不可飞", "不可飛", "飛行不可", "不得飞", "비행불가",
     "عدم الطيران", "منع الطيران", "איסור", "งดบิน",
@@ -76,7 +77,7 @@ _FORBID_ANYWHERE = (
     "निषिद्ध", "निषेध", "प्रतिबंध", "वर्जित", "मनाही", "बंदी", "খতরা", "নিষিদ্ধ", "নিষেধ", "தடை",
     "నిషేధ", "నిషిద్ధ", "ನಿಷೇಧ", "ನಿಷಿದ್ಧ", "നിരോധ", "નિષેધ", "પ્રતિબંધ", "ਮਨਾਹੀ", "ਵਰਜਿਤ", "තහනම්",
     "ຫ້າມ", "ហាម", "တားမြစ်", "የተከለከለ", "ክልክል", "نو فلائی", "نوفلائی", "قدغن", "აკრძალ",
-    "სახიფათო", "արգել", "վտանգ",
+    "სახიფათო", "արգել", "վտանգ", "ክልከላ", "ခွင့်မပြု", "ပိတ်ပင်",
 )  # fmt: skip
 _NEGATION = r"(?:no|non|not|without|free of|keine?|ohne|nicht|sans|sin|sem|senza|bez|без)"
 _NEGATED = re.compile(
@@ -92,11 +93,21 @@ _INSIDE = re.compile(
 _EITHER = re.compile(
     r"\b(?:geo ?fenc\w*|fenc(?:e|es|ing)|d ?fence|geo ?zones?|geographical zones?|airspaces?"
     r"|luftraum\w*|clotur\w*"
-    r"|conditional|cta|tma|u ?space"
-    r"|cerca virtual|geocerca\w*|geovall\w*)\b|围栏|圍欄|空域|ジオフェンス|空域|공역"
+    r"|conditional|cta|tma|u ?space|moa|tsa|rmz|tmz|dra ?[iprtu]"
+    # where states restrict flights: near airfields, over prisons, reserves, plants, the military
+    r"|air ?ports?|aerodrom\w*|air ?fields?|air ?bases?|air ?strips?|(?:heli|verti) ?(?:ports?|pads?)"
+    r"|flugplatz\w*|flughafen\w*|aeroport\w*|aeropuert\w*|eliport\w*|helipuert\w*|lufthavn\w*|flygplats\w*"
+    r"|flyplass\w*|lentoasema\w*|lotnisk\w*|letist\w*|repuloter\w*|havaliman\w*|аэро(?:порт|дром)\w*"
+    r"|аеро(?:порт|дром)\w*|military|militar\w*|militair\w*|prisons?|jails?|gefangnis\w*|nature reserves?"
+    r"|naturschutz\w*|national ?parks?|wildlife|bird sanctuar\w*|power ?plants?|nuclear|\w*kraftwerk\w*"
+    r"|(?:max\w*|maximale?) (?:height|altitude|hohe)|hauteur max\w*|altura max\w*"
+    r"|cerca virtual|geocerca\w*|geovall\w*)\b"
+    r"|围栏|圍欄|空域|ジオフェンス|空域|공역|机场|機場|空港|공항|军事|軍事|监狱|監獄"
 )
 #: How states number prohibited, restricted and danger areas: EGD012, ED-R 37A, R-5503.
-_DESIGNATOR = re.compile(r"(?:[A-Z]{2}[ -]?[RPD][ -]?\d{1,4}|[RPDW]-\d{2,5})[A-Z]?(?![A-Za-z0-9])")
+_DESIGNATOR = re.compile(
+    r"(?:[A-Z]{2}[ -]?[RPD][ -]?\d{1,4}|DRA[ -]?[IPRTU][ -]?\d{1,4}|[RPDW]-\d{2,5})[A-Z]?(?![A-Za-z0-9])"
+)
 _THREATENS = re.compile(r"\b(?:threats?|missiles?|radars?|sams?|manpads?|aaa)\b")
 
 #: What a text says, all of it, to mean a role; without a number behind.
@@ -157,6 +168,12 @@ _ALIKE = (
 _TO_LATIN = str.maketrans(*_ALIKE)
 _TO_CYRILLIC = str.maketrans("abesijkmhopctyx", "авеѕіјкмнорстух")
 _FALSE = frozenset({"", "0", "0.0", "no", "n", "false", "f", "none", "null", "nan", "off", "nein", "non"})
+_NO = frozenset(("no", "n", "false", "f", "off", "nein", "non"))
+_PERMITS = re.compile(
+    r"\b(?:allow\w*|permit\w*|permis\w*|authori[sz]\w*|flyable|erlaubt|autoris\w*|autorizad\w*|consentit\w*)\b"
+    r"|\b(?:can|may|ok) ?(?:to )?fly\b|\bfly ?ok\b"
+)
+_FLIES = re.compile(r"\b(?:drones?|ua[sv]s?|suas|rpas|aircraft|over ?flights?|flights?|fly|flying|flug)\b")
 _LONGEST, _OVERLAP = 20_000, 100
 
 
@@ -255,6 +272,16 @@ def role_of(text: str) -> str | None:
     """The role that the text means and nothing else, a number or a colon with more behind it aside."""
     head = plain(text.split(":", 1)[0])
     return ROLE_OF_PHRASE.get(head) or ROLE_OF_PHRASE.get(re.sub(r" \d+$", "", head))
+
+
+def permits_not(key: str, value: str) -> bool:
+    """Whether a value says no to what its name would permit: ``allowed=no``, ``drone=no``."""
+    words, said = plain(key), value.strip().lower()
+    if "requir" in words or "need" in words or _FORBIDDEN.search(words):
+        return False
+    if _PERMITS.search(words):
+        return said in _NO or said in ("0", "0.0")
+    return said in _NO and _FLIES.search(words) is not None
 
 
 def is_false(text: str) -> bool:

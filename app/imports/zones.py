@@ -15,7 +15,7 @@ from app.imports.shapes import Shape
 
 def is_zones(document: Mapping[str, Any]) -> bool:
     """Whether a parsed document is a set of such zones: each has a list of volumes for its geometry."""
-    features = document.get("features")
+    features = _list_of(document)
     first = features[0] if isinstance(features, list) and features else None
     return isinstance(first, dict) and isinstance(first.get("geometry"), list)
 
@@ -25,7 +25,7 @@ def shapes_of_zones(document: Mapping[str, Any], notes: Notes) -> list[Shape]:
     title = document.get("title", document.get("name"))
     folders = (title,) if isinstance(title, str) and title else ()
     shapes: list[Shape] = []
-    for zone in document["features"]:
+    for zone in _list_of(document):
         if not isinstance(zone, dict):
             raise file_error("geojson", "a zone is no object", "send the set as it is published")
         values = {key: value for key, value in zone.items() if key != "geometry"}
@@ -38,6 +38,11 @@ def shapes_of_zones(document: Mapping[str, Any], notes: Notes) -> list[Shape]:
             for volume in volumes:
                 shapes += _of_volume(volume, name, folders, texts, notes)
     return shapes
+
+
+def _list_of(document: Mapping[str, Any]) -> Any:
+    """The zones of a set, which some states call by the standard's older name."""
+    return document.get("features", document.get("UASZoneList"))
 
 
 def _of_volume(

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import asyncio
+import gc
 import math
+import random
 import struct
 
 import pytest
@@ -123,3 +125,42 @@ def test_the_simulated_aircraft_outlives_nonsense(flavour: Flavour, heard: list[
     listing = {"target_system": 1, "target_component": 1, "mission_type": 0}
     answers = aircraft.receive(Message("MISSION_REQUEST_LIST", listing, 255, 190), len(heard) + 20.0)
     assert [answer.name for answer in answers] == ["MISSION_COUNT"]
+
+
+async def test_twenty_thousand_frames_leave_nothing_behind() -> None:
+    """Frames whole and damaged, of every message: the link stays, and so does what memory it takes."""
+    chance = random.Random(20)
+    async with flying("px4") as (client, aircraft):
+        tasks, sizes = len(asyncio.all_tasks()), []
+        for round_ in range(20):
+            for _ in range(1000):
+                await aircraft.link.send(spoiled(chance))
+            await asyncio.sleep(0.1)
+            if round_ in (9, 19):
+                aircraft.heard.clear()
+                aircraft.commands.clear()
+                gc.collect()
+                sizes.append(len(gc.get_objects()))
+        assert client.failure is None
+        assert client.state.texts
+        assert len(asyncio.all_tasks()) == tasks
+        assert sizes[1] < sizes[0] + 2000
+        assert await client.upload(waypoints(5), MissionType.MISSION) == Accepted()
+
+
+def spoiled(chance: random.Random) -> bytes:
+    """One frame, of the vehicle's ids, with any payload; two of three damaged."""
+    name = chance.choice(NAMES)
+    whole = bytearray(
+        frame(name, chance.choice([chance.randbytes(chance.randrange(256)), not_numbers(name)]))
+    )
+    match chance.randrange(6):
+        case 0:
+            whole[chance.randrange(len(whole))] ^= chance.randrange(1, 256)
+        case 1:
+            whole[1] = chance.randrange(256)
+        case 2:
+            del whole[chance.randrange(1, len(whole)) :]
+        case 3:
+            return chance.randbytes(chance.randrange(1, 281))
+    return bytes(whole)
