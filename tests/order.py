@@ -22,6 +22,7 @@ LONG = (
     "tests/app/browser",
     "tests/flows/test_examples.py",
     "tests/app/test_anywhere_flight.py",
+    "tests/app/test_fuzz.py",
     "tests/planner/geojson/test_every_property.py",
     "tests/planner/bounds/test_ways.py",
     "tests/planner/coverage/test_relaxation.py",

@@ -10,6 +10,7 @@ from __future__ import annotations
 import contextlib
 import html
 import re
+import sys
 import unicodedata
 from collections.abc import Iterator
 from functools import lru_cache
@@ -167,6 +168,9 @@ _ALIKE = (
 )
 _TO_LATIN = str.maketrans(*_ALIKE)
 _TO_CYRILLIC = str.maketrans("abesijkmhopctyx", "авеѕіјкмнорстух")
+_OTHER_LETTERS = re.compile("[\u0370-\u03ff\u0400-\u052f]")
+#: Signs that stand over letters; those of Indian scripts are letters themselves.
+_ACCENTS = frozenset(c for c in map(chr, range(0x901)) if unicodedata.combining(c))
 _FALSE = frozenset({"", "0", "0.0", "no", "n", "false", "f", "none", "null", "nan", "off", "nein", "non"})
 _NO = frozenset(("no", "n", "false", "f", "off", "nein", "non"))
 _PERMITS = re.compile(
@@ -188,9 +192,9 @@ def _plain(text: str) -> str:
     bare = text
     if not text.isascii():
         folded = unicodedata.normalize("NFKD", _seen(text))
-        bare = "".join(c for c in folded if not unicodedata.combining(c) or c > "\u0900")
-        bare = unicodedata.normalize("NFC", bare)
-    bare = _CAMEL.sub(" ", bare.translate(_LETTERS))
+        bare = unicodedata.normalize("NFC", _without(folded, _ACCENTS, ""))
+        bare = bare.translate(_LETTERS)
+    bare = _CAMEL.sub(" ", bare.replace("'", ""))
     bare = _NO_WORD.sub(" ", bare.casefold())
     return _SPACED_NFZ.sub("nfz", _DIGITS.sub(" ", bare)).strip()
 
@@ -217,9 +221,22 @@ def says_either(text: str) -> str | None:
     return next(filter(None, map(_says_either, _pieces(text))), None)
 
 
+def _without(text: str, characters: frozenset[str], instead: str) -> str:
+    """The text with others for some characters, which few texts have."""
+    if text.isascii() or characters.isdisjoint(text):
+        return text
+    return "".join(instead if c in characters else c for c in text)
+
+
+@lru_cache(maxsize=1)
+def _unseen() -> frozenset[str]:
+    every = map(chr, range(sys.maxunicode + 1))
+    return frozenset(c for c in every if unicodedata.category(c) == "Cf")
+
+
 def _seen(text: str) -> str:
     """Without characters that are not seen: soft hyphens, joiners, marks of direction."""
-    return "".join(c for c in text if unicodedata.category(c) != "Cf")
+    return _without(text, _unseen(), "")
 
 
 def _readings(text: str) -> Iterator[str]:
@@ -235,10 +252,14 @@ def _readings(text: str) -> Iterator[str]:
         # UTF-8 that was read as a page of single bytes.
         with contextlib.suppress(UnicodeError):
             yield text.encode(page).decode("utf-8")
-    yield "".join(" " if unicodedata.category(c) == "Cf" else c for c in text)
+    spaced = _without(text, _unseen(), " ")
+    if spaced != text:
+        yield spaced
     bare = plain(text)
-    yield bare.translate(_TO_LATIN)
-    yield bare.translate(_TO_CYRILLIC)
+    if _OTHER_LETTERS.search(bare):
+        # No word of these alphabets is made of look-alikes alone.
+        yield bare.translate(_TO_LATIN)
+        yield bare.translate(_TO_CYRILLIC)
 
 
 @lru_cache(maxsize=512)
