@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import AsyncGenerator
 from contextlib import aclosing
+from functools import partial
 from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Header, Query, Request, Response
@@ -15,6 +16,7 @@ from app.routers.answers import PageLimit, PageOffset, PostedDep
 from app.routers.bodies import MISSION_BODY, SCENARIO_BODY
 from app.routers.streams import event_stream
 from app.schemas.plans import PlanList, PlanOut, PlanStateName
+from app.services.pages import total_of
 from app.services.plans.mission_scene import FileChoice
 
 router = APIRouter(prefix="/api/v1/plans", tags=["plans"])
@@ -130,7 +132,8 @@ async def list_plans(
 ) -> PlanList:
     """Plans, newest first."""
     records = await planning.newest(limit, offset, state)
-    return PlanList(plans=[PlanOut.of(record) for record in records], total=await planning.count(state))
+    total = await total_of(len(records), limit, offset, partial(planning.count, state))
+    return PlanList(plans=[PlanOut.of(record) for record in records], total=total)
 
 
 @router.get("/{plan_id}", summary="Read a plan's record", responses=responses(404))

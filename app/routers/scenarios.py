@@ -17,6 +17,7 @@ from app.schemas.plans import ValidationOut
 from app.schemas.scenarios import ScenarioList, ScenarioOut, ScenarioTextOut
 from app.services.documents import write_json
 from app.services.errors import RefusedError
+from app.services.pages import total_of
 from app.services.plans.work import finding_json
 from app.services.scenarios.regions_import import FORMAT_OF_MEDIA_TYPE, ImportOptions, import_file
 from planner.errors import Finding
@@ -69,9 +70,8 @@ async def list_kept(
 ) -> ScenarioList:
     """Kept scenarios without their texts, the one changed last first."""
     records = await scenarios.newest(limit, offset)
-    return ScenarioList(
-        scenarios=[ScenarioOut.of(record) for record in records], total=await scenarios.count()
-    )
+    total = await total_of(len(records), limit, offset, scenarios.count)
+    return ScenarioList(scenarios=[ScenarioOut.of(record) for record in records], total=total)
 
 
 @router.get(

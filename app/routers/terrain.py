@@ -10,6 +10,7 @@ from app.deps import TerrainDep
 from app.problems import responses
 from app.routers.answers import PageLimit, PageOffset
 from app.schemas.terrain import TerrainList, TerrainOut
+from app.services.pages import total_of
 from app.services.terrain.rasters import VerticalDatum
 
 router = APIRouter(prefix="/api/v1/terrain", tags=["terrain"])
@@ -65,7 +66,8 @@ async def list_terrain(
 ) -> TerrainList:
     """Rasters, newest first."""
     records = await terrain.newest(limit, offset)
-    return TerrainList(terrain=[TerrainOut.of(record) for record in records], total=await terrain.count())
+    total = await total_of(len(records), limit, offset, terrain.count)
+    return TerrainList(terrain=[TerrainOut.of(record) for record in records], total=total)
 
 
 @router.get("/{terrain_id}", summary="Read a raster's record", responses=responses(404))

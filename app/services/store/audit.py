@@ -8,6 +8,7 @@ from typing import cast
 
 from sqlalchemy import Select, func, select, update
 
+from app.services.pages import total_of
 from app.services.records import AuditEntry, AuditKind
 from app.services.store.database import Database
 from app.services.store.plans import now
@@ -107,5 +108,9 @@ class AuditStore:
         async with self._database.reading() as session:
             rows = await session.scalars(query.order_by(AuditRow.number.desc()).limit(limit).offset(offset))
             entries = tuple(_entry(row) for row in rows)
-            total = await session.scalar(select(func.count()).select_from(query.subquery()))
-        return entries, total or 0
+
+            async def count() -> int:
+                return await session.scalar(select(func.count()).select_from(query.subquery())) or 0
+
+            total = await total_of(len(entries), limit, offset, count)
+        return entries, total
