@@ -33,7 +33,15 @@ from planner.tasks.prizes import Offer
 from planner.tasks.setting import Setting, seeing
 from planner.tasks.task import NOT_SEEN, Answer, Controls, Task
 from planner.tasks.transits import Transits
-from planner.tasks.urban import cut_by_obstacles, lanes_cut, leaves_ground, left_of, refuse_filled, swept
+from planner.tasks.urban import (
+    cut_by_obstacles,
+    lanes_cut,
+    leaves_ground,
+    left_of,
+    refuse_filled,
+    refuse_unseen,
+    swept,
+)
 from planner.vehicle.limits import Use
 
 Passes = tuple[CollectPass, ...]
@@ -59,6 +67,7 @@ def collect(scenario: Scenario, controls: Controls) -> Answer:
     methods = chosen_methods(scenario.method)
     asked = seeing(scenario, setting)
     transits = Transits.of(setting, asked.objective, methods)
+    sight = Sight.of(asked.regions, setting.suite, setting.airspace, setting.level)
 
     def fly(names: frozenset[str], progress: Progress) -> _Flight:
         """The flight without some regions."""
@@ -71,6 +80,7 @@ def collect(scenario: Scenario, controls: Controls) -> Answer:
                 scenario.seed,
                 replace(controls, progress=part_of(progress, 0.0, 0.5)),
             )
+            refuse_unseen(asked, *found, sight)
         with controls.stage("transit"):
             composed, legs, notes = transits.through(found[0], part_of(progress, 0.5, 0.9), controls.stop)
         return _Flight(*found, composed, legs, notes, used(composed.flight, setting.model, setting.level))
@@ -87,7 +97,6 @@ def collect(scenario: Scenario, controls: Controls) -> Answer:
     if short is not None:
         raise short
     dropped = flight.dropped + tuple(_over(each) for each in left)
-    sight = Sight.of(asked.regions, setting.suite, setting.airspace, setting.level)
     if sight is not None:
         dropped += hidden_findings(sight, flight.passes, by_paper=methods["coverage"] == "li2018")
     return Answer(

@@ -4,16 +4,28 @@ from __future__ import annotations
 
 import math
 
+import shapely
 from shapely.geometry import Point
 from shapely.geometry.base import BaseGeometry
 
+from planner.airspace.built import bare_ground
+from planner.airspace.shapes import banded_shapes
 from planner.airspace.zones import TRANSIT_MARGIN_M
-from planner.coverage.urban.regions import camera_of, open_ground, top_over, unseen_m2, urban_passes
+from planner.coverage.merge import polygons_of
+from planner.coverage.urban.regions import (
+    camera_of,
+    open_ground,
+    top_over,
+    unseen_m2,
+    unseen_of,
+    urban_passes,
+)
 from planner.coverage.visible import Seeing
 from planner.errors import Finding, InfeasibleError
 from planner.progress import Progress, Stop, raise_if
 from planner.route import CollectPass
 from planner.sensors.camera import CameraSensor
+from planner.tasks.hidden import Sight
 from planner.tasks.setting import Setting
 from planner.tasks.task import NOT_SEEN
 from planner.wishes import Region
@@ -22,6 +34,8 @@ from planner.wishes import Region
 LEFT_PART = 1e-5
 #: Less ground than this is none.
 LEAST_M2 = 1.0
+#: Ground unseen no farther from a zone than this is its own.
+LEAST_AROUND_M = 0.5
 #: The rule by which it is.
 BESIDE = "beside-obstacles"
 
@@ -127,6 +141,65 @@ def left_of(asked: Seeing, passes: tuple[CollectPass, ...]) -> tuple[Finding, ..
         if left_m2 > LEFT_PART * region.area.area:
             found.append(_left(region.name, left_m2))
     return tuple(found)
+
+
+def refuse_unseen(
+    asked: Seeing, passes: tuple[CollectPass, ...], findings: tuple[Finding, ...], sight: Sight | None
+) -> None:
+    """Refuse a required region of which sweeps leave ground beside what may not be flown over.
+
+    What can be seen of others is flown; a warning tells the rest.
+
+    Raises
+    ------
+    InfeasibleError
+        With the zones, the share unseen, and what would work.
+    """
+    told = {found.feature for found in findings if found.rule == BESIDE}
+    for region in asked.regions:
+        if not region.required or region.name not in told:
+            continue
+        if sight is not None and region.over_ground_m is None and region.name not in sight.unseen(passes):
+            # Laid for the highest ground, photos see more of the real one.
+            continue
+        raise _unseen(asked, region, passes)
+
+
+def _unseen(asked: Seeing, region: Region, passes: tuple[CollectPass, ...]) -> InfeasibleError:
+    airspace, level = asked.airspace, asked.level.of(region)
+    left = unseen_of(region, airspace, level, passes)
+    solid = {
+        banded.shape.name: banded.shape.polygon()
+        for banded in banded_shapes(airspace, level.amsl_m - level.height_m)
+        if banded.hard and banded.counts(*level.counted_m)
+    }
+    names, around_m = [], 0.0
+    for part in sorted(polygons_of(left), key=lambda each: -each.area):
+        name = min(solid, key=lambda each: float(solid[each].distance(part)))
+        names += [name] if name not in names else []
+        corners = shapely.points(shapely.get_coordinates(part))
+        around_m = max(around_m, float(shapely.distance(corners, solid[name]).max()))
+    share = left.area / bare_ground(region.area, airspace, level).area
+    which = " and ".join(names) if len(names) < 3 else f"{', '.join(names[:2])} and {len(names) - 2} more"
+    over_m = top_over(region.area, airspace, level) - level.height_m + level.altitude_m
+    fixes = [] if math.isinf(over_m) else [f"fly higher: altitude_m of {math.ceil(over_m + 0.1)}"]
+    ring = (
+        f" with {math.ceil(around_m)} m round {'it' if len(names) == 1 else 'them'}" if around_m > 0.5 else ""
+    )
+    fixes += [f"cut {which}{ring} out of it", f"set required: false, and all but {_percent(share)} is seen"]
+    middle = left.representative_point()
+    return InfeasibleError(
+        "hard-zone",
+        region.name,
+        f"{_percent(share)} of it ({left.area:.0f} m²) is seen by no pass that keeps out of hard "
+        f"{'zone' if len(names) == 1 else 'zones'} {which} with {airspace.clearance_m:g} m of clearance",
+        ", or ".join(fixes),
+        (middle.x, middle.y),
+    )
+
+
+def _percent(share: float) -> str:
+    return f"{100.0 * share:.1f} %" if share >= 0.001 else f"{100.0 * share:.3f} %"
 
 
 def leaves_ground(findings: tuple[Finding, ...]) -> bool:

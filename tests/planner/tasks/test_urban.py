@@ -114,11 +114,16 @@ def test_the_same_seed_gives_the_same_plan() -> None:
 
 
 def test_ground_beside_obstacles_that_is_not_seen_is_told() -> None:
-    """A block too wide to be looked into from beside it is a warning with its square metres."""
+    """A block too wide to be looked into from beside it: a required region is refused, another a warning."""
     document = city("majeed2019")
     wide = feature("mall", "obstacle", "Polygon", block(180, 110, 110, 130), height_m=150.0)
     document["features"].append(wide)
+    with pytest.raises(InfeasibleError, match="required: false"):
+        make_plan(read_scenario(document))
+    (district,) = (each for each in document["features"] if each["id"] == "district")
+    district["properties"]["required"] = False
     plan = make_plan(read_scenario(document))
+    assert not any(violation.hard for violation in plan.violations)
     assert any("beside-obstacles" in warning or "too near obstacles" in warning for warning in plan.warnings)
     assert 0.9 < plan.metrics.coverage["district"] < 1.0
     assert "coverage" in {violation.constraint for violation in plan.violations}
