@@ -1,9 +1,11 @@
 """The most that a battery collects on a grid, and home again.
 
-A bound's prices (:mod:`planner.search.importance.bound`) lead a beam search; its walk and those of Snyder et
-al. (2021) are annealed: stretches are taken out and searched through again, moves shift from where they pay
-least to where they pay more. Looks again cost something extra at first, as walks that cross themselves are
-hard to leave; the last annealing goes by what is asked.
+A bound's prices (:mod:`planner.search.importance.bound`), and prices drawn about them, lead beam searches;
+their walks and those of Snyder et al. (2021) are annealed from two heats: stretches are taken out and
+searched through again, moves shift from where they pay least to where they pay more. Looks again cost extra
+in every other of these, as walks that cross themselves are hard to leave. The best few are annealed by what
+is asked, the best of all once more. Large grids, and what is but a part of a larger search, get one walk
+that is led, annealed twice.
 """
 
 from __future__ import annotations
@@ -14,23 +16,44 @@ from dataclasses import dataclass
 import numpy as np
 
 from planner.search.importance.anneal_kernels import improve
-from planner.search.importance.bound import bounded
+from planner.search.importance.bound import MOST_ROUNDS, priced
 from planner.search.importance.grid import Floats, ImportanceGrid, Ints
 from planner.search.importance.snyder2021 import snyder2021
 from planner.search.importance.walk import Walk
 from planner.search.importance.walk_kernels import beam, distances, guide
 
-#: Width of the beam.
-WIDTH = 200
+#: Width of the beam led by prices, and of those led by prices drawn about them, by so large a part of each.
+WIDTH, DRAWN_WIDTH, DRAWN = 200, 60, 0.5
+#: So many beams are led by prices drawn.
+BEAMS = 3
 
-#: Stretches tried from each start, and nodes looked at for each.
-ROUNDS = 3_000
-NODES = 100
 
-#: On larger grids the starts of the paper take longer than they are worth.
+@dataclass(frozen=True, slots=True)
+class _Work:
+    """How much is tried: stretches of each start from each heat, of the best so many, and of the best.
+
+    Heats are by what a good cell is worth; ``nodes`` are looked at in a stretch, prices improved ``prices``
+    times.
+    """
+
+    heats: tuple[float, ...]
+    first: int
+    kept: int
+    second: int
+    last: int
+    nodes: int
+    prices: int
+
+
+_THOROUGH = _Work((1.0, 2.0), 2_000, 3, 4_000, 6_000, 300, MOST_ROUNDS)
+_QUICK = _Work((1.0,), 3_000, 0, 0, 6_000, 100, 60)
+#: What annealings of the best begin with.
+COOLER = 0.5
+
+#: Larger grids are not searched thoroughly.
 STARTS_CELLS = 2_500
 
-#: Walks beyond so many moves are tried at as many more stretches as they are longer.
+#: Stretches tried are for walks of so many moves; longer ones get as many more, shorter ones down to half.
 LONG = 60
 
 
@@ -68,6 +91,7 @@ def auto(
     *,
     seed: int = 0,
     enough: Callable[[], bool] = lambda: False,
+    thorough: bool = True,
 ) -> Walk:
     """Plan a closed walk that collects as much as it can.
 
@@ -81,27 +105,35 @@ def auto(
         Of the annealing; the same seed gives the same walk.
     enough
         Asked between annealings: ends them with the best found.
+    thorough
+        False for a walk that is but one part of what is tried.
     """
-    search = _Search(grid, base, battery, pay)
-    rounds = ROUNDS * max(LONG, battery) // LONG
-    found: list[tuple[float, Ints]] = []
-    for index, start in enumerate(search.starts()):
-        if found and enough():
-            break
-        found.append(search.annealed(start, rounds, 1.0, search.shy, 7 * seed + index))
-    best = max(found, key=lambda one: search.value(one[1]))[1]
-    if not enough():
-        best = max(
-            (best, search.annealed(best, 2 * rounds, 0.5, pay.revisit, 7 * seed + 5)[1]), key=search.value
-        )
-    return Walk(best, battery)
+    thorough = thorough and grid.worth.size <= STARTS_CELLS
+    work = _THOROUGH if thorough else _QUICK
+    search = _Search(grid, base, battery, pay, work)
+    number = 0
+    found: list[Ints] = []
+
+    def anneal(start: Ints, stretches: int, heat: float, revisit: float) -> None:
+        nonlocal number
+        if not found or not enough():
+            found.append(search.annealed(start, stretches, heat, revisit, 101 * seed + number))
+            number += 1
+
+    for index, start in enumerate(search.starts(seed, thorough=thorough)):
+        for turn, heat in enumerate(work.heats):
+            anneal(start, work.first, heat, search.shy if (index + turn) % 2 == 0 else pay.revisit)
+    for kept, stretches in ((work.kept, work.second), (1, work.last)):
+        for start in sorted(found, key=search.value, reverse=True)[:kept]:
+            anneal(start, stretches, COOLER, pay.revisit)
+    return Walk(max(found, key=search.value), battery)
 
 
 class _Search:
     """One search's fixed values."""
 
-    def __init__(self, grid: ImportanceGrid, base: int, battery: int, pay: Pay) -> None:
-        self._grid, self._base, self._battery, self._pay = grid, base, battery, pay
+    def __init__(self, grid: ImportanceGrid, base: int, battery: int, pay: Pay, work: _Work) -> None:
+        self._grid, self._base, self._battery, self._pay, self._work = grid, base, battery, pay, work
         self._beside = grid.neighbours()
         self._away = distances(self._beside, base)
         self._cell_worth: Floats = np.ascontiguousarray(grid.worth.reshape(-1))
@@ -111,21 +143,28 @@ class _Search:
         self._good = float(reach[-min(len(reach), 1 + battery // 3)]) if len(reach) else 0.0
         self.shy = max(pay.revisit, 0.5 * self._good) if pay.detection == 1.0 else pay.revisit
 
-    def starts(self) -> list[Ints]:
+    def starts(self, seed: int, *, thorough: bool) -> list[Ints]:
         grid, base, battery = self._grid, self._base, self._battery
-        prices = bounded(grid, base, battery, self.shy).prices
-        ahead = guide(self._beside, self._away, prices, base, battery)
-        again = 1.0 - self._pay.detection
-        led = beam(self._beside, self._cell_worth, again, self.shy, ahead, base, battery, WIDTH)
-        walks = [led[led >= 0]]
-        if grid.worth.size <= STARTS_CELLS:
+        prices = priced(grid, base, battery, self.shy, self._work.prices)
+        walks = [self._led(prices, self.shy, WIDTH)]
+        if thorough:
+            rng = np.random.default_rng(seed)
+            for index in range(BEAMS):
+                drawn = prices * rng.uniform(1.0 - DRAWN, 1.0 + DRAWN, len(prices))
+                walks.append(self._led(drawn, (self._pay.revisit, self.shy)[index % 2], DRAWN_WIDTH))
             walks += [snyder2021(grid, base, battery, refused=how).cells for how in ("return", "next")]
         return walks
 
-    def annealed(
-        self, start: Ints, rounds: int, heat: float, revisit: float, seed: int
-    ) -> tuple[float, Ints]:
-        cells, value = improve(
+    def _led(self, prices: Floats, revisit: float, width: int) -> Ints:
+        """The walk of a beam search led by prices."""
+        base, battery = self._base, self._battery
+        ahead = guide(self._beside, self._away, prices, base, battery)
+        again = 1.0 - self._pay.detection
+        led = beam(self._beside, self._cell_worth, again, revisit, ahead, base, battery, width)
+        return led[led >= 0]
+
+    def annealed(self, start: Ints, stretches: int, heat: float, revisit: float, seed: int) -> Ints:
+        cells, _ = improve(
             self._beside,
             self._grid.shape[1],
             self._cell_worth,
@@ -134,12 +173,12 @@ class _Search:
             self._pay.unspent,
             start,
             self._battery,
-            rounds,
-            NODES,
+            stretches * max(LONG // 2, self._battery) // LONG,
+            self._work.nodes,
             heat * self._good,
             seed,
         )
-        return value, cells
+        return cells
 
     def value(self, cells: Ints) -> float:
         """What a walk is paid, but for constants."""

@@ -45,6 +45,13 @@ class Bound:
     prices: Floats
 
 
+def priced(grid: ImportanceGrid, base: int, battery: int, revisit: float, most_rounds: int) -> Floats:
+    """Prices of visits alone, (cells,), improved at most so often: what leads a search."""
+    beside = grid.neighbours()
+    reached = _Reached(grid, base, battery, beside, distances(beside, base))
+    return reached.priced(revisit, 0.0, most_rounds).prices
+
+
 def bounded(
     grid: ImportanceGrid, base: int, battery: int, revisit: float = 0.0, unspent: float = 0.0
 ) -> Bound:
@@ -52,7 +59,7 @@ def bounded(
     beside = grid.neighbours()
     away = distances(beside, base)
     reached = _Reached(grid, base, battery, beside, away)
-    found = reached.priced(revisit, unspent)
+    found = reached.priced(revisit, unspent, MOST_ROUNDS)
     if revisit == 0.0 and unspent == 0.0:
         home = float(grid.worth.reshape(-1)[base])
         return replace(found, total=min(found.total, home + _slotted(reached.worth, away, battery)))
@@ -72,7 +79,7 @@ class _Reached:
         self.worth: Floats = np.where(self._within, grid.worth.reshape(-1), 0.0)
         self.worth[base] = 0.0
 
-    def priced(self, revisit: float, unspent: float) -> Bound:
+    def priced(self, revisit: float, unspent: float, most_rounds: int) -> Bound:
         """By prices of visits, improved by subgradients."""
         # Moves less cells seen are looks again: a cell seen saves its penalty, a move pays it.
         worth = np.where(self._within, self.worth + revisit, 0.0)
@@ -82,7 +89,7 @@ class _Reached:
         least, best_prices = np.inf, prices
         states = 4 * len(self._cells) * self._battery
         scale, stale = 1.0, 0
-        for _ in range(min(MOST_ROUNDS, max(LEAST_ROUNDS, STATES // max(1, states)))):
+        for _ in range(min(most_rounds, max(LEAST_ROUNDS, STATES // max(1, states)))):
             paid, visits = dearest(
                 self._beside, self._cells, self._away, prices, unspent - revisit, self._base, self._battery
             )

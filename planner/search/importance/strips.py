@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 import shapely
@@ -41,8 +42,11 @@ def _published(grid: ImportanceGrid, base: int, battery: int) -> Walk:
     return snyder2021(scaled, base, battery)
 
 
-#: How a walk is planned, by name.
-WALKS: dict[str, Callable[[ImportanceGrid, int, int], Walk]] = {"importance": auto, "snyder2021": _published}
+#: How a walk is planned, by name. Its strips are refined as those of any pattern.
+WALKS: dict[str, Callable[[ImportanceGrid, int, int], Walk]] = {
+    "importance": partial(auto, thorough=False),
+    "snyder2021": _published,
+}
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -25,7 +25,7 @@ def _grid(seed: int) -> ImportanceGrid:
     return ImportanceGrid(worth, blocked)
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(2))
 @pytest.mark.parametrize("battery", [0, 1, 2, 9])
 def test_small_grids_are_solved(seed: int, battery: int) -> None:
     """No closed walk at all is paid more, with a sensor that misses and with penalties, too."""
@@ -65,6 +65,19 @@ def test_more_than_published_and_no_more_than_the_bound(index: int) -> None:
     assert ours.cells[0] == ours.cells[-1] == one.base
     row, column = np.divmod(ours.cells, one.grid.shape[1])
     assert (np.abs(np.diff(row)) + np.abs(np.diff(column)) == 1).all()
+
+
+@pytest.mark.parametrize("seed", [4, 8])
+def test_worth_that_lies_scattered_is_collected_whatever_else_is_asked(seed: int) -> None:
+    """Penalties and seeds lead elsewhere; none of these ways collects a hundredth more than what is asked."""
+    generator = np.random.default_rng(seed)
+    worth = generator.lognormal(1.0, 1.5, (15, 15))
+    grid, base = ImportanceGrid(worth, np.zeros(worth.shape, dtype=np.bool_)), 6 * 15 + 7
+    asked = measured(grid, auto(grid, base, 50)).importance
+    others = [
+        auto(grid, base, 50, Pay(1.0, revisit, 1.0), seed=k) for k, revisit in enumerate((1.0, 100.0), 1)
+    ]
+    assert asked >= 0.99 * max(measured(grid, other).importance for other in others)
 
 
 def test_the_same_seed_gives_the_same_walk() -> None:
