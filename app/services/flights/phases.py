@@ -30,19 +30,26 @@ class FlownPhase:
     flown_s: float | None
 
 
-def flown_phases(path: FlownPath, samples: Sequence[TrackSample]) -> tuple[FlownPhase, ...]:
+def flown_phases(
+    path: FlownPath, samples: Sequence[TrackSample], home_altitude_m: float | None = None
+) -> tuple[FlownPhase, ...]:
     """Durations of the phases of a path, as planned and as flown.
 
     A phase ends when the track comes nearest, in three dimensions, to where its end is planned, behind the
     end of the phase before; of several times at the one planned. The first begins as the aircraft leaves the
     ground; a landing ends as it is back.
+
+    Parameters
+    ----------
+    home_altitude_m
+        Of home, in the path's own heights, where the path begins in the air; None where it begins at home.
     """
     flown = [sample for sample in samples if sample.altitude_home_m is not None]
     off_ground = [s.time_s for s in flown if (s.altitude_home_m or 0.0) > OFF_GROUND_M]
     if not (flown and off_ground and path.phases):
         return tuple(FlownPhase(phase.kind, phase.end_s - phase.start_s, None) for phase in path.phases)
     frame = LocalFrame(*path.line[0][:2])
-    ground_m = path.line[0][2]
+    ground_m = path.line[0][2] if home_altitude_m is None else home_altitude_m
     heights_m = np.array([s.altitude_home_m for s in flown], dtype=np.float64)
     places = np.column_stack([frame.to_local([(s.lon_deg, s.lat_deg) for s in flown]), heights_m])
     times_s = np.array([s.time_s for s in flown])

@@ -265,11 +265,16 @@ def _told(sortie: Sortie, plan: Plan) -> dict[str, Any]:
             for flight in sortie.flights[:1]
             if alone
             for path in _paths_of(flight.record, plan)
-            for phase in flown_phases(path, flight.samples)
+            for phase in flown_phases(path, flight.samples, _home_altitude_m(plan, path.vehicle))
         ],
         "seen_fraction": SEEN_FRACTION,
         "energy": [_energy(flight, plan) for flight in sortie.flights],
     }
+
+
+def _home_altitude_m(plan: Plan, name: str) -> float | None:
+    """Of a vehicle that the plan begins with in the air; None for the others."""
+    return next((vehicle.home_altitude_m for vehicle in plan.vehicles if vehicle.name == name), None)
 
 
 def _paths_of(record: FlightRecord, plan: Plan) -> list[FlownPath]:

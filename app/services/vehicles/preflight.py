@@ -9,6 +9,7 @@ from typing import Any, Literal
 
 from app.services.plans.missions import PARTS, PartName, mission_findings
 from app.services.vehicles.pointing import pointing_findings
+from app.services.vehicles.recorder import is_flying
 from mavlink.dialects.mission import Mission
 from mavlink.encoding.arcs import circles_widen_m
 from mavlink.rules.firmware import note_on
@@ -120,7 +121,7 @@ def preflight(
         _parameters(found, observed),
         *_gimbal(plan, scenario, mission, needs),
         _battery(plan, scenario, mission, state),
-        _place(plan, state),
+        _place(plan, mission.vehicle, state),
         *_heading(plan, mission, state),
         _gps(state),
         _datum(plan, scenario, state),
@@ -257,15 +258,25 @@ def settle_m(scenario: Mapping[str, Any], name: str) -> float | None:
     return steady.settle_s * airspeed_m_s
 
 
-def _place(plan: Plan, state: VehicleState) -> Check:
+def _place(plan: Plan, name: str, state: VehicleState) -> Check:
     if state.lon_deg is None or state.lat_deg is None:
         return Check("place", "failed", "the vehicle does not know where it is")
+    aloft = any(vehicle.name == name and vehicle.home_altitude_m is not None for vehicle in plan.vehicles)
+    if aloft and is_flying(state):
+        # It flies on while its mission is made and sent: where it is by now tells nothing.
+        words = "the vehicle flies, and the plan begins in the air"
+        return _from_home(plan, state, words)
     away_m = distance_m((state.lon_deg, state.lat_deg), plan.home)
     words = f"the vehicle is {away_m:.0f} m from the plan's start"
     if away_m > FAR_M:
         return Check("place", "failed", words)
     if away_m > NEAR_M:
         return Check("place", "warning", words)
+    return _from_home(plan, state, words)
+
+
+def _from_home(plan: Plan, state: VehicleState, words: str) -> Check:
+    """Where the place itself is right, whether returns go there, too."""
     if state.home_lon_deg is not None and state.home_lat_deg is not None:
         home_m = distance_m((state.home_lon_deg, state.home_lat_deg), plan.home)
         if home_m > NEAR_M:

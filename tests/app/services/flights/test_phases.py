@@ -61,3 +61,17 @@ def test_what_lands_where_it_took_off_passes_each_height_twice() -> None:
     for phase in flown_phases(path, recorded(path, 1.1)):
         if phase.kind == "mission":
             assert phase.flown_s == pytest.approx(1.1 * phase.planned_s, rel=0.15)
+
+
+def test_flights_that_begin_in_the_air_are_told_by_phase() -> None:
+    """Their line begins at the height they fly at, from which home's is not to be taken."""
+    document = small()
+    document["vehicles"][0] |= {
+        "finish": "land",
+        "in_flight": {"lon_deg": -0.015, "lat_deg": -0.015, "height_m": 500.0, "heading_deg": 45.0},
+    }
+    plan = flight_plan(read_scenario(document))
+    (path,), (vehicle,) = plan.paths, plan.vehicles
+    assert vehicle.home_altitude_m is not None
+    for phase in flown_phases(path, recorded(path, 1.1), vehicle.home_altitude_m):
+        assert phase.flown_s == pytest.approx(1.1 * phase.planned_s, rel=0.15), phase

@@ -206,3 +206,17 @@ def test_settling_distance_is_the_scenarios() -> None:
     assert settle_m({"vehicles": [named | {"settle_m": 0}]}, "b") == 0.0
     assert settle_m({"vehicles": [{"name": "a"}, {"name": "b", "settle_m": 150}]}, "b") == 150.0
     assert settle_m({}, "b") is None
+
+
+def test_what_flies_already_need_not_be_near_the_start() -> None:
+    """A mission sent in flight begins where the aircraft is; on the ground, or from home, it is far away."""
+    (vehicle,) = PLAN.vehicles
+    aloft = replace(PLAN, vehicles=(replace(vehicle, home_altitude_m=0.0),))
+    far = {"lat_deg": LAT_DEG + 0.1, "armed": True}
+    for plan, landed, status in ((aloft, False, "ok"), (aloft, True, "failed"), (PLAN, False, "failed")):
+        seen = Observed(replace(STATE, **far, landed=landed), {"mission": (), "fence": ()}, VALUES)
+        assert checks(plan, observed=seen)["place"].status == status
+    strange = replace(STATE, **far, landed=False, home_lat_deg=LAT_DEG + 0.01)
+    found = checks(aloft, observed=Observed(strange, {"mission": (), "fence": ()}, VALUES))["place"]
+    assert found.status == "warning"
+    assert "its home, where returns go to" in found.detail
