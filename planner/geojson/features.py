@@ -73,6 +73,14 @@ def name_of(index: int, feature: Any) -> str:
 
 def read_role(name: str, feature: Mapping[str, Any], findings: Findings) -> RawFeature | None:
     """Check the envelope of one feature: properties, role, geometry type."""
+    if isinstance(feature.get("id"), (dict, list, bool)):
+        # RFC 7946, 3.2.
+        findings.error(
+            name,
+            "feature-id",
+            f"has an id that is neither text nor number: {str(feature['id'])[:80]}",
+            "Write text, or leave it out.",
+        )
     properties = feature.get("properties")
     if not isinstance(properties, dict):
         findings.error(name, "no-properties", "has no properties", "Add properties with a role.")

@@ -363,3 +363,15 @@ def test_passes_without_number_are_a_slip_of_height() -> None:
     narrow["sensors"][0]["elevation_beamwidth_deg"] = 1.0
     assert {f.rule for f in findings(narrow)} == {"too-many-passes", "flight-long"}
     assert {f.rule for f in findings(small(altitude_m=0.001))} == {"out-of-range"}
+
+
+@pytest.mark.parametrize("wrong", [["R1"], {"name": "R1"}, True, False, []])
+def test_ids_that_are_neither_text_nor_number_are_refused(wrong: object) -> None:
+    """By the place of their feature, which nobody could name otherwise."""
+    document = small()
+    document["features"][0]["id"] = wrong
+    with pytest.raises(ScenarioError) as caught:
+        read_scenario(document)
+    assert [(finding.feature, finding.rule) for finding in caught.value.findings] == [
+        ("features[0]", "feature-id")
+    ]
