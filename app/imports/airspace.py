@@ -18,8 +18,8 @@ from app.imports.words import plain
 _COLUMNS: Final = re.compile(
     r"(?:upper|lower) ?(?:limits?|val|values?|desc|uom|code|alt|altitude|unit|ref|reference)\b.*"
     r"|icao ?class|class ?icao|air ?space\w*(?: .*)?|local ?type|type ?code|lower ?upper"
-    r"|apt ?\d* ?(?:name|icao|faa ?id|laanc)|laanc\w*|uasfm\w*|map ?eff|ceiling|floor"
-    r"|vertical (?:limits?|reference)|hauteur ?max\w*|limite|notam\w*|sua ?\w*"
+    r"|apt ?\d* ?(?:name|icao|faa ?id|laanc)|laanc\w*|uasfm\w*|map ?eff|ceiling"
+    r"|vertical (?:limits?|reference)|hauteur ?max\w*|notam\w*|sua ?\w*"
 )
 
 

@@ -43,6 +43,7 @@ _TERMINALS = ("start", "end", "base")
 _SAYING = (
     "type", "kind", "class", "category", "zone_type", "zonetype", "area_type", "fence_type", "fencetype",
     "layer", "purpose", "usage", "restriction",
+    "limite", "remarque",
     # of OpenStreetMap
     "aeroway", "landuse", "military", "amenity", "leisure", "boundary",
 )  # fmt: skip

@@ -60,6 +60,15 @@ _FORBID = (
     r"|mamnuuc\w*|malpermes\w*"
     r"|marufuku|hairuhusiwi|debeka\w*|toirmisc\w*|cosctha|dim hedfan|gwahardd\w*|projbit\w*"
     r"|jangan terbang|khong bay",
+    # Restrictions, limits and what is not permitted, in the languages above
+    r"\w*(?:be|ein)schrank\w*|schutzzone\w*|tabuzone\w*|\w*untersagt\w*"
+    r"|(?:nicht |un)erlaubt\w*|nicht gestattet"
+    r"|begrans\w*|begrens\w*|begraens\w*|inskrank\w*|\w*forbud\w*|dron\w* ?(?:fri|free|vrij)\w*|vliegvrij\w*"
+    r"|(?:ikke|ej|inte) til\w*|niet toegestaan|unfly\w*|(?:not |un)authori[sz]ed|restrein\w*|defense de \w+"
+    r"|(?:non|pas) autoris\w*|vol limite\w*|restrizion\w*|ristrett\w*|limitazion\w*"
+    r"|non (?:autorizz|consentit|permess)\w*|(?:no|nao) (?:autoriz|permit)\w*|limitaci?on\w*|limitacao"
+    r"|zona limitada|ei sallit\w*|nie wolno|niedozwol\w*|nepovol\w*|nedovol\w*|nedozvol\w*|nem engedely\w*"
+    r"|izin yok|izinsiz\w*|sekatan|не ?разреш\w*|нельзя|недоступ\w*|не ?дозвол\w*|δεν επιτρεπ\w*",
     # Russian, Ukrainian, Bulgarian, Serbian, Greek
     r"запрет\w*|запрещ\w*|ограничен\w*|опасн\w*|бесполет\w*|заборон\w*|обмежен\w*|небезпеч\w*|забран\w*|забрањ\w*"
     r"|(?:не|нельзя) (?:лета|влета|літа|заліта)\w*|закрыт\w*|закрит\w*"
@@ -68,6 +77,8 @@ _FORBID = (
 )  # fmt: skip
 #: Of languages that put no blanks between words, or put endings before them: anywhere.
 _FORBID_ANYWHERE = (
+    "不允许", "不允許", "不准", "不许", "严禁", "嚴禁", "不許可", "不得", "禁制", "危険",
+    "허용 안", "허가 필요", "غير مسموح",
     "禁飞", "禁飛", "禁航", "限航", "限飞", "限飛", "禁止", "禁区", "禁區", "限制",
     "限高", "管制", "管控", "危险", "危險", "净空", "淨空",
     "勿飞", "勿飛", "勿入", "不可飞", "不可飛", "飛行不可", "不得飞", "비행불가",
@@ -82,7 +93,8 @@ _FORBID_ANYWHERE = (
 )  # fmt: skip
 _NEGATION = r"(?:no|non|not|without|free of|keine?|ohne|nicht|sans|sin|sem|senza|bez|без)"
 _NEGATED = re.compile(
-    rf"\b{_NEGATION} (?:restric\w*|restrik\w*|prohibit\w*|hazard\w*|danger\w*|exclu\w*|beschrank\w*)"
+    rf"\b{_NEGATION} (?:restric\w*|restrik\w*|prohibit\w*|hazard\w*|danger\w*|exclu\w*|beschrank\w*"
+    r"|einschrank\w*|restrein\w*|restrizion\w*|limitazion\w*|limitaci?on\w*|begrans\w*|begrens\w*)"
 )
 _FORBIDDEN = re.compile(rf"\b(?:{'|'.join(_FORBID)})\b")
 _ANYWHERE = re.compile("|".join(unicodedata.normalize("NFKC", word) for word in _FORBID_ANYWHERE))
@@ -100,6 +112,8 @@ _EITHER = re.compile(
     r"|flugplatz\w*|flughafen\w*|aeroport\w*|aeropuert\w*|eliport\w*|helipuert\w*|lufthavn\w*|flygplats\w*"
     r"|flyplass\w*|lentoasema\w*|lotnisk\w*|letist\w*|repuloter\w*|havaliman\w*|аэро(?:порт|дром)\w*"
     r"|аеро(?:порт|дром)\w*|military|militar\w*|militair\w*|prisons?|jails?|gefangnis\w*|nature reserves?"
+    r"|(?:safety|buffer) zones?|zone sensible|zona sensible|zone de securite|zona de seguridad"
+    r"|sicherheitszone\w*|protected areas?|schutzgebiet\w*|nesting|sua"
     r"|naturschutz\w*|national ?parks?|wildlife|bird sanctuar\w*|power ?plants?|nuclear|\w*kraftwerk\w*"
     r"|(?:max\w*|maximale?) (?:height|altitude|hohe)|hauteur max\w*|altura max\w*"
     r"|cerca virtual|geocerca\w*|geovall\w*)\b"

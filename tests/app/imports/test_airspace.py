@@ -31,6 +31,18 @@ PUBLISHED: dict[str, dict[str, Any]] = {
 }
 
 
+#: What is not permitted, or within limits, as names say it.
+WORDS = (
+    "restrizioni di volo", "zone restreinte", "Beschränkungsgebiet", "Flugeinschränkung",
+    "begränsat område", "begrænset", "drönarförbud", "dronefri sone", "vliegvrij gebied",
+    "Überflug untersagt", "nicht erlaubt", "non autorizzato", "no autorizado", "não autorizado",
+    "pas autorisé", "ikke tilladt", "ikke tillatt", "ej tillåtet", "niet toegestaan",
+    "ei sallittu", "nie wolno", "nepovoleno", "nem engedélyezett", "izin yok", "не разрешено",
+    "нельзя", "δεν επιτρέπεται", "不允许飞行", "严禁", "不許可", "危険区域", "غير مسموح", "drone free zone",
+    "limitación",
+)  # fmt: skip
+
+
 def account(properties: dict[str, Any]) -> tuple[str, bool]:
     geometry = {"type": "Polygon", "coordinates": SQUARE}
     feature = {"type": "Feature", "properties": properties, "geometry": geometry}
@@ -59,8 +71,16 @@ def test_what_is_not_permitted_is_forbidden(key: str, value: object) -> None:
     assert account({f"{key}_required": value}) == ("roi", False)
 
 
+@pytest.mark.parametrize("word", WORDS)
+def test_words_of_what_is_not_permitted(word: str) -> None:
+    """They forbid as words of prohibition do; that there is no limit leaves it open."""
+    assert account({"name": word}) == ("no_fly", False)
+    assert account({"name": "X", "note": word})[0] == "no_fly"
+
+
 def test_values_of_a_region_are_no_airspace() -> None:
     """Heights, floors of houses and our own members say nothing of airspace."""
+    assert account({"name": "Champ", "limite": "parcelle 12", "floor": 2}) == ("roi", False)
     assert account(
         {"name": "Field", "height": 12, "floors": 3, "floor_m": 30, "ceiling_m": 90, "crop": "rye"}
     ) == ("roi", False)
