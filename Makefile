@@ -54,7 +54,7 @@ $(VENV)/.installed: requirements.lock pyproject.toml | $(VENV)/.created
 	$(BIN)/python -m pip install --quiet --require-hashes -r requirements.lock
 	@mkdir -p static/dist
 	$(BIN)/python -m pip install --quiet --no-deps --no-build-isolation -e .
-	$(BIN)/python -c 'from planner.warm import warm_up; warm_up()'
+	$(BIN)/python -c 'from planner.warm import prepare; prepare()'
 	@touch $@
 
 # MAVProxy reads our missions in a test; its maps and video are left out.

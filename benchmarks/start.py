@@ -24,7 +24,7 @@ from typing import Any
 ROOT = Path(__file__).resolve().parents[1]
 EXAMPLES = ROOT / "examples"
 #: The line of the Makefile's installation.
-COMPILE = "from planner.warm import warm_up; warm_up()"
+COMPILE = "from planner.warm import prepare; prepare()"
 #: A first plan may take this much longer than a later one.
 ALLOWED_S = 3.0
 WAIT_S = 240

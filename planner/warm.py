@@ -107,6 +107,16 @@ def load() -> None:
     Compiling().once(_load)
 
 
+def prepare() -> None:
+    """End an installation: compile every kernel, so that processes that begin later wait for nobody."""
+    Compiling().once(_all)
+
+
+def _all() -> bool:
+    warm_up()
+    return compiled() > 0
+
+
 def _load() -> bool:
     one = [feature for feature in _SCENARIO["features"] if feature["id"] not in ("R1", "R2")]
     scenario = read_scenario(_SCENARIO | {"features": one})

@@ -8,6 +8,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+from planner.compiling import Compiling
+
 ROOT = Path(__file__).resolve().parents[2]
 #: What a service does in the life of a planning process, told in numbers.
 PROGRAM = """
@@ -28,8 +30,9 @@ print(json.dumps([before, warm.compiled(), loaded]))
 
 def test_loading_after_a_compilation_compiles_nothing() -> None:
     """With kernels kept from before, neither loading nor the shared cases compile a kernel."""
-    compiling = [sys.executable, "-c", "from planner.warm import warm_up; warm_up()"]
+    compiling = [sys.executable, "-c", "from planner.warm import prepare; prepare()"]
     subprocess.run(compiling, cwd=ROOT, check=True)
+    assert Compiling().done
     done = subprocess.run(
         [sys.executable, "-c", PROGRAM], cwd=ROOT, check=True, capture_output=True, env=os.environ, text=True
     )
