@@ -38,7 +38,6 @@ from planner.plan import (
     ZonePolygon,
 )
 from planner.profile.compose import Composed
-from planner.profile.finish import finish_of
 from planner.profile.heights import Heights
 from planner.profile.lines import cut
 from planner.route import CollectPass, Terminal
@@ -318,7 +317,7 @@ def assemble(
     heading_deg = None if aloft else chart.frame.true_heading_deg(*begin.position, begin.angle_rad)
     path = flown_path(flight, model, metrics.energy_wh, chart.lonlats, chart.straight_edge_m, heading_deg)
     level_m = chart.level.altitude_m
-    value = vehicle_value(model.aircraft, finish_of(model.aircraft, *ends))
+    value = vehicle_value(model.aircraft, composed.finish)
     home, end = chart.lonlats([ends[0].ground, ends[1].position])
     return Plan(
         name=name,

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from functools import partial
 
 from planner.dubins.path import Path, Segment, join
+from planner.plan import Finish
 from planner.profile.change import Changed
 from planner.profile.flight import Flight, Times, whole_flight
 from planner.profile.heights import Heights
@@ -25,12 +26,13 @@ Span = tuple[float, float]
 class Composed:
     """A flight, and the distances over the ground between which its legs and its passes lie.
 
-    The first leg begins where the mission does, the last one ends there.
+    The first leg begins where the mission does, the last one ends there; ``finish`` is how the flight ends.
     """
 
     flight: Flight
     legs_m: tuple[Span, ...]
     passes_m: tuple[Span, ...]
+    finish: Finish
 
 
 def compose(
@@ -38,6 +40,7 @@ def compose(
     between: Sequence[Changed],
     passes: Sequence[tuple[CollectPass | None, Heights]],
     down: Rise,
+    finish: Finish,
     times: Times,
 ) -> Composed:
     """Put a flight together.
@@ -74,7 +77,7 @@ def compose(
     bounds_m = (up.run_m, up.turns_m, whole_m - down.turns_m, whole_m - down.run_m)
     inserted_m = up.inserted_m + math.fsum(leg.inserted_m for leg in between) + down.inserted_m
     flight = whole_flight(join(*pieces), heights, bounds_m, passes_m, inserted_m, times, LIFT_OFF_HEIGHT_M)
-    return Composed(flight, tuple(legs_m), tuple(passes_m))
+    return Composed(flight, tuple(legs_m), tuple(passes_m), finish)
 
 
 def times_of(model: FlightModel, datum_amsl_m: float) -> Times:

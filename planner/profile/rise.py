@@ -341,7 +341,7 @@ def _beside(low_m: float, leg: Path, terms: Terms) -> _Choice | None:
             for side in SIDES:
                 if tried >= MOST_BESIDE:
                     return best
-                if not terms.zones.clear(_ring(centre, 0.0, side, terms.radius_m)):
+                if not terms.zones.clear(ring(centre, 0.0, side, terms.radius_m)):
                     continue
                 tried += 1
                 choice = _round(low_m, begin, goal, centre, side, terms)
@@ -350,7 +350,7 @@ def _beside(low_m: float, leg: Path, terms: Terms) -> _Choice | None:
     return best
 
 
-def _ring(centre: tuple[float, float], at_rad: float, side: SegmentKind, radius_m: float) -> Path:
+def ring(centre: tuple[float, float], at_rad: float, side: SegmentKind, radius_m: float) -> Path:
     """A whole circle about a centre, from a place at an angle seen from there."""
     turn = 1.0 if side == "left" else -1.0
     place = (centre[0] + radius_m * math.cos(at_rad), centre[1] + radius_m * math.sin(at_rad))
@@ -364,8 +364,8 @@ def _round(
     best: _Choice | None = None
     for k in range(ENTRIES):
         raise_if(terms.stop)
-        ring = _ring(centre, k * math.tau / ENTRIES, side, terms.radius_m)
-        pose = Anchor(*ring.start.position, ring.start.angle_rad)
+        once = ring(centre, k * math.tau / ENTRIES, side, terms.radius_m)
+        pose = Anchor(*once.start.position, once.start.angle_rad)
         try:
             through = join(terms.connect(begin, pose), terms.connect(pose, goal))
             there_m = terms.connect(begin, pose).length_m

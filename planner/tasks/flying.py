@@ -18,7 +18,7 @@ from planner.errors import InfeasibleError
 from planner.profile.change import Changed, Layers, changed, kept
 from planner.profile.compose import Composed, compose, times_of
 from planner.profile.ends import Surround, circle_radius_m, climb_slope_rad, down, sink_slope_rad, up
-from planner.profile.finish import finish_of
+from planner.profile.finish import finish_among, finish_of
 from planner.profile.following import Following
 from planner.profile.heights import Heights
 from planner.profile.heights import level as level_heights
@@ -244,7 +244,13 @@ def fly_whole(
     origin, top = _leaves(stations[-1], arrived), levels.at(stations[-1].altitude_m)
     sink_m = top.level.height_m / math.tan(sink_slope_rad(model))
     grounds_m = (top.home_ground_m, top.ground_m(end.position))
-    finish = finish_of(model.aircraft, start, end)
+    among = (circle_radius_m(model), layers.zones(top, top.ground, TRANSIT_MARGIN_M))
+    finish = finish_among(model.aircraft, start, end, *among)
+    if finish != finish_of(model.aircraft, start, end):
+        notes.append(
+            f"{end.name}: the flight ends with a landing: the circle of {among[0]:.0f} m round home that a "
+            "return ends in would leave the area or enter a zone"
+        )
 
     def fallen(connector: Connector) -> Rise:
         low = layers.around(
@@ -266,7 +272,7 @@ def fly_whole(
     if following is not None:
         falling = following.over_fall(falling, last_m)
     times = times_of(model, levels.datum_amsl_m)
-    composed = compose(rising, between, passes, falling, times)
+    composed = compose(rising, between, passes, falling, finish, times)
     return composed, tuple(legs), tuple(notes)
 
 

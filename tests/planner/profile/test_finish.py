@@ -1,0 +1,57 @@
+"""How a flight ends near the edge of its area: never outside while there is a way inside."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from shapely.geometry import LineString
+
+from planner.errors import InfeasibleError
+from planner.geojson import read_scenario
+from planner.pipeline import make_plan
+from tests.planner.moved import box, put_at
+from tests.planner.scenarios import feature, small
+
+PUT = put_at((8.55, 47.4))
+#: A circle of a return is so wide here.
+RADIUS_M = 84.0
+
+
+def beside_edge(away_m: float, **vehicle: Any) -> dict[str, Any]:
+    """A start so far inside the western edge of an area."""
+    document = small(
+        features=[
+            feature("A", "roi", "Polygon", box(PUT, 1500, -100, 1700, 100)),
+            feature("area", "area", "Polygon", box(PUT, -away_m, -1500, 4000, 1500)),
+            feature("start", "start", "Point", PUT(0, 0)),
+        ],
+        clearance_m=150.0,
+    )
+    document["vehicles"][0] |= {"min_turn_radius_m": 80.0} | vehicle
+    return document
+
+
+@pytest.mark.parametrize("away_m", [5.0, 40.0, 80.0, 120.0, 400.0])
+def test_a_flight_from_near_the_edge_stays_inside(away_m: float) -> None:
+    """It lands where a circle round home would leave the area, says so, and returns where that has room."""
+    scenario = read_scenario(beside_edge(away_m))
+    plan = make_plan(scenario)
+    assert scenario.area is not None
+    line = LineString(scenario.frame.to_local([place[:2] for place in plan.paths[0].line]))
+    assert scenario.area.buffer(0.5).covers(line)
+    assert not plan.hard_violations
+    lands = away_m < RADIUS_M
+    assert plan.vehicles[0].finish == ("land" if lands else "return")
+    assert any("ends with a landing" in warning for warning in plan.warnings) == lands
+
+
+@pytest.mark.parametrize("away_m", [40.0, 80.0])
+def test_a_return_that_is_asked_for_never_counts_as_inside(away_m: float) -> None:
+    """Its circle lies round home: the plan is refused for the area, or has a hard violation of it."""
+    scenario = read_scenario(beside_edge(away_m, finish="return"))
+    try:
+        told = [violation.constraint for violation in make_plan(scenario).hard_violations]
+    except InfeasibleError as error:
+        told = [error.constraint]
+    assert told == ["area"]
