@@ -90,9 +90,9 @@ class DiscSearch:
     end: Place
     glider: Glider
 
-    def line(self, waypoints: Floats) -> tuple[Floats, float]:
+    def line(self, waypoints: Floats, chord_m: float = CHORD_M) -> tuple[Floats, float]:
         """The line through waypoints between start and end, and its energy; inf where none is flyable."""
-        points, straight_m, turned_m = rounded(self._whole(waypoints), self.glider.radius_m, CHORD_M)
+        points, straight_m, turned_m = rounded(self._whole(waypoints), self.glider.radius_m, chord_m)
         if not math.isfinite(straight_m):
             return points, math.inf
         return points, self.glider.energy_of_j(straight_m, turned_m)

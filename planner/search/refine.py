@@ -17,15 +17,20 @@ from numpy.typing import NDArray
 from planner.errors import InfeasibleError
 from planner.progress import Stop, never
 from planner.search.course import DiscSearch
+from planner.search.upright import upright
 
 Floats = NDArray[np.float64]
 
 #: How many of the lines go on in each round, and trials of each.
-ROUNDS = ((64, 100), (8, 500), (4, 2500))
+ROUNDS = ((96, 100), (10, 500), (4, 2500))
+#: Each is begun so often: first steps that take out a waypoint or put one in are seldom undone.
+STARTED = 3
 #: Steps by the disc's radius, as often small as large.
 LEAST, MOST = 0.01, 0.6
 #: What a step may lose at first, by the square of the disc's radius; at the end nothing.
 ACCEPTED = 0.03
+#: Arcs of lines that are tried have chords of so many radii of the disc.
+COARSE = 0.25
 #: Joules over the budget count as many times the worth that straight flight sees for them.
 OVER = 8.0
 
@@ -66,8 +71,10 @@ def auto(
     InfeasibleError
         ``"energy"``: no line that was tried is within it.
     """
+    asked, frame = search, upright(search)
+    search = frame.search
     rng = np.random.default_rng(seed)
-    lines = [_evaluated(search, family, waypoints) for family, waypoints in families(search)]
+    lines = [_evaluated(search, family, waypoints) for family, waypoints in families(search)] * STARTED
     for most, trials in rounds:
         lines = [_climb(search, line, trials, rng, stop) for line in lines[:most]]
         lines.sort(key=lambda each: -_goodness(search, each.worth, each.energy_j))
@@ -81,7 +88,9 @@ def auto(
             f"{least_j / 3600.0:.1f} Wh",
             "Raise the energy, or search less ground.",
         )
-    return max(kept, key=lambda each: each.worth)
+    best = max(kept, key=lambda each: each.worth)
+    points = frame.back(search.line(best.waypoints)[0])
+    return Refined(best.family, frame.back(best.waypoints), points, best.energy_j, asked.seen(points))
 
 
 def families(search: DiscSearch) -> Iterator[tuple[str, Floats]]:
@@ -180,7 +189,7 @@ def _moved(waypoints: Floats, step_m: float, rng: np.random.Generator) -> Floats
 
 
 def _evaluated(search: DiscSearch, family: str, waypoints: Floats) -> Refined:
-    points, energy_j = search.line(waypoints)
+    points, energy_j = search.line(waypoints, COARSE * search.reach_m)
     worth = search.seen(points) if math.isfinite(energy_j) else 0.0
     return Refined(family, waypoints, points, energy_j, worth)
 
