@@ -174,8 +174,9 @@ class CameraSensor:
     def run_in_m(self, height_m: float, angle_rad: float) -> float:
         """How far before the ground on a lane's line the first photo is taken; negative: behind its start.
 
-        Its middle lies no farther from there than that of the nearer of two photos from a place between them,
-        and where photos overlap by half or more the beginning is in the next photo, too.
+        Where photos overlap by half or more the beginning is in the next photo, too, and the first one's
+        middle no farther from it than an interval; elsewhere no farther than that of the nearer of two photos
+        from a place between them.
         """
         laid, high_m, low_m = self._drops(height_m, angle_rad)
         middle_m = max(laid.middle * high_m, laid.middle * low_m)
@@ -223,7 +224,7 @@ class CameraSensor:
         spacing_m = self.photo_spacing_m(height_m, angle_rad)
         inside_m = middle_m - spacing_m / 2.0
         if self.forward_overlap >= TWICE:
-            inside_m = min(middle_m, max(inside_m, seen_m + spacing_m))
+            inside_m = min(middle_m, max(middle_m - spacing_m, seen_m + spacing_m))
         return max(seen_m, inside_m)
 
     def _drops(self, height_m: float, angle_rad: float) -> tuple[Pattern, float, float]:

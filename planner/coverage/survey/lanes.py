@@ -2,10 +2,11 @@
 
 In axes turned by the heading θ, x̂ ahead and ŷ to the left, a region spans w across. The outer lanes run e
 inside its edges, the others no more than a spacing d apart, n = ⌈(w − 2e) / d⌉ + 1; one does where w ≤ d.
-On their own lines the first and the last photo lie half an interval inside; lanes go farther where ground
-between two would not be in two photos of the one and in view of the other. So places at the edges of a region
-are seen from two lanes and twice, as those between lanes and photos are. What n lanes have to spare is taken
-from their distances or from e. Of a camera that need not keep its overlap at the edges (``edge_overlap``)
+On their own lines the first and the last photo lie as far inside as the edge is still in two, an interval at
+most, and half of one where photos overlap by less than half; lanes go farther where ground between two would
+not be in two photos of the one and in view of the other. So places at the edges of a region are seen from two
+lanes and twice, as those between lanes and photos are. What n lanes have to spare is taken from their
+distances or from e. Of a camera that need not keep its overlap at the edges (``edge_overlap``)
 each lane answers for the ground halfway to the next one, and the outer ones for all up to the edge.
 """
 

@@ -56,11 +56,14 @@ def test_straight_down_in_still_air_it_is_the_image_and_its_parts() -> None:
     assert PLAIN.lane_spacing_m(100.0, 0.3) == pytest.approx(0.35 * 117.5, abs=1e-9)
     assert PLAIN.photo_spacing_m(100.0, 0.3) == pytest.approx(0.25 * 235.0 / 3.0, abs=1e-9)
     assert PLAIN.half_width_m(100.0, 0.3) == pytest.approx(58.75, abs=1e-9)
-    # The first photo's middle lies half an interval inside; with half an overlap on the edge.
-    half_m = 0.125 * 235.0 / 3.0
-    assert (PLAIN.run_in_m(100.0, 0.3), PLAIN.run_out_m(100.0, 0.3)) == pytest.approx((-half_m, -half_m))
-    half = replace(PLAIN, forward_overlap=0.5)
-    assert (half.run_in_m(100.0, 0.3), half.run_out_m(100.0, 0.3)) == pytest.approx((0.0, 0.0), abs=1e-9)
+    # The first photo's middle lies as far inside as the second one sees the edge, an interval at most; where
+    # no second one sees it half an interval.
+    for overlap, inside in ((0.5, 0.0), (0.6, 0.1), (0.75, 0.25), (0.85, 0.15), (0.4, 0.3)):
+        some = replace(PLAIN, forward_overlap=overlap)
+        inside_m = -inside * 235.0 / 3.0
+        assert (some.run_in_m(100.0, 0.3), some.run_out_m(100.0, 0.3)) == pytest.approx(
+            (inside_m, inside_m), abs=1e-9
+        )
     assert PLAIN.worst_gsd_m(100.0) == pytest.approx(100.0 * 23.5e-3 / 6000 / 0.02, rel=1e-12)
 
 

@@ -33,7 +33,7 @@ def recorded(
     plan: Plan, lost: bool = False, photos: bool = True
 ) -> tuple[list[TrackSample], list[FlightEvent]]:
     """A flight along the plan's lanes as the service keeps it; of each five photos may be lost."""
-    gone = frozenset((p.seq, k) for p in plan.photos for k in range(5, 5 + LOST)) if lost else frozenset()
+    gone = frozenset((p.seq, k) for p in plan.photos for k in range(3, 3 + LOST)) if lost else frozenset()
     one = record(lost=gone, photos=photos)
     samples = [
         TrackSample(
