@@ -327,7 +327,9 @@ class _Across:
         with np.errstate(invalid="ignore"):
             neighbours = np.abs(self.track[0] - self.track[1]) == 1.0
             between_m = np.abs(self.left_m[0] - self.left_m[1])
-        gap_m = np.where(neighbours, between_m, 2.0 * np.abs(self.left_m[0]))
+        # Tracks between two that see a place may be over ground elsewhere.
+        alone_m = 2.0 * np.abs(self.left_m[0])
+        gap_m = np.where(neighbours, between_m, np.fmin(alone_m, between_m))
         width_m = np.where(neighbours, np.minimum(*self.width_m), self.width_m[0])
         seen = np.isfinite(width_m) & (width_m > 0.0)
         share = np.full(len(width_m), -np.inf)

@@ -95,6 +95,25 @@ def test_between_lanes_overlaps_are_those_of_their_distances() -> None:
     assert seen.worst_gsd_m == pytest.approx(100.0 * 23.5e-3 / 6000 / 0.02)
 
 
+@pytest.mark.parametrize("lefts_m", [(0.0, 30.0, 60.0), (0.0, 60.0)])
+def test_lanes_over_ground_elsewhere_leave_the_least_as_it_is(lefts_m: tuple[float, ...]) -> None:
+    """Lanes of another piece, far ahead, lie between those here, a degree off their course.
+
+    Places up to 25 m beside the outer ones, which the second of three sees, too, are among those looked at.
+    """
+    camera = CameraSensor("eye", OPTICS)
+    here = [lane(0.0, left_m, 19.0, 0.0, camera) for left_m in lefts_m]
+    there = [lane(0.015, left_m, 19.0, 0.0, camera) for left_m in (-10.0, 15.0, 45.0, 70.0)]
+    there = [replace(each, places_m=each.places_m + np.array([1000.0, 0.0])) for each in there]
+    low_m = -25.0 if len(lefts_m) > 2 else 0.0
+    places_m = np.random.default_rng(2).uniform((-90.0, low_m), (90.0, 60.0 - low_m), (2000, 2))
+    alone = look(places_m, np.zeros(2000), here, camera)
+    both = look(places_m, np.zeros(2000), here + there, camera)
+    assert (both.side >= alone.side - 1e-9).all()
+    assert both.side.min() == pytest.approx(alone.side.min(), abs=0.01)
+    assert both.forward == pytest.approx(alone.forward)
+
+
 def test_a_photo_left_out_halves_what_its_neighbours_share() -> None:
     """Where it is missing the next is two intervals on."""
     seen = two_lanes(40.0, 20.0, drop=[0, 1, 2, 3, 4, 6, 7, 8, 9, 10, 11])
