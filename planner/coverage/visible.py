@@ -37,6 +37,8 @@ class Seeing:
     wide
         Whether any number of passes, and divisions, are allowed; the paper's coverage, asked for by name, has
         two passes at most and divides nothing.
+    max_height_m
+        The greatest height over ground that passes may have; None where none is given.
     """
 
     regions: tuple[Region, ...]
@@ -46,6 +48,7 @@ class Seeing:
     model: FlightModel
     objective: Objective
     wide: bool = True
+    max_height_m: float | None = None
 
     def surroundings(self) -> Surroundings:
         """Area, zones and prices at the level, with the margin transits keep."""

@@ -97,4 +97,5 @@ def seeing(scenario: Scenario, setting: Setting) -> Seeing:
         model=setting.model,
         objective=scenario.objective,
         wide=scenario.method.coverage != "li2018",
+        max_height_m=scenario.max_height_m,
     )

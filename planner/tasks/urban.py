@@ -117,15 +117,26 @@ def refuse_filled(asked: Seeing) -> None:
             continue
         if _open_ground(asked, region, region.area).area >= LEAST_M2:
             continue
-        level, clearance_m = asked.level.of(region), asked.airspace.clearance_m
-        over_m = top_over(region.area, asked.airspace, level) - level.height_m + level.altitude_m
+        clearance_m = asked.airspace.clearance_m
         raise InfeasibleError(
             "hard-zone",
             region.name,
             f"obstacles and zones, with their clearance of {clearance_m:g} m, fill it at this height",
-            "fly elsewhere" if math.isinf(over_m) else f"fly higher: altitude_m of {math.ceil(over_m + 0.1)}",
+            _higher(asked, region) or "fly elsewhere",
             (region.area.centroid.x, region.area.centroid.y),
         )
+
+
+def _higher(asked: Seeing, region: Region) -> str | None:
+    """At which altitude all in the way is passed over, and what ceiling that takes; None where at none."""
+    level = asked.level.of(region)
+    over_m = top_over(region.area, asked.airspace, level)
+    if math.isinf(over_m):
+        return None
+    said = f"fly higher: altitude_m of {math.ceil(over_m - level.height_m + level.altitude_m + 0.1)}"
+    if asked.max_height_m is not None and over_m > asked.max_height_m:
+        said += f", with max_height_m raised to {math.ceil(over_m + 1.1)}"
+    return said
 
 
 def _open_ground(asked: Seeing, region: Region, area: BaseGeometry) -> BaseGeometry:
@@ -181,8 +192,8 @@ def _unseen(asked: Seeing, region: Region, passes: tuple[CollectPass, ...]) -> I
         around_m = max(around_m, float(shapely.distance(corners, solid[name]).max()))
     share = left.area / bare_ground(region.area, airspace, level).area
     which = " and ".join(names) if len(names) < 3 else f"{', '.join(names[:2])} and {len(names) - 2} more"
-    over_m = top_over(region.area, airspace, level) - level.height_m + level.altitude_m
-    fixes = [] if math.isinf(over_m) else [f"fly higher: altitude_m of {math.ceil(over_m + 0.1)}"]
+    higher = _higher(asked, region)
+    fixes = [] if higher is None else [higher]
     ring = (
         f" with {math.ceil(around_m)} m round {'it' if len(names) == 1 else 'them'}" if around_m > 0.5 else ""
     )

@@ -100,3 +100,15 @@ def test_no_plan_leaves_ground_of_a_required_region(kind: str, vehicle: dict[str
     rest = planned(asked(vehicle, ZONES[kind], role, left))
     assert isinstance(rest, Plan)
     assert not [violation for violation in rest.violations if violation.hard]
+
+
+def test_a_ceiling_below_what_fills_a_region_is_told_to_be_raised() -> None:
+    """To a value that works."""
+    document = asked(ROTORS, [box(-250, -250, 250, 250)], "obstacle") | {"max_height_m": 100.0}
+    refused = planned(document)
+    assert isinstance(refused, InfeasibleError)
+    told = re.search(r"altitude_m of (\d+), with max_height_m raised to (\d+)", refused.relaxation)
+    assert told is not None
+    over = planned(document | {"altitude_m": float(told[1]), "max_height_m": float(told[2])})
+    assert isinstance(over, Plan)
+    assert over.metrics.coverage["C"] == 1.0
