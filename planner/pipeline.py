@@ -15,10 +15,11 @@ from planner.check import judge
 from planner.check.edge import near_edge
 from planner.errors import Finding
 from planner.metrics import measure
-from planner.plan import LeftOut, Plan, Replanned
+from planner.plan import LeftOut, Plan
 from planner.profile.items import items_of, too_many
 from planner.progress import Progress, Stop, never, silent
 from planner.publish import Chart, assemble, fence, uncovered
+from planner.replanned import replanned
 from planner.scenario import Scenario
 from planner.tasks.methods import chosen_methods
 from planner.tasks.registry import task_of
@@ -86,7 +87,7 @@ def make_plan(
     controls = Controls(progress, stop, enough, watch.stage)
     if scenario.task in ("collect", "search") and scenario.is_fleet:
         return _fleet_plan(scenario, controls, watch)
-    answer = task_of(scenario.task).answer(scenario, controls)
+    answer = _kept(scenario, controls) or task_of(scenario.task).answer(scenario, controls)
     setting = answer.setting
     aircraft = setting.model.aircraft
     count = items_of(answer.composed.flight, len(answer.passes), aircraft)
@@ -103,6 +104,15 @@ def make_plan(
     with watch.stage("publish"):
         draft = _draft(scenario, chart, answer)
     return _judged(scenario, draft, chart, answer.dropped, answer.left_out, controls, watch)
+
+
+def _kept(scenario: Scenario, controls: Controls) -> Answer | None:
+    """The order that is being flown, where it is to be kept."""
+    if scenario.task != "collect" or scenario.going_on is None or not scenario.going_on.order:
+        return None
+    from planner.tasks.fleet.keeping import kept_alone
+
+    return kept_alone(scenario, controls)
 
 
 def _draft(scenario: Scenario, chart: Chart, answer: Answer) -> Plan:
@@ -177,7 +187,7 @@ def _judged(
             importance_total=verdict.importance_total,
             planning_time_s=dict(watch.seconds),
             left_out=left_out,
-            replan=None if scenario.going_on is None else Replanned(scenario.going_on.begins_in_s),
+            replan=None if scenario.going_on is None else replanned(scenario.going_on, draft),
         ),
         warnings=draft.warnings + near,
         violations=verdict.violations,

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
@@ -69,9 +70,15 @@ class GoingOn:
     ----------
     begins_in_s
         From the call for it to its beginning, where aircraft in flight were then thought to be.
+    order
+        By the name of an aircraft, what it was still to see, in flight order.
+    unless_better
+        Another order is flown where it is better by this part.
     """
 
     begins_in_s: float = 0.0
+    order: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    unless_better: float = 0.05
 
 
 @dataclass(frozen=True, slots=True)

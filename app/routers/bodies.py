@@ -12,7 +12,7 @@ from planner.geojson.fields import MOST
 from planner.geojson.going_on import MOST_S as LATEST_S
 from planner.geojson.scenario_reader import MOST_SEED
 from planner.geojson.searching import LEAST_SPREAD_M, MOST_ELAPSED_S, MOST_SCORE, MOST_SPREAD_M
-from planner.wishes import HIGHEST_M
+from planner.wishes import HIGHEST_M, GoingOn
 
 EXAMPLE: dict[str, Any] = json.loads(
     (Path(__file__).resolve().parents[1] / "examples" / "scenario.geojson").read_text(encoding="utf-8")
@@ -102,6 +102,18 @@ SCENARIO_SCHEMA: dict[str, Any] = {
                     "maximum": LATEST_S,
                     "default": 0,
                     "description": "From the call to the plan's beginning, when in_flight is true.",
+                },
+                "order": {
+                    "type": "object",
+                    "additionalProperties": {"type": "array", "items": {"type": "string"}},
+                    "description": "By vehicle, the regions that it was to see, in flight order: it stays.",
+                },
+                "unless_better": {
+                    "type": "number",
+                    "minimum": 0,
+                    "maximum": 1,
+                    "default": GoingOn().unless_better,
+                    "description": "Another order is flown where it is better by this part.",
                 },
             },
         },

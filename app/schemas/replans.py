@@ -11,6 +11,7 @@ from app.services.plans.replanned import Changes
 from app.services.plans.replanning import Asked, Told
 from planner.geojson.equipment import HIGHEST_ALOFT_M
 from planner.geojson.going_on import MOST_S
+from planner.wishes import GoingOn
 
 Degrees = Annotated[float, Field(ge=-180, le=180)]
 
@@ -73,6 +74,11 @@ class ReplanIn(Strict):
         "and 0.1 s for each item that their missions have about]. Scenario and metrics of the answer tell it "
         "in `replan`.",
     )
+    unless_better: Annotated[float, Field(ge=0, le=1)] = Field(
+        default=GoingOn().unless_better,
+        description="Who sees what, in which order, stays, unless another order is better by this part; "
+        "metrics.replan tells what was kept, what moved, and what is new.",
+    )
 
     def asked(self) -> Asked:
         """The value."""
@@ -83,4 +89,5 @@ class ReplanIn(Strict):
             self.seen,
             Changes(self.add, self.remove, self.lost, members),
             self.begins_in_s,
+            self.unless_better,
         )

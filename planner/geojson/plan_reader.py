@@ -218,7 +218,7 @@ def _metrics(p: Mapping[str, Any]) -> Metrics:
     left_out = tuple(LeftOut(**each) for each in p.get("left_out", ()))
     vehicles = {name: VehicleMetrics(**each) for name, each in p.get("vehicles", {}).items()}
     told = None if p.get("assignment") is None else Assigned(**p["assignment"])
-    replan = None if p.get("replan") is None else Replanned(**p["replan"])
+    replan = None if p.get("replan") is None else _replanned(p["replan"])
     read = {
         "left_out": left_out,
         "surveys": surveys,
@@ -227,6 +227,11 @@ def _metrics(p: Mapping[str, Any]) -> Metrics:
         "replan": replan,
     }
     return Metrics(**{**p, **read})
+
+
+def _replanned(p: Mapping[str, Any]) -> Replanned:
+    lists = {name: tuple(p.get(name, ())) for name in ("kept", "moved", "new")}
+    return Replanned(**{**p, **lists})
 
 
 def _vehicle(v: Mapping[str, Any]) -> PlanVehicle:

@@ -103,9 +103,18 @@ class Replanned:
     ----------
     begins_in_s
         From the call for it to its beginning: aircraft in flight have flown on by the old one until then.
+    kept, moved, new
+        Regions that the same aircraft sees in the same order as before; those that another does, or at
+        another place of its order; those that were in no order.
+    unless_better
+        Another order is flown where it is better by this part.
     """
 
     begins_in_s: float
+    kept: tuple[str, ...] = ()
+    moved: tuple[str, ...] = ()
+    new: tuple[str, ...] = ()
+    unless_better: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

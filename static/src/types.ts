@@ -88,6 +88,8 @@ export interface Metrics {
   photos?: number | null;
   /** Of each aircraft of a plan of several. */
   vehicles?: Record<string, VehicleMetrics>;
+  /** Of a plan made in flight: what of the order before it is kept. */
+  replan?: { begins_in_s: number; kept: string[]; moved: string[]; new: string[] };
   left_out?: { roi: string; reason: string; margin: number | null }[];
   last_landing_s?: number | null;
   /** Of a search: ground seen, each place once, and what that is worth where importance is given. */

@@ -20,7 +20,9 @@ from planner.geojson.geometry import areal, written
 from planner.plan import Plan
 from planner.scenario import Scenario
 from planner.vehicle.aircraft import Aircraft
+from planner.wishes import GoingOn
 
+AT_ONCE = GoingOn()
 #: Corners of what is left lie on a grid, so that written places round to no other shape.
 GRID_M = 0.1
 #: So much of a region unseen counts as all of it: it is asked for as it was.
@@ -73,7 +75,7 @@ def replanned(
     at_s: float,
     changes: Changes,
     looks: Sequence[Looked] = (),
-    begins_in_s: float = 0.0,
+    going_on: GoingOn = AT_ONCE,
 ) -> dict[str, Any]:
     """The scenario that is left.
 
@@ -89,8 +91,9 @@ def replanned(
         Seconds since the mission's start: windows count from now on.
     looks
         What a search has looked at; its regions stay as they are.
-    begins_in_s
-        How long after the call that is; where aircraft are, and what has been seen, is told for then.
+    going_on
+        How long after the call that is: where aircraft are, and what has been seen, is told for then; and
+        what they would have seen from then on.
 
     Raises
     ------
@@ -103,7 +106,11 @@ def replanned(
     made = copy.deepcopy(dict(document))
     made["name"] = f"{document.get('name') or 'flight'}-replan"
     made.update(copy.deepcopy(dict(changes.members)))
-    made["replan"] = {"begins_in_s": begins_in_s}
+    made["replan"] = {
+        "begins_in_s": going_on.begins_in_s,
+        "unless_better": going_on.unless_better,
+        "order": {name: list(order) for name, order in going_on.order.items() if name not in changes.lost},
+    }
     coming = {_name(feature): feature for feature in changes.features}
     features: list[dict[str, Any]] = []
     for feature in made["features"]:

@@ -25,7 +25,9 @@ from planner.geojson import read_scenario
 from planner.geojson.fields import Findings
 from planner.geojson.geometry import area
 from planner.plan import Plan
+from planner.replanned import order_of
 from planner.scenario import Scenario
+from planner.wishes import GoingOn
 
 GEOD = Geod(ellps="WGS84")
 #: The course is told by places this far apart.
@@ -61,6 +63,8 @@ class Asked:
     begins_in_s
         When, from now on, aircraft in flight take up the new plan: until then they fly on by the old one.
         None for as long as planning it and sending it up takes about; ``along.allowance_s``.
+    unless_better
+        Who sees what in which order stays, unless another order is better by this part.
     """
 
     at_s: float | None
@@ -68,6 +72,7 @@ class Asked:
     seen: Sequence[Mapping[str, Any]] | None
     changes: Changes
     begins_in_s: float | None = None
+    unless_better: float = GoingOn().unless_better
 
 
 def replan_of(sortie: Sortie, asked: Asked) -> dict[str, Any]:
@@ -133,7 +138,7 @@ def left_of(
             Looked(s.ground, at_s + s.in_s, at_s + s.until_s, heading_deg(scenario, s.collect)) for s in soon
         ]
         begins_s = at_s + begins_in_s
-        return replanned(document, scenario, now, {}, begins_s, asked.changes, looks, begins_in_s)
+        return replanned(document, scenario, now, {}, begins_s, asked.changes, looks, GoingOn(begins_in_s))
     if asked.seen is not None:
         ground = union_all([_area(shape, scenario, k) for k, shape in enumerate(asked.seen)])
         seen: Mapping[str, BaseGeometry] = {region.name: ground for region in scenario.regions}
@@ -144,9 +149,8 @@ def left_of(
         # What is being seen then is seen from its beginning.
         soon = [replace(s, ground=footprint_of(scenario, plan, s.collect)) for s in soon]
     seen = _and_soon(seen, soon)
-    return replanned(
-        document, scenario, now, seen, at_s + begins_in_s, asked.changes, begins_in_s=begins_in_s
-    )
+    going_on = GoingOn(begins_in_s, order_of(plan, at_s + begins_in_s), asked.unless_better)
+    return replanned(document, scenario, now, seen, at_s + begins_in_s, asked.changes, going_on=going_on)
 
 
 def _ahead(

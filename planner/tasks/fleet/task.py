@@ -15,9 +15,10 @@ from planner.scenario import Scenario
 from planner.tasks.fleet.aloft import homewards
 from planner.tasks.fleet.barred import BarredError, barred, infeasible
 from planner.tasks.fleet.crews import Crew, crews_of, left_by, not_seen, ways_of
-from planner.tasks.fleet.deciding import decided, decided_by, methods_of
+from planner.tasks.fleet.deciding import AUTO, decided, decided_by, methods_of
 from planner.tasks.fleet.flights import Flown, Order, in_best_order, in_given_order, in_order, items_in, over
 from planner.tasks.fleet.jobs import Job, jobs_of
+from planner.tasks.fleet.keeping import kept_or
 from planner.tasks.fleet.parts import Cutting
 from planner.tasks.fleet.placing import CROWDED, Errand, LateError, Sortie, cost_of, placed, powers_of
 from planner.tasks.fleet.problem import Lessons, landing_of, problem_of, trips_of
@@ -206,6 +207,8 @@ class _Rounds:
             )
             problem = problem_of(self._crews, jobs, self._ways, self._scenario.objective, self._lessons)
             assigned = decided(problem, self._scenario.method, self._scenario.seed, self._controls)
+            if decided_by(self._scenario.method) == AUTO:
+                assigned = kept_or(self._scenario.going_on, self._crews, jobs, problem, assigned)
             if any(each.required for each in assigned.left_out):
                 return jobs, problem, assigned, []
             try:

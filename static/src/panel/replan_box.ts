@@ -22,8 +22,17 @@ function flyers(): Vehicle[] {
 /** What the page's scenario has since become other than the one of the plan. */
 const since = ({ madeFrom }: OpenPlan): Differences => differences(JSON.parse(madeFrom) as Scenario, scenarios.document.value);
 
+/** What a plan made in flight has kept of the order before it; empty of others. */
+function keptWords({ metrics: { replan } }: OpenPlan["plan"]): string {
+  if (!replan) return "";
+  const part = (word: string, names: string[]): string => (names.length > 0 ? `; ${word}: ${names.join(", ")}` : "");
+  return `This plan was made in flight: ${replan.kept.length} regions kept in their order${part("moved", replan.moved)}${part("new", replan.new)}.`;
+}
+
 export function replanBox(): HTMLElement {
   const changes = h("ul", { id: "replan-changes" });
+  /** Of a plan that was made so: what it has kept. */
+  const kept = h("p", { class: "quiet", id: "replan-kept" });
   const from = h("select", { id: "replan-from" });
   const minutes = h("input", { id: "replan-min", type: "number", min: 0, step: "any", value: 0 });
   const when = h("div", { class: "field" }, h("label", { for: "replan-min" }, "Minutes after its beginning"), minutes);
@@ -35,6 +44,7 @@ export function replanBox(): HTMLElement {
     "Change in flight",
     false,
     h("p", { class: "quiet" }, "Draw what is new, move or delete what changed under Scenario; the plan is then made anew from where its aircraft are, for what they have not seen. Nothing is sent to them until you upload it."),
+    kept,
     changes,
     h("div", { class: "grid" }, h("div", { class: "field" }, h("label", { for: "replan-from" }, "From"), from), when),
     lost,
@@ -94,6 +104,8 @@ export function replanBox(): HTMLElement {
     chosen = "";
     minutes.value = "0";
     ticks.clear();
+    fill(kept, keptWords(plan));
+    kept.hidden = plan.metrics.replan === undefined;
     const crew = crewOf(plan);
     fill(
       lost,

@@ -246,6 +246,8 @@ PROOFS: dict[tuple[str, str], tuple[Document, Document]] = {
     ),
     ("scenario", "seed"): (small(), member("seed", 5)),
     ("replan", "begins_in_s"): (small(), member("replan", {"begins_in_s": 5.0})),
+    ("replan", "order"): (member("replan", {}), member("replan", {"order": {"uav": ["A"]}})),
+    ("replan", "unless_better"): (member("replan", {}), member("replan", {"unless_better": 0.5})),
     ("scenario", "time_budget_s"): (many(1e9), many(1e-3)),
 }  # fmt: skip
 ROLES = ("roi", "threat", "no_fly", "obstacle", "end", "importance", "base", "start", "area")
