@@ -34,6 +34,8 @@ FEW_SATELLITES = 6
 GOOD_FIXES = frozenset({"3d", "dgps", "rtk_float", "rtk_fixed"})
 #: A home whose height differs more from the scenario's stands elsewhere, or one datum is wrong.
 HEIGHT_M = 10.0
+#: Rasters of the world are this far off here and there; more is another place, or another datum.
+RASTER_M = 30.0
 #: Circles wider by this leave little of the margin that transits keep from zones.
 WIDER_M = 5.0
 #: Wind above this part of the airspeed leaves too little for turns.
@@ -124,7 +126,7 @@ def preflight(
         _place(plan, mission.vehicle, state),
         *_heading(plan, mission, state),
         _gps(state),
-        _datum(plan, scenario, state),
+        _datum(plan, scenario, mission, state),
         *_circles(mission, state),
         *_wind(plan, scenario, mission),
     )
@@ -311,7 +313,7 @@ def _gps(state: VehicleState) -> Check:
     return Check("gps", "warning" if few else "ok", f"fix: {state.gps_fix}{seen}")
 
 
-def _datum(plan: Plan, scenario: Mapping[str, Any], state: VehicleState) -> Check:
+def _datum(plan: Plan, scenario: Mapping[str, Any], mission: Mission, state: VehicleState) -> Check:
     """What the altitudes count from, and whether vehicle and plan mean the same by it."""
     home_m = state.home_altitude_amsl_m
     if home_m is None:
@@ -319,6 +321,8 @@ def _datum(plan: Plan, scenario: Mapping[str, Any], state: VehicleState) -> Chec
     said = f"home is at {home_m:.0f} m above mean sea level (the autopilot's geoid, EGM96)"
     planned_m = _home_altitude_m(scenario)
     if plan.altitude_reference == "amsl":
+        if planned_m is None and scenario.get("terrain") and mission.declared is None:
+            return _on_raster(mission.home_altitude_m, home_m, said)
         if planned_m is None:
             words = f"{said}; the plan counts from sea level and does not know the height of its start"
             return Check("altitude", "warning", words)
@@ -332,6 +336,13 @@ def _datum(plan: Plan, scenario: Mapping[str, Any], state: VehicleState) -> Chec
         words = f"{said}; without a terrain raster the ground is taken to be flat at that height"
         return Check("altitude", "warning", words)
     return Check("altitude", "ok", f"{said}; the plan counts from {plan.altitude_reference}")
+
+
+def _on_raster(ground_m: float, home_m: float, said: str) -> Check:
+    """Where the raster's ground is the height of the start: it may be off itself."""
+    words = f"{said}; the terrain raster has the ground of the plan's start at {ground_m:.0f} m"
+    off_m = abs(ground_m - home_m)
+    return Check("altitude", "failed" if off_m > RASTER_M else "warning" if off_m > HEIGHT_M else "ok", words)
 
 
 def _home_altitude_m(scenario: Mapping[str, Any]) -> float | None:

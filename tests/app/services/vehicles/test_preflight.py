@@ -191,6 +191,18 @@ def test_altitude_datum(reference: Any, scenario: dict[str, Any], status: str) -
     assert checks(plan, SCENARIO | scenario | {"features": [start]})["altitude"].status == status
 
 
+@pytest.mark.parametrize(
+    ("ground_m", "status"), [(45.0, "ok"), (60.0, "warning"), (20.0, "warning"), (497.0, "failed")]
+)
+def test_the_rasters_ground_at_the_start_is_held_against_home(ground_m: float, status: str) -> None:
+    """On terrain the plan knows how high its start is, though no third coordinate says so."""
+    plan = make_plan(fence=square_fence(5000.0), altitude_reference="amsl", ground_m=ground_m)
+    point = {"type": "Point", "coordinates": [LON_DEG, LAT_DEG]}
+    start = {"properties": {"role": "start"}, "geometry": point}
+    found = checks(plan, SCENARIO | {"terrain": "an id", "features": [start]})["altitude"]
+    assert (found.status, f"at {ground_m:.0f} m" in found.detail) == (status, True)
+
+
 @pytest.mark.parametrize(("speed_m_s", "status"), [(5.0, "ok"), (15.0, "warning")])
 def test_wind(speed_m_s: float, status: str) -> None:
     """Wind is spoken of when it is given, and warned of when it is strong."""
