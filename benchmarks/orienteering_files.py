@@ -13,16 +13,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from benchmarks.files import FileError
+
 Floats = NDArray[np.float64]
 Ring = tuple[tuple[float, float], ...]
 
 #: As TSPLIB's documentation writes them.
 TSPLIB_PI = 3.141592
 TSPLIB_EARTH_KM = 6378.388
-
-
-class FileError(ValueError):
-    """A file that is no orienteering problem."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,8 +96,8 @@ def read(path: Path) -> OplibProblem | PolygonProblem:
     FileError
         With the name of what is missing.
     """
-    text = path.read_text(encoding="utf-8")
     try:
+        text = path.read_text(encoding="utf-8")
         if text.lstrip().startswith("{"):
             return _polygons(json.loads(text))
         return _oplib(text, _solution(path.with_suffix(".sol")))

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pyvrp
 
+from benchmarks.files import FileError
 from planner.fleet.auto.build import ENDLESS, REQUIRED
 from planner.fleet.auto.search import Found, Tables
 from planner.fleet.auto.tables import Costs, Crew, Jobs, Weights
@@ -34,7 +35,20 @@ def published(file: Path) -> tuple[float | None, list[list[int]]]:
 
 
 def read(file: Path) -> tuple[pyvrp.ProblemData, str]:
-    """A file's problem, distances rounded as its published cost has them."""
+    """A file's problem, distances rounded as its published cost has them.
+
+    Raises
+    ------
+    FileError
+        Where it is none.
+    """
+    try:
+        return _read(file)
+    except (RuntimeError, LookupError, ValueError, TypeError, AttributeError, ArithmeticError) as error:
+        raise FileError(f"{file.name}: no routing problem in VRPLIB form: {error!r}") from error
+
+
+def _read(file: Path) -> tuple[pyvrp.ProblemData, str]:
     cost, routes = published(file)
     best: tuple[float, pyvrp.ProblemData, str] | None = None
     for rounding in ROUNDINGS:
@@ -64,7 +78,7 @@ def tables(data: pyvrp.ProblemData) -> Tables:
 
     Raises
     ------
-    ValueError
+    FileError
         Where the file asks for what the tables have no words for.
     """
     clients, depots, types = data.clients(), data.depots(), data.vehicle_types()
@@ -122,7 +136,7 @@ def _check(data: pyvrp.ProblemData) -> None:
     }
     asked = [name for name, there in unknown.items() if there]
     if asked:
-        raise ValueError(f"the file asks for {', '.join(asked)}, which the search does not know")
+        raise FileError(f"the file asks for {', '.join(asked)}, which the search does not know")
 
 
 def _crew(data: pyvrp.ProblemData, profiles: list[int]) -> Crew:

@@ -15,6 +15,10 @@ from planner.progress import never
 
 #: What a process takes beside the search: to begin, to measure, to hand over.
 OVERHEAD_S = 1.0
+#: What the command may have taken until then, to be counted: longer ago a compiler was at work.
+LOADING_S = 3.0
+#: Searched at least, s, however late a busy machine let the process begin.
+LEAST_S = 0.5
 
 
 def run(
@@ -27,15 +31,17 @@ def run(
     file
         In VRPLIB form; its published solution is read from the ``.sol`` beside it.
     seconds
-        From the first process's begin to the answer; kernels are compiled before.
+        From the command's begin to the answer, but for a compiler's time; the search has half of it at least.
     """
     path = Path(file)
     data, rounding = read(path)
     best, _ = published(path)
     search(tables(data), 0, lambda done: float(done > 0), never, _quiet)
+    loading = min(LOADING_S, time.process_time())
     for solver in ("swathplan", "pyvrp") if peer else ("swathplan",):
         begin = time.time()
-        deadline = begin + max(0.0, seconds - OVERHEAD_S)
+        # The peer begins as late as ours did.
+        deadline = begin + max(seconds / 2.0, seconds - OVERHEAD_S - loading)
         work = [(str(path), solver, seed + k, deadline) for k in range(seeds)]
         if seeds == 1:
             answers = [_solve(*work[0])]
@@ -49,7 +55,7 @@ def run(
             "cost": cost,
             "length": length,
             "feasible": feasible,
-            "seconds": round(time.time() - begin, 2),
+            "seconds": round(time.time() - begin + loading, 2),
             "published": best,
             "gap_percent": None if best is None else round(100.0 * (cost / best - 1.0), 3),
             "clients": data.num_clients,
@@ -69,7 +75,7 @@ def _solve(file: str, solver: str, seed: int, deadline: float) -> tuple[float, f
     if solver == "pyvrp":
         return _pyvrp(data, seed, deadline)
     begin = time.time()
-    span = max(1e-3, deadline - begin)
+    span = max(LEAST_S, deadline - begin)
     found: Found = search(tables(data), seed, lambda done: (time.time() - begin) / span, never, _quiet)
     measured = solution(data, found)
     cost = measured.distance_cost() + measured.duration_cost() + measured.uncollected_prizes()
@@ -80,7 +86,7 @@ def _pyvrp(data: Any, seed: int, deadline: float) -> tuple[float, float, bool, i
     import pyvrp
     from pyvrp.stop import MaxRuntime
 
-    result = pyvrp.solve(data, MaxRuntime(max(0.1, deadline - time.time())), seed=seed, display=False)
+    result = pyvrp.solve(data, MaxRuntime(max(LEAST_S, deadline - time.time())), seed=seed, display=False)
     measured = result.best
     return (
         float(result.cost()),

@@ -12,7 +12,7 @@ from typing import Annotated, Any
 
 import typer
 
-from app.cli.output import CommandError, Json, emit, say
+from app.cli.output import CommandError, Exit, Json, emit, say
 
 
 class Benchmark(StrEnum):
@@ -145,16 +145,20 @@ def bench(
     options = _options(option or []) | {key: value for key, value in given.items() if value is not None}
     try:
         module = importlib.import_module(f"benchmarks.{name.value.replace('-', '_')}")
+        no_problem: type[ValueError] = importlib.import_module("benchmarks.files").FileError
     except ModuleNotFoundError as error:
         raise CommandError(f"{error}; benchmarks run from the source tree with its dev extra") from error
     _accepted(name.value, module.run, options)
     rows: list[dict[str, Any]] = []
-    for row in module.run(**options):
-        if as_json:
-            emit(json.dumps(row, ensure_ascii=False, default=str))
-        else:
-            say(f"{len(rows) + 1} rows …")
-            rows.append(row)
+    try:
+        for row in module.run(**options):
+            if as_json:
+                emit(json.dumps(row, ensure_ascii=False, default=str))
+            else:
+                say(f"{len(rows) + 1} rows …")
+                rows.append(row)
+    except no_problem as error:
+        raise CommandError(str(error), Exit.BAD_INPUT) from error
     if not as_json:
         emit(_table(rows))
 

@@ -9,8 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from benchmarks.files import FileError
 from benchmarks.orienteering import run
-from benchmarks.orienteering_files import FileError, OplibProblem, budget_name, read
+from benchmarks.orienteering_files import OplibProblem, budget_name, read
 
 #: TSPLIB's burma14 and the length of its best tour there, 3323.
 BURMA = """16.47 96.10 16.47 94.44 20.09 92.54 22.39 93.37 25.23 97.24 22.00 96.05 20.47 97.02 17.20 96.29

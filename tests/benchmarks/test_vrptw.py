@@ -5,7 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from typer.testing import CliRunner
 
+from app.cli.output import CommandError, Exit
+from app.cli.root import cli
 from benchmarks.vrptw import run
 
 #: Four customers on the corners of a rectangle round one depot, two vehicles of capacity 2.
@@ -78,3 +81,37 @@ def test_what_the_search_does_not_know_is_refused(tmp_path: Path) -> None:
     )
     with pytest.raises(ValueError, match="pickups"):
         list(run(file, seconds=1.5, seeds=1))
+
+
+@pytest.mark.parametrize(
+    ("seconds", "loading", "left"), [(60.0, 1.5, 57.5), (60.0, 40.0, 56.0), (2.0, 1.5, 1.0)]
+)
+def test_loading_counts_as_time_given(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, seconds: float, loading: float, left: float
+) -> None:
+    """What the command took before is taken off the search, a compiler's time and more than half are not."""
+    file = tmp_path / "square.vrp"
+    file.write_text(FILE.format(window="0 900"))
+    given: list[float] = []
+
+    def solve(name: str, solver: str, seed: int, deadline: float) -> tuple[float, float, bool, int]:
+        given.append(deadline)
+        return 320.0, 320.0, True, 1
+
+    monkeypatch.setattr("benchmarks.vrptw._solve", solve)
+    monkeypatch.setattr("benchmarks.vrptw.time.process_time", lambda: loading)
+    monkeypatch.setattr("benchmarks.vrptw.time.time", lambda: 100.0)
+    list(run(file, seconds=seconds, seeds=1))
+    assert given == [100.0 + left]
+
+
+@pytest.mark.parametrize("name", ["vrptw", "orienteering"])
+@pytest.mark.parametrize("text", [b"hello\n", b"\x00\xff\x01", b"", b"NAME: a\nDIMENSION: x\n"])
+def test_a_file_of_something_else_is_bad_input(tmp_path: Path, name: str, text: bytes) -> None:
+    """The command says which file and why, and exits with 2."""
+    file = tmp_path / "odd.vrp"
+    file.write_bytes(text)
+    result = CliRunner().invoke(cli, ["bench", name, str(file), "--seconds", "1", "--json"])
+    assert isinstance(result.exception, CommandError)
+    assert result.exception.code == Exit.BAD_INPUT
+    assert "odd.vrp" in str(result.exception)
