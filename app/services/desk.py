@@ -8,7 +8,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable, Coroutine
 from dataclasses import dataclass
-from typing import Any, NoReturn, TypeVar
+from typing import Any, Final, NoReturn, TypeVar
 
 from app.services.errors import ClientGoneError, OverloadedError, RefusedError, ServiceError
 from app.services.plans.pool import Pool, WorkerDiedError
@@ -19,6 +19,9 @@ Made = TypeVar("Made")
 
 #: So many requests wait for each process; more are told to come again, after so long.
 WAITING_EACH, RETRY_AFTER_S = 16, 2
+
+#: What helps where a request itself is too large.
+LESS: Final = "send less at once: fewer or simpler shapes, a smaller raster, a shorter flight."
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,7 +108,13 @@ class Desk:
             working = self.pool.run(_carried_out, (function, arguments), self._time_limit_s)
             outcome = await _while_wanted(working)
         except TimeoutError:
-            _refuse(feature, "time-limit", f"it takes longer than {self._time_limit_s:g} s to work on")
+            _refuse(
+                feature,
+                "time-limit",
+                f"it takes longer than {self._time_limit_s:g} s to work on",
+                "Try again when this computer is less busy, or have more allowed "
+                f"(SWATHPLAN_REQUEST_TIME_LIMIT_S), or {LESS}",
+            )
         except WorkerDiedError as error:
             message = f"{error} while it was worked on"
             fix = "Send it again; where that ends the same way, send less at once."
@@ -113,7 +122,9 @@ class Desk:
             raise RefusedError(f"the {feature} was not worked on: {message}", (finding,)) from error
         assert isinstance(outcome, _Outcome)
         if outcome.no_memory:
-            _refuse(feature, "memory-limit", "it takes more memory than a request may have")
+            _refuse(
+                feature, "memory-limit", "it takes more memory than a request may have", LESS.capitalize()
+            )
         if outcome.refusal is not None:
             raise outcome.refusal
         made: Made = outcome.value
@@ -137,6 +148,5 @@ async def _while_wanted(working: Coroutine[Any, Any, Made]) -> Made:
         await asyncio.gather(work, leaving, return_exceptions=True)
 
 
-def _refuse(feature: str, rule: str, message: str) -> NoReturn:
-    fix = "Send less at once: fewer or simpler shapes, a smaller raster, a shorter flight."
+def _refuse(feature: str, rule: str, message: str, fix: str) -> NoReturn:
     raise RefusedError(f"the {feature} is refused: {message}", (Finding(feature, rule, message, fix),))

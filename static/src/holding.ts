@@ -2,7 +2,7 @@
 import { freshness } from "./freshness";
 import { hearing } from "./hearing";
 import { keeping } from "./keeping";
-import { open, recent, running } from "./plans";
+import { coming, open, recent, running } from "./plans";
 import { scenarios } from "./scenario";
 import type { Vehicle } from "./types";
 
@@ -17,8 +17,11 @@ export interface Step {
 
 const MOVING = new Set(["queued", "running"]);
 
+/** The plan on the map, or on its way there where there is none. */
+const shownId = (): string | null => open.value?.record.id ?? coming.value;
+
 export function planName(id: string): string {
-  if (open.value?.record.id === id) return "the plan on the map";
+  if (shownId() === id) return "the plan on the map";
   const known = recent.value.find((record) => record.id === id);
   return known?.name ? `plan “${known.name}” (${id.slice(0, 8)})` : `plan ${id.slice(0, 8)}`;
 }
@@ -45,6 +48,7 @@ function planned(): Step {
   const making = running.value;
   if (making && MOVING.has(making.state)) return { label: "Planned", words: `planning … ${Math.round((making.progress ?? 0) * 100)} %`, tone: "warning", more: making.stage ?? making.state };
   if (making && (making.state === "failed" || making.state === "cancelled")) return { label: "Planned", words: `${making.state}: no plan`, tone: "error", more: "See under Plan" };
+  if (!open.value && coming.value !== null) return { label: "Planned", words: "being read …", tone: "quiet", more: "The plan is on its way onto the map" };
   if (!open.value) return { label: "Planned", words: "no plan", tone: "quiet", more: "Plan the scenario under Plan" };
   const { state, reason } = freshness.value;
   const hard = (open.value.plan.violations ?? []).filter((violation) => violation.hard).length;
@@ -60,7 +64,7 @@ function uploaded(vehicle: Vehicle): Step {
   if (vehicle.pending) return step("not known", "warning", "The last upload's outcome is unknown; it is read back when the vehicle is heard");
   const { sent } = vehicle;
   if (!sent) return step(vehicle.state.mission_total ? "not from here" : "nothing", "quiet", "Nothing was sent to it from here, or it was cleared");
-  const here = open.value?.record.id === sent.plan_id;
+  const here = shownId() === sent.plan_id;
   const name = planName(sent.plan_id);
   if (sent.standing === "differs") return step("NOT what was sent", "error", `It does not hold ${name}, which was sent to it`);
   if (sent.standing === "unknown") return step("not known", "warning", `${name} was sent; whether it is still held is not known`);
@@ -87,7 +91,7 @@ function flyingAsTold(vehicle: Vehicle): Step {
   if (vehicle.system_id === null) return step("–", "quiet", "It was not heard yet");
   if (!inFlight(vehicle)) return state.armed ? step("ARMED on the ground", "warning", "Its motors may start") : step("on the ground", "quiet", "Disarmed");
   const held = vehicle.sent?.standing === "held" ? vehicle.sent.plan_id : vehicle.plan_id;
-  const same = held !== null && held === open.value?.record.id;
+  const same = held !== null && held === shownId();
   const words = state.mission_state === "active" && item ? item : state.mode.toLowerCase() || "in flight";
   const what = held === null ? "a mission that was not sent from here" : planName(held);
   return step(same ? words : `${words}, ANOTHER PLAN`, same ? (freshness.value.state === "stale" ? "warning" : "good") : "warning", `In flight with ${what}${item ? `, ${item}` : ""}`);

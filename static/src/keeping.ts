@@ -2,7 +2,7 @@
 import { ApiError, connection, get, list, post, put, remove } from "./api";
 import { canonical } from "./canonical";
 import { ask } from "./dialog";
-import { news, report, warn } from "./notices";
+import { attempt, news, report, warn } from "./notices";
 import { scenarios } from "./scenario";
 import { debounce, Signal } from "./signal";
 import type { KeptRecord, KeptText, Scenario } from "./types";
@@ -148,7 +148,7 @@ export function keepScenarios(): void {
   });
   connection.watch((state) => {
     if (state !== "up") return;
-    void refreshKept().catch((error: unknown) => report("The kept scenarios were not listed", error));
+    void attempt("The kept scenarios were not listed", refreshKept);
     if (subject.state === "failed") soon();
   });
   addEventListener("pagehide", () => void keepNow());

@@ -30,7 +30,7 @@ import { buildStatusStrip } from "./panel/status_strip";
 import { tabs } from "./panel/tabs";
 import { vehiclePanel } from "./panel/vehicle_panel";
 import { phaseFeatures } from "./phases";
-import { compared, keepOpenFresh, keepToTheScenario, open, openPlan, planFeatures, refresh, rereadItems } from "./plans";
+import { coming, compared, keepOpenFresh, keepToTheScenario, open, openPlan, planFeatures, recent, refresh, rereadItems } from "./plans";
 import { scenarios } from "./scenario";
 import { scenarioFeatures } from "./scenario_view";
 import { keepSession, restore } from "./session";
@@ -95,7 +95,10 @@ async function start(): Promise<void> {
   heartbeat();
   keepJudging();
   const before = restore();
-  keepSession();
+  // Who reloads in flight goes on watching, with geometry locked.
+  if (before?.panel) panel.show(before.panel);
+  coming.set(before?.plan ?? null);
+  keepSession(panel.shown);
   keepListing(before, () => {
     panel.suggest("plan");
     view.zoomToAll();
@@ -143,10 +146,24 @@ function keepListing(before: ReturnType<typeof restore>, shown: () => void): voi
       settled = true;
       if (before === null) {
         if (await openNewest()) shown();
+        else awaitFirst(shown);
       } else if (before.plan !== null) {
         await openPlan(before.plan, true);
       }
     });
+  });
+}
+
+/** A page opened while the service begins with a scenario takes it when it comes; not once the operator has begun with something. */
+function awaitFirst(shown: () => void): void {
+  const before = scenarios.replaced.value;
+  if (recent.value.length > 0) return;
+  let over = false;
+  recent.watch((records) => {
+    if (over || records.length === 0) return;
+    over = true;
+    if (scenarios.replaced.value !== before) return;
+    void attempt("The first plan was not opened", openNewest).then((opened) => opened && shown());
   });
 }
 

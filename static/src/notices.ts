@@ -1,4 +1,4 @@
-/** Errors and news in words, at the corner of the page; errors stay until they are closed. */
+/** Errors and news in words, at the corner of the page; errors stay until they are closed, or what failed is done. */
 import { ApiError } from "./api";
 import { button, byId, h } from "./dom";
 import type { Finding } from "./types";
@@ -24,10 +24,16 @@ function show(kind: "error" | "news", title: string, lines: string[]): void {
     lines.length > 0 ? h("ul", {}, ...lines.map((line) => h("li", {}, line))) : null,
     button("×", () => notice.remove(), { class: "close", "aria-label": "Close this notice" }),
   );
-  const same = [...byId("notices").children].find((other) => other.textContent === notice.textContent);
-  same?.remove();
+  // The later one tells how it stands now.
+  settled(title);
+  notice.dataset["of"] = title;
   byId("notices").append(notice);
   if (kind === "news") setTimeout(() => notice.remove(), NEWS_MS);
+}
+
+/** It is done after all: what was said of its failure goes. */
+export function settled(doing: string): void {
+  for (const notice of [...byId("notices").children] as HTMLElement[]) if (notice.dataset["of"] === doing) notice.remove();
 }
 
 /** What was said of a scenario that is no longer there says nothing of this one. */
@@ -59,7 +65,9 @@ export function report(doing: string, error: unknown): void {
 /** Run something that may fail and report the failure; resolves to null then. */
 export async function attempt<T>(doing: string, action: () => Promise<T>): Promise<T | null> {
   try {
-    return await action();
+    const done = await action();
+    settled(doing);
+    return done;
   } catch (error) {
     report(doing, error);
     return null;

@@ -24,6 +24,8 @@ export interface OpenPlan {
 /** The plan being made, if any; the plan on the map, if any; those the service knows, newest first. */
 export const running = new Signal<PlanRecord | null>(null);
 export const open = new Signal<OpenPlan | null>(null);
+/** The plan that is on its way onto the map. */
+export const coming = new Signal<string | null>(null);
 export const recent = new Signal<PlanRecord[]>([]);
 /** The plan beside which the one on the map is looked at. */
 export const compared = new Signal<{ record: PlanRecord; plan: PlanCollection } | null>(null);
@@ -55,6 +57,15 @@ async function readItems(id: string): Promise<MissionItem[]> {
  * says, once the answers are there, that the operator has gone on with something else.
  */
 export async function openPlan(id: string, beside = false, wanted = (): boolean => true): Promise<boolean> {
+  coming.set(id);
+  try {
+    return await bring(id, beside, wanted);
+  } finally {
+    if (coming.value === id) coming.set(null);
+  }
+}
+
+async function bring(id: string, beside: boolean, wanted: () => boolean): Promise<boolean> {
   const path = `/plans/${encodeURIComponent(id)}`;
   const before = scenarios.replaced.value;
   const record = await get<PlanRecord>(path);
@@ -216,6 +227,7 @@ export function keepToTheScenario(): void {
     unwatch = null;
     running.set(null);
     open.set(null);
+    coming.set(null);
     compared.set(null);
   });
 }

@@ -1,7 +1,8 @@
 /** What a reload of this tab brings back: its scenario, where that is kept, and its plan. Other tabs have their own. */
 import { keeping, resume, type Keeping } from "./keeping";
-import { open } from "./plans";
+import { coming, open } from "./plans";
 import { parseScenario, scenarios } from "./scenario";
+import type { Signal } from "./signal";
 
 const KEY = "swathplan.page";
 /** Of a former release, shared by all tabs. */
@@ -12,10 +13,12 @@ interface Saved {
   edited: boolean;
   kept: Keeping;
   plan: string | null;
+  /** Which part of the panel was open; absent where a former release wrote it. */
+  panel?: string;
 }
 
-/** Bring back what the tab had; the plan that was on the map, if any, and null when there is nothing. */
-export function restore(): { plan: string | null } | null {
+/** Bring back what the tab had; the plan that was on the map, if any, and the part of the panel that was open; null when there is nothing. */
+export function restore(): { plan: string | null; panel: string | null } | null {
   const former = localStorage.getItem(FORMER_KEY);
   localStorage.removeItem(FORMER_KEY);
   try {
@@ -24,7 +27,7 @@ export function restore(): { plan: string | null } | null {
     if (!saved) return null;
     scenarios.load(parseScenario(saved.text), saved.edited);
     resume(saved.kept);
-    return { plan: saved.plan };
+    return { plan: saved.plan, panel: saved.panel ?? null };
   } catch {
     // Not of this release, or cut off: there is nothing to bring back.
     sessionStorage.removeItem(KEY);
@@ -33,11 +36,11 @@ export function restore(): { plan: string | null } | null {
 }
 
 /** Write it down with every change. */
-export function keepSession(): void {
+export function keepSession(panel: Signal<string>): void {
   const write = (): void => {
     const nothing = scenarios.document.value.features.length === 0 && !scenarios.edited.value && open.value === null;
     if (nothing) return sessionStorage.removeItem(KEY);
-    const saved: Saved = { text: scenarios.text(), edited: scenarios.edited.value, kept: keeping.value, plan: open.value?.record.id ?? null };
+    const saved: Saved = { text: scenarios.text(), edited: scenarios.edited.value, kept: keeping.value, plan: open.value?.record.id ?? coming.value, panel: panel.value };
     try {
       sessionStorage.setItem(KEY, JSON.stringify(saved));
     } catch {
@@ -45,5 +48,5 @@ export function keepSession(): void {
       sessionStorage.removeItem(KEY);
     }
   };
-  for (const signal of [scenarios.document, scenarios.edited, keeping, open]) (signal as { watch(listener: () => void): unknown }).watch(write);
+  for (const signal of [scenarios.document, scenarios.edited, keeping, open, panel]) (signal as { watch(listener: () => void): unknown }).watch(write);
 }

@@ -235,12 +235,14 @@ def check_sensor(region: Region, sensor: SarSensor, height_m: float) -> None:
     if region.min_resolution_m is None:
         return
     if sensor.resolution_m is None or sensor.resolution_m > region.min_resolution_m:
+        # A radar is asked for the finer of both.
+        wish = "gsd_m" if region.gsd_m == region.min_resolution_m else "min_resolution_m"
         have = "no stated resolution" if sensor.resolution_m is None else f"{sensor.resolution_m:g} m"
         raise InfeasibleError(
             "resolution",
             region.name,
             f"{region.min_resolution_m:g} m is asked for, sensor {sensor.name} has {have}",
-            f"use a sensor with resolution_m up to {region.min_resolution_m:g}, or relax min_resolution_m",
+            f"use a camera or a radar with resolution_m up to {region.min_resolution_m:g}, or relax {wish}",
         )
 
 

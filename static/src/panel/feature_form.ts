@@ -6,6 +6,7 @@ import { rolesFor } from "../roles";
 import { nameOf, scenarios } from "../scenario";
 import type { Role, ScenarioFeature } from "../types";
 import { findingWords } from "../notices";
+import { sizeWords } from "../size";
 import { judgement } from "../validation";
 import { fieldOf } from "./field_findings";
 import { areaField, choiceField, numberField, textField, tickField, type Field } from "./fields";
@@ -153,6 +154,12 @@ function doubt(feature: ScenarioFeature): HTMLElement | null {
   );
 }
 
+/** Its role and its name, once where both are the same word. */
+function titleOf(role: string, name: string): string {
+  const words = ROLE_WORDS[role] ?? role;
+  return words.toLowerCase() === name.toLowerCase() ? words : `${words} ${name}`;
+}
+
 /** Build the form for a feature. */
 export function featureForm(feature: ScenarioFeature, zoom: () => void): Field {
   const name = nameOf(feature);
@@ -176,6 +183,12 @@ export function featureForm(feature: ScenarioFeature, zoom: () => void): Field {
       }),
     );
   }
+  const size = h("p", { class: "quiet", id: "f-size" });
+  const measure = (): void => {
+    const words = sizeWords(scenarios.find(name)?.geometry ?? feature.geometry);
+    size.hidden = words === "";
+    fill(size, words);
+  };
   const said = h("ul", { class: "findings" });
   const tell = (): void => {
     const found = judgement.value.findings.filter((finding) => finding.feature === name && fieldOf(finding) === null);
@@ -184,8 +197,9 @@ export function featureForm(feature: ScenarioFeature, zoom: () => void): Field {
   const element = h(
     "fieldset",
     { class: "card selected" },
-    h("legend", {}, `${ROLE_WORDS[role] ?? role} ${name}`),
+    h("legend", {}, titleOf(role, name)),
     doubt(feature),
+    size,
     h("div", { class: "grid" }, ...fields.map((field) => field.element)),
     said,
     byCoordinates ? null : h("p", { class: "quiet" }, "This shape has holes or several parts: its outline can be changed only in the file."),
@@ -201,6 +215,7 @@ export function featureForm(feature: ScenarioFeature, zoom: () => void): Field {
     element,
     sync: () => {
       fields.forEach((field) => field.sync());
+      measure();
       tell();
     },
   };

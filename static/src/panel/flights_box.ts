@@ -4,11 +4,11 @@ import { button, fill, h, section } from "../dom";
 import { fillFrom, flights, flightUrl, flown, refly, refreshFlights, showFlight, showSortie, type Filled, type Flown } from "../flights";
 import { wouldBeLost } from "../leaving";
 import { attempt, news } from "../notices";
-import { open, openPlan } from "../plans";
+import { open, openPlan, recent } from "../plans";
 import { flownPhotos } from "./flown_photos";
 import { moreOf } from "./more";
 import type { Flight, SeenCollection } from "../types";
-import { number, percent, percentDown } from "../units";
+import { number, percent, percentDown, seconds } from "../units";
 
 /** Silences of the record, what counts for nothing, and what the batteries gave, in a line each. */
 function doubts(seen: SeenCollection): (HTMLElement | null)[] {
@@ -98,8 +98,22 @@ function flownTable(now: Flown, planned: () => void): HTMLElement {
   );
 }
 
+/** Of which plan a flight was, by its name where that is known. */
+function ofPlan({ plan_id }: Flight): string {
+  if (plan_id === null) return "without a plan";
+  return recent.value.find(({ id }) => id === plan_id)?.name ?? `plan ${plan_id.slice(0, 8)}`;
+}
+
+function lasted({ started_at, ended_at }: Flight): string {
+  return ended_at === null ? "" : `, ${seconds((Date.parse(ended_at) - Date.parse(started_at)) / 1000)}`;
+}
+
 export function flightsBox(planned: () => void): HTMLElement {
   const shown = h("div", {});
+  const read = async (flight: Flight): Promise<void> => {
+    fill(shown, h("p", { class: "quiet", role: "status" }, "What it saw is being read …"));
+    if ((await attempt("What the flight saw cannot be shown", async () => (await showFlight(flight), true))) === null) draw();
+  };
   const items = moreOf(
     "flights",
     flights,
@@ -108,11 +122,11 @@ export function flightsBox(planned: () => void): HTMLElement {
         "li",
         {},
         flight.plan_id === null
-          ? h("span", {}, `${flight.vehicle_name} · ${flight.state} · without a plan`)
-          : button(`${flight.vehicle_name} · ${flight.state}`, () => void attempt("What the flight saw cannot be shown", () => showFlight(flight)), { class: "link", "aria-current": flown.value?.flight.id === flight.id }),
-        h("span", { class: "quiet" }, ` ${new Date(flight.started_at).toLocaleString()}`),
+          ? h("span", {}, `${flight.vehicle_name} · ${ofPlan(flight)} · ${flight.state}`)
+          : button(`${flight.vehicle_name} · ${ofPlan(flight)} · ${flight.state}`, () => void read(flight), { class: "link", "aria-current": flown.value?.flight.id === flight.id }),
+        h("span", { class: "quiet" }, ` ${new Date(flight.started_at).toLocaleString()}${lasted(flight)}`),
       ),
-    [flown],
+    [flown, recent],
   );
   const draw = (): void => fill(shown, flown.value ? flownTable(flown.value, planned) : null);
   flown.watch(draw);

@@ -3,7 +3,7 @@ import { h, section } from "../dom";
 import { freshness } from "../freshness";
 import { open } from "../plans";
 import type { Preflight } from "../types";
-import { number } from "../units";
+import { figure } from "../units";
 
 /** What speaks against flying it although the vehicle is in order: it is not what is on the page. */
 function against(found: Preflight): string {
@@ -28,7 +28,7 @@ export function readiness(found: Preflight): HTMLElement {
           "ul",
           { class: "findings" },
           ...found.parameters.map((p) =>
-            h("li", { class: p.severity }, h("strong", {}, p.name), ` is ${number(p.value, 2)}${p.advised === null ? "" : `, ${number(p.advised, 2)} would do`}: ${p.reason}`),
+            h("li", { class: p.severity }, h("strong", {}, p.name), ` is ${p.value === null ? "–" : figure(p.value)}${p.advised === null ? "" : `, ${figure(p.advised)} would do`}: ${p.reason}`),
           ),
         )
       : null,

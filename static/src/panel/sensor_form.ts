@@ -45,7 +45,7 @@ function turnInto(index: number, kind: Kind): void {
     for (const feature of draft.features) if (feature.properties["sensor"] !== undefined && !sensors.some((sensor) => sensor["name"] === feature.properties["sensor"])) delete feature.properties["sensor"];
     if (kind === "camera" && others.length === 0 && draft.altitude_m === emptyScenario().altitude_m) {
       draft.altitude_m = CAMERA_ALTITUDE_M;
-      news(`The altitude is ${CAMERA_ALTITUDE_M} m now, as is usual with cameras.`);
+      news(`The altitude is ${CAMERA_ALTITUDE_M} m now, as is usual with cameras. Left empty, regions are flown over as high as the pixel they ask for allows.`);
     }
   });
 }
@@ -222,8 +222,9 @@ function hint(index: number): Field {
       const gsds = features.map(({ properties: p }) => p["gsd_m"]).filter((value): value is number => typeof value === "number" && value > 0);
       const finest_m = gsds.length > 0 ? Math.min(...gsds) : null;
       const tilt = share("tilt_deg", 0) === 0 ? "" : " Straight down; the tilt adds to it.";
-      const high = typeof altitude_m === "number" && altitude_reference !== "amsl" ? from(altitude_m, `From ${altitude_m} m`) : "";
-      const wished = finest_m === null ? "" : from(tidy(Number(heightFor_m(optics, finest_m).toFixed(1))), `${groundWords(finest_m)} a pixel asks for ${heightFor_m(optics, finest_m).toFixed(0)} m: from there`);
+      const set = typeof altitude_m === "number" && altitude_reference !== "amsl";
+      const high = set ? from(altitude_m, finest_m === null ? `From ${altitude_m} m` : `Flown at the altitude that is set, ${altitude_m} m:`) : "";
+      const wished = finest_m === null ? "" : from(tidy(Number(heightFor_m(optics, finest_m).toFixed(1))), `${set ? "Left empty, " : ""}${groundWords(finest_m)} a pixel asks for ${heightFor_m(optics, finest_m).toFixed(0)} m: from there`);
       fill(words, [high, wished].filter(Boolean).join(" ") + (high || wished ? tilt : "The height decides what it sees: set an altitude, or what a region asks for."));
     },
   };

@@ -6,7 +6,7 @@ import { freshness } from "../freshness";
 import { ageWords, hearing, OLD_S, STALE_S, type Hearing } from "../hearing";
 import { stepsOf, type Step, type Tone } from "../holding";
 import { keeping } from "../keeping";
-import { open, recent, running } from "../plans";
+import { coming, open, recent, running } from "../plans";
 import { scenarios } from "../scenario";
 import type { Vehicle } from "../types";
 import { number } from "../units";
@@ -121,6 +121,6 @@ export function buildStatusStrip(): void {
     fill(alarm, words);
     document.title = words ? `⚠ ${lost.length > 0 ? "Link lost" : "Service lost"} – Swathplan` : "Swathplan";
   };
-  for (const signal of [vehicles, watched, stream, connection, freshness, keeping, open, recent, running, scenarios.document]) (signal as { watch(listener: () => void): unknown }).watch(draw);
+  for (const signal of [vehicles, watched, stream, connection, freshness, keeping, coming, open, recent, running, scenarios.document]) (signal as { watch(listener: () => void): unknown }).watch(draw);
   setInterval(draw, TICK_MS);
 }

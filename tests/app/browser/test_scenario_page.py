@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from pathlib import Path
 
 import pytest
@@ -45,6 +46,13 @@ def test_a_region_is_drawn_by_hand(page: Page) -> None:
     assert len(ring) == 4
     for lon, lat in corners:
         assert min(WGS84.inv(lon, lat, x, y)[2] for x, y in ring) < 30.0
+    # Its size stands in its form, as geodesics have it.
+    area_m2, around_m = WGS84.polygon_area_perimeter(*zip(*ring, strict=True))
+    told = page.locator("#f-size").inner_text()
+    found = re.fullmatch(r"([0-9.]+) ha, ([0-9.]+) km around", told)
+    assert found is not None, told
+    assert float(found[1]) == pytest.approx(abs(area_m2) / 1e4, abs=0.006)
+    assert float(found[2]) == pytest.approx(around_m / 1e3, abs=0.006)
 
 
 def test_a_threat_circle_has_the_radius_drawn(page: Page) -> None:

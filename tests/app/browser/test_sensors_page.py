@@ -59,7 +59,7 @@ def test_what_it_sees_from_the_altitude_is_told(camera: Page) -> None:
 
 
 def test_a_pixel_asked_for_decides_the_height(camera: Page) -> None:
-    """What a region asks for is written in metres, and the height for it is told."""
+    """A region asks in metres; the height for it is told, and that a set altitude goes first."""
     camera.locator("#panel-scenario .chips button", has_text="R1").click()
     put(camera, "#f-gsd_m", "2.5")
     assert (
@@ -67,7 +67,9 @@ def test_a_pixel_asked_for_decides_the_height(camera: Page) -> None:
         == 0.025
     )
     height_m = 0.025 * FOCAL_M / PITCH_M
-    expect(camera.locator("#sensors-0-seen")).to_contain_text(f"2.50 cm a pixel asks for {height_m:.0f} m")
+    seen = camera.locator("#sensors-0-seen")
+    expect(seen).to_contain_text(f"Left empty, 2.50 cm a pixel asks for {height_m:.0f} m")
+    expect(seen).to_contain_text("Flown at the altitude that is set, 150 m")
 
 
 def test_what_is_refused_stands_beside_its_field(camera: Page) -> None:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import Any
 
 import httpx
 import pytest
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Page, Route, expect
 
 from tests.app.browser.air import Air, vehicles_of
 from tests.app.browser.conftest import EXAMPLES, Service
@@ -253,6 +254,17 @@ def test_a_reload_brings_back_the_scenario_with_its_plan(page: Page, planned: st
     go_to(page, "Plan")
     page.locator("#recent button", has_text="zoned").first.click()
     await_hook(page, f"plan()?.id === '{planned}'")
+    # In flight nothing is to alarm while the plan is on its way, and geometry stays locked.
+    go_to(page, "Fly")
+    held: list[Route] = []
+    page.route("**/plan.geojson", lambda route: held.append(route))
+    page.reload()
+    expect(cell(page, "planned")).to_have_text("being read …", timeout=LIMIT_MS)
+    expect(cell(page, "uploaded")).to_have_text("this plan", timeout=LIMIT_MS)
+    expect(page.get_by_role("tab", name="Fly")).to_have_attribute("aria-selected", "true")
+    page.unroute("**/plan.geojson")
+    for route in held:
+        route.continue_()
     for height, words in ((None, "up to date"), ("620", "OUT OF DATE")):
         if height:
             go_to(page, "Scenario")
@@ -308,6 +320,36 @@ def test_two_tabs_do_not_overwrite_each_other(page: Page, service: Service, scen
     assert beside != kept
     assert httpx.get(text, timeout=20.0).json()["scenario"]["altitude_m"] == 510
     other.close()
+
+
+def test_a_page_opened_too_early_takes_the_first_plan(page: Page, planned: str, service: Service) -> None:
+    """A service that has nothing yet, and plans its first scenario, shows it without a reload."""
+    lists = re.compile(r"/api/v1/(plans|scenarios)(\?.*)?$")
+    early = page.context.new_page()
+    early.route(lists, lambda route: route.fulfill(json={"plans": [], "scenarios": [], "total": 0}))
+    early.goto(service.address)
+    early.wait_for_function("window.swathplan !== undefined")
+    expect(early.locator("#recent")).to_contain_text("None yet.", timeout=LIMIT_MS)
+    assert ask(early, "scenario()")["features"] == []
+    early.unroute(lists)
+    await_hook(early, "scenario().features.length > 0", 60.0)
+    early.close()
+
+
+def test_what_failed_is_not_said_once_it_is_done(page: Page) -> None:
+    """A notice of a failure goes when the same is done after all."""
+    go_to(page, "Scenario")
+    page.get_by_text("Kept scenarios", exact=True).click()
+    again = page.locator("details", has=page.locator("#kept-scenarios")).get_by_role("button", name="Refresh")
+    lists = re.compile(r"/api/v1/scenarios(\?.*)?$")
+    page.route(lists, lambda route: route.abort())
+    notice = page.locator("#notices .notice", has_text="The kept scenarios were not listed")
+    for _ in range(2):
+        again.click()
+        expect(notice).to_have_count(1)
+    page.unroute(lists)
+    again.click()
+    expect(notice).to_have_count(0)
 
 
 def test_a_lost_service_is_said_above_every_tab(page: Page) -> None:

@@ -128,6 +128,11 @@ def test_resolution_and_beam() -> None:
     can_be_seen(sharp, fine, HEIGHT_M, None)
     assert refusal(sharp, None, SarSensor("coarse", 0.8, 0.5, 0.1, resolution_m=1.0)) == "resolution"
     assert refusal(sharp, None, SENSOR) == "resolution"
+    for wish in ({"min_resolution_m": 0.5}, {"min_resolution_m": 0.5, "gsd_m": 0.5}):
+        # What the operator has written is what may be relaxed.
+        with pytest.raises(InfeasibleError) as caught:
+            can_be_seen(Region("R", POINT, **wish), SENSOR, HEIGHT_M, None)
+        assert caught.value.relaxation.endswith(f"or relax {list(wish)[-1]}")
     for beam in ((0.1, 0.5), (1.5, 0.5), (0.8, 0.0)):
         assert refusal(Region("R", POINT), None, SarSensor("odd", *beam, 0.1)) == "swath"
     assert refusal(Region("R", POINT), None, fine, 0.0) == "swath"
