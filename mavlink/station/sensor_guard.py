@@ -92,13 +92,14 @@ class SensorGuard:
             self._flown &= state.armed
             self._calm(in_pass=False)
             return None
-        if self._since_s is None:
-            self._since_s = now_s
         if on is None:
             # Nothing shows it: it may be on where a pass was broken off, and once is all that can be done.
             broken_off, self._in_pass = self._in_pass and not passing, False
-            self._interrupted = None
+            # A first photo is told of before the item that it is taken in: from then on it counts as on.
+            self._interrupted, self._since_s = None, None
             return self._worded(outside) if broken_off else None
+        if self._since_s is None:
+            self._since_s = now_s
         waits_s = ITEM_S if passing else 0.0 if self._in_pass or self._absent else SEEMS_S
         if self._tries >= MOST_TRIES or now_s < max(self._since_s + waits_s, self._next_s):
             return None

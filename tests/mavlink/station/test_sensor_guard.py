@@ -132,3 +132,14 @@ def test_what_was_not_flown_from_here_is_left_alone() -> None:
     # After a landing with the sensor off it is as before.
     guard = guard_at_work(IN_PASS, replace(on_ground, output_on=False))
     assert guard.look(on_ground, 60.0) is None
+
+
+def test_a_first_photo_told_of_before_its_item_is_left_alone() -> None:
+    """Photos tell of a camera once it takes one: how long nothing showed it before is no time it was on."""
+    before = replace(IN_PASS, mission_current=4, output_on=None)
+    guard = guard_at_work(IN_PASS, *[before] * 100)
+    photo = replace(before, output_on=True)
+    assert guard.look(photo, 11.0) is None
+    assert guard.look(IN_PASS, 11.5) is None
+    assert guard.look(photo, 12.0) is None
+    assert guard.look(photo, 12.1 + ITEM_S) is not None
