@@ -26,6 +26,8 @@ from planner.vehicle.model import FlightModel
 
 #: Flown level before a first pass, while the autopilot settles on its height.
 LEVEL_OFF_S = 5.0
+#: Of climbing and descending turns kept free of height: ArduPlane came to a circle 20 m high, and flew another.
+SPARE_S = 6.0
 #: Winds slower than this do not choose the direction of a take-off or a landing.
 MINDED_WIND_M_S = 2.0
 #: Circles are so much wider than the tightest turn.
@@ -215,6 +217,7 @@ def terms_of(around: Surround, slope_rad: float, model: FlightModel) -> Terms:
         around.zones,
         around.connect,
         around.cost_m,
+        SPARE_S * model.airspeed_m_s,
         too_low,
         around.stop,
     )

@@ -57,6 +57,8 @@ class Terms:
         A flyable line between two anchors; raises InfeasibleError.
     cost_m
         Of a line: its length, and what its risk counts.
+    spare_m
+        Of the way round in turns, not climbed on: who comes to them late must not fly one turn more.
     too_low
         Whether a line behind the run, at these heights, comes too near to the ground below.
     """
@@ -68,6 +70,7 @@ class Terms:
     zones: KeepOut
     connect: Connect
     cost_m: Callable[[Path], float]
+    spare_m: float = 0.0
     too_low: Callable[[Path, Heights], bool] = lambda path, heights: False
     stop: Stop = never
 
@@ -287,10 +290,11 @@ def _turns_at(low_m: float, leg: Path, at_m: float, terms: Terms) -> Iterator[_C
     ways = dict.fromkeys(
         way
         for out_m in (max(in_m, terms.top_m - ahead_m * slope), terms.top_m)
-        for way in _circles((out_m - in_m - NO_TURN_M) / slope, terms.radius_m)
+        for way in _circles((out_m - in_m - NO_TURN_M) / slope, terms.radius_m, terms.spare_m)
     )
     for count, radius_m in ways:
-        out_m = min(terms.top_m, in_m + count * math.tau * radius_m * slope)
+        climbing_m = count * math.tau * radius_m - terms.spare_m
+        out_m = min(terms.top_m, in_m + climbing_m * slope)
         rest_m = min(terms.run_for_m(terms.top_m - out_m), leg.length_m - at_m)
         for side in SIDES:
             turns = circle(leg, at_m, side, radius_m, count)
@@ -314,15 +318,22 @@ def _turns_at(low_m: float, leg: Path, at_m: float, terms: Terms) -> Iterator[_C
             yield (hard, soft, turns.length_m), line, heights, at_m + turns.length_m
 
 
-def _circles(length_m: float, radius_m: float) -> Iterator[tuple[int, float]]:
-    """How many whole turns, and how wide, are at least so long: as tight as may be, or a single wide one.
+def _circles(length_m: float, radius_m: float, spare_m: float) -> Iterator[tuple[int, float]]:
+    """How many whole turns, and how wide, are so long and something to spare: about as tight as may be, or one.
 
-    More than one are left as tight as they are: what climbs or descends faster than planned leaves early.
+    The last turn is one turn more neither for who comes early by what is spare, nor for who comes late by it.
+    More than one are not made fewer: what climbs or descends faster than planned leaves early.
     """
-    count = max(1, math.ceil(length_m / (math.tau * radius_m)))
-    yield count, radius_m
+    needed_m = max(length_m, 0.0)
+    count = max(1, math.ceil((needed_m - spare_m) / (math.tau * radius_m)))
+
+    def wide(turns: int) -> float:
+        least_m = (needed_m + spare_m) / (turns * math.tau)
+        return radius_m if least_m <= radius_m else stored_radius_m(least_m)
+
+    yield count, wide(count)
     if count == 2:
-        yield 1, stored_radius_m(length_m / math.tau)
+        yield 1, wide(1)
 
 
 def _beside(low_m: float, leg: Path, terms: Terms) -> _Choice | None:

@@ -27,7 +27,7 @@ SLOPE_RAD = math.radians(8.0)
 OPEN = KeepOut()
 
 
-def terms(top_m: float, zones: KeepOut = OPEN) -> Terms:
+def terms(top_m: float, zones: KeepOut = OPEN, spare_m: float = 0.0) -> Terms:
     return Terms(
         top_m,
         SLOPE_RAD,
@@ -36,6 +36,7 @@ def terms(top_m: float, zones: KeepOut = OPEN) -> Terms:
         zones,
         lambda start, goal: connect(start, goal, zones, RADIUS_M),
         lambda path: path.length_m,
+        spare_m,
     )
 
 
@@ -89,6 +90,23 @@ def test_up_and_down_keep_the_slope(goal: tuple[float, float, float], top_m: flo
     high, low = ends if down else ends[::-1]
     assert low.position == pytest.approx((0.0, 0.0), abs=1e-6)
     assert high.position == pytest.approx(there.position, abs=1e-6)
+
+
+@settings(max_examples=30)
+@given(goals, st.floats(100.0, 700.0), st.floats(0.0, 300.0), st.booleans())
+def test_who_comes_late_to_turns_flies_no_turn_more(
+    goal: tuple[float, float, float], top_m: float, spare_m: float, down: bool
+) -> None:
+    """What may be lost before the turns is made up on them as they are, at the slope that is allowed."""
+    there = Anchor(0.2 * goal[0] * math.cos(goal[1]), 0.2 * goal[0] * math.sin(goal[1]), goal[2])
+    found = (fall if down else rise)(wing(), there, terms(top_m, spare_m=spare_m))
+    last_m = found.path.length_m - found.turns_m if down else found.turns_m
+    turns_m = (last_m, last_m + found.inserted_m) if down else (last_m - found.inserted_m, last_m)
+    low_m, high_m = sorted(found.heights.at(np.array(turns_m)))
+    if found.inserted_m > 0.0:
+        late_m = spare_m * math.tan(SLOPE_RAD)
+        assert high_m - low_m + late_m <= found.inserted_m * math.tan(SLOPE_RAD) + 1e-6
+    assert steepest(found) <= math.tan(SLOPE_RAD) * (1.0 + 1e-9)
 
 
 @settings(max_examples=30)
