@@ -2,11 +2,12 @@
 import { ask } from "../dialog";
 import { button, fill, h, section } from "../dom";
 import { attempt, findingText } from "../notices";
+import { scenarios } from "../scenario";
 import { cancelPlan, deletePlan, isSearch, open, openPlan, planUrl, problemOf, recent, refresh, running, startPlan, type OpenPlan } from "../plans";
 import { freshness } from "../freshness";
 import { mayLeave } from "../leaving";
 import { readFindings } from "../api";
-import type { PlanRecord, Position, Problem, Violation } from "../types";
+import type { Metrics, PlanRecord, Position, Problem, Violation } from "../types";
 import { metres, number, percent, percentDown, seconds } from "../units";
 import { judgement } from "../validation";
 import { crewBox } from "./crew_box";
@@ -113,6 +114,10 @@ function coverage(fractions: Record<string, number>, searched: boolean): HTMLEle
   return h("table", { class: "coverage" }, h("tbody", {}, ...rows));
 }
 
+/** Whether risks mean anything: a plan among no threats has none. */
+const threatened = (m: Metrics): boolean =>
+  m.risk_missile > 0 || m.risk_radar > 0 || scenarios.document.value.features.some(({ properties }) => properties.role === "threat");
+
 function result({ record, plan, items, madeFrom }: OpenPlan, view: PlanView): HTMLElement {
   const m = plan.metrics;
   const planning = Object.entries(m.planning_time_s ?? {});
@@ -130,14 +135,13 @@ function result({ record, plan, items, madeFrom }: OpenPlan, view: PlanView): HT
         ...(m.importance_bound == null ? [] : [["No flight collects more than", m.importance_total ? percent(m.importance_bound / m.importance_total) : number(m.importance_bound, 0)] as [string, string]]),
         ["Collecting", metres(m.collection_length_m)],
         ["Duty cycle", percent(m.duty_cycle)],
-        ["Path length ratio", number(m.path_length_ratio, 3)],
+        ...(m.path_length_ratio === null ? [] : [["Path length ratio", number(m.path_length_ratio, 3)] as [string, string]]),
         ...(typeof m.gap === "number" && (m.lower_bound_m ?? 0) > 0 ? [["At most from the best", percent(m.gap)] as [string, string]] : []),
         ...(m.flight_length_m == null ? [] : [["Whole flight", metres(m.flight_length_m)] as [string, string]]),
         ...(m.flight_duration_s == null ? [] : [["Flight time, take-off to landing", seconds(m.flight_duration_s)] as [string, string]]),
         [m.flight_duration_s == null ? "Time of the mission alone" : "Of it the mission", seconds(m.duration_s)],
         ["Turns", number(m.turns, 0)],
-        ["Risk, missile", number(m.risk_missile, 2)],
-        ["Risk, radar", number(m.risk_radar, 2)],
+        ...(threatened(m) ? ([["Risk, missile", number(m.risk_missile, 2)], ["Risk, radar", number(m.risk_radar, 2)]] as [string, string][]) : []),
         ...(m.energy_wh === null || m.energy_wh === undefined ? [] : [["Energy", number(m.energy_wh, 0, "Wh")] as [string, string]]),
       ],
       "metrics",

@@ -29,6 +29,9 @@ function leftWith({ name, sent }: Vehicle): string {
 }
 
 /** The controls, and what is answered to them: apart, as long answers must not move controls. */
+/** What a vehicle is at, with the plan's name in place of its id. */
+const named = (operation: string): string => operation.replace(/plan ([0-9a-f-]{36})/, (_, id: string) => planName(id));
+
 export function uploadBox(edit: () => void): { controls: HTMLElement; answers: HTMLElement } {
   const part = (name: Part, title: string, checked = true): HTMLInputElement => h("input", { type: "checkbox", id: `part-${name}`, checked, title, onchange: () => update() });
   const parts: Record<Part, HTMLInputElement> = {
@@ -110,7 +113,7 @@ export function uploadBox(edit: () => void): { controls: HTMLElement; answers: H
     if (vehicle.replay) return "A recording takes no uploads.";
     if (!vehicle.connected) return hearing(vehicle).lost ? "Its link is lost." : "The vehicle is not heard.";
     if (!open.value) return "No plan is on the map: make one under Plan.";
-    return vehicle.operation ? `At work: ${vehicle.operation}` : "";
+    return vehicle.operation ? `At work: ${named(vehicle.operation)}` : "";
   };
 
   /** A plan from the air takes the place of the mission alone: a fence is not replaced under an aircraft. */
