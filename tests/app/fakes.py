@@ -69,8 +69,9 @@ def missing() -> None:
 
 
 def judge(document: Mapping[str, Any], *folders: str) -> Verdict:
-    """Refuse documents without features; warn of unnamed ones; judge real scenarios for real."""
-    if "vehicles" in document and "fake_plan" not in document:
+    """Judge scenarios for real; of stand-ins refuse those without features, and warn of unnamed ones."""
+    real = "vehicles" in document or "type" in document
+    if real and "fake_plan" not in document and "fake" not in document:
         return validation.judge(document, *folders)
     errors = () if document.get("features") else (Finding("scenario", "no-features", "empty", "draw some"),)
     warnings = (

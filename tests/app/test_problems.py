@@ -57,7 +57,7 @@ def check_problem(answer: httpx.Response, status: int, rule: str | None = None) 
         (b'{"a":' * 100_000, "json-depth"),
         (b'{"a":' * 100 + b"1" + b"}" * 100, "json-depth"),
         (b'{"name": "a", "name": "b"}', "name-repeated"),
-        (b'{"type": "FeatureCollection", "features": []}', "no-features"),
+        (b'{"type": "FeatureCollection", "features": []}', "no-positions"),
         (b'{"name": "' + b"x" * 10_000_000 + b'"}', "body-too-large"),
     ],
     ids=lambda value: None if isinstance(value, bytes) else value,

@@ -23,9 +23,12 @@ def test_what_photos_saw_is_told_in_lines() -> None:
     samples, events = recorded(plan, lost=True)
     flight = Flown(flight_record(plan), tuple(samples), tuple(events), tuple(events))
     sortie = Sortie("plan", json.dumps(write_plan(plan)), json.dumps(asked()), (flight,), None)
-    lines = summary(coverage_of(sortie))
+    report = coverage_of(sortie)
+    lines = summary(report)
     lost = 5 * len(plan.photos)
-    assert lines[0].startswith("A: seen 9")
+    seen = report["coverage"]["A"]
+    assert 0.5 < seen < 1.0
+    assert lines[0].startswith(f"A: seen {100.0 * seen:.2f}%")
     assert lines[1].endswith(f"{lost} missing")
     assert "side" in lines[2]
 
