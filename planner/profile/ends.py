@@ -26,7 +26,7 @@ from planner.vehicle.model import FlightModel
 
 #: Flown level before a first pass, while the autopilot settles on its height.
 LEVEL_OFF_S = 5.0
-#: Of climbing and descending turns kept free of height: ArduPlane came to a circle 20 m high, and flew another.
+#: Kept to spare of climbing and descending turns: ArduPlane came to one 20 m high, and flew another.
 SPARE_S = 6.0
 #: Winds slower than this do not choose the direction of a take-off or a landing.
 MINDED_WIND_M_S = 2.0

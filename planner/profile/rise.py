@@ -319,7 +319,7 @@ def _turns_at(low_m: float, leg: Path, at_m: float, terms: Terms) -> Iterator[_C
 
 
 def _circles(length_m: float, radius_m: float, spare_m: float) -> Iterator[tuple[int, float]]:
-    """How many whole turns, and how wide, are so long and something to spare: about as tight as may be, or one.
+    """How many whole turns, how wide, are so long with something to spare: about as tight as may be, or one.
 
     The last turn is one turn more neither for who comes early by what is spare, nor for who comes late by it.
     More than one are not made fewer: what climbs or descends faster than planned leaves early.
