@@ -63,7 +63,7 @@ def service(database: Path, *words: str) -> Iterator[Service]:
         assert process.stdout is not None
         address = process.stdout.readline().strip()
         try:
-            with httpx.Client(base_url=address, timeout=60) as client:
+            with httpx.Client(base_url=address, timeout=180) as client:
                 yield Service(process, client)
         finally:
             if process.poll() is None:
