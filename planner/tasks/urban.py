@@ -194,9 +194,8 @@ def _unseen(asked: Seeing, region: Region, passes: tuple[CollectPass, ...]) -> I
     which = " and ".join(names) if len(names) < 3 else f"{', '.join(names[:2])} and {len(names) - 2} more"
     higher = _higher(asked, region)
     fixes = [] if higher is None else [higher]
-    ring = (
-        f" with {math.ceil(around_m)} m round {'it' if len(names) == 1 else 'them'}" if around_m > 0.5 else ""
-    )
+    those = "it" if len(names) == 1 else "them"
+    ring = f" with {math.ceil(around_m)} m round {those}" if around_m > LEAST_AROUND_M else ""
     fixes += [f"cut {which}{ring} out of it", f"set required: false, and all but {_percent(share)} is seen"]
     middle = left.representative_point()
     return InfeasibleError(
