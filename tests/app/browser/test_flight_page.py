@@ -50,6 +50,7 @@ def test_a_plan_is_shown_with_its_figures(page: Page, planned: str, service: Ser
     metrics = page.locator("#metrics")
     expect(metrics).to_contain_text(f"{record['metrics']['length_m'] / 1000:.2f} km")
     expect(metrics).to_contain_text(f"{record['metrics']['duty_cycle'] * 100:.1f} %")
+    expect(metrics).to_contain_text("Risk, missile")
     assert page.locator(".coverage tr").count() == len(record["metrics"]["coverage"])
     expect(page.locator("#result")).to_contain_text("no violation")
     await_hook(page, "rendered()['footprint-fill'] > 0")

@@ -126,6 +126,8 @@ def test_places_are_counted_by_the_photos_that_see_them(page: Page, plan: dict[s
 def test_figures_of_photos_are_the_plans(page: Page, plan: dict[str, Any]) -> None:
     """Count, pixel on the ground and how much of the field is seen stand in the panel."""
     expect(page.locator("#photos")).to_contain_text(f"{plan['metrics']['photos']} of 24.0 MP")
+    # Nothing threatens.
+    expect(page.locator("#metrics")).not_to_contain_text("Risk")
     gsd_cm = 100.0 * HEIGHT_M * 4e-6 / 0.016
     expect(page.locator("#quality")).to_contain_text(f"{gsd_cm:.2f} cm")
     expect(page.locator("#overlap-shares tr").first).to_contain_text("100.00 %")
