@@ -44,6 +44,8 @@ class FlightCommand:
     ----------
     bank_rad
         Right wing down is positive.
+    airspeed_m_s
+        Of wings the equivalent airspeed.
     climb_m_s
         Vertical speed, up is positive.
     launch
@@ -72,6 +74,8 @@ class AircraftState:
         WGS 84; altitude above mean sea level.
     heading_rad
         Where the nose points: clockwise from true north, in [0, 2 pi).
+    airspeed_m_s
+        True airspeed.
     bank_rad, pitch_rad
         Right wing down and nose up are positive.
     north_m_s, east_m_s, climb_m_s

@@ -24,6 +24,7 @@ from mavlink.sim.dynamics import (
 from mavlink.sim.kinematic import KinematicModel
 
 _FT_M = 0.3048
+_KNOT_M_S = 0.514444
 _W_PER_HP = 745.6998715822702
 _LAUNCH_HEIGHT_M = 15.0
 _LARGEST_PITCH_RAD = math.radians(15.0)
@@ -140,7 +141,7 @@ class JsbsimModel:
         bank = min(max(command.bank_rad, -bank_limit), bank_limit)
         phi, p = fdm["attitude/phi-rad"], fdm["velocities/p-rad_sec"]
         fdm["fcs/aileron-cmd-norm"] = _unit(1.6 * (bank - phi) - 0.35 * p)
-        airspeed = fdm["velocities/vtrue-fps"] * _FT_M
+        airspeed = fdm["velocities/ve-kts"] * _KNOT_M_S
         climb = fdm["velocities/h-dot-fps"] * _FT_M
         wanted = min(max(command.climb_m_s, -limits.sink_m_s), limits.climb_m_s)
         error = (wanted - climb) / max(airspeed, 20.0)

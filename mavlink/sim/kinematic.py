@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from mavlink.sim.atmosphere import true_over_equivalent
 from mavlink.sim.dynamics import GRAVITY_M_S2, AircraftState, FlightCommand, Limits, Wind
 from mavlink.sim.geodesy import Place, moved, radii_m
 
@@ -20,8 +21,9 @@ class KinematicModel:
     """Coordinated flight of a point mass.
 
     Bank follows its command as a first-order lag under a roll-rate limit; airspeed and climb are first-order
-    lags under an acceleration and rate limits; the heading turns at ``g tan(bank) / V``, V being the
-    horizontal airspeed (coordinated turn), plus the rotation of true north along the way, ``v_east tan(lat) /
+    lags under an acceleration and rate limits; the airspeed commanded is the equivalent one, the true one is
+    higher in thin air; the heading turns at ``g tan(bank) / V``, V being the horizontal airspeed
+    (coordinated turn), plus the rotation of true north along the way, ``v_east tan(lat) /
     N``, so that wings-level flight follows a geodesic. The position is the integral of air velocity plus wind
     over the WGS 84 radii of curvature, with the heading at the middle of the step.
 
@@ -53,7 +55,7 @@ class KinematicModel:
         self._cruise_power_w = cruise_power_w
         self._mass_kg = mass_kg
         self.step_s = step_s
-        airspeed_m_s = limits.airspeed_m_s if airborne else 0.0
+        airspeed_m_s = limits.airspeed_m_s * true_over_equivalent(start.altitude_m) if airborne else 0.0
         wind_north, wind_east = wind.step(0.0)
         heading_rad = math.radians(heading_deg % 360.0)
         self._state = AircraftState(
@@ -99,8 +101,9 @@ class KinematicModel:
     ) -> AircraftState:
         old, limits = self._state, self._limits
         bank_rad = self._bank(old.bank_rad, dt_s, command.bank_rad)
+        thin = true_over_equivalent(old.altitude_m)
         wanted_m_s = min(max(command.airspeed_m_s, limits.stall_m_s), limits.fastest_m_s)
-        change = (wanted_m_s - old.airspeed_m_s) * (1.0 - math.exp(-dt_s / _AIRSPEED_LAG_S))
+        change = (thin * wanted_m_s - old.airspeed_m_s) * (1.0 - math.exp(-dt_s / _AIRSPEED_LAG_S))
         most = _ACCELERATION_M_S2 * dt_s
         airspeed_m_s = old.airspeed_m_s + min(max(change, -most), most)
         climb_wanted = min(max(command.climb_m_s, -limits.sink_m_s), limits.climb_m_s)
@@ -122,7 +125,7 @@ class KinematicModel:
         altitude_m = old.altitude_m + 0.5 * (old.climb_m_s + climb_m_s) * dt_s
         down = altitude_m <= self._ground_m and climb_m_s <= 0.0
         heading_rad = (old.heading_rad + turned_rad) % (2.0 * math.pi)
-        throttle, power_w = self._effort(airspeed_m_s, climb_m_s, bank_rad)
+        throttle, power_w = self._effort(airspeed_m_s / thin, climb_m_s, bank_rad)
         return AircraftState(
             time_s=old.time_s + dt_s,
             lat_deg=lat_deg,

@@ -6,8 +6,9 @@ the vertex to ``b`` behind: with the unit vectors u1, u2 of the legs its points 
 is and how fast the corner is flown differs:
 
 ArduCopter blends the braking of one leg with the acceleration of the next (``SCurve``), as long as the
-vertex is passed within WPNAV_RADIUS r: ``b = 2 r / sin(theta/2)`` at most, the speed ``sqrt(2 a b)``. A
-waypoint is reached abeam.
+vertex is passed within WPNAV_RADIUS r: ``b = 2 r / sin(theta/2)`` at most, the speed ``sqrt(2 a b)``. Each
+leg is laid out from rest to rest, so no corner is faster than the middle of the shorter leg beside it: half a
+leg of c takes a jerk j to v with ``c / 2 = sqrt(v^3 / j)``. A waypoint is reached abeam.
 
 PX4 takes the corner where the next waypoint is taken up, at the acceptance radius: ``b = r``, at the speed of
 the circle tangent to both legs there with half of its acceleration, ``sqrt(a r / tan(theta/2))``
@@ -34,6 +35,10 @@ _ALTITUDE_GAIN_PER_S = 0.7
 _BRAKING = 0.6
 #: PX4's share for corners (MPC_XY_TRAJ_P), and its jerk (MPC_JERK_AUTO).
 _PX4_CORNERS, _PX4_JERK_M_S3 = 0.5, 4.0
+#: ArduCopter's (WPNAV_JERK).
+_COPTER_JERK_M_S3 = 1.0
+#: What a leg begins with must not be waited for.
+_FROM_REST_M = 0.05
 _ALTITUDE_REACHED_M = 2.0
 #: With less way to go than this the nose stays where it points.
 _YAW_FROM_M = 3.0
@@ -172,6 +177,10 @@ class LegFollower:
         free_m = left_m - self._reach_m[leg + 1]
         speed_m_s = min(speed_m_s, self._most_m_s(free_m, end_m_s))
         speed_m_s = min(speed_m_s, self._speed_on_slope_m_s(leg))
+        if self._agility.reached_abeam and self._corner_m_s[leg] == 0.0:
+            # From rest: d = j t^3 / 6, v = j t^2 / 2.
+            since_m = max(length_m - left_m, _FROM_REST_M)
+            speed_m_s = min(speed_m_s, (4.5 * since_m**2 * _COPTER_JERK_M_S3) ** (1.0 / 3.0))
         across = _POSITION_GAIN_PER_S * self.cross_track_m
         across = min(max(across, -0.7 * speed_m_s), 0.7 * speed_m_s)
         along = math.sqrt(speed_m_s**2 - across**2)
@@ -250,7 +259,9 @@ class LegFollower:
             return 0.0
         a_m_s2 = self._agility.acceleration_m_s2
         if self._agility.reached_abeam:
-            return math.sqrt(2.0 * a_m_s2 * reach_m)
+            shortest_m = min(self._directions[vertex - 1][2], self._directions[vertex][2])
+            by_jerk_m_s = (0.25 * shortest_m**2 * _COPTER_JERK_M_S3) ** (1.0 / 3.0)
+            return min(math.sqrt(2.0 * a_m_s2 * reach_m), float(by_jerk_m_s))
         half_angle = self._half_angle_rad(vertex) or 0.0
         return math.sqrt(_PX4_CORNERS * a_m_s2 * reach_m / max(math.tan(half_angle), 1e-9))
 

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from mavlink.sim.acceptance import infeasible
+from mavlink.sim.atmosphere import true_over_equivalent
 from mavlink.sim.dynamics import AircraftState, FlightCommand
 from mavlink.sim.executor import Do, Event, Landed, MissionRun, Said
 from mavlink.sim.geodesy import Place
@@ -259,4 +260,4 @@ class Pilot:
             return self._airspeed_m_s
         along = math.atan2(state.east_m_s, state.north_m_s)
         tail_m_s = state.wind_north_m_s * math.cos(along) + state.wind_east_m_s * math.sin(along)
-        return max(self._ground_speed_m_s - tail_m_s, 1.0)
+        return max(self._ground_speed_m_s - tail_m_s, 1.0) / true_over_equivalent(state.altitude_m)

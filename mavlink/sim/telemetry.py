@@ -9,6 +9,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from mavlink.sim.atmosphere import true_over_equivalent
 from mavlink.sim.dynamics import AircraftState
 from mavlink.sim.geodesy import Place
 from mavlink.sim.modes import Flavour, Mode, custom_mode
@@ -252,10 +253,11 @@ def _mission_current(snapshot: Snapshot, settings: SimSettings) -> Message:
 
 def _vfr_hud(snapshot: Snapshot, settings: SimSettings) -> Message:
     state = snapshot.state
+    thin = 1.0 if settings.hovers else true_over_equivalent(state.altitude_m)
     return Message(
         "VFR_HUD",
         {
-            "airspeed": state.airspeed_m_s,
+            "airspeed": state.airspeed_m_s / thin,
             "groundspeed": state.ground_speed_m_s,
             "heading": round(math.degrees(state.heading_rad)) % 360,
             "throttle": round(100.0 * state.throttle),

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+from mavlink.sim.atmosphere import density_ratio
 from mavlink.sim.craft import NAVIGATION, PLAIN, Path, Vertex
 from mavlink.sim.dynamics import AircraftState
 from mavlink.sim.geodesy import Place
@@ -82,6 +83,9 @@ class FixedWing:
         aligned = item.param1 if item.command == Command.NAV_LOITER_TO_ALT else item.param2
         turns = item.param1 if item.command == Command.NAV_LOITER_TURNS else None
         seconds = item.param1 if item.command == Command.NAV_LOITER_TIME else None
+        if self._ardupilot:
+            # Source: ``AP_L1_Control::loiter_radius``, as long as the bank allows.
+            radius_m /= density_ratio(place.altitude_m)
         return Loiter(
             self._tuning,
             place,

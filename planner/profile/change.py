@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from planner.airspace.zones import KeepOut
 from planner.dubins.path import Path, join
 from planner.errors import InfeasibleError
-from planner.profile.ends import Surround, climb_slope_rad, sink_slope_rad, terms_of
+from planner.profile.ends import Surround, terms_of
 from planner.profile.heights import SAME_M, Heights, level, tidy
 from planner.profile.lines import cut
 from planner.profile.rise import Terms, climbed_leg, conflicts, turned
@@ -72,7 +72,7 @@ def changed(
         Where no line leads there, or there is no place for turns.
     """
     climbs = from_m < to_m
-    terms = terms_of(around, climb_slope_rad(model) if climbs else sink_slope_rad(model), model)
+    terms = terms_of(around, model, climbs=climbs)
     best: tuple[tuple[int, int, float], Changed] | None = None
     failed: InfeasibleError | None = None
     zones = dict.fromkeys((layers.between, layers.top, layers.bottom))

@@ -23,7 +23,7 @@ def circle_down(origin: Anchor, centre: tuple[float, float], bottom_m: float, te
     """
     drop_m = max(terms.top_m - bottom_m, 0.0)
     round_m = math.tau * terms.radius_m
-    turns = max(1, math.ceil(drop_m / (round_m * math.tan(terms.slope_rad)) - 1e-9))
+    turns = max(1, math.ceil(drop_m / (round_m * math.tan(terms.turning_rad)) - 1e-9))
     best: tuple[tuple[bool, float], Path] | None = None
     failed: InfeasibleError | None = None
     for side in SIDES:

@@ -23,6 +23,7 @@ from planner.route import Anchor, Terminal
 from planner.vehicle import manners
 from planner.vehicle.manners import manners_of
 from planner.vehicle.model import FlightModel
+from planner.vehicle.wind import CIRCLE_RAD, ground_speed_m_s
 
 #: Flown level before a first pass, while the autopilot settles on its height.
 LEVEL_OFF_S = 5.0
@@ -73,7 +74,7 @@ def up(start: Terminal, ground_m: float, goal: Anchor, model: FlightModel, aroun
         Where no line leads there.
     """
     foot = _likely(foot_up(start, ground_m, around.top_m, model), goal, model)
-    return rise(foot, goal, terms_of(around, climb_slope_rad(model), model))
+    return rise(foot, goal, terms_of(around, model, climbs=True))
 
 
 def with_run(ends: tuple[Terminal, Terminal], top_m: float, model: FlightModel) -> tuple[Terminal, Terminal]:
@@ -139,7 +140,7 @@ def down(
         Its ``run_m`` and ``turns_m`` count from the end, backwards.
     """
     slope_rad = sink_slope_rad(model)
-    terms = terms_of(around, slope_rad, model)
+    terms = terms_of(around, model, climbs=False)
     aircraft = model.aircraft
     if aircraft.type != "multirotor" and finish != "land":
         # The route ends over its end; the circle follows.
@@ -183,6 +184,15 @@ def _slope_rad(model: FlightModel, rate_m_s: float) -> float:
     return min(math.radians(model.max_climb_deg), math.atan(rate_m_s / fastest_m_s))
 
 
+def _turning_rad(model: FlightModel, *, climbs: bool) -> float:
+    """Steepest in whole turns, on the mean: they are flown at one rate, the wind behind in a part of each."""
+    manner = manners_of(model.aircraft)
+    rate_m_s = manner.climb_m_s if climbs else manner.sink_m_s
+    speeds_m_s = ground_speed_m_s(CIRCLE_RAD, model.airspeed_m_s, model.wind)
+    mean_m_s = 1.0 / float((1.0 / speeds_m_s).mean())
+    return min(math.radians(model.max_climb_deg), math.atan(rate_m_s / mean_m_s))
+
+
 def circle_radius_m(model: FlightModel) -> float:
     """Radius of climbing and descending turns: somewhat above the tightest turn, as missions can say it."""
     return stored_radius_m(EASY_TURN * model.turn_radius_m)
@@ -194,8 +204,9 @@ def _into_rad(model: FlightModel) -> float | None:
     return model.wind.toward_rad + math.pi
 
 
-def terms_of(around: Surround, slope_rad: float, model: FlightModel) -> Terms:
+def terms_of(around: Surround, model: FlightModel, *, climbs: bool) -> Terms:
     """What a climb, or a descent, of an aircraft keeps to."""
+    slope_rad = climb_slope_rad(model) if climbs else sink_slope_rad(model)
 
     def too_low(path: Path, heights: Heights) -> bool:
         ground = around.ground
@@ -212,6 +223,7 @@ def terms_of(around: Surround, slope_rad: float, model: FlightModel) -> Terms:
     return Terms(
         around.top_m,
         slope_rad,
+        _turning_rad(model, climbs=climbs),
         circle_radius_m(model),
         LEVEL_OFF_S * model.airspeed_m_s,
         around.zones,

@@ -45,8 +45,8 @@ class Terms:
     ----------
     top_m
         Altitude to be reached.
-    slope_rad
-        Steepest climb.
+    slope_rad, turning_rad
+        Steepest climb, on legs and in whole turns.
     radius_m
         Of climbing turns.
     level_off_m
@@ -65,6 +65,7 @@ class Terms:
 
     top_m: float
     slope_rad: float
+    turning_rad: float
     radius_m: float
     level_off_m: float
     zones: KeepOut
@@ -284,17 +285,17 @@ def _turning(low_m: float, leg: Path, terms: Terms) -> _Choice | None:
 
 def _turns_at(low_m: float, leg: Path, at_m: float, terms: Terms) -> Iterator[_Choice]:
     """Turns at one place: as many as the leg behind needs, or all of the height there."""
-    slope = math.tan(terms.slope_rad)
+    slope, turning = math.tan(terms.slope_rad), math.tan(terms.turning_rad)
     in_m = min(terms.top_m, low_m + at_m * slope)
     ahead_m = max(leg.length_m - at_m - terms.level_off_m, 0.0)
     ways = dict.fromkeys(
         way
         for out_m in (max(in_m, terms.top_m - ahead_m * slope), terms.top_m)
-        for way in _circles((out_m - in_m - NO_TURN_M) / slope, terms.radius_m, terms.spare_m)
+        for way in _circles((out_m - in_m - NO_TURN_M) / turning, terms.radius_m, terms.spare_m)
     )
     for count, radius_m in ways:
         climbing_m = count * math.tau * radius_m - terms.spare_m
-        out_m = min(terms.top_m, in_m + climbing_m * slope)
+        out_m = min(terms.top_m, in_m + climbing_m * turning)
         rest_m = min(terms.run_for_m(terms.top_m - out_m), leg.length_m - at_m)
         for side in SIDES:
             turns = circle(leg, at_m, side, radius_m, count)

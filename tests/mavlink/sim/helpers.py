@@ -91,6 +91,12 @@ def item_message(each: MissionItem, sender: tuple[int, int] = GROUND) -> Message
     )
 
 
+def true_over_equivalent(above_sea_m: float) -> float:
+    """By the standard atmosphere's temperature and the exponent g / (R L) - 1 of its density."""
+    exponent = 9.80665 / (287.05287 * 0.0065) - 1.0
+    return float((1.0 - 0.0065 * above_sea_m / 288.15) ** (-0.5 * exponent))
+
+
 @dataclass
 class Station:
     """Talks to an aircraft without a link; its clock moves only when told to."""

@@ -52,7 +52,8 @@ def flown(plan: Plan, **settings: object) -> Station:
     vehicle = plan.vehicles[0]
     aircraft = SimulatedAircraft(
         SimSettings(
-            home=Place(plan.home[1], plan.home[0], 488.0),
+            # At the sea: the plans' stand-in flies its airspeed at any height.
+            home=Place(plan.home[1], plan.home[0], 0.0),
             autopilot=Flavour(vehicle.autopilot),
             vehicle_type=vehicle.type,
             # As PX4 does, which the mission counts on; by default simulated wings fly up to their waypoints.
@@ -95,7 +96,7 @@ def test_a_survey_has_the_photos_of_its_plan(
     station = flown(plan)
     taken = photos_of(station.heard)
     planned = sum(len(photos.places) for photos in plan.photos)
-    more = 0.1 if (kind, trigger) == ("multirotor", "time") else 0.01
+    more = 0.15 if (kind, trigger) == ("multirotor", "time") else 0.01
     assert abs(len(taken) - planned) <= max(1, more * planned)
     if kind == "fixed_wing":
         planned_s = plan.collects[-1].end_s - plan.collects[0].start_s
@@ -108,7 +109,7 @@ def test_a_survey_has_the_photos_of_its_plan(
         line = [FRAME.to_local(place[:2]) for place in photos.places]
         gaps = [min(math.dist(place, here) for place in places) for here in line]
         assert max(gaps) <= 0.8 * photos.interval_m
-    assert all(photo.altitude_amsl_m == pytest.approx(538.0, abs=2.0) for photo in taken)
+    assert all(photo.altitude_amsl_m == pytest.approx(50.0, abs=2.0) for photo in taken)
 
 
 @pytest.mark.parametrize(

@@ -31,6 +31,7 @@ def terms(top_m: float, zones: KeepOut = OPEN, spare_m: float = 0.0) -> Terms:
     return Terms(
         top_m,
         SLOPE_RAD,
+        SLOPE_RAD,
         CIRCLE_M,
         100.0,
         zones,
