@@ -3,7 +3,8 @@
 ``swathplan bench search --json``. The paper flies its variants at several turn durations; each has a row
 here, and one with the means of all. Times are those of one processor.
 ``--option turns_s=[6]`` for some of them. ``--option random=200`` plans so many random searches whole, each a
-row with what it uses of what it may, and what the judge says. ``--option picture=FILE`` draws instead, with
+row with what it uses of what it may, and what the judge says; ``--option mixed=100`` so many of every kind,
+with several aircraft, and of each flight what is reckoned anew. ``--option picture=FILE`` draws instead, with
 ``--option drifting=true`` someone overboard.
 """
 
@@ -15,9 +16,11 @@ from pathlib import Path
 from typing import Any
 
 from benchmarks.drift_picture import picture as drawn_drifting
+from benchmarks.mixed_searches import flights_of, mixed_search
 from benchmarks.search_picture import picture as drawn
 from benchmarks.search_scenarios import random_search
 from planner.errors import PlannerError
+from planner.geojson import write_plan
 from planner.pipeline import make_plan
 from planner.search.horizon import VARIANTS, energy_horizon
 from planner.search.paper_case import HEADING_RAD, SIDE_M, paper_case
@@ -31,6 +34,7 @@ def run(
     turns_s: Sequence[float] = TURNS_S,
     seed: int = 0,
     random: int = 0,
+    mixed: int = 0,
     picture: str = "",
     drifting: bool = False,
 ) -> Iterator[dict[str, Any]]:
@@ -44,6 +48,9 @@ def run(
         return
     if random:
         yield from _random(random, seed)
+        return
+    if mixed:
+        yield from _mixed(mixed, seed)
         return
     case = paper_case()
     # Kernels are compiled before anything is timed.
@@ -131,3 +138,35 @@ def _random(count: int, seed: int) -> Iterator[dict[str, Any]]:
             "cpu_s": round(time.process_time() - began, 2),
         }
     yield {"bench": "search", "case": "random", "searches": count, "home": home}
+
+
+def _mixed(count: int, seed: int) -> Iterator[dict[str, Any]]:
+    """Random searches of every kind, planned whole, judged, and their energy reckoned anew."""
+    home = 0
+    for number in range(seed, seed + count):
+        document, rasters = mixed_search(number)
+        began = time.process_time()
+        row: dict[str, Any] = {"bench": "search", "case": document["name"]}
+        try:
+            plan = make_plan(read_valid(document, rasters))
+        except PlannerError as error:
+            yield row | {"refused": str(error)}
+            continue
+        flights = list(flights_of(document, write_plan(plan)))
+        kept = not plan.hard_violations and all(
+            said_wh <= usable_wh and (reckoned_wh is None or reckoned_wh <= usable_wh)
+            for _, usable_wh, said_wh, reckoned_wh in flights
+        )
+        home += kept
+        yield row | {
+            "aircraft": len(document["vehicles"]),
+            "flights": len(flights),
+            "used": round(max(said_wh / usable_wh for _, usable_wh, said_wh, _ in flights), 4),
+            "off": round(
+                max((abs(each / said_wh - 1.0) for _, _, said_wh, each in flights if each), default=0.0), 5
+            ),
+            "home": kept,
+            "violations": [violation.constraint for violation in plan.violations],
+            "cpu_s": round(time.process_time() - began, 2),
+        }
+    yield {"bench": "search", "case": "mixed", "searches": count, "home": home}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -34,19 +35,19 @@ def random_search(seed: int) -> dict[str, Any]:
     if model in ("Skywalker X8", "Zagi"):
         vehicle |= {"charge_mah": round(float(rng.uniform(1500.0, 4000.0))), "voltage_v": 14.8}
     features = [
-        _rectangle("area", -200.0, -200.0, width_m + 200.0, depth_m + 200.0),
-        _rectangle("roi", 0.0, 0.0, width_m, depth_m, name="ground"),
-        _point("start", float(rng.uniform(100.0, width_m - 100.0)), float(rng.uniform(-100.0, 100.0))),
+        rectangle("area", -200.0, -200.0, width_m + 200.0, depth_m + 200.0),
+        rectangle("roi", 0.0, 0.0, width_m, depth_m, name="ground"),
+        point("start", float(rng.uniform(100.0, width_m - 100.0)), float(rng.uniform(-100.0, 100.0))),
     ]
     if rng.random() < 0.4:
-        features.append(_point("end", float(rng.uniform(100.0, width_m - 100.0)), depth_m - 50.0))
+        features.append(point("end", float(rng.uniform(100.0, width_m - 100.0)), depth_m - 50.0))
     if rng.random() < 0.5:
         west, south = width_m * float(rng.uniform(0.3, 0.5)), depth_m * float(rng.uniform(0.4, 0.6))
-        features.append(_rectangle("no_fly", west, south, west + 150.0, south + 120.0, name="zone"))
+        features.append(rectangle("no_fly", west, south, west + 150.0, south + 120.0, name="zone"))
     if rng.random() < 0.5:
         west, south = width_m * float(rng.uniform(0.0, 0.6)), depth_m * float(rng.uniform(0.0, 0.6))
-        patch = _rectangle("importance", west, south, west + 300.0, south + 300.0, name="patch", score=5.0)
-        features += [patch, _rectangle("importance", 0.0, 0.0, width_m, depth_m, name="rest", score=1.0)]
+        patch = rectangle("importance", west, south, west + 300.0, south + 300.0, name="patch", score=5.0)
+        features += [patch, rectangle("importance", 0.0, 0.0, width_m, depth_m, name="rest", score=1.0)]
     return {
         "type": "FeatureCollection",
         "name": f"search {seed}",
@@ -62,22 +63,30 @@ def random_search(seed: int) -> dict[str, Any]:
     }
 
 
-def _lonlat(east_m: float, north_m: float) -> list[float]:
+def lonlat(east_m: float, north_m: float) -> list[float]:
+    """Degrees of a place, about."""
     lon_deg = LON_DEG + east_m / (111_320.0 * math.cos(math.radians(LAT_DEG)))
     return [round(lon_deg, 7), round(LAT_DEG + north_m / 111_195.0, 7)]
 
 
-def _feature(role: str, kind: str, coordinates: Any, **properties: Any) -> dict[str, Any]:
+def feature(role: str, kind: str, coordinates: Any, **properties: Any) -> dict[str, Any]:
+    """A GeoJSON feature of a role."""
     geometry = {"type": kind, "coordinates": coordinates}
     return {"type": "Feature", "geometry": geometry, "properties": {"role": role, **properties}}
 
 
-def _point(role: str, east_m: float, north_m: float) -> dict[str, Any]:
-    return _feature(role, "Point", _lonlat(east_m, north_m))
+def point(role: str, east_m: float, north_m: float, **properties: Any) -> dict[str, Any]:
+    """One that is a place in metres."""
+    return feature(role, "Point", lonlat(east_m, north_m), **properties)
 
 
-def _rectangle(
+def polygon(role: str, ring: Sequence[tuple[float, float]], **properties: Any) -> dict[str, Any]:
+    """One that is an open ring in metres."""
+    return feature(role, "Polygon", [[lonlat(*corner) for corner in [*ring, ring[0]]]], **properties)
+
+
+def rectangle(
     role: str, west: float, south: float, east: float, north: float, **properties: Any
 ) -> dict[str, Any]:
-    corners = [(west, south), (east, south), (east, north), (west, north), (west, south)]
-    return _feature(role, "Polygon", [[_lonlat(*corner) for corner in corners]], **properties)
+    """One that is a rectangle in metres."""
+    return polygon(role, [(west, south), (east, south), (east, north), (west, north)], **properties)

@@ -70,7 +70,7 @@ def read_aircraft(raw: Any, index: int, findings: Findings) -> Aircraft | None:
     slowest_m_s = fields.number("min_airspeed_m_s", None, above=0.0, maximum=airspeed_m_s or 400.0)
     radius_m = _turn_radius_m(fields, airspeed_m_s, kind)
     max_climb_deg = fields.number("max_climb_deg", 8.0, above=0.0, below=90.0)
-    energy_wh = _stored_wh(fields)
+    energy_wh, voltage_v = _stored_wh(fields)
     power = read_power(fields, findings, kind)
     reserve = fields.number("reserve", DEFAULT_RESERVE, minimum=0.0, below=1.0)
     range_m = fields.number("max_range_m", None, above=0.0)
@@ -126,7 +126,7 @@ def read_aircraft(raw: Any, index: int, findings: Findings) -> Aircraft | None:
         name, kind, autopilot, airspeed_m_s, radius_m, max_climb_deg, energy_wh, power, range_m, time_s,
         settle_m, base, reserve=reserve, finish=finish,
         min_airspeed_m_s=slowest_m_s, sensors=sensors, batteries=batteries, turnaround_s=turnaround_s or 0.0,
-        aloft=aloft, max_items=max_items, end_bases=end_bases,
+        aloft=aloft, max_items=max_items, end_bases=end_bases, voltage_v=voltage_v,
     )  # fmt: skip
 
 
@@ -184,21 +184,21 @@ def _of_model(raw: dict[str, Any], fields: Fields) -> dict[str, Any]:
         return raw
 
 
-def _stored_wh(fields: Fields) -> float | None:
-    """Energy of the battery: as given, or charge by voltage."""
+def _stored_wh(fields: Fields) -> tuple[float | None, float | None]:
+    """Energy of the battery: as given, or charge by voltage; and that voltage."""
     energy_wh = fields.number("energy_wh", None, above=0.0)
     charge_mah = fields.number("charge_mah", None, above=0.0)
     voltage_v = fields.number("voltage_v", None, above=0.0)
     given = [name for name in ("charge_mah", "voltage_v") if name in fields]
     if given and "energy_wh" in fields:
         fields.wrong(given[0], "is given beside energy_wh, which says it too", "Keep one of them.")
-        return energy_wh
+        return energy_wh, None
     if len(given) == 1:
         other = "voltage_v" if given == ["charge_mah"] else "charge_mah"
         fields.wrong(other, f"is missing beside {given[0]}", f"Add {other}.", rule="missing-property")
     if charge_mah is not None and voltage_v is not None:
-        return charge_mah * voltage_v / 1000.0
-    return energy_wh
+        return charge_mah * voltage_v / 1000.0, voltage_v
+    return energy_wh, None
 
 
 def _names(fields: Fields, name: str, of: str) -> tuple[str, ...] | None:

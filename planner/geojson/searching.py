@@ -294,7 +294,7 @@ def _local(
             "Check its georeference, or name one that covers the ground.",
         )
         return None
-    least = float(scores[known].min())
+    least = min(float(scores[known].min()), _least_within(raster, ground, scenario.frame))
     if least < 0.0 or np.isinf(raster.heights_m).any():
         said = f"down to {least:g}" if least < 0.0 else "of infinity"
         findings.error(
@@ -313,6 +313,18 @@ def _local(
             "Name a raster that covers the ground.",
         )
     return ImportanceRaster(name, np.where(known, scores, 0.0), west_m, south_m, cell_m)
+
+
+def _least_within(raster: Terrain, ground: BaseGeometry, frame: LocalFrame) -> float:
+    """The least of a raster's own values on the ground, where that is below 0; else 0.
+
+    One finer than the cells is not seen in their means.
+    """
+    rows, columns = np.nonzero(raster.known() & (raster.heights_m < 0.0))
+    a, b, c, d, e, f = raster.affine
+    places = frame.to_local(np.stack([a * columns + b * rows + c, d * columns + e * rows + f], axis=-1))
+    inside = shapely.contains_xy(ground, places[:, 0], places[:, 1])
+    return float(raster.heights_m[rows[inside], columns[inside]].min(initial=0.0))
 
 
 def check_search(scenario: Scenario, findings: Findings) -> None:

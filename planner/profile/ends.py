@@ -29,7 +29,8 @@ from planner.vehicle.wind import CIRCLE_RAD, ground_speed_m_s
 LEVEL_OFF_S = 5.0
 #: Kept to spare of climbing and descending turns: ArduPlane came to one 20 m high, and flew another.
 SPARE_S = 6.0
-#: Winds slower than this do not choose the direction of a take-off or a landing.
+#: Winds slower than this do not choose the direction of a take-off or a landing, nor what of one is from
+#: behind where no other way leads.
 MINDED_WIND_M_S = 2.0
 #: Circles are so much wider than the tightest turn.
 EASY_TURN = 1.05
@@ -115,7 +116,7 @@ def foot_up(start: Terminal, ground_m: float, top_m: float, model: FlightModel) 
     else:
         rise_m = min(manners.TAKE_OFF_HEIGHT_M, height_m)
         run_m = rise_m / math.tan(slope_rad)
-    return Foot(start.position, start.angle_rad, ground_m, lift_m, run_m, rise_m, _into_rad(model))
+    return _foot(start.position, start.angle_rad, ground_m, (lift_m, run_m, rise_m), model)
 
 
 def down(
@@ -165,7 +166,7 @@ def down(
         rise_m = min(manners.APPROACH_HEIGHT_M, height_m)
         run_m = rise_m / math.tan(min(math.radians(manners.APPROACH_SLOPE_DEG), slope_rad))
     angle_rad = end.angle_rad if finish == "land" else None
-    foot = Foot(place, angle_rad, ground_m, lift_m, run_m, rise_m, _into_rad(model))
+    foot = _foot(place, angle_rad, ground_m, (lift_m, run_m, rise_m), model)
     return fall(_likely(foot, turned(origin), model), origin, terms)
 
 
@@ -198,10 +199,20 @@ def circle_radius_m(model: FlightModel) -> float:
     return stored_radius_m(EASY_TURN * model.turn_radius_m)
 
 
-def _into_rad(model: FlightModel) -> float | None:
-    if model.wind.speed_m_s < MINDED_WIND_M_S or model.aircraft.type == "multirotor":
-        return None
-    return model.wind.toward_rad + math.pi
+def _foot(
+    place: tuple[float, float],
+    angle_rad: float | None,
+    ground_m: float,
+    lift_run_rise_m: tuple[float, float, float],
+    model: FlightModel,
+) -> Foot:
+    """A foot into the wind, or across it, where that is minded."""
+    speed_m_s = model.wind.speed_m_s
+    if speed_m_s < MINDED_WIND_M_S or model.aircraft.type == "multirotor":
+        return Foot(place, angle_rad, ground_m, *lift_run_rise_m)
+    into_rad = model.wind.toward_rad + math.pi
+    slow = MINDED_WIND_M_S / speed_m_s
+    return Foot(place, angle_rad, ground_m, *lift_run_rise_m, into_rad, slow_behind=slow)
 
 
 def terms_of(around: Surround, model: FlightModel, *, climbs: bool) -> Terms:

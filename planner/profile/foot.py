@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from planner.route import Anchor
 
@@ -33,6 +33,10 @@ class Foot:
         Direction the wind comes from, where a take-off or landing with the wind behind is to be avoided.
     likely_rad
         Direction of the run behind which the line would be shortest if there were no zones.
+    slow_behind
+        Part of the wind that may be from behind where no other way leads: that is still slow.
+    behind
+        Part of the wind that may be from behind.
     """
 
     position: Point
@@ -43,6 +47,8 @@ class Foot:
     run_rise_m: float = 0.0
     into_rad: float | None = None
     likely_rad: float | None = None
+    slow_behind: float = 0.0
+    behind: float = 0.0
 
     @property
     def altitude_m(self) -> float:
@@ -62,11 +68,20 @@ class Foot:
         every = [natural_rad + k * math.tau / HEADINGS for k in range(HEADINGS)]
         into_rad = self.into_rad
         every += [angle for angle in (into_rad, self.likely_rad) if angle is not None]
+        if into_rad is not None and self.behind > 0.0:
+            farthest_rad = math.pi / 2.0 + math.asin(self.behind)
+            every += [into_rad + farthest_rad, into_rad - farthest_rad]
         return [h for h in every if self.allows(h)]
 
     def allows(self, angle_rad: float) -> bool:
         """Whether a direction does not have the wind from behind, where that is to be avoided."""
-        return self.into_rad is None or math.cos(angle_rad - self.into_rad) >= -1e-9
+        return self.into_rad is None or math.cos(angle_rad - self.into_rad) >= -self.behind - 1e-9
+
+    def with_wind_behind(self) -> Foot | None:
+        """The same with as much wind from behind as is still slow; None where that is no more."""
+        if self.into_rad is None or self.slow_behind <= self.behind:
+            return None
+        return replace(self, behind=self.slow_behind)
 
     def run_end(self, angle_rad: float | None) -> Anchor:
         """Where the run ends, and the direction there."""

@@ -117,8 +117,13 @@ def rise(foot: Foot, goal: Anchor, terms: Terms) -> Rise:
     InfeasibleError
         Where no line leads from any run to the goal.
     """
-    headings = foot.headings(_natural_rad(foot, goal, terms))
+    natural_rad = _natural_rad(foot, goal, terms)
+    headings = foot.headings(natural_rad)
     runs, failed = _runs(foot, goal, terms, headings)
+    lenient = foot.with_wind_behind()
+    if lenient is not None and all(rank[0] for rank, _ in runs):
+        foot, headings = lenient, lenient.headings(natural_rad)
+        runs, failed = _runs(foot, goal, terms, headings)
     width_rad = math.tau / HEADINGS
     for _ in range(ROUNDS if runs and len(headings) > 1 else 0):
         best_rad = min(runs, key=lambda run: run[0])[1].start.angle_rad

@@ -49,6 +49,8 @@ ROOM_AGAIN, MOST_AGAIN = 0.97, 6
 REFINED = "refined"
 #: Published methods, flown as published.
 PUBLISHED = ("snyder2021", *VARIANTS)
+#: Where nothing else is within a budget so many flights by one pass are tried.
+NEAREST = 3
 #: Strips by the width of the swath: wider ones leave gaps, and reach farther.
 WIDTHS = (1.0, 1.08)
 
@@ -173,6 +175,18 @@ class Search:
         of_all = self if self.family in FAMILIES else replace(self, family=None)
         laid = of_all._laid(self.ground, self.looking.narrowest_m(), (1.0,))
         return (each.whole for each in laid)
+
+    def nearest(self) -> list[Programme]:
+        """Patterns cut to their first pass, whatever that costs: the nearest of them."""
+        of_all = self if self.family in FAMILIES else replace(self, family=None)
+        found = [
+            Programme(
+                laid.family, laid.whole[:1], self.found(laid.whole[:1]), self.pricing.cost_m(laid.whole[:1]),
+                laid.whole, False, laid.strips, laid.look,
+            )
+            for laid in of_all._laid(self.ground, self.looking.narrowest_m(), (1.0,))
+        ]  # fmt: skip
+        return sorted(found, key=lambda each: each.cost_m)[:NEAREST]
 
     def _cut(self, laid: Laid | Programme, budget_m: float, *, thin: bool) -> tuple[Programme, ...]:
         """A pattern within a budget: its first passes, or those worth most; none where no pass fits."""

@@ -26,6 +26,7 @@ STEPS, LEAST_STEP_M = 4.0, 2.0
 ROUND, LEAST_ROUND_M = 8.0, 500.0
 #: A pass is no shorter than this.
 LEAST_PASS_M = 2.0
+EMPTY = Polygon()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -42,6 +43,8 @@ class Room:
         Of its turns, and straight flight before each pass.
     zones
         What is kept out of by name, margins included, the area's outside among it.
+    barred
+        What of the ground may never be flown over, whatever that costs.
     """
 
     free: BaseGeometry
@@ -49,6 +52,7 @@ class Room:
     radius_m: float
     settle_m: float
     zones: tuple[tuple[str, BaseGeometry], ...] = ()
+    barred: BaseGeometry = EMPTY
 
     @classmethod
     def of(
@@ -70,16 +74,20 @@ class Room:
         discs = [Point(e, n).buffer(r, quad_segs=32) for e, n, r in np.vstack([around.hard, soft]).tolist()]
         free = shapely.difference(free, shapely.union_all([*around.hard_polygons, *discs]))
         turning = free.buffer(-model.turn_radius_m)
-        for shape in (free, turning):
-            shapely.prepare(shape)
+        for place in (free, turning):
+            shapely.prepare(place)
         kept = keep_out(airspace, level, MARGIN_M, edge_m=TRANSIT_MARGIN_M)
-        zones: list[tuple[str, BaseGeometry]] = [
-            (disc.name, Point(disc.east_m, disc.north_m).buffer(disc.radius_m)) for disc in kept.discs
+        shapes: list[tuple[str, BaseGeometry, bool]] = [
+            (disc.name, Point(disc.east_m, disc.north_m).buffer(disc.radius_m), disc.hard)
+            for disc in kept.discs
         ]
-        zones += [(zone.name, zone.polygon) for zone in kept.polygons]
+        shapes += [(zone.name, zone.polygon, zone.hard) for zone in kept.polygons]
         if kept.area is not None:
-            zones.append((AREA, ground.envelope.buffer(2.0 * model.turn_radius_m).difference(kept.area)))
-        return cls(free, turning, model.turn_radius_m, model.settle_m, tuple(zones))
+            outside = ground.envelope.buffer(2.0 * model.turn_radius_m).difference(kept.area)
+            shapes.append((AREA, outside, True))
+        zones = tuple((name, shape) for name, shape, _ in shapes)
+        barred = ground.intersection(shapely.union_all([shape for _, shape, hard in shapes if hard]))
+        return cls(free, turning, model.turn_radius_m, model.settle_m, zones, barred)
 
     def blocking(self, ground: BaseGeometry) -> tuple[str, ...]:
         """Names of what leaves no pass over ground, or no turn beside it: most of it first."""

@@ -3,29 +3,26 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-import numpy as np
 import shapely
 from shapely.geometry import MultiPolygon, Polygon
 
-from planner.airspace.zones import AREA
 from planner.errors import InfeasibleError
 from planner.metrics import used
-from planner.progress import silent
-from planner.route import Anchor
+from planner.progress import never, silent
 from planner.scenario import Scenario
 from planner.search.belief.drifting import Drifting, believed
 from planner.search.choose import PUBLISHED, REFINED, Search
 from planner.search.programme import Pricing, Programme
 from planner.search.room import Room
 from planner.search.swaths import Looking
-from planner.tasks.budget import MOST, Flight, limits_of, part_used, per_m_of
-from planner.tasks.flying import Station
+from planner.tasks.budget import MOST, Flight, part_used
 from planner.tasks.leftover import filled
 from planner.tasks.methods import chosen_methods
 from planner.tasks.setting import Setting
+from planner.tasks.spare import Spare, out_of_reach, refuse_blocked, spare_of
 from planner.tasks.task import Answer, Controls, Task
 from planner.tasks.transits import Transits
 from planner.tasks.worth import drifted, ground_of, worth_of
@@ -42,23 +39,19 @@ ENOUGH = 0.99
 MOST_IMPROVED, LEAST_BETTER = 3, 1e-3
 #: A flight that nothing limits looks for what drifts for so many times what sees all ground once.
 UNLIMITED = 1.5
-#: So much of what blocks is named.
-NAMED = 5
-#: Ends no farther apart are one place to what hovers, which flies this far at least.
-HOVERED_M = 5.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Sought:
     """One aircraft's search, ranked and not yet flown.
 
-    ``spare_m`` is what its limits allow, metres through the air.
+    ``spare`` is what its limits allow.
     """
 
     setting: Setting
     transits: Transits
     asked: Search
-    spare_m: float
+    spare: Spare
     ranked: tuple[Programme, ...]
 
 
@@ -77,11 +70,10 @@ def reach(scenario: Scenario, controls: Controls) -> tuple[float, float]:
     """
     setting = Setting.of(scenario)
     asked = asked_of(scenario, setting)
-    if next(asked.flyable(), None) is None:
-        _refuse_blocked(asked, math.inf, setting.model.aircraft)
+    refuse_blocked(asked)
     transits = Transits.of(setting, scenario.objective, chosen_methods(scenario.method))
-    spare_m, lead_s = _spare(transits, scenario, controls)
-    return spare_m * asked.looking.narrowest_m(), _lasting_s(asked, spare_m, lead_s)
+    spare = spare_of(transits, asked, controls.stop)
+    return spare.metres * asked.looking.narrowest_m(), _lasting_s(asked, spare)
 
 
 def sought(scenario: Scenario, controls: Controls) -> Sought:
@@ -96,15 +88,14 @@ def sought(scenario: Scenario, controls: Controls) -> Sought:
     methods = chosen_methods(scenario.method) | {"search": "patterns", "coverage": "none", "routing": "none"}
     transits = Transits.of(setting, scenario.objective, methods)
     asked = replace(asked_of(scenario, setting), stop=controls.stop, seed=scenario.seed)
-    spare_m, lead_s = _spare(transits, scenario, controls)
+    refuse_blocked(asked)
+    spare = spare_of(transits, asked, controls.stop)
     if scenario.importance.drift is not None:
-        asked = _drifting(asked, scenario, spare_m, lead_s)
+        asked = _drifting(asked, scenario, spare)
     with controls.stage("search"):
         controls.progress("search", 0.0)
-        ranked = asked.ranked(spare_m)
-        if not ranked:
-            _refuse_blocked(asked, spare_m, setting.model.aircraft)
-    return Sought(setting, transits, asked, spare_m, tuple(ranked))
+        ranked = asked.ranked(spare.metres)
+    return Sought(setting, transits, asked, spare, tuple(ranked))
 
 
 def answer_to(one: Sought, controls: Controls) -> Answer:
@@ -124,7 +115,7 @@ def answer_to(one: Sought, controls: Controls) -> Answer:
         return Flight(programme, passes, composed, legs, notes, use)
 
     with controls.stage("transit"):
-        best = _best(one.ranked, asked, one.spare_m, fly, setting.model.aircraft, controls)
+        best = _best(one, fly, controls)
         if asked.family in (None, REFINED) and best.programme.family not in PUBLISHED:
             best = _improved(best, asked, fly, setting.model.aircraft, controls)
             best = filled(best, asked, fly, setting.model.aircraft, controls.enough)
@@ -143,9 +134,8 @@ def refuse_unsearchable(scenario: Scenario) -> None:
     setting = Setting.of(scenario)
     transits = Transits.of(setting, scenario.objective, chosen_methods(scenario.method))
     asked = asked_of(scenario, setting)
-    if next(asked.flyable(), None) is None:
-        _refuse_blocked(asked, math.inf, setting.model.aircraft)
-    _spare(transits, scenario, None)
+    refuse_blocked(asked)
+    spare_of(transits, asked, never)
 
 
 def asked_of(scenario: Scenario, setting: Setting) -> Search:
@@ -166,18 +156,18 @@ def asked_of(scenario: Scenario, setting: Setting) -> Search:
     return Search(ground, worth, looking, room, pricing, family=family, detection=detection)
 
 
-def _lasting_s(asked: Search, spare_m: float, lead_s: float) -> float:
+def _lasting_s(asked: Search, spare: Spare) -> float:
     """How long the flight lasts at most."""
     once_m = asked.ground.area / asked.looking.narrowest_m()
-    return lead_s + min(spare_m, UNLIMITED * once_m) / asked.pricing.model.aircraft.airspeed_m_s
+    return spare.lead_s + min(spare.metres, UNLIMITED * once_m) / asked.pricing.model.aircraft.airspeed_m_s
 
 
-def _drifting(asked: Search, scenario: Scenario, spare_m: float, lead_s: float) -> Search:
+def _drifting(asked: Search, scenario: Scenario, spare: Spare) -> Search:
     """The search for what drifts: by places that move on, and by what ground is worth in the middle of it."""
     importance = scenario.importance
     if importance.drift is None:
         return asked
-    until_s = _lasting_s(asked, spare_m, lead_s)
+    until_s = _lasting_s(asked, spare)
     belief = believed(importance, importance.drift, seed=scenario.seed)
     if not belief.weights.any():
         raise InfeasibleError(
@@ -186,7 +176,7 @@ def _drifting(asked: Search, scenario: Scenario, spare_m: float, lead_s: float) 
             "has looked already (seen) wherever what drifts may be, and a look finds all there is",
             "Lower detection, widen the importance, or leave out of seen what is to be looked at again.",
         )
-    drifting = Drifting(belief, importance.detection, lead_s, until_s).within(asked.ground)
+    drifting = Drifting(belief, importance.detection, spare.lead_s, until_s).within(asked.ground)
     later = drifted(importance, 0.5 * until_s)
     worth = worth_of(replace(scenario, importance=later), asked.ground, asked.worth.cell_m)
     return replace(asked, worth=worth, drifting=drifting)
@@ -198,126 +188,32 @@ def _cell_m(ground: Polygon | MultiPolygon, width_m: float) -> float:
     return max(LEAST_CELL_M, side_m / MOST_CELLS, min(width_m / CELLS_ACROSS, side_m / 40.0))
 
 
-def _spare(transits: Transits, scenario: Scenario, controls: Controls | None) -> tuple[float, float]:
-    """Metres through the air that limits allow from start to end, and seconds of what is before them.
-
-    The metres are inf where nothing limits them; the seconds are half of what take-off and landing last.
-
-    Raises
-    ------
-    InfeasibleError
-        Where the flight to the end alone is over a limit, with the shortfall.
-    """
-    setting = transits.setting
-    aircraft, (start, end) = setting.model.aircraft, setting.ends
-    stop = (lambda: False) if controls is None else controls.stop
-    over = Station(end.name, Anchor(*_over_end(scenario, setting)))
-    try:
-        composed, _, _ = transits.by((over,), silent, stop)
-    except InfeasibleError as error:
-        if error.constraint != AREA:
-            raise
-        raise InfeasibleError(
-            AREA,
-            start.name,
-            f"has no room in the area for its flight's ends, of turns of {setting.model.turn_radius_m:.0f} m "
-            f"in this wind, from {start.name} to {end.name}: {error.message}",
-            "Start and end farther from the area's edge, widen it, or fly with tighter turns.",
-            error.where_enu_m,
-        ) from error
-    use = used(composed.flight, setting.model, setting.level)
-    per_m = per_m_of(aircraft, setting.level.amsl_m)
-    for name, (taken, limit, unit) in limits_of(aircraft, use).items():
-        if taken > limit:
-            short = taken - limit
-            metres = f", {short / per_m[name]:.0f} m of flight" if unit != "m" and per_m[name] > 0.0 else ""
-            raise InfeasibleError(
-                name,
-                aircraft.name,
-                f"the flight from {start.name} to {end.name} alone takes {taken:.1f} {unit}, there are "
-                f"{limit:.1f} {unit}: {short:.1f} {unit} short{metres}",
-                "Raise the limit, lower the reserve, or end nearer to the start.",
-                end.position,
-            )
-    spare = [
-        (limit - taken) / per_m[name]
-        for name, (taken, limit, _) in limits_of(aircraft, use).items()
-        if per_m[name] > 0.0
-    ]
-    away_m = math.dist(start.position, end.position)
-    lead_s = 0.5 * max(0.0, use.duration_s - away_m / aircraft.airspeed_m_s)
-    return min(spare, default=math.inf) + away_m, lead_s
-
-
-def _over_end(scenario: Scenario, setting: Setting) -> tuple[float, float]:
-    """Where the shortest flight leads: over its end; of what hovers there already a little way off."""
-    (start, end), area = (terminal.position for terminal in setting.ends), scenario.regions[0].area
-    if not setting.model.aircraft.hovers or math.dist(start, end) > HOVERED_M:
-        return end
-    inward = np.subtract(area.representative_point().coords[0], end)
-    east_m, north_m = np.array(end) + inward * min(1.0, HOVERED_M / max(float(np.hypot(*inward)), HOVERED_M))
-    return (float(east_m), float(north_m))
-
-
-def _refuse_blocked(asked: Search, spare_m: float, aircraft: Aircraft) -> None:
-    """Nothing can be seen: because nothing may be flown over it, or because that is too far."""
-    name = asked.looking.names[0]
-    place = asked.ground.representative_point()
-    where = (float(place.x), float(place.y))
-    if next(asked.flyable(), None) is None:
-        blocking = asked.room.blocking(asked.ground)
-        listed = ", ".join(blocking[:NAMED]) + (
-            f" and {len(blocking) - NAMED} more" * (len(blocking) > NAMED)
-        )
-        raise InfeasibleError(
-            "blocked",
-            name,
-            f"nothing of it can be seen: {listed or 'its shape'} and turns of "
-            f"{asked.room.radius_m:.0f} m leave no pass over it from {asked.looking.height_m:.0f} m",
-            "Widen the area, move what blocks it, or fly at another altitude or with tighter turns.",
-            where,
-        )
-    away_m = min(asked.pricing.cost_m(way[:1]) for way in asked.flyable())
-    raise InfeasibleError(
-        "energy",
-        aircraft.name,
-        f"reaches none of the ground and its end: there and back are {away_m:.0f} m, its limits allow "
-        f"{spare_m:.0f} m: {away_m - spare_m:.0f} m short",
-        "Raise the limit, lower the reserve, or start nearer.",
-        where,
-    )
-
-
-def _best(
-    ranked: Sequence[Programme],
-    asked: Search,
-    spare_m: float,
-    fly: Callable[[Programme], Flight],
-    aircraft: Aircraft,
-    controls: Controls,
-) -> Flight:
+def _best(one: Sought, fly: Callable[[Programme], Flight], controls: Controls) -> Flight:
     """The best programmes flown, each as long as the limits allow; the one that sees most."""
     best: Flight | None = None
     refused: InfeasibleError | None = None
     flown = 0
-    for programme in ranked:
-        if flown >= FLOWN or (best is not None and controls.enough()):
-            break
-        controls.progress("transit", flown / FLOWN)
-        try:
-            found = _as_long_as_can_be(programme, asked, spare_m, fly, aircraft)
-        except InfeasibleError as error:
-            refused = error
-            continue
-        flown += 1
-        if found is not None and (best is None or found.programme.worth > best.programme.worth):
-            best = found
-    if best is not None:
-        return best
+    aircraft = one.setting.model.aircraft
+    # Of flights that hardly reach the ground more is thought than they take: some are flown all the same.
+    for lay in (lambda: one.ranked, one.asked.nearest):
+        for programme in lay():
+            if flown >= FLOWN or (best is not None and controls.enough()):
+                break
+            controls.progress("transit", flown / FLOWN)
+            try:
+                found = _as_long_as_can_be(programme, one.asked, one.spare.metres, fly, aircraft)
+            except InfeasibleError as error:
+                refused = error
+                continue
+            flown += 1
+            if found is not None and (best is None or found.programme.worth > best.programme.worth):
+                best = found
+        if best is not None:
+            return best
+        flown = 0
     if refused is not None:
         raise refused
-    _refuse_blocked(asked, spare_m, aircraft)
-    raise AssertionError
+    raise out_of_reach(one.transits, one.asked, one.spare, controls.stop)
 
 
 def _improved(

@@ -62,6 +62,8 @@ class Aircraft:
         What one flight has; None where not limited.
     reserve
         Share of the energy that is kept.
+    voltage_v
+        By which the charge of its battery was given; None where that was energy.
     power
         What flight takes of the battery; None where unknown.
     settle_m
@@ -116,6 +118,7 @@ class Aircraft:
     aloft: Aloft | None = None
     max_items: int | None = None
     end_bases: tuple[str, ...] | None = None
+    voltage_v: float | None = None
 
     @property
     def most_items(self) -> int:

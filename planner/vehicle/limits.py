@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from planner.vehicle.aircraft import Aircraft
@@ -45,6 +46,26 @@ def exceeded(aircraft: Aircraft, use: Use) -> tuple[Excess, ...]:
 def strain(aircraft: Aircraft, use: Use) -> float:
     """The greatest part of a limit that a flight uses; over 1 where it is over one, 0 without limits."""
     return max((each.used / each.limit for each in _against(aircraft, use)), default=0.0)
+
+
+def raised(aircraft: Aircraft, constraint: str, used: float) -> str:
+    """What an aircraft would need for a use of a limit, as a scenario says it: rounded up.
+
+    Of energy the battery as it was given, by its charge where that was; or the reserve, where less would do.
+    """
+    if constraint == "range":
+        return f"Set max_range_m to {math.ceil(used)} or more"
+    if constraint == "flight-time":
+        return f"Set max_flight_time_s to {math.ceil(used)} or more"
+    whole_wh = used / (1.0 - aircraft.reserve)
+    if aircraft.voltage_v is None:
+        said = f"Set energy_wh to {math.ceil(10.0 * whole_wh) / 10.0:g} or more"
+    else:
+        said = f"Set charge_mah to {math.ceil(1000.0 * whole_wh / aircraft.voltage_v)} or more"
+    if aircraft.energy_wh is not None and used < aircraft.energy_wh:
+        least = math.floor(100.0 * (1.0 - used / aircraft.energy_wh)) / 100.0
+        said += f", or reserve to {least:g} or less"
+    return said
 
 
 def _against(aircraft: Aircraft, use: Use) -> list[Excess]:

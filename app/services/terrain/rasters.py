@@ -92,7 +92,8 @@ def read_raster(content: bytes, filename: str, name: str, datum: VerticalDatum |
     heights = np.where(np.isfinite(heights), heights, np.float32(np.nan)).astype(np.float32)
     known = np.isfinite(heights)
     if not known.any():
-        _refuse("no-heights", "every post is without height", "Send a raster with heights.")
+        what = "value" if datum == NO_DATUM else "height"
+        _refuse("no-heights", f"every post is without {what}", f"Send a raster with {what}s.")
     low_m, high_m = float(np.nanmin(heights)), float(np.nanmax(heights))
     if datum == NO_DATUM:
         return Terrain(name, heights, affine, None, datum)

@@ -6,9 +6,10 @@ import pytest
 from planner.airspace.terrain import Terrain
 from planner.errors import ScenarioError
 from planner.geojson import read_scenario
+from planner.pipeline import make_plan
 from planner.tasks.worth import worth_of
 from planner.validate import findings, read_valid
-from tests.planner.search.searches import LAT_DEG, LON_DEG, WING, document, feature, lonlat, rectangle
+from tests.planner.search.searches import LAT_DEG, LON_DEG, RADAR, WING, document, feature, lonlat, rectangle
 
 
 def rules(asked, terrains=None):
@@ -22,6 +23,18 @@ def raster(values, lon_deg=LON_DEG, lat_deg=LAT_DEG):
 
 
 WEST = (0, 0, 500, 500)
+GROUND = rectangle("roi", 500, 400, 1100, 800, name="G")
+BARRED = rectangle("no_fly", 500, 400, 1100, 800, name="Z")
+
+
+def walls(west, south, east, north, thick=80):
+    """Four zones round a yard."""
+    return [
+        rectangle("no_fly", west, south, east, south + thick, name="S"),
+        rectangle("no_fly", west, north - thick, east, north, name="N"),
+        rectangle("no_fly", west, south, west + thick, north, name="W"),
+        rectangle("no_fly", east - thick, south, east, north, name="Z"),
+    ]
 
 
 @pytest.mark.parametrize(
@@ -33,6 +46,12 @@ WEST = (0, 0, 500, 500)
             ),
             ("R", "blocked"),
         ),
+        (document(BARRED, GROUND), ("G", "blocked")),
+        (document(BARRED, GROUND, sensor=RADAR), ("G", "blocked")),
+        (
+            document(*walls(200, 200, 1000, 800), feature("end", "Point", lonlat(600, 500), name="E")),
+            ("E", "hard-zone"),
+        ),
         (document(vehicle=WING | {"energy_wh": 3}), ("uav", "energy")),
         (document(vehicle=WING | {"energy_wh": 3, "reserve": 1.5}), ("vehicle uav", "out-of-range")),
         (document(altitude_m=100, max_height_m=80), ("area", "above-ceiling")),
@@ -42,7 +61,20 @@ WEST = (0, 0, 500, 500)
         (document(importance_raster="nowhere"), ("scenario", "unknown-raster")),
         (document(rectangle("roi", *WEST, name="R", revisits=2)), ("R", "not-supported")),
     ],
-    ids=["blocked", "energy", "reserve", "ceiling", "negative", "nan", "zero", "raster", "revisits"],
+    ids=[
+        "blocked",
+        "barred",
+        "barred-to-radar",
+        "walled-in",
+        "energy",
+        "reserve",
+        "ceiling",
+        "negative",
+        "nan",
+        "zero",
+        "raster",
+        "revisits",
+    ],
 )
 def test_what_no_search_can_keep_is_refused(asked, found):
     """Each is an error that names the feature and the rule."""
@@ -62,14 +94,17 @@ def test_what_blocks_a_search_is_named():
     assert "far" not in said
 
 
-def test_a_start_at_the_edge_is_named_where_its_flight_has_no_room():
-    """In strong wind the circle that a return ends in reaches out of the area: the start is named."""
+def test_a_start_is_named_where_its_flight_has_no_room():
+    """At the end of a narrow arm nobody comes down into a strong wind along it: the start is named."""
     asked = document(wind={"speed_m_s": 11, "from_deg": 90}, method={"search": "parallel"})
-    asked["features"][1] = feature("start", "Point", lonlat(600.0, 15.0), name="pad")
+    arm = [(0, 480), (-1000, 480), (-1000, 420), (0, 420)]
+    ring = [(0, 0), (1200, 0), (1200, 900), (0, 900), *arm, (0, 0)]
+    asked["features"][0] = feature("area", "Polygon", [[lonlat(*corner) for corner in ring]])
+    asked["features"][1] = feature("start", "Point", lonlat(-980.0, 450.0), name="pad")
     (said,) = [f for f in findings(asked) if f.severity == "error"]
     assert (said.feature, said.rule) == ("pad", "area")
     assert "no room" in said.message
-    asked["features"][1] = feature("start", "Point", lonlat(600.0, 450.0), name="pad")
+    asked["features"][1] = feature("start", "Point", lonlat(600.0, 15.0), name="pad")
     assert rules(asked) == set()
 
 
@@ -147,6 +182,31 @@ def test_a_shortfall_is_told_in_energy_and_way():
     assert metres == pytest.approx(short * 3600.0 / 120.0 * 16.0, rel=0.01)
 
 
+CHARGED = {k: v for k, v in WING.items() if k != "energy_wh"} | {"voltage_v": 14.8}
+
+
+@pytest.mark.parametrize(
+    ("vehicle", "named"),
+    [
+        (WING | {"energy_wh": 3}, "energy_wh"),
+        (CHARGED | {"charge_mah": 210}, "charge_mah"),
+        (WING | {"max_range_m": 600}, "max_range_m"),
+        (WING | {"max_flight_time_s": 60}, "max_flight_time_s"),
+    ],
+    ids=["energy", "charge", "range", "time"],
+)
+def test_what_is_said_to_do_does(vehicle, named):
+    """With the least value that a refusal names the search is planned, and sees something."""
+    asked = document(vehicle=vehicle)
+    (short,) = [f for f in findings(asked) if f.severity == "error"]
+    words = short.fix.replace(",", "").split()
+    assert words[1] == named
+    asked["vehicles"][0][named] = float(words[3])
+    plan = make_plan(read_valid(asked))
+    assert plan.violations == ()
+    assert plan.metrics.area_seen_m2 > 0.0
+
+
 def _number(word):
     return word.replace(".", "", 1).isdigit()
 
@@ -162,6 +222,15 @@ def _number(word):
 def test_rasters_of_no_use_are_refused(terrain, rule):
     """Negative importance, and a raster that lies elsewhere."""
     assert ("scenario", rule) in rules(document(importance_raster="worth"), {"worth": terrain})
+
+
+def test_one_negative_value_is_found_however_fine_the_raster():
+    """Cells of the ground are means of many values: one below 0 is refused all the same."""
+    values = np.ones((1600, 1600), np.float32)
+    values[800, 800] = -1.0
+    step = 0.02 / 1600
+    fine = Terrain("worth", values, (step, 0.0, LON_DEG - 0.002, 0.0, step, LAT_DEG - 0.002))
+    assert ("scenario", "bad-score") in rules(document(importance_raster="worth"), {"worth": fine})
 
 
 def test_a_raster_is_what_the_ground_is_worth():

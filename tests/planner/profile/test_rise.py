@@ -15,6 +15,7 @@ from shapely.geometry import LineString, Point
 from planner.airspace.zones import Disc, KeepOut
 from planner.dubins.path import Path
 from planner.dubins.run_kernels import NO_DISCS, run_costs
+from planner.errors import InfeasibleError
 from planner.profile.circling import circle_down
 from planner.profile.foot import Foot
 from planner.profile.rise import Rise, Terms, fall, rise
@@ -142,6 +143,34 @@ def test_nobody_takes_off_or_lands_with_the_wind_behind(into_rad: float) -> None
         foot = wing(into_rad=into_rad)
         assert math.cos(rise(foot, there, terms(300.0)).path.start.angle_rad - into_rad) >= -1e-6
         assert math.cos(fall(foot, there, terms(300.0)).path.end.angle_rad - into_rad) >= -1e-6
+
+
+@pytest.mark.parametrize("into_rad", [0.0, 1.3, -2.4])
+def test_the_wind_is_behind_only_where_no_other_way_leads_and_while_it_is_slow(into_rad: float) -> None:
+    """Zones ahead leave ways with half of the wind behind; where it all were behind none is flown."""
+    slow = replace(wing(into_rad=into_rad), slow_behind=0.5)
+    aside_m = 2.0 * slow.run_m
+
+    def ahead(back_rad: float) -> Terms:
+        """Nothing but directions so far off the wind is open, and only to its left."""
+
+        def to(start: Anchor, goal: Anchor) -> Path:
+            off_rad = 0.0 if start.angle_rad is None else math.remainder(start.angle_rad - into_rad, math.tau)
+            if off_rad < back_rad:
+                raise InfeasibleError("area", "area", "is barred", "")
+            return connect(start, goal, OPEN, RADIUS_M)
+
+        return replace(terms(300.0), connect=to)
+
+    there = Anchor(aside_m * math.cos(into_rad + 2.0), aside_m * math.sin(into_rad + 2.0), None)
+    found = rise(slow, there, ahead(math.radians(100.0)))
+    off_rad = math.remainder(found.path.start.angle_rad - into_rad, math.tau)
+    assert math.radians(100.0) <= off_rad <= math.radians(120.0) + 1e-6
+    assert abs(math.remainder(rise(slow, there, terms(300.0)).path.start.angle_rad - into_rad, math.tau)) <= (
+        math.pi / 2.0 + 1e-6
+    )
+    with pytest.raises(InfeasibleError):
+        rise(slow, there, ahead(math.radians(130.0)))
 
 
 def test_a_long_first_leg_climbs_without_turns() -> None:
