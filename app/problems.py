@@ -147,6 +147,11 @@ def http_problem(request: Request, error: Exception) -> Response:
     assert isinstance(error, HTTPException)
     title = HTTPStatus(error.status_code).phrase
     detail = error.detail if isinstance(error.detail, str) else title
+    if error.status_code == HTTPStatus.NOT_FOUND and detail == title:
+        # of the routing: no path of ours, while what is not found by its id is told by the services
+        detail = f"{request.url.path} is no path of this service: /docs lists all of them, and /openapi.json"
+    elif error.status_code == HTTPStatus.METHOD_NOT_ALLOWED and detail == title:
+        detail = f"{request.method} is not taken at {request.url.path}: see /docs"
     kind = title.lower().replace(" ", "-")
     return problem_response(request, error.status_code, kind, title, detail, headers=error.headers)
 

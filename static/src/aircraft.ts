@@ -2,9 +2,10 @@
 import { Marker, type Map as MapLibreMap } from "maplibre-gl";
 import { h } from "./dom";
 import { vehicles, watched } from "./fleet";
-import { flown } from "./flights";
+import { flown, recordedTrack } from "./flights";
 import { ageWords, hearing, OLD_S } from "./hearing";
 import { setData } from "./map";
+import { attempt } from "./notices";
 import { Track } from "./track";
 import { scenarios } from "./scenario";
 import type { Position, Vehicle } from "./types";
@@ -92,7 +93,14 @@ export function showAircraft(map: MapLibreMap): void {
   showOthers(map);
   const marker = new Marker({ element: symbol(), rotationAlignment: "map" });
   let shownId: string | null = null;
+  let followedId: string | null = null;
   let flightId: string | null = null;
+  const flownSoFar = async (id: string): Promise<void> => {
+    const recorded = await attempt("The track flown so far was not read", () => recordedTrack(id));
+    if (!recorded || flightId !== id) return;
+    track.precede(recorded);
+    setData(map, "track", track.features());
+  };
   watched.watch((vehicle) => {
     const state = vehicle?.state;
     if (!vehicle || !state || state.lon_deg === null || state.lat_deg === null) {
@@ -106,14 +114,19 @@ export function showAircraft(map: MapLibreMap): void {
     shapeLike(marker, state.type);
     tellAge(marker.getElement(), vehicle);
     if (shownId === null) marker.addTo(map);
-    const another = shownId !== null && shownId !== vehicle.id;
     shownId = vehicle.id;
-    if (another || (vehicle.flight_id !== null && vehicle.flight_id !== flightId)) {
+    const another = followedId !== vehicle.id;
+    const first = followedId === null;
+    followedId = vehicle.id;
+    const begun = vehicle.flight_id !== null && vehicle.flight_id !== flightId;
+    if ((another && !first) || begun) {
       track.clear();
       setData(map, "track", []);
     }
+    // A flight that was going on before this page looked has a part that only the service saw.
+    if (begun && another) void flownSoFar(vehicle.flight_id as string);
     flightId = vehicle.flight_id;
-    if (flightId !== null && track.add({ at, sensor_on: state.sensor_on === true })) setData(map, "track", track.features());
+    if (flightId !== null && track.add({ at, sensor_on: state.sensor_on === true, time_s: state.time_s })) setData(map, "track", track.features());
   });
   setInterval(() => {
     if (watched.value) tellAge(marker.getElement(), watched.value);

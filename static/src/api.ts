@@ -5,7 +5,12 @@ import type { Finding, Position, Problem } from "./types";
 /** Whether the service answers; kept up to date by every call and by a heartbeat. */
 export const connection = new Signal<"unknown" | "up" | "down">("unknown");
 
+/** Whether it can plan: after an install it compiles for a minute before it can. */
+export type Readiness = "unknown" | "ready" | "starting" | "failing";
+export const readiness = new Signal<Readiness>("unknown");
+
 const HEARTBEAT_MS = 5000;
+const STARTING_MS = 1500;
 const root = new URL("./", document.baseURI);
 
 export function apiUrl(path: string): string {
@@ -179,15 +184,27 @@ export function follow(
   return () => abort.abort();
 }
 
-/** Ask now and then whether the service lives, so that a loss is seen without a click. */
+async function askReadiness(): Promise<void> {
+  // 503 is an answer here, too.
+  const response = await fetch(new URL("health/ready", root).href, { cache: "no-store", signal: AbortSignal.timeout(HEARTBEAT_MS) });
+  const { status } = (await response.json()) as { status?: string };
+  const found: Readiness = status === "ok" ? "ready" : status === "starting" || status === "failing" ? status : "unknown";
+  if (found !== readiness.value) readiness.set(found);
+}
+
+/** Ask now and then whether the service lives, so that a loss is seen without a click, and until it is, whether it can plan. */
 export function heartbeat(): void {
   const beat = async (): Promise<void> => {
     try {
       await send(new URL("health/live", root).href, { signal: AbortSignal.timeout(HEARTBEAT_MS) });
+      if (readiness.value !== "ready") await askReadiness();
     } catch (error) {
-      connection.set(error instanceof ApiError ? "up" : "down");
+      const lives = error instanceof ApiError;
+      connection.set(lives ? "up" : "down");
+      // It may be another one that answers next.
+      if (!lives) readiness.set("unknown");
     }
-    setTimeout(() => void beat(), HEARTBEAT_MS);
+    setTimeout(() => void beat(), readiness.value === "starting" ? STARTING_MS : HEARTBEAT_MS);
   };
   void beat();
 }

@@ -10,6 +10,7 @@ import { hideWhileEdited, SELECTABLE } from "./layers";
 import { warn } from "./notices";
 import { nameOf, radiusOf, scenarios } from "./scenario";
 import { Signal } from "./signal";
+import { drawnWords } from "./size";
 import type { Position, Role, ScenarioFeature } from "./types";
 
 export interface Tool {
@@ -90,10 +91,14 @@ export class Drawing {
   readonly tool = new Signal<Tool | null>(null);
   /** Whether geometry stands fast: no tool, no handles, no key changes it. */
   readonly locked = new Signal<boolean>(true);
+  /** How large what is being drawn or dragged is just now, in words. */
+  readonly size = new Signal<string>("");
   readonly #map: MapLibreMap;
   readonly #draw: TerraDraw;
   readonly #turned: TurnedAdapter;
   #editing: { name: string; id: string | number } | null = null;
+  /** Whether the pointer holds something on the map. */
+  #held = false;
 
   constructor(map: MapLibreMap) {
     this.#map = map;
@@ -122,7 +127,9 @@ export class Drawing {
     });
     this.#draw.start();
     this.#draw.setMode(IDLE);
+    this.#draw.on("change", (ids, kind) => this.#measure(ids, kind));
     this.#draw.on("finish", (id, context) => {
+      this.#say("");
       // The library still works on the feature when it calls; it is taken over after that.
       setTimeout(() => (context.action === "draw" ? this.#take(id) : this.#commit()), 0);
     });
@@ -136,12 +143,31 @@ export class Drawing {
       map.on("mouseenter", layer, () => !this.locked.value && this.tool.value === null && (map.getCanvas().style.cursor = "pointer"));
       map.on("mouseleave", layer, () => this.tool.value === null && (map.getCanvas().style.cursor = ""));
     }
+    map.getCanvasContainer().addEventListener("pointerdown", () => (this.#held = true));
+    addEventListener("pointerup", () => (this.#held = false));
     this.locked.watch((locked) => {
       if (locked) this.#letGo();
     });
     scenarios.selection.watch(() => this.#follow());
     scenarios.document.watch(() => this.#follow());
     addEventListener("keydown", (event) => this.#key(event));
+  }
+
+  #say(words: string): void {
+    if (words !== this.size.value) this.size.set(words);
+  }
+
+  /** Tell the size of what the pointer changes. */
+  #measure(ids: (string | number)[], kind: string): void {
+    const tool = this.tool.value;
+    if (kind === "delete" || (!tool && !this.#held)) return this.#say("");
+    for (const id of ids) {
+      const changed = this.#draw.hasFeature(id) ? this.#draw.getSnapshotFeature(id) : undefined;
+      // Corners and midpoints change with their shape; only the shape has a size.
+      if (!changed || changed.geometry.type === "Point" || (tool ? changed.properties["mode"] !== tool.mode : kind !== "update" || id !== this.#editing?.id)) continue;
+      const edited = tool ? undefined : scenarios.find(this.#editing?.name ?? null);
+      this.#say(drawnWords(this.#turned.outside(changed.geometry as Geometry), tool ? tool.mode === "circle" : edited !== undefined && radiusOf(edited) > 0, tool !== null));
+    }
   }
 
   /** Give up what is being drawn and let go of what is selected; nothing of it changes the scenario. */
@@ -159,6 +185,7 @@ export class Drawing {
       this.#turned.turnTo(this.#map.getCenter().lng);
     }
     this.tool.set(tool);
+    this.#say("");
     this.#draw.setMode(tool ? tool.mode : IDLE);
   }
 

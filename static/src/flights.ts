@@ -6,7 +6,8 @@ import { attempt, news } from "./notices";
 import { open } from "./plans";
 import { scenarios } from "./scenario";
 import { Signal } from "./signal";
-import type { Flight, PlanRecord, SeenCollection } from "./types";
+import type { TrackPoint } from "./track";
+import type { Flight, PlanRecord, Position, SeenCollection } from "./types";
 
 export interface Flown {
   flight: Flight;
@@ -34,6 +35,15 @@ export async function showFlight(flight: Flight): Promise<void> {
     properties: { sensor_on: feature.properties?.["role"] === "sensor_on" },
   }));
   flown.set({ flight, seen, track: pieces, photos: track.features.filter((feature) => feature.properties?.["role"] === "photo") });
+}
+
+/** The places of a flight as far as it is recorded. */
+export async function recordedTrack(id: string): Promise<TrackPoint[]> {
+  const { features } = await get<FeatureCollection>(`/flights/${encodeURIComponent(id)}/track.geojson`);
+  return features.flatMap(({ geometry, properties: p }) => {
+    if (p?.["role"] !== "track" || geometry.type !== "LineString") return [];
+    return geometry.coordinates.map((at, i) => ({ at: at.slice(0, 2) as Position, sensor_on: (p["sensor_on"] as (boolean | null)[])[i] === true, time_s: (p["times_s"] as (number | null)[])[i] ?? null }));
+  });
 }
 
 export const flightUrl = (id: string, file: string): string => apiUrl(`/flights/${encodeURIComponent(id)}/${file}`);

@@ -1,11 +1,16 @@
 /** The line on top: name, whether the service answers, the background layer. */
-import { connection } from "./api";
+import { connection, readiness } from "./api";
 import { button, byId, fill, h } from "./dom";
 import { report, warn } from "./notices";
 import { rasterTemplate, setRaster } from "./map";
 import type { Map as MapLibreMap } from "maplibre-gl";
 
 const WORDS = { unknown: "connecting …", up: "service connected", down: "service not reachable, trying again …" };
+/** What it answers with, but does not yet do. */
+const NOT_READY = {
+  starting: "service getting ready to plan: after an install it compiles for a minute or two; the page goes on by itself",
+  failing: "the service can keep nothing: its database does not answer",
+};
 
 function background(map: MapLibreMap): HTMLElement {
   const address = h("input", { id: "raster", type: "url", placeholder: "https://…/{z}/{x}/{y}.png", value: rasterTemplate() });
@@ -42,10 +47,14 @@ function background(map: MapLibreMap): HTMLElement {
 
 export function buildHeader(map: MapLibreMap): void {
   const status = h("span", { class: "status", id: "service", role: "status" });
-  connection.watch((state) => {
-    status.dataset["state"] = state;
-    fill(status, WORDS[state]);
-  });
+  const tell = (): void => {
+    const state = connection.value;
+    const waiting = state === "up" && (readiness.value === "starting" || readiness.value === "failing") ? readiness.value : null;
+    status.dataset["state"] = waiting ?? state;
+    fill(status, waiting ? NOT_READY[waiting] : WORDS[state]);
+  };
+  connection.watch(tell);
+  readiness.watch(tell);
   fill(
     byId("top"),
     h("h1", {}, h("img", { src: "./icon.svg", alt: "" }), "Swathplan"),

@@ -31,8 +31,8 @@ export interface Hook {
   planState(): string | null;
   /** Where the scenario is kept: the service's id of it, and whether all is written. */
   kept(): { id: string | null; state: string };
-  /** The watched vehicle: where it is, whether it flies, to which item, how many places its live track has. */
-  vehicle(): { lon_deg: number | null; lat_deg: number | null; armed: boolean; sensor_on: boolean; flight: string | null; item: number | null; track: number } | null;
+  /** The watched vehicle: where it is, whether it flies, to which item, how many places its live track has and where that begins. */
+  vehicle(): { lon_deg: number | null; lat_deg: number | null; armed: boolean; sensor_on: boolean; flight: string | null; item: number | null; track: number; began: [number, number] | null } | null;
   /** Photos of the plan on the map, those a flight took, and how many planned ones see a place: null while that is not counted. */
   photos(): number;
   taken(): number;
@@ -81,7 +81,7 @@ export function installHook(map: MapLibreMap): void {
       const vehicle = watched.value;
       if (!vehicle) return null;
       const { lon_deg, lat_deg, armed, sensor_on, mission_current } = vehicle.state;
-      return { lon_deg, lat_deg, armed, sensor_on: sensor_on === true, flight: vehicle.flight_id, item: mission_current, track: track.points.length };
+      return { lon_deg, lat_deg, armed, sensor_on: sensor_on === true, flight: vehicle.flight_id, item: mission_current, track: track.points.length, began: track.points[0]?.at ?? null };
     },
     photos: () => shots.value.length,
     taken: () => takenShots.value.length,

@@ -1,6 +1,7 @@
 /** The page, put together. */
 import "./style.css";
 import { showAircraft } from "./aircraft";
+import { keepAirframes } from "./airframes";
 import { connection, heartbeat } from "./api";
 import { keepCameras } from "./cameras";
 import { byId } from "./dom";
@@ -90,6 +91,7 @@ async function start(): Promise<void> {
   keepFlights();
   keepRasters();
   keepCameras();
+  keepAirframes();
   keepVehicles();
   keepOrdered();
   heartbeat();

@@ -1,19 +1,20 @@
 /** Errors and news in words, at the corner of the page; errors stay until they are closed, or what failed is done. */
 import { ApiError } from "./api";
 import { button, byId, h } from "./dom";
+import { fixOf, messageOf, ownerWords } from "./finding_words";
 import type { Finding } from "./types";
 
 const NEWS_MS = 6000;
 
 /** A finding without the name of its feature, for where that stands already. */
 export function findingWords(finding: Finding): string {
-  const fix = finding.fix ? ` ${finding.fix}` : "";
+  const fix = finding.fix ? ` ${fixOf(finding)}` : "";
   const rule = finding.rule ? ` (${finding.rule})` : "";
-  return `${finding.message}${rule}.${fix}`.replace(/\.\./g, ".");
+  return `${messageOf(finding)}${rule}.${fix}`.replace(/\.\./g, ".");
 }
 
 export function findingText(finding: Finding): string {
-  return `${finding.feature}: ${findingWords(finding)}`;
+  return `${ownerWords(finding.feature)}: ${findingWords(finding)}`;
 }
 
 function show(kind: "error" | "news", title: string, lines: string[]): void {

@@ -1,6 +1,7 @@
 /** How large a shape is on WGS 84's ellipsoid, for display: areas of polygons, lengths of lines. */
 import type { Geometry, Position as GeoPosition } from "geojson";
 import { unwrapLine, unwrapRings } from "./antimeridian";
+import { circleOf } from "./geo";
 import { metres, squareMetres } from "./units";
 
 const A_M = 6378137;
@@ -41,6 +42,20 @@ function line_m(points: GeoPosition[]): number {
 function polygon(rings: GeoPosition[][]): { area_m2: number; round_m: number } {
   const [outer = [], ...holes] = unwrapRings(rings);
   return { area_m2: ring_m2(outer) - holes.reduce((sum, hole) => sum + ring_m2(hole), 0), round_m: line_m(outer) };
+}
+
+/** Of what is being drawn or dragged; while a corner is `added`, the side at the pointer too, which is the last one. */
+export function drawnWords(geometry: Geometry, round: boolean, added: boolean): string {
+  if (geometry.type !== "LineString" && geometry.type !== "Polygon") return "";
+  const rings = geometry.type === "Polygon" ? geometry.coordinates : [geometry.coordinates];
+  if (round) return `radius ${metres(circleOf(rings[0] ?? []).radius_m)}, ${sizeWords(geometry).split(",")[0] ?? ""}`;
+  if (!added) return sizeWords(geometry);
+  const corners = geometry.type === "Polygon" ? (rings[0] ?? []).slice(0, -1) : (rings[0] ?? []);
+  const path = unwrapLine(corners.filter((corner, i) => i === 0 || corner[0] !== corners[i - 1]?.[0] || corner[1] !== corners[i - 1]?.[1]));
+  if (path.length < 2) return "";
+  const last = metres(line_m(path.slice(-2)));
+  if (path.length === 2) return last;
+  return `this side ${last}; ${sizeWords(geometry)}`;
 }
 
 /** In words; empty where a shape has no size. */

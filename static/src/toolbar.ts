@@ -27,10 +27,13 @@ export function buildToolbar(drawing: Drawing, edit: () => void): void {
   });
   fill(
     byId("tools"),
+    h(
+      "span",
+      { class: "pair" },
+      button("↶", () => scenarios.undo(), { title: "Undo (Ctrl+Z)", "aria-label": "Undo" }),
+      button("↷", () => scenarios.redo(), { title: "Redo (Ctrl+Shift+Z)", "aria-label": "Redo" }),
+    ),
     ...buttons.map(({ made }) => made),
-    h("span", { class: "gap" }),
-    button("↶", () => scenarios.undo(), { title: "Undo (Ctrl+Z)", "aria-label": "Undo" }),
-    button("↷", () => scenarios.redo(), { title: "Redo (Ctrl+Shift+Z)", "aria-label": "Redo" }),
   );
   const lock = byId("lock");
   fill(lock, lockSign(), h("span", {}, "Geometry is locked"), button("Edit the scenario", edit, { class: "link", id: "unlock" }));
@@ -38,13 +41,23 @@ export function buildToolbar(drawing: Drawing, edit: () => void): void {
     lock.hidden = !locked;
     byId("tools").hidden = locked;
   });
-  drawing.tool.watch((active) => {
-    for (const { tool, made } of buttons) made.setAttribute("aria-pressed", String(tool === active));
-    const hint = byId("hint");
+  const hint = byId("hint");
+  const size = h("output", { id: "drawn-size", "aria-live": "off" });
+  const words = h("span", {});
+  fill(hint, words, size);
+  const tell = (): void => {
     // Under the tools, which take two rows and more in a narrow window.
     hint.style.top = `${byId("tools").offsetHeight + 16}px`;
-    hint.classList.toggle("shown", active !== null);
-    if (active) fill(hint, `${active.label}: ${active.hint} `, button("Place in the middle", () => drawing.placeAtCentre(active)));
-    else fill(hint);
+    hint.classList.toggle("shown", drawing.tool.value !== null || drawing.size.value !== "");
+  };
+  drawing.tool.watch((active) => {
+    for (const { tool, made } of buttons) made.setAttribute("aria-pressed", String(tool === active));
+    if (active) fill(words, `${active.label}: ${active.hint} `, button("Place in the middle", () => drawing.placeAtCentre(active)));
+    else fill(words);
+    tell();
+  });
+  drawing.size.watch((said) => {
+    size.textContent = said;
+    tell();
   });
 }

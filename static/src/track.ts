@@ -6,6 +6,8 @@ import type { Position } from "./types";
 export interface TrackPoint {
   at: Position;
   sensor_on: boolean;
+  /** The vehicle's own time since boot, where it tells one. */
+  time_s: number | null;
 }
 
 const LEAST_STEP_M = 4;
@@ -25,6 +27,15 @@ export class Track {
     this.#points.push(point);
     if (this.#points.length > MOST_POINTS) this.#points = this.#points.filter((_, index) => index % 2 === 0);
     return true;
+  }
+
+  /** Put what was recorded before this page looked in front of what it saw itself. */
+  precede(recorded: TrackPoint[]): void {
+    const first_s = this.#points[0]?.time_s ?? null;
+    const before = first_s === null ? recorded : recorded.filter(({ time_s }) => time_s === null || time_s < first_s);
+    const seen = this.#points;
+    this.#points = [];
+    for (const point of [...before, ...seen]) this.add(point);
   }
 
   clear(): void {

@@ -189,7 +189,9 @@ async def test_map_does_not_hide_the_interface(settings: Settings, tmp_path: Pat
     async with serving(create_app(settings, fake_house)) as client:
         assert "<title>map</title>" in (await client.get("/")).text
         check_problem(await client.get("/no-such-file"), 404)
-        check_problem(await client.get("/api/v1/nothing"), 404)
+        nothing = await client.get("/api/v1/nothing")
+        check_problem(nothing, 404)
+        assert "/docs" in nothing.json()["detail"]
         check_problem(await client.patch("/api/v1/scenarios/validate"), 405)
         check_problem(await client.patch(PLANS), 405)
         check_problem(await client.post("/health/live"), 405)

@@ -1,4 +1,5 @@
 /** Connecting a vehicle: how it is reached, in words, with an address to begin from. */
+import { completed } from "../airframes";
 import { button, fill, h } from "../dom";
 import { connectVehicle, refreshVehicles, vehicles } from "../fleet";
 import { attempt, warn } from "../notices";
@@ -12,7 +13,7 @@ interface Kind {
 
 /** A simulated aircraft that flies as the scenario's first vehicle is said to. */
 function simulated(type: "fixed_wing" | "multirotor"): string {
-  const vehicle = scenarios.document.value.vehicles?.[0] ?? {};
+  const vehicle = completed(scenarios.document.value.vehicles?.[0] ?? {});
   const options: Record<string, unknown> = { speedup: 10, type };
   if ((vehicle["type"] ?? "fixed_wing") === type) {
     options["airspeed"] = vehicle["airspeed_m_s"];

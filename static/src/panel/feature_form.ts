@@ -140,6 +140,9 @@ function roleFields(name: string, role: string, geometryType: string, model: unk
   }
 }
 
+// So that findings call properties as the form will, before any form was opened.
+for (const [role, type, model] of [["roi", "LineString", ""], ["roi", "Point", ""], ["threat", "Point", "radar"], ["no_fly", "Point", ""], ["obstacle", "Polygon", ""], ["importance", "Point", ""], ["start", "Point", ""]] as const) roleFields("", role, type, model);
+
 /** The question of an import that is still open: what the shape is. */
 function doubt(feature: ScenarioFeature): HTMLElement | null {
   const why = feature.properties["role_in_doubt"];

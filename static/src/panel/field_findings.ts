@@ -9,9 +9,13 @@ const OWNERS = [
   ["vehicle ", "vehicles"],
 ] as const;
 
+/** Members of the scenario with fields of their own. */
+const MEMBERS: Record<string, string> = { wind: "wind", separation: "separation", search: "search", drift: "drift", objective: "w", method: "m" };
+
 /** What the ids of fields begin with where what the finding is of is edited. */
 function prefixOf(feature: string): string | null {
   if (feature === "scenario") return "s";
+  if (MEMBERS[feature] !== undefined) return MEMBERS[feature];
   for (const [word, list] of OWNERS) {
     if (!feature.startsWith(word)) continue;
     const called = feature.slice(word.length);

@@ -16,8 +16,16 @@ interface Common<T> {
   set(value: T | undefined): void;
 }
 
+/** Labels by the ids of their fields, whichever aircraft or sensor it is of. */
+const LABELS = new Map<string, string>();
+const anyOf = (id: string): string => id.replace(/^(vehicles|sensors)-\d+-/, "$1-");
+
+/** What a field is called in its form, without its unit; undefined where no form has shown it yet. */
+export const labelOf = (id: string): string | undefined => LABELS.get(anyOf(id));
+
 function labelled(id: string, label: string, control: HTMLElement, hint?: string): HTMLElement {
   if (hint) control.setAttribute("aria-describedby", `${id}-hint`);
+  LABELS.set(anyOf(id), label.replace(/ \([^)]*\)$/, ""));
   return h(
     "div",
     { class: "field", title: hint },
@@ -122,6 +130,7 @@ export function choiceField(options: Common<string> & { choices: readonly (strin
 export function tickField(options: Common<boolean>): Field {
   const { id, get, set } = options;
   const input = h("input", { id, type: "checkbox" });
+  LABELS.set(anyOf(id), options.label);
   input.addEventListener("change", () => set(input.checked));
   return {
     element: h("div", { class: "field tick", title: options.hint }, input, h("label", { for: id }, options.label)),

@@ -3,10 +3,10 @@ import { ask } from "../dialog";
 import { button, fill, h, section } from "../dom";
 import { attempt, findingText } from "../notices";
 import { scenarios } from "../scenario";
-import { cancelPlan, deletePlan, isSearch, open, openPlan, planUrl, problemOf, recent, refresh, running, startPlan, type OpenPlan } from "../plans";
+import { cancelPlan, coming, deletePlan, isSearch, open, openPlan, planUrl, problemOf, recent, refresh, running, startPlan, type OpenPlan } from "../plans";
 import { freshness } from "../freshness";
 import { mayLeave } from "../leaving";
-import { readFindings } from "../api";
+import { readFindings, readiness } from "../api";
 import type { Metrics, PlanRecord, Position, Problem, Violation } from "../types";
 import { metres, number, percent, percentDown, seconds } from "../units";
 import { judgement } from "../validation";
@@ -51,6 +51,8 @@ function failure(problem: Problem, view: PlanView): HTMLElement {
   );
 }
 
+const waitsFor = (): string => (readiness.value === "starting" ? "waiting until the service is ready to plan" : "waiting for a free worker");
+
 /** Bar, stage and cancel button; they stay the same elements, so that a click or the focus is never lost. */
 function progress(view: PlanView): HTMLElement {
   const bar = h("progress", { max: 1, "aria-label": "Planning progress" });
@@ -61,8 +63,9 @@ function progress(view: PlanView): HTMLElement {
   const say = (record: PlanRecord, fraction: number, moving: boolean): void => {
     const since = record.started_at ?? record.created_at;
     const passed = since ? seconds(Math.max(0, Math.round((Date.now() - Date.parse(since)) / 1000))) : "";
-    const at = record.state === "queued" ? "waiting for a free worker" : (record.stage ?? "starting");
-    const text = moving ? [at, percent(fraction, 0), passed].filter(Boolean).join(" · ") : `Plan ${record.state}`;
+    const at = record.state === "queued" ? waitsFor() : (record.stage ?? "starting");
+    const over = record.state === "done" ? "Planned; its figures are being read …" : `Plan ${record.state}`;
+    const text = moving ? [at, percent(fraction, 0), passed].filter(Boolean).join(" · ") : over;
     if (words.textContent !== text) words.textContent = text;
   };
   setInterval(() => {
@@ -207,6 +210,12 @@ export function planPanel(view: PlanView): HTMLElement {
   running.watch(update);
   judgement.watch(update);
   const box = h("div", {});
+  const reading = h("p", { class: "quiet", role: "status", hidden: true }, "The plan is being read …");
+  const read = (): void => {
+    reading.hidden = coming.value === null || running.value !== null;
+  };
+  coming.watch(read);
+  running.watch(read);
   const beside = section("Compare", false, comparison());
   const stale = h("p", { class: "error banner", id: "stale", hidden: true });
   freshness.watch(({ state, reason }) => {
@@ -218,5 +227,5 @@ export function planPanel(view: PlanView): HTMLElement {
     fill(box, plan ? result(plan, view) : null);
     beside.hidden = plan === null;
   });
-  return h("div", {}, h("div", { class: "row" }, go), progress(view), stale, crewBox(), replanBox(), box, surveyBox(), profileBox(), waypointList(view.zoomToPlace), beside, earlier());
+  return h("div", {}, h("div", { class: "row" }, go), progress(view), reading, stale, crewBox(), replanBox(), box, surveyBox(), profileBox(), waypointList(view.zoomToPlace), beside, earlier());
 }

@@ -2,12 +2,14 @@
 import { button, fill, h, section } from "../dom";
 import { download } from "../download";
 import { openFile } from "../drop";
+import { fixOf, messageOf, ownerWords } from "../finding_words";
 import { mayLeave } from "../leaving";
 import { attempt } from "../notices";
 import { MISSION_FILES } from "../mission_file";
 import { REGION_FILES } from "../regions";
 import { emptyScenario, nameOf, scenarios } from "../scenario";
 import type { Finding } from "../types";
+import { readiness } from "../api";
 import { keeping, keepBeside, takeTheirs, type KeepState } from "../keeping";
 import { judge, judgement, type Judgement } from "../validation";
 import { ROLE_WORDS } from "../role_words";
@@ -68,9 +70,9 @@ function findingItem(finding: Finding, view: View): HTMLElement {
   const text = h(
     "span",
     {},
-    h("strong", {}, finding.feature),
-    `: ${finding.message}`,
-    finding.fix ? h("em", {}, ` ${finding.fix}`) : null,
+    h("strong", {}, known ? finding.feature : ownerWords(finding.feature)),
+    `: ${messageOf(finding)}${finding.fix ? "." : ""}`,
+    finding.fix ? h("em", {}, ` ${fixOf(finding)}`) : null,
     finding.rule ? h("code", {}, ` ${finding.rule}`) : null,
   );
   const go = (): void => {
@@ -91,15 +93,18 @@ function findingItem(finding: Finding, view: View): HTMLElement {
 
 function findings(view: View): HTMLElement {
   const box = h("div", { class: "card", id: "findings", role: "status", "aria-live": "polite" });
-  judgement.watch(({ state, findings: found }) => {
+  const tell = (): void => {
+    const { state, findings: found } = judgement.value;
     box.dataset["state"] = state;
     fill(
       box,
-      h("p", {}, STATE_WORDS[state]),
+      h("p", {}, state === "asking" && readiness.value === "starting" ? "To be checked as soon as the service is ready …" : STATE_WORDS[state]),
       found.length > 0 ? h("ul", { class: "findings" }, ...found.map((finding) => findingItem(finding, view))) : null,
       state === "unknown" ? button("Check again", () => void judge()) : null,
     );
-  });
+  };
+  judgement.watch(tell);
+  readiness.watch(tell);
   return box;
 }
 

@@ -1,4 +1,5 @@
 /** The sensors on board: a radar or a camera each, the camera from the service's database or by its figures. */
+import { completed } from "../airframes";
 import { cameras, heightFor_m, known, like, opticsOf, radars, seenFrom } from "../cameras";
 import { button, fill, h, section } from "../dom";
 import { news } from "../notices";
@@ -213,7 +214,7 @@ function hint(index: number): Field {
       const share = (property: string, usual: number): number => (typeof sensor?.[property] === "number" ? sensor[property] : usual);
       if (!optics) return fill(words, sensor?.["model"] === undefined ? "Choose the camera, or give its figures." : "");
       const [forward, side] = [share("forward_overlap", FORWARD_OVERLAP), share("side_overlap", SIDE_OVERLAP)];
-      const speed_m_s = Number(vehicles?.[0]?.["airspeed_m_s"]);
+      const speed_m_s = Number(completed(vehicles?.[0] ?? {})["airspeed_m_s"]);
       const from = (height_m: number, whence: string): string => {
         const seen = seenFrom(optics, height_m, forward, side);
         const soon = speed_m_s > 0 ? `, ${shown(seen.photos_m / speed_m_s, 1, "s")} at ${shown(speed_m_s, 0, "m/s")}` : "";

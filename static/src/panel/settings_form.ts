@@ -65,8 +65,8 @@ function apart(): Field[] {
       else draft["separation"] = target;
     });
   return [
-    numberField({ id: "separation-horizontal_m", label: "Apart, sideways", unit: "m", min: 0, placeholder: "not kept", hint: "Aircraft keep this distance, or the one in height, at every instant", get: get("horizontal_m"), set: set("horizontal_m") }),
-    numberField({ id: "separation-vertical_m", label: "Apart, in height", unit: "m", min: 0, placeholder: "not kept", get: get("vertical_m"), set: set("vertical_m") }),
+    numberField({ id: "separation-horizontal_m", label: "Apart, sideways", unit: "m", min: 0, placeholder: "100", hint: "Aircraft keep this distance, or the one in height, at every instant", get: get("horizontal_m"), set: set("horizontal_m") }),
+    numberField({ id: "separation-vertical_m", label: "Apart, in height", unit: "m", min: 0, placeholder: "30", get: get("vertical_m"), set: set("vertical_m") }),
   ];
 }
 

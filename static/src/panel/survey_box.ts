@@ -17,6 +17,7 @@ const GIGABYTE = 1e9;
 interface Taken {
   camera: PlanCamera;
   count: number;
+  /** The photos that follow each other soonest: how far apart, and how soon. */
   interval_m: number;
   least_s: number;
 }
@@ -29,9 +30,10 @@ function taken({ plan }: OpenPlan): Taken[] {
     const times = mine.flatMap(({ properties: p }) => {
       const pass = plan.features.find(({ properties: c }) => c["role"] === "collect" && c["vehicle"] === p["vehicle"] && c["seq"] === p["seq"])?.properties;
       const speed_m_s = pass ? (Number(pass["end_m"]) - Number(pass["start_m"])) / (Number(pass["end_s"]) - Number(pass["start_s"])) : NaN;
-      return Number.isFinite(speed_m_s) ? [Number(p["interval_m"]) / speed_m_s] : [];
+      return Number.isFinite(speed_m_s) && Number(p["count"]) > 1 ? [{ interval_m: Number(p["interval_m"]), least_s: Number(p["interval_m"]) / speed_m_s }] : [];
     });
-    return [{ camera, count: mine.reduce((sum, { properties: p }) => sum + Number(p["count"]), 0), interval_m: Math.min(...mine.map(({ properties: p }) => Number(p["interval_m"]))), least_s: Math.min(...times) }];
+    const soonest = times.sort((a, b) => a.least_s - b.least_s)[0] ?? { interval_m: NaN, least_s: NaN };
+    return [{ camera, count: mine.reduce((sum, { properties: p }) => sum + Number(p["count"]), 0), ...soonest }];
   });
 }
 
@@ -46,7 +48,7 @@ function cameraRows({ camera, count, interval_m, least_s }: Taken): HTMLElement[
     row("Photos", `${count} of ${megapixels.toFixed(1)} MP`),
     row("To be kept, JPEG (4 bits a pixel)", storage(count, camera, JPEG_BYTES_A_PIXEL)),
     row("To be kept, raw (14 bits a pixel)", storage(count, camera, RAW_BYTES_A_PIXEL)),
-    row("Between photos, at the least", `${number(interval_m, 1, "m")}, ${number(least_s, 1, "s")}`, soon ? "error" : ""),
+    ...(Number.isFinite(least_s) ? [row("Photos at their closest", `every ${number(interval_m, 1, "m")}, ${number(least_s, 1, "s")}`, soon ? "error" : "")] : []),
     ...(camera.min_interval_s > 0 ? [row("The camera's shortest", number(camera.min_interval_s, 1, "s"), soon ? "error" : "")] : []),
   ];
 }

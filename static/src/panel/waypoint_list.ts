@@ -9,7 +9,7 @@ const MOST_SHOWN = 1000;
 
 export function waypointList(zoomTo: (place: Position) => void): HTMLElement {
   const box = h("div", { class: "items" });
-  const head = section("Mission items", false, h("p", { class: "quiet" }, "Numbers as the vehicle counts them, for Go to item. Distances are straight from the place before; turns are flown round."), box);
+  const head = section("Mission items", false, h("p", { class: "quiet" }, "Numbers as the vehicle counts them, for Go to item; ArduPilot counts home as item 0. Distances are straight from the place before; turns are flown round."), box);
   const title = head.querySelector("summary");
   let rows = new Map<number, HTMLElement>();
   const mark = (): void => {
@@ -23,7 +23,7 @@ export function waypointList(zoomTo: (place: Position) => void): HTMLElement {
   open.watch((shown) => {
     head.hidden = shown === null;
     const items = shown?.items ?? [];
-    if (title) title.textContent = `Mission items (${items.length})`;
+    if (title) title.textContent = `Mission items (${items.length}${items[0]?.seq === 1 ? ", and home" : ""})`;
     rows = new Map();
     fill(
       box,

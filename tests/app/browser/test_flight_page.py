@@ -233,10 +233,16 @@ def test_planning_can_be_cancelled(page: Page, planned: str, service: Service) -
 
 
 def test_a_lost_service_is_said_and_found_again(page: Page, planned: str) -> None:
-    """Without the service the header says so; when it is back, the page goes on by itself."""
+    """Without the service the header says so; when it is back, the page goes on by itself, and says until
+    when it is not ready to plan."""
     status = page.locator("#service")
     expect(status).to_have_attribute("data-state", "up")
     page.context.set_offline(True)
     expect(status).to_have_attribute("data-state", "down", timeout=15_000)
+    begun = {"status": "starting", "version": "0", "checks": {"database": True, "workers": False}}
+    page.route("**/health/ready", lambda route: route.fulfill(status=503, json=begun))
     page.context.set_offline(False)
+    expect(status).to_have_attribute("data-state", "starting", timeout=15_000)
+    expect(status).to_contain_text("getting ready to plan")
+    page.unroute("**/health/ready")
     expect(status).to_have_attribute("data-state", "up", timeout=15_000)

@@ -62,6 +62,18 @@ def test_hold_stops_the_mission_and_the_sensor(page: Page, collecting: None) -> 
     assert ask(page, "vehicle()")["armed"] is True
 
 
+def test_a_reload_in_flight_keeps_the_track(page: Page, service: Service, collecting: None) -> None:
+    """What was flown before a reload is drawn from the service's record, from the place of take-off on."""
+    page.reload()
+    page.wait_for_function("window.swathplan !== undefined")
+    await_hook(page, "vehicle()?.track > 1", LIMIT_S)
+    flight = ask(page, "vehicle()")["flight"]
+    track = httpx.get(f"{service.address}/api/v1/flights/{flight}/track.geojson", timeout=20.0).json()
+    line = next(f["geometry"] for f in track["features"] if f["properties"]["role"] == "track")
+    await_hook(page, f"vehicle().began[0] === {line['coordinates'][0][0]!r}", LIMIT_S)
+    assert ask(page, "vehicle()")["began"] == line["coordinates"][0][:2]
+
+
 def test_a_sensor_is_switched_off_by_its_button(page: Page, collecting: None) -> None:
     """Back in the mission the sensor comes on again; the button switches it off and the flight goes on."""
     give(page, "resume")
@@ -80,9 +92,7 @@ def test_land_brings_it_down(page: Page, collecting: None) -> None:
 
 
 def test_what_was_ordered_is_found_again(page: Page, collecting: None) -> None:
-    """The list tells of each order what became of it, and does so after a reload of the page as well."""
-    page.reload()
-    page.wait_for_function("window.swathplan !== undefined")
+    """The list tells of each order what became of it, of those before the reload of the page as well."""
     go_to(page, "Fly")
     page.get_by_text("What was ordered", exact=True).click()
     for command in ("arm", "start", "hold", "resume", "sensor_off", "land"):

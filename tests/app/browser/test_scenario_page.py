@@ -37,8 +37,13 @@ def test_a_region_is_drawn_by_hand(page: Page) -> None:
     page.click("[data-tool=roi]")
     for corner in corners:
         click_place(page, *corner)
+    # What is being drawn tells its size: the side from the second corner to the pointer.
+    side = re.fullmatch(r"this side ([0-9]+) m; .* around", page.locator("#drawn-size").inner_text())
+    assert side is not None
+    assert float(side[1]) == pytest.approx(WGS84.inv(*corners[1], *corners[2])[2], abs=15.0)
     page.keyboard.press("Enter")
     await_hook(page, "selected() === 'R7'")
+    expect(page.locator("#drawn-size")).to_be_empty()
     drawn = feature(page, "R7")
     assert drawn is not None
     ring = drawn["geometry"]["coordinates"][0]
@@ -240,8 +245,15 @@ def test_margins_and_wind_reach_the_document(page: Page) -> None:
     assert (made["clearance_m"], made["wind"]) == (50, {"speed_m_s": 6, "from_deg": 270})
     page.uncheck("#sensors-0-stabilised")
     assert "stabilised" not in ask(page, "scenario()")["sensors"][0]
-    page.locator("#wind-speed_m_s").fill("")
-    page.keyboard.press("Tab")
+    # A known airframe's figures take the place of the usual ones.
+    model = {"#vehicles-0-max_items": "300", "#vehicles-0-model": "dji mavic 2 pro"}
+    for field, text in ({"#wind-speed_m_s": ""} | model).items():
+        page.locator(field).fill(text)
+        page.keyboard.press("Tab")
+    vehicle = ask(page, "scenario()")["vehicles"][0]
+    assert (vehicle["model"], vehicle["max_items"]) == ("DJI Mavic 2 Pro", 300)
+    assert not {"type", "airspeed_m_s", "max_range_m", "min_turn_radius_m"} & set(vehicle)
+    expect(page.locator("#vehicles-0-type")).to_have_value("multirotor")
     assert "wind" not in ask(page, "scenario()")
 
 

@@ -77,6 +77,10 @@ def test_what_is_refused_stands_beside_its_field(camera: Page) -> None:
     put(camera, "#sensors-0-tilt_deg", "85")
     beside = camera.locator("#sensors-0-tilt_deg-finding")
     expect(beside).to_contain_text("horizon")
+    # Properties are called as their fields are, of which the file's name says nothing to an operator.
+    label = camera.locator("label[for=sensors-0-tilt_deg]").inner_text().split(" (")[0]
+    expect(beside).to_contain_text(f"“{label}” (°)")
+    expect(beside).not_to_contain_text("tilt_deg")
     field = camera.locator("#sensors-0-tilt_deg")
     expect(field).to_have_attribute("aria-invalid", "true")
     camera.locator("#findings button", has_text="horizon").click()
