@@ -182,6 +182,8 @@ def _feature(
     role = verdict.role
     wrong, fatal = _judge(name, role, shape)
     properties: dict[str, Any] = {"role": role, "name": name}
+    if role == "roi":
+        properties |= shape.wishes
     wrong += add_values(properties, name, role, shape, options, notes)
     if fatal or (wrong and role not in KEEP_AWAY):
         return wrong, None

@@ -9,6 +9,7 @@ from app.imports.errors import file_error
 from app.imports.missions import shapes_of_mission
 from app.imports.notes import Notes
 from app.imports.shapes import MAX_SHAPES, Shape
+from app.imports.surveys import shapes_of_surveys
 from app.imports.zones import is_zones, shapes_of_zones
 from app.services.documents import read_json
 from app.services.errors import RefusedError
@@ -37,7 +38,7 @@ def read_json_file(data: bytes, crs: str | None, notes: Notes) -> tuple[str, lis
     if not isinstance(document, dict):
         raise file_error("geojson", "the document is no JSON object", "send a FeatureCollection")
     if document.get("fileType") in ("Plan", "GeoFence", "RallyPoints"):
-        return "mission", shapes_of_mission(data, notes)
+        return "mission", shapes_of_mission(data, notes, shapes_of_surveys(document, notes))
     if is_zones(document):
         return "geojson", shapes_of_zones(document, notes)
     if esri_json.is_esri(document):

@@ -18,8 +18,8 @@ _POLYGONS = {
 }
 
 
-def shapes_of_mission(data: bytes, notes: list[str]) -> list[Shape]:
-    """The fence and the rally points; what is to be flown is no region, and is left out with a note.
+def shapes_of_mission(data: bytes, notes: list[str], surveys: Sequence[Shape] = ()) -> list[Shape]:
+    """The surveys, the fence and the rally points; other items are no regions, and are left out with a note.
 
     Raises
     ------
@@ -33,17 +33,20 @@ def shapes_of_mission(data: bytes, notes: list[str]) -> list[Shape]:
     if MissionType.FENCE in mission.unread:
         # what is left out of it could be what forbids
         raise file_error("fence-not-whole", "; ".join(mission.notes)[:500], "mend the fence where it says")
-    notes += mission.notes
-    shapes = _fence(mission.fence, notes)
+    # of a structure the settings count, not the items made of them
+    notes += [note for note in mission.notes if not (surveys and note.endswith(" from its settings"))]
+    shapes = [*surveys, *_fence(mission.fence, notes)]
     for index, item in enumerate(mission.rally, 1):
         shapes.append(Shape("point", (((_place(item),),),), f"rally {index}", ("rally",), {"role": "base"}))
     if not shapes:
         raise file_error(
             "no-regions",
-            "the file holds a mission, and neither fence nor rally points",
+            "the file holds a mission, and neither surveys nor fence nor rally points",
             "convert reads missions",
         )
-    if len(mission.mission) > 1:
+    if surveys:
+        notes.append("the aircraft is not taken over: name it in vehicles; items of surveys are planned anew")
+    elif len(mission.mission) > 1:
         notes.append(f"{len(mission.mission)} items of a mission are no regions and are left out")
     return shapes
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import Any
 
 from app.imports.errors import RegionFileError
 from planner.errors import Finding
@@ -12,17 +13,18 @@ from planner.errors import Finding
 _OF_ONE = frozenset(
     (
         *("kml-coordinates", "kml-polygon", "gpx-point", "geojson", "esri-json", "gml-geometry", "wkt"),
-        *("table-place", "circle", "rings-nested", "too-many-rings", "shapefile-kind"),
+        *("table-place", "circle", "rings-nested", "too-many-rings", "shapefile-kind", "survey"),
     )
 )
 
 
 class Notes(list[str]):
-    """Notes in words; ``faults`` are findings of shapes that are left out."""
+    """Notes in words; ``faults`` are findings of shapes left out, ``members`` what belongs to all shapes."""
 
     def __init__(self) -> None:
         super().__init__()
         self.faults: list[Finding] = []
+        self.members: dict[str, Any] = {}
 
     @contextmanager
     def one_shape(self, name: str) -> Iterator[None]:

@@ -88,7 +88,7 @@ def import_regions(
     if notes.faults and not shapes:
         raise RegionFileError(notes.faults[0].message, tuple(notes.faults[:MAX_FINDINGS]))
     made = features(shapes, options, notes)
-    collection = {"type": "FeatureCollection", "features": made.features}
+    collection = {"type": "FeatureCollection", "features": made.features} | notes.members
     return Imported(
         collection, found, tuple(made.accounts), (*notes.faults, *made.findings), tuple(dict.fromkeys(notes))
     )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Literal
+from typing import Any, Literal
 
 LonLat = tuple[float, float]
 Rings = tuple[tuple[LonLat, ...], ...]
@@ -33,6 +33,8 @@ class Shape:
         Further values of the file by name.
     label
         Whether it is a point drawn with a polygon as one thing, to carry its name.
+    wishes
+        What the file asks of it as a region, by the contract's names.
     """
 
     kind: Literal["polygon", "line", "point"]
@@ -41,6 +43,7 @@ class Shape:
     folders: tuple[str, ...] = ()
     properties: Mapping[str, str] = field(default_factory=dict)
     label: bool = False
+    wishes: Mapping[str, Any] = field(default_factory=dict)
 
     @property
     def positions(self) -> int:

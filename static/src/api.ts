@@ -199,12 +199,11 @@ export function heartbeat(): void {
       await send(new URL("health/live", root).href, { signal: AbortSignal.timeout(HEARTBEAT_MS) });
       if (readiness.value !== "ready") await askReadiness();
     } catch (error) {
-      const lives = error instanceof ApiError;
-      connection.set(lives ? "up" : "down");
-      // It may be another one that answers next.
-      if (!lives) readiness.set("unknown");
+      connection.set(error instanceof ApiError ? "up" : "down");
     }
     setTimeout(() => void beat(), readiness.value === "starting" ? STARTING_MS : HEARTBEAT_MS);
   };
+  // It may be another one that answers next.
+  connection.watch((state) => state === "down" && readiness.value !== "unknown" && readiness.set("unknown"));
   void beat();
 }

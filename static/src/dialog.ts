@@ -39,3 +39,19 @@ export function ask(question: Question): Promise<string | null> {
     dialog.showModal();
   });
 }
+
+/** Ask which of several; the first is the usual one. Resolves to null when the operator steps back. */
+export function choose(title: string, words: string, choices: readonly (readonly [id: string, label: string])[]): Promise<string | null> {
+  return new Promise((resolve) => {
+    const finish = (answer: string | null): void => {
+      dialog.close();
+      dialog.remove();
+      resolve(answer);
+    };
+    const buttons = choices.map(([id, label], index) => button(label, () => finish(id), { id: `dialog-${id}`, class: index === 0 ? "primary" : "" }));
+    const dialog = h("dialog", { "aria-labelledby": "dialog-title" }, h("h2", { id: "dialog-title" }, title), h("p", {}, words), h("div", { class: "row" }, ...buttons, button("Cancel", () => finish(null))));
+    dialog.addEventListener("cancel", () => finish(null));
+    document.body.append(dialog);
+    dialog.showModal();
+  });
+}

@@ -1,4 +1,5 @@
 /** Take a file from a drop on the page or from the file dialog: a scenario, or regions or a mission of another program. */
+import { choose } from "./dialog";
 import { byId } from "./dom";
 import { mayLeave } from "./leaving";
 import { isMissionFile, openMission } from "./mission_file";
@@ -15,9 +16,29 @@ export type Opened = "scenario" | "plan" | null;
 
 /** Open a scenario in place of the one shown, add another program's regions to it, or show its mission. */
 export async function openFile(file: File): Promise<Opened> {
-  if (await isMissionFile(file)) return (await openMission(file)) ? "plan" : null;
+  if (await isMissionFile(file)) {
+    const how = (await holdsSurveys(file)) ? await askSurveys(file) : "mission";
+    if (how === null) return null;
+    if (how === "mission") return (await openMission(file)) ? "plan" : null;
+    return (await importRegions(file)) ? "scenario" : null;
+  }
   const drawn = isRegionFile(file) || (await isDrawnElsewhere(file));
   return (await (drawn ? importRegions(file) : openScenario(file))) ? "scenario" : null;
+}
+
+/** Whether it is a plan with areas that a survey was laid over. */
+async function holdsSurveys(file: File): Promise<boolean> {
+  if (!file.name.toLowerCase().endsWith(".plan") || file.size > LIMIT_BYTES) return false;
+  return /"(complexItemType|type)"\s*:\s*"(survey|CorridorScan|StructureScan)"/.test(await file.text());
+}
+
+/** A plan with surveys is two things: what was asked for, and what was made of it. */
+async function askSurveys(file: File): Promise<"regions" | "mission" | null> {
+  const answer = await choose(`${file.name} holds surveys`, "Take over what they ask for (outlines, headings, cameras, heights), to be planned here, or show the mission as it is?", [
+    ["regions", "Take over the surveys"],
+    ["mission", "Show the mission"],
+  ]);
+  return answer as "regions" | "mission" | null;
 }
 
 /** Whether it is GeoJSON, or Esri JSON, whose shapes have no roles of a scenario: they are regions to be read. */

@@ -29,7 +29,7 @@ export async function openMission(file: File): Promise<boolean> {
     const record = inIt ?? (await taken(file, {}));
     if (!(await openPlan(record.id, inIt !== null))) return false;
     const judged = inIt ? "judged in the scenario on the page" : "judged by its own fence alone";
-    news([`Opened ${file.name}, ${judged}.`, ...(record.warnings ?? []).map(({ message }) => message)].join(" · "));
+    news(`Opened ${file.name}, ${judged}.`, ...(record.warnings ?? []).map(({ message }) => message));
     await refresh();
     return true;
   } catch (error) {

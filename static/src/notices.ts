@@ -1,10 +1,11 @@
-/** Errors and news in words, at the corner of the page; errors stay until they are closed, or what failed is done. */
+/** Errors and news in words, at the corner of the page; errors and long news stay until they are closed, or what failed is done. */
 import { ApiError } from "./api";
 import { button, byId, h } from "./dom";
 import { fixOf, messageOf, ownerWords } from "./finding_words";
 import type { Finding } from "./types";
 
 const NEWS_MS = 6000;
+const READ_LINES = 3;
 
 /** A finding without the name of its feature, for where that stands already. */
 export function findingWords(finding: Finding): string {
@@ -29,7 +30,8 @@ function show(kind: "error" | "news", title: string, lines: string[]): void {
   settled(title);
   notice.dataset["of"] = title;
   byId("notices").append(notice);
-  if (kind === "news") setTimeout(() => notice.remove(), NEWS_MS);
+  // What takes longer to read than that waits to be closed.
+  if (kind === "news" && lines.length < READ_LINES) setTimeout(() => notice.remove(), NEWS_MS);
 }
 
 /** It is done after all: what was said of its failure goes. */
@@ -42,8 +44,8 @@ export function clearNotices(): void {
   byId("notices").replaceChildren();
 }
 
-export function news(text: string): void {
-  show("news", text, []);
+export function news(text: string, ...lines: string[]): void {
+  show("news", text, lines);
 }
 
 export function warn(title: string, ...lines: string[]): void {

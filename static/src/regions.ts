@@ -1,9 +1,9 @@
 /** Regions drawn in other programs: the service reads the file, its features join the scenario. */
 import { ApiError, sendFile } from "./api";
-import { news, report } from "./notices";
+import { news, report, warn } from "./notices";
 import { askImport, isOpen, type LengthQuestion, type ShapeAccount } from "./roles";
 import { scenarios } from "./scenario";
-import type { Finding, ScenarioFeature } from "./types";
+import type { Finding, Member, ScenarioFeature } from "./types";
 
 /** Files that go to the service to be read. */
 export const REGION_FILES = ".kml,.kmz,.wpml,.gpx,.gml,.zip,.shp,.geojsonl,.ndjson,.wkt,.csv,.tsv";
@@ -14,6 +14,9 @@ interface Imported {
   shapes: ShapeAccount[];
   left_out: Finding[];
   notes: string[];
+  /** Of surveys: the cameras that their regions name, and what their heights count over. */
+  sensors?: Member[];
+  altitude_reference?: string;
 }
 
 /** What shapes can need and a file may not say: the rule of the finding is the length's name and "-missing". */
@@ -41,8 +44,10 @@ export async function importRegions(file: File): Promise<boolean> {
       if (!shapes.some(isOpen) && Object.keys(missing).length === 0) {
         if (!found) throw new Error(findings.map(({ feature, message }) => `${feature}: ${message}`).join("; "));
         const before = scenarios.document.value.features.map((feature) => feature.properties.role);
-        scenarios.merge(found.features);
-        news([`Added ${found.features.length} features of ${file.name}.`, ...replaced(before, found), ...told(found)].join(" · "));
+        const reference = mountedOver(found);
+        scenarios.merge(found.features, found.sensors, reference.use);
+        if (reference.warning) warn(`Heights of ${file.name}`, reference.warning);
+        news(`Added ${found.features.length} features of ${file.name}.`, ...replaced(before, found), ...told(found));
         return true;
       }
       const answer = await askImport(file.name, shapes, missing);
@@ -58,6 +63,15 @@ export async function importRegions(file: File): Promise<boolean> {
     report(`${file.name} was not added`, error);
     return false;
   }
+}
+
+/** What heights of surveys count over: of a scenario with nothing in it that of the file; of another its own, which is told. */
+function mountedOver({ altitude_reference, features }: Imported): { use?: string; warning?: string } {
+  const { value: before } = scenarios.document;
+  const asked = features.some(({ properties }) => properties["altitude_m"] !== undefined);
+  if (altitude_reference === undefined || !asked || before.altitude_reference === altitude_reference) return {};
+  if (before.features.length === 0) return { use: altitude_reference };
+  return { warning: `They were over ${altitude_reference === "amsl" ? "the sea" : altitude_reference}, and heights of this scenario count over ${String(before.altitude_reference ?? "terrain")}: see the altitude of each region.` };
 }
 
 /** What the service makes of it; of a file of which nothing can be taken as it is, the findings alone. */

@@ -3,7 +3,7 @@ import type { Geometry } from "geojson";
 import { canonical } from "./canonical";
 import { boundsOf, type Bounds } from "./geo";
 import { Signal } from "./signal";
-import type { Role, Scenario, ScenarioFeature } from "./types";
+import type { Member, Role, Scenario, ScenarioFeature } from "./types";
 
 const HISTORY_DEPTH = 60;
 const SINGLE: ReadonlySet<Role> = new Set(["area", "start", "end"]);
@@ -28,6 +28,34 @@ export function emptyScenario(): Scenario {
 
 export function nameOf(feature: ScenarioFeature): string {
   return String(feature.id ?? feature.properties.name ?? "");
+}
+
+/** The features by the names that their sensors have in the draft, which gets those it lacks. */
+function mountedOn(draft: Scenario, features: ScenarioFeature[], sensors: Member[]): ScenarioFeature[] {
+  // Where nothing was drawn yet, nobody has chosen the sensor and the altitude that are there.
+  if (draft.features.length === 0) {
+    draft.sensors = [];
+    const altitude_m = features.find(({ properties }) => properties["altitude_m"] !== undefined)?.properties["altitude_m"];
+    if (typeof altitude_m === "number") draft.altitude_m = altitude_m;
+    else delete draft.altitude_m;
+  }
+  const named = new Map<unknown, string>();
+  const mounted = (draft.sensors ??= []);
+  for (const sensor of sensors) {
+    const wanted = String(sensor["name"]);
+    const same = mounted.find((other) => canonical({ ...other, name: "" }) === canonical({ ...sensor, name: "" }));
+    let name = wanted;
+    if (same) name = String(same["name"]);
+    else {
+      for (let i = 2; mounted.some((other) => other["name"] === name); i += 1) name = `${wanted} ${i}`;
+      mounted.push({ ...sensor, name });
+    }
+    named.set(wanted, name);
+  }
+  return features.map((feature) => {
+    const name = named.get(feature.properties["sensor"]);
+    return name === undefined ? feature : { ...feature, properties: { ...feature.properties, sensor: name } };
+  });
 }
 
 export function radiusOf(feature: ScenarioFeature): number {
@@ -138,9 +166,12 @@ export class ScenarioStore {
    * Add features of a file under free names; a new area, start or end takes the place of the one there was. Of
    * two in the file both stay: the service says that there is one too many, where dropping one would not.
    */
-  merge(features: ScenarioFeature[]): void {
+  /** `sensors` are those that the features name; one of the same name and other figures keeps its own. */
+  merge(added: ScenarioFeature[], sensors: Member[] = [], altitudeReference?: string): void {
     this.selection.set(null);
     this.change((draft) => {
+      const features = sensors.length > 0 ? mountedOn(draft, added, sensors) : added;
+      if (altitudeReference !== undefined) draft.altitude_reference = altitudeReference;
       const single = new Set(features.map((feature) => feature.properties.role).filter((role) => SINGLE.has(role)));
       draft.features = draft.features.filter((other) => !single.has(other.properties.role));
       for (const feature of features) {

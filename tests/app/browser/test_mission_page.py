@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import json
+
 import pytest
 from playwright.sync_api import Page, expect
 
 from tests.app.browser.helpers import ask, await_hook, open_scenario
 from tests.app.browser.test_import_page import drop
+from tests.app.imports.test_surveys import SENTERA, with_camera
+from tests.mavlink.formats.test_qgc_complex import SURVEY, plan_of
 
 pytestmark = pytest.mark.browser
 
@@ -73,3 +77,16 @@ def test_a_mission_that_cannot_be_read_is_refused_in_words(page: Page) -> None:
     drop(page, "bad.waypoints", b"QGC WPL 110\n0\t1\t2\n")
     expect(page.locator("#notices")).to_contain_text("line 2")
     assert ask(page, "plan()") == before
+
+
+def test_surveys_of_a_plan_can_be_taken_over(page: Page) -> None:
+    """Asked which is wanted, the surveys join the scenario with their camera beside its sensors."""
+    before = ask(page, "scenario()")
+    drop(page, "field.plan", json.dumps(plan_of(with_camera(SURVEY, SENTERA))).encode())
+    page.click("#dialog-regions")
+    await_hook(page, "scenario().sensors.some(s => s.name === 'Sentera Double 4K')")
+    after = ask(page, "scenario()")
+    assert after["sensors"][:-1] == before["sensors"]
+    survey = next(f for f in after["features"] if f["id"] == "survey 1")
+    assert survey["properties"]["sensor"] == after["sensors"][-1]["name"]
+    expect(page.locator("#notices")).to_contain_text("headings 0° and 180°")
