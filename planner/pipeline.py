@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
@@ -17,7 +17,7 @@ from planner.errors import Finding
 from planner.metrics import measure
 from planner.plan import LeftOut, Plan
 from planner.profile.items import items_of, too_many
-from planner.progress import Progress, Stop, never, silent
+from planner.progress import Clock, Progress, Stop, Until, never, silent
 from planner.publish import Chart, assemble, fence, uncovered
 from planner.replanned import replanned
 from planner.scenario import Scenario
@@ -29,8 +29,6 @@ from planner.version import __version__
 
 if TYPE_CHECKING:
     from planner.tasks.fleet.task import FleetAnswer
-
-Clock = Callable[[], float]
 
 #: The search for better routes ends after this part of the scenario's time budget.
 ROUTING_SHARE = 0.6
@@ -299,9 +297,8 @@ def time_for_bound_s(planned_s: float, budget_s: float | None) -> float:
     return math.inf if budget_s is None else max(budget_s - planned_s, 0.0)
 
 
-def _budget(clock: Clock | None, budget_s: float | None) -> Stop:
-    """Whether the search for better routes has had its share of the time; never without clock or budget."""
+def _budget(clock: Clock | None, budget_s: float | None) -> Until:
+    """Until when better routes are searched for; for ever without clock or budget."""
     if clock is None or budget_s is None:
-        return never
-    end_s = clock() + ROUTING_SHARE * budget_s
-    return lambda: clock() > end_s
+        return Until()
+    return Until(clock, clock() + ROUTING_SHARE * budget_s)

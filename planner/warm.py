@@ -152,6 +152,11 @@ def warm_up() -> None:
     # Beyond nine passes the order is searched and bounded otherwise.
     many = read_scenario(_many())
     with_bound(many, make_plan(many), share=True)
+    # Of several aircraft few regions are shared out by proof, more by search.
+    one = _SCENARIO["vehicles"][0]
+    several = {"vehicles": [one, {**one, "name": "other"}]}
+    for members in (_SCENARIO, _many()):
+        make_plan(read_scenario(members | several))
     make_plan(read_scenario(_city("auto", building=False)))
     make_plan(read_scenario(_city("auto", building=False) | {"task": "search", "method": {}}))
     # Walks over importance, looks that miss, and what drifts.

@@ -41,6 +41,8 @@ NEAREST = 7
 #: Rounds of splitting, the last of which ends the search where it gains less than this part.
 ROUNDS, LEAST_GAIN = 8, 0.004
 STEPS = 500
+#: Steps of the ascent between two looks at the clock, where one ends it.
+LOOK = 20
 #: A cell is split that is in this part of the trees, and of each node so many at a time.
 USED, MOST_SPLIT = 0.02, 8
 
@@ -144,7 +146,10 @@ def trees_bound_m(
             break
         allowance.spend(work)
         between = kernels.blocks(cells.values, cells.slopes, cells.offsets, region, pairs, begins, radius_m)
-        bound_m, price, cells.potential, back, used, came, went = kernels.ascent(
+        at = kernels.Prices(price, cells.potential, np.ascontiguousarray(cells.back.T))
+        at, best, state = at.copied(), at.copied(), np.array([-np.inf, 1.0, 0.0])
+        used, came, went = (np.full(len(cells.potential), fill, dtype=np.int64) for fill in (0, -2, -2))
+        fixed = (
             between,
             begins,
             pairs,
@@ -153,12 +158,11 @@ def trees_bound_m(
             tables.terminals(end, cells.values, cells_of.EXIT, cells.slopes, radius_m),
             np.abs(cells.slopes).sum(axis=1),
             cells.offsets,
-            price,
-            cells.potential,
-            np.ascontiguousarray(cells.back.T),
-            known_m,
-            STEPS,
         )
+        for _ in range(STEPS // LOOK):
+            if not kernels.ascent(*fixed, at, best, used, came, went, state, known_m, LOOK) or allowance.told:
+                break
+        bound_m, (price, cells.potential, back) = float(state[0]), best
         cells.back = back.T
         gained = bound_m - best_m
         best_m = max(best_m, bound_m)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -13,6 +14,20 @@ from planner.bounds.lines_kernels import between, from_terminal, together
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+
+
+class Prices(NamedTuple):
+    """Prices of nodes, (C,), potentials of cells, (N,), and prices of turning back, by neighbour (see
+    ``places``) and cell, (S, N), the last not negative.
+    """
+
+    price: Floats
+    potential: Floats
+    back: Floats
+
+    def copied(self) -> Prices:
+        """Of their own."""
+        return Prices(self.price.copy(), self.potential.copy(), self.back.copy())
 
 
 @njit(cache=True)
@@ -226,12 +241,15 @@ def ascent(
     last: Floats,
     slack: Floats,
     offsets: Ints,
-    price: Floats,
-    potential: Floats,
-    back: Floats,
+    at: Prices,
+    best: Prices,
+    used: Ints,
+    came: Ints,
+    went: Ints,
+    state: Floats,
     target: float,
     steps: int,
-) -> tuple[float, Floats, Floats, Floats, Ints, Ints, Ints]:
+) -> bool:
     """Subgradient ascent on prices of nodes, potentials of cells and prices of turning back.
 
     A tour is a tree over the nodes with a line from the start and one to the end, every node with two lines,
@@ -251,31 +269,27 @@ def ascent(
         From the start to each cell's exits, from these to the end, (N,).
     slack
         What slopes can make of a line at most, by cell, (N,).
-    price, potential, back
-        To begin with, (C,), (N,) and, by neighbour (see ``places``) and cell, (S, N), the last not negative.
+    at, best
+        Prices that the ascent has come to, and those of the best bound met; both are changed.
+    used, came, went
+        How often each cell was in a tree, and the last cells before and after it there, −1 for the ends and
+        −2 where there was none; int64 (N,), changed.
+    state
+        The best bound met, the scale of steps, and how many have gained nothing, (3,); changed.
     target
         Length of a known tour: sets the step.
 
     Returns
     -------
-    float
-        The best bound met.
-    ndarray, ndarray, ndarray
-        Prices, potentials and prices of turning back that give it.
-    ndarray, ndarray, ndarray
-        How often each cell was in a tree, and the last cells before and after it there, −1 for the ends and
-        −2 where there was none; int64 (N,).
+    bool
+        Whether further steps may gain anything.
     """
+    price, potential, back = at
     n, count = len(price), len(potential)
-    price, potential, back = price.copy(), potential.copy(), back.copy()
-    best_price, best_potential, best_back = price.copy(), potential.copy(), back.copy()
     place, _ = places(pairs, n)
     number = np.full((n, n), -1)
     for p in range(len(pairs)):
         number[pairs[p, 0], pairs[p, 1]] = p
-    used = np.zeros(count, dtype=np.int64)
-    came, went = np.full(count, -2), np.full(count, -2)
-    best, scale, idle = -np.inf, 1.0, 0
     lines = np.empty((n, n))
     ends = np.empty((n, n, 2), dtype=np.int64)
     tree = np.empty((n - 1, 2), dtype=np.int64)
@@ -314,13 +328,13 @@ def ascent(
         degree[b] += 1.0
         turn[i] += 1.0
         visits[i] += 0.5
-        if bound > best + 1e-6 * target:
-            best, idle = bound, 0
-            best_price[:], best_potential[:], best_back[:] = price, potential, back
+        if bound > state[0] + 1e-6 * target:
+            state[0], state[2] = bound, 0.0
+            best.price[:], best.potential[:], best.back[:] = price, potential, back
         else:
-            idle += 1
-            if idle >= 15:
-                scale, idle = scale * 0.7, 0
+            state[2] += 1.0
+            if state[2] >= 15.0:
+                state[1], state[2] = state[1] * 0.7, 0.0
         norm = (degree**2).sum() + (turn**2).sum()
         for i in range(count):
             if visits[i] > 0.0:
@@ -328,13 +342,13 @@ def ascent(
                     turned[k, i] -= visits[i]
                     if back[k, i] > 0.0 or turned[k, i] > 0.0:
                         norm += turned[k, i] ** 2
-        if norm == 0.0 or scale < 1e-4:
-            break
-        step = scale * max(target - bound, 1e-3 * target) / norm
+        if norm == 0.0 or state[1] < 1e-4:
+            return False
+        step = state[1] * max(target - bound, 1e-3 * target) / norm
         price += step * degree
         potential += step * turn
         for i in range(count):
             if visits[i] > 0.0:
                 for k in range(len(back)):
                     back[k, i] = max(back[k, i] + step * turned[k, i], 0.0)
-    return best, best_price, best_potential, best_back, used, came, went
+    return True

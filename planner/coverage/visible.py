@@ -55,7 +55,12 @@ class Seeing:
         return surroundings(self.airspace, self.level, self.model, self.objective)
 
     def visible(
-        self, around: Surroundings, divisions: Divisions = NO_DIVISIONS, enough: Stop = never
+        self,
+        around: Surroundings,
+        divisions: Divisions = NO_DIVISIONS,
+        enough: Stop = never,
+        *,
+        told: bool = True,
     ) -> Visible:
         """Targets that see the regions.
 
@@ -67,6 +72,8 @@ class Seeing:
             Of merged regions that are to be divided in a certain way.
         enough
             Ends the search for shorter divisions.
+        told
+            Whether refusals are to say which zones are in the way, and what would help.
 
         Raises
         ------
@@ -97,7 +104,7 @@ class Seeing:
                 )
             except InfeasibleError as refused:
                 error = refused
-                if error.constraint == "area":
+                if told and error.constraint == "area":
                     error = explained(
                         self.airspace,
                         level,

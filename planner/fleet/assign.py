@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 from planner.fleet.answer import trips_of
 from planner.fleet.assignment import Assignment, Status
 from planner.fleet.auto.build import tables
@@ -25,6 +27,7 @@ def assign(
     iterations: int | None = None,
     *,
     bounded: bool = False,
+    enough: Stop = never,
 ) -> Assignment:
     """The best assignment found: proved so for few targets, by search for many.
 
@@ -40,6 +43,8 @@ def assign(
         Of the search; by the number of targets when not given.
     bounded
         Whether to say what no assignment can beat, also where nothing is proved.
+    enough
+        Ends the search with the best found.
 
     Raises
     ------
@@ -51,7 +56,8 @@ def assign(
     proved = found is not None
     if found is None:
         most = iterations or ITERATIONS + PER_JOB * len(known.jobs.prize)
-        found = search(known, seed, lambda done: done / most, stop, lambda part: progress("assign", part))
+        told = partial(progress, "assign")
+        found = search(known, seed, lambda done: done / most, stop, told, enough)
     trips = trips_of(problem, found)
     left_out = left_out_of(problem, trips)
     cost = cost_of(problem, trips)

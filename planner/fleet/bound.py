@@ -43,8 +43,13 @@ class _Arcs:
     energy: Floats
 
 
-def lower_bound(tables: Tables, stop: Stop = never) -> float:
+def lower_bound(tables: Tables, stop: Stop = never, enough: Stop = never) -> float:
     """No assignment that does everything required costs less, prizes of what is left out included.
+
+    Parameters
+    ----------
+    enough
+        Asked before each round of cuts: ends them with what is known, −inf where that is nothing.
 
     Raises
     ------
@@ -58,10 +63,10 @@ def lower_bound(tables: Tables, stop: Stop = never) -> float:
     arcs, job = _arcs(tables)
     members = len(crew.profile)
     spread = arcs.cost + weights.landing * arcs.seconds / members
-    found = _relaxed(tables, arcs, job, spread, stop)
+    found = _relaxed(tables, arcs, job, spread, stop, enough)
     if weights.landing > 0.0:
         alone = weights.landing * _last_of_one(tables)
-        found = max(found, alone + _relaxed(tables, arcs, job, arcs.cost, stop))
+        found = max(found, alone + _relaxed(tables, arcs, job, arcs.cost, stop, enough))
     return found
 
 
@@ -112,7 +117,7 @@ def _arcs(tables: Tables) -> tuple[_Arcs, Ints]:
     return _Arcs(tail, head, *(square[tail, head] for square in squares)), job
 
 
-def _relaxed(tables: Tables, arcs: _Arcs, job: Ints, cost: Floats, stop: Stop) -> float:
+def _relaxed(tables: Tables, arcs: _Arcs, job: Ints, cost: Floats, stop: Stop, enough: Stop) -> float:
     jobs, crew = tables.jobs, tables.crew
     total, nodes, count = len(jobs.prize), len(job), len(arcs.tail)
     ones, at = np.ones(count), np.arange(count)
@@ -139,6 +144,8 @@ def _relaxed(tables: Tables, arcs: _Arcs, job: Ints, cost: Floats, stop: Stop) -
     found = -math.inf
     for _ in range(ROUNDS):
         raise_if(stop)
+        if enough():
+            break
         result: Any = linprog(
             objective, A_ub=above, b_ub=most, A_eq=equal, b_eq=sides, bounds=limits, method="highs"
         )

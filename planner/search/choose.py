@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -75,6 +76,7 @@ class Search:
     room: Room
     pricing: Pricing
     stop: Stop = never
+    enough: Stop = never
     family: str | None = None
     detection: float = 1.0
     drifting: Drifting | None = None
@@ -90,20 +92,22 @@ class Search:
         """Programmes within a budget, metres through the air: those worth most, refined and as laid."""
         found: list[Programme] = []
         width_m = self.looking.narrowest_m()
-        for ground in self._grounds(budget_m, width_m):
-            for laid in self._laid(ground, width_m):
-                raise_if(self.stop)
-                found += self._cut(laid, budget_m, thin=False)
+        of_grounds = (each for part in self._grounds(budget_m, width_m) for each in self._laid(part, width_m))
         laid_besides = (self._walked, self._published, self._drifted)
-        for laid in (each for lay in laid_besides for each in lay(budget_m, width_m)):
-            raise_if(self.stop)
+        of_others = (each for lay in laid_besides for each in lay(budget_m, width_m))
+        for laid in itertools.chain(of_grounds, of_others):
             found += self._cut(laid, budget_m, thin=False)
-        found += [way for each in found for way in self._again(each, budget_m)]
+            if self._over(found):
+                break
+        for each in tuple(found):
+            if self._over(found):
+                break
+            found += self._again(each, budget_m)
         found.sort(key=lambda each: (-each.worth, each.cost_m))
         thinned = [
             way
             for each in found[:MOST_PATTERNS_THINNED]
-            if each.family not in PUBLISHED
+            if each.family not in PUBLISHED and not self._over(found)
             for way in self._cut(each, budget_m, thin=True)
         ]
         ways = sorted(found + thinned, key=lambda each: (-each.worth, each.cost_m))
@@ -111,12 +115,17 @@ class Search:
         refined = [
             self._refined(way, budget_m, width_m)
             for way in best
-            if way.family not in WALKS and way.family not in VARIANTS
+            if way.family not in WALKS and way.family not in VARIANTS and not self._over(found)
         ]
         refined.sort(key=lambda each: (-each.worth, each.cost_m))
         # What is estimated to be better may take more when it is flown: both are offered in turn.
         pairs = [each for pair in zip(refined, ways, strict=False) for each in pair]
         return [*pairs, *ways[len(refined) :]]
+
+    def _over(self, found: Sequence[Programme]) -> bool:
+        """Whether what has been found is to do, asked between steps."""
+        raise_if(self.stop)
+        return bool(found) and self.enough()
 
     def recut(self, programme: Programme, budget_m: float) -> Programme | None:
         """The same pattern within another budget; None where nothing of it fits."""
@@ -129,7 +138,8 @@ class Search:
             while moved:
                 moved = False
                 for strips in _moves(best.strips, part, width_m):
-                    raise_if(self.stop)
+                    if self._over((best,)):
+                        return best
                     sweeps = tuple(self.sweeps_over(strips, best.look))
                     if not sweeps:
                         continue
@@ -156,7 +166,7 @@ class Search:
 
         laid = np.array([strip_of(sweep) for sweep in start.sweeps])
         total = self.worth.total if self.drifting is None else self.drifting.total
-        return shifted(laid, tried, self.looking.narrowest_m(), total, self.seed) or start
+        return shifted(laid, tried, self.looking.narrowest_m(), total, self.seed, self.enough) or start
 
     def _again(self, way: Programme, budget_m: float) -> Iterator[Programme]:
         """A pattern to and fro for as long as the budget lasts, where looks again find something."""
@@ -232,7 +242,7 @@ class Search:
         if name not in WALKS:
             return
         ends = (self.pricing.start, self.pricing.end)
-        for strips in walked(name, self.worth, width_m, self.room.free, ends, budget_m):
+        for strips in walked(name, self.worth, width_m, self.room.free, ends, budget_m, self.enough):
             raise_if(self.stop)
             for look in self.looking.looks:
                 sweeps = tuple(self.sweeps_over(strips, look))
@@ -313,6 +323,7 @@ class Search:
             return []
         areas_m2 = counts[::-1].cumsum() * cell_m**2
         held = int(np.searchsorted(areas_m2, seen_m2, side="right"))
+        least_m2 = self.looking.narrowest_m() ** 2
         found: list[Polygon | MultiPolygon] = []
         for taken in {max(held, 1), held + 1}:
             if taken >= len(levels):
@@ -321,7 +332,7 @@ class Search:
             west_m, south_m = self.worth.west_m + columns * cell_m, self.worth.south_m + rows * cell_m
             cells = shapely.box(west_m, south_m, west_m + cell_m, south_m + cell_m)
             parts = shapely.get_parts(shapely.union_all(cells).simplify(cell_m))
-            large = sorted((part for part in parts if part.area > self.looking.narrowest_m() ** 2), key=_size)
+            large = sorted((part for part in parts if part.area > least_m2), key=_size)
             if large:
                 found.append(MultiPolygon(large[-MOST_PARTS:]))
         return found

@@ -13,6 +13,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from planner.progress import Stop
 from planner.search.programme import Programme, Sweep
 
 Floats = NDArray[np.float64]
@@ -46,6 +47,7 @@ def shifted(
     width_m: float,
     total: float,
     seed: int,
+    enough: Stop,
 ) -> Programme | None:
     """The best programme found from strips (N, 2, 2); None where they cannot be flown.
 
@@ -55,6 +57,8 @@ def shifted(
         The programme that flies strips within the budget.
     total
         All that can be found.
+    enough
+        Asked between steps: ends them with the best found.
     """
     rng = np.random.default_rng(seed)
     best = at = tried(strips)
@@ -64,7 +68,7 @@ def shifted(
     score = level
     trials = min(MOST_TRIALS, TRIALS + TRIALS_EACH * len(strips))
     for number in range(trials):
-        if best.worth >= (1.0 - ALL) * total:
+        if best.worth >= (1.0 - ALL) * total or enough():
             break
         step_m = width_m * math.exp(rng.uniform(math.log(LEAST), math.log(MOST)))
         trial = tried(_moved(at.strips, step_m, width_m, rng))

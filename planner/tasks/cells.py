@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 
 import shapely
@@ -15,6 +16,7 @@ from planner.coverage.urban.regions import unseen_m2, unseen_of
 from planner.coverage.visible import Seeing, Visible
 from planner.coverage.ways import Target
 from planner.errors import InfeasibleError
+from planner.progress import Stop, Until, in_time
 from planner.route import CollectPass
 from planner.routing.joint.route import Search, joint_route
 from planner.tasks.urban import LEFT_PART
@@ -27,34 +29,64 @@ MOST_LEFT, MOST_PIECES = 0.02, 12
 TURN_PARTS = (1.0, 0.75, 0.5)
 
 
-def by_cells(asked: Seeing, search: Search) -> Passes | None:
+def by_cells(asked: Seeing, search: Search, enough: Until, *, needed: bool = True) -> Passes | None:
     """Passes that see all of every region, or as much as may be; None where there are none.
 
     Lanes end before obstacles with room for a turn and the straight flight behind it, for a turn alone where
     that leaves ground unseen, and for parts of one.
+
+    Parameters
+    ----------
+    enough
+        Ends the search for better ones. Where it will, the first cells that come are toured before the best
+        are looked for.
+    needed
+        Whether there is no other answer: the first passes are then found however long that takes.
     """
+    found = None
+    if enough.comes:
+        found = _least_left(asked, replace(search, enough=lambda: True), enough, needed=needed)
+    better = _least_left(asked, search, enough, needed=needed and found is None)
+    ways = [way for way in (found, better) if way is not None]
+    if len(ways) < 2:
+        return ways[0][1] if ways else None
+    return min(ways, key=lambda way: (way[0], search.legs.tour_m(way[1])))[1]
+
+
+def _least_left(asked: Seeing, search: Search, enough: Until, *, needed: bool) -> tuple[float, Passes] | None:
+    """The passes that leave least of the ground for the most room to turn, and how much they leave."""
     best: tuple[float, Passes] | None = None
     model = asked.model
     room_m = asked.airspace.clearance_m + TRANSIT_MARGIN_M
     turns_m = [model.turn_radius_m + model.settle_m, *(part * model.turn_radius_m for part in TURN_PARTS)]
     for turn_m in turns_m:
-        try:
-            targets = cell_targets(asked, search.around, room_m + turn_m, search.enough)
-            if targets is None:
-                continue
-            passes = _toured(search, targets)
-        except InfeasibleError:
+        tour = partial(_in_cells, asked, search, room_m + turn_m)
+        first = needed and best is None
+        found = tour(search.stop) if first else in_time(tour, search.stop, enough)
+        if found is None:
             continue
-        if passes is None:
-            continue
+        _, passes = found
         left = left_m2(asked, passes)
-        if left == 0.0:
-            return passes
         if best is None or left < best[0]:
             best = (left, passes)
-        if more := _seen_besides(asked, search, targets, passes):
-            return more
-    return None if best is None else best[1]
+        if left == 0.0:
+            break
+        more = in_time(partial(_seen_besides, asked, search, *found), search.stop, enough)
+        if more:
+            return 0.0, more
+    return best
+
+
+def _in_cells(
+    asked: Seeing, search: Search, margin_m: float, stop: Stop
+) -> tuple[tuple[Target, ...], Passes] | None:
+    """Cells so far from obstacles, and the tour over them; None where there is none."""
+    try:
+        targets = cell_targets(asked, search.around, margin_m, stop, search.enough)
+        passes = None if targets is None else _toured(replace(search, stop=stop), targets)
+    except InfeasibleError:
+        return None
+    return None if targets is None or passes is None else (targets, passes)
 
 
 def _toured(search: Search, targets: Sequence[Target]) -> Passes | None:
@@ -63,7 +95,9 @@ def _toured(search: Search, targets: Sequence[Target]) -> Passes | None:
     return found.route.passes if math.isfinite(found.cost_m) else None
 
 
-def _seen_besides(asked: Seeing, search: Search, targets: Sequence[Target], passes: Passes) -> Passes | None:
+def _seen_besides(
+    asked: Seeing, search: Search, targets: Sequence[Target], passes: Passes, stop: Stop
+) -> Passes | None:
     """The tour with passes for what it leaves, where that is little, and nothing is left then."""
     left = [
         unseen_of(region, asked.airspace, asked.level.of(region), passes).buffer(0.0)
@@ -74,7 +108,7 @@ def _seen_besides(asked: Seeing, search: Search, targets: Sequence[Target], pass
     if not little or pieces > MOST_PIECES:
         return None
     try:
-        more = _toured(search, (*targets, *left_targets(asked, search.around, left)))
+        more = _toured(replace(search, stop=stop), (*targets, *left_targets(asked, search.around, left)))
     except InfeasibleError:
         return None
     return more if more is not None and left_m2(asked, more) == 0.0 else None

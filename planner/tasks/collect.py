@@ -13,12 +13,12 @@ from planner.coverage.strips.located import Located, located
 from planner.coverage.strips.room import Room
 from planner.coverage.urban.methods import SEQUENCES
 from planner.coverage.visible import Seeing
-from planner.errors import Finding, InfeasibleError
+from planner.errors import Finding, InfeasibleError, OutOfBudgetError
 from planner.metrics import used
 from planner.plan import LeftOut, Plan
 from planner.profile.compose import Composed
 from planner.profile.ends import with_run
-from planner.progress import Progress, Stop, silent
+from planner.progress import Progress, Stop, in_time, silent
 from planner.publish import Leg
 from planner.route import CollectPass
 from planner.routing.greedy.route import li2018_route
@@ -80,7 +80,12 @@ def collect(scenario: Scenario, controls: Controls) -> Answer:
                 scenario.seed,
                 replace(controls, progress=part_of(progress, 0.0, 0.5)),
             )
-            refuse_unseen(asked, *found, sight)
+            try:
+                refuse_unseen(asked, *found, sight)
+            except InfeasibleError as error:
+                if controls.enough():
+                    raise _out_of_time(error, scenario) from error
+                raise
         with controls.stage("transit"):
             composed, legs, notes = transits.through(found[0], part_of(progress, 0.5, 0.9), controls.stop)
         return _Flight(*found, composed, legs, notes, used(composed.flight, setting.model, setting.level))
@@ -108,6 +113,14 @@ def collect(scenario: Scenario, controls: Controls) -> Answer:
         dropped,
         flight.notes,
         _left_out(dropped, left),
+    )
+
+
+def _out_of_time(error: InfeasibleError, scenario: Scenario) -> OutOfBudgetError:
+    """What is said where time ended the search for passes that see what sweeps leave."""
+    return OutOfBudgetError(
+        f"time_budget_s of {scenario.time_budget_s:g} s ended the search for passes that see all of "
+        f"{error.feature}; of those found {error.message}. Give it more time, or {error.relaxation}"
     )
 
 
@@ -143,7 +156,7 @@ def _found(asked: Seeing, setting: Setting, methods: dict[str, str], seed: int, 
         return _joint(asked, setting, seed, None if by_paper else sight, controls)
     if not cut_by_obstacles(asked):
         refuse_filled(asked)
-        cells = by_cells(asked, _search(asked, setting, seed, sight, controls))
+        cells = by_cells(asked, _search(asked, setting, seed, sight, controls), controls.enough)
         if cells and not left_of(asked, cells):
             return cells, ()
         return _joint(asked, setting, seed, sight, controls)
@@ -163,12 +176,19 @@ def _among_obstacles(
         Where there are none of these.
     """
     refuse_filled(asked)
-    search = _search(asked, setting, seed, None, controls)
-    cells = by_cells(asked, search)
     try:
         found: Found | None = swept(asked, setting, "auto", seed, controls.progress, controls.stop)
     except InfeasibleError:
         found = None
+    search = _search(asked, setting, seed, None, controls)
+    until = (controls.stop, controls.enough)
+
+    def in_lanes(stop: Stop) -> Found:
+        known = found is not None or cells is not None
+        return _joint(asked, setting, seed, sight, replace(controls, stop=stop), told=not known)
+
+    # What sweeps see is an answer: anything else is to be better in time.
+    cells = by_cells(asked, search, controls.enough, needed=found is None)
     whole = cells is not None and not left_of(asked, cells)
     if cells and whole:
         shorter = found is not None and search.legs.tour_m(cells) <= search.legs.tour_m(found[0])
@@ -177,7 +197,7 @@ def _among_obstacles(
     if found is not None and not leaves_ground(found[1]):
         return found
     try:
-        lanes: Found | None = _joint(asked, setting, seed, sight, controls)
+        lanes = in_lanes(controls.stop) if found is None and cells is None else in_time(in_lanes, *until)
     except InfeasibleError:
         if found is None and cells is None:
             raise
@@ -190,10 +210,18 @@ def _among_obstacles(
     return found
 
 
-def _joint(asked: Seeing, setting: Setting, seed: int, sight: Sight | None, controls: Controls) -> Found:
+def _joint(
+    asked: Seeing,
+    setting: Setting,
+    seed: int,
+    sight: Sight | None,
+    controls: Controls,
+    *,
+    told: bool = True,
+) -> Found:
     search = _search(asked, setting, seed, sight, controls)
     share = partial(asked.sharing, around=search.around)
-    visible = partial(asked.visible, search.around, enough=controls.enough)
+    visible = partial(asked.visible, search.around, enough=controls.enough, told=told)
     found = joint_route(search, visible(), visible, share)
     return found.route.passes, found.seen.dropped
 

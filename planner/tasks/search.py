@@ -87,7 +87,9 @@ def sought(scenario: Scenario, controls: Controls) -> Sought:
     setting = Setting.of(scenario)
     methods = chosen_methods(scenario.method) | {"search": "patterns", "coverage": "none", "routing": "none"}
     transits = Transits.of(setting, scenario.objective, methods)
-    asked = replace(asked_of(scenario, setting), stop=controls.stop, seed=scenario.seed)
+    asked = replace(
+        asked_of(scenario, setting), stop=controls.stop, enough=controls.enough, seed=scenario.seed
+    )
     refuse_blocked(asked)
     spare = spare_of(transits, asked, controls.stop)
     if scenario.importance.drift is not None:

@@ -10,7 +10,7 @@ from planner.bounds.allowance import Allowance
 from planner.errors import Finding
 from planner.plan import LeftOut, Plan
 from planner.profile.compose import Composed
-from planner.progress import Progress, Stop
+from planner.progress import Progress, Stop, Until
 from planner.publish import Leg
 from planner.route import CollectPass
 from planner.scenario import Scenario
@@ -34,7 +34,7 @@ class Controls:
 
     progress: Progress
     stop: Stop
-    enough: Stop
+    enough: Until
     stage: Callable[[str], AbstractContextManager[None]]
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import json
 import math
+import pkgutil
 from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
@@ -12,9 +13,11 @@ from typing import Any
 import pytest
 
 from planner.coverage.strips import alternatives
+from planner.errors import CancelledError
 from planner.geojson import read_scenario, write_plan
 from planner.pipeline import lines_for_bound, make_plan, time_for_bound_s, with_bound
-from tests.planner.scenarios import case, feature, small
+from planner.progress import Until, in_time, never, raise_if
+from tests.planner.scenarios import EXAMPLES, case, feature, small
 
 BEND = [[-0.02, -0.01], [-0.01, 0.0], [-0.005, 0.012], [0.005, 0.015], [0.02, 0.01], [0.03, -0.005]]
 
@@ -45,6 +48,61 @@ def test_a_spent_budget_ends_the_search_for_divisions(monkeypatch: pytest.Monkey
     assert not hasty.hard_violations
     assert patient.metrics.length_m <= hasty.metrics.length_m + 1e-6
     assert few < len(tried)
+
+
+@pytest.mark.parametrize(
+    ("name", "step", "most"),
+    [
+        # A route once, and none that may be better.
+        ("island-volcano", "planner.routing.joint.route._route", 1),
+        # Sweeps are an answer: no cells are looked for.
+        ("city-block", "planner.coverage.survey.pieces.Pieces.options", 0),
+        # One pattern cut to the limits, and as flights of it turn out.
+        ("missing-at-sea", "planner.search.choose.Search._cut", 8),
+        # The first look at who does what, once for each of few rounds.
+        ("three-aircraft", "planner.fleet.auto.search.improve", 3),
+    ],
+)
+def test_a_spent_budget_ends_every_search(
+    name: str, step: str, most: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """With the time over from the start every task has its plan after the fewest steps that make one."""
+    owner, own = step.rsplit(".", 1)
+    taken: list[str] = []
+    module = pkgutil.resolve_name(owner)
+    plain = getattr(module, own)
+
+    def counted(*given: Any, **named: Any) -> Any:
+        taken.append(own)
+        return plain(*given, **named)
+
+    monkeypatch.setattr(module, own, counted)
+    ticks = itertools.count()
+    document = json.loads((EXAMPLES / f"{name}.geojson").read_text()) | {"time_budget_s": 1.0}
+    plan = make_plan(read_scenario(document), clock=lambda: 100.0 * next(ticks))
+    assert not plan.hard_violations
+    assert len(taken) <= most
+
+
+def test_time_ends_what_may_be_better_and_nothing_else() -> None:
+    """A trial that time ends is none; one that is done is; who cancels cancels the trial, too."""
+    assert in_time(lambda stop: stop(), never, never) is False
+    assert in_time(lambda stop: "done", never, lambda: True) is None
+    asked = itertools.count()
+    assert in_time(raise_if, never, lambda: next(asked) > 0) is None
+    with pytest.raises(CancelledError):
+        in_time(raise_if, lambda: True, never)
+
+
+def test_a_part_of_the_time_ends_within_it() -> None:
+    """Half of what is left is over at half of it; of no end every part is as long."""
+    now = [10.0]
+    whole = Until(lambda: now[0], 20.0)
+    half = whole.part(0.5)
+    now[0] = 16.0
+    assert half()
+    assert not whole()
+    assert not Until().part(0.1)()
 
 
 def test_the_bound_ends_when_it_is_told_and_says_what_it_has() -> None:

@@ -22,14 +22,14 @@ everything = warm.warm_up
 warm.warm_up = lambda: loaded.append("everything")
 warm.load()
 before = warm.compiled()
-for case in range(1, 5):
-    make_plan(read_scenario(json.load(open(f"examples/sar-case-{case}.geojson"))))
+for name in [*(f"sar-case-{case}" for case in range(1, 5)), "three-aircraft"]:
+    make_plan(read_scenario(json.load(open(f"examples/{name}.geojson"))))
 print(json.dumps([before, warm.compiled(), loaded]))
 """
 
 
 def test_loading_after_a_compilation_compiles_nothing() -> None:
-    """With kernels kept from before, neither loading nor the shared cases compile a kernel."""
+    """With kernels kept from before, neither loading nor the shared cases nor a fleet compile a kernel."""
     compiling = [sys.executable, "-c", "from planner.warm import prepare; prepare()"]
     subprocess.run(compiling, cwd=ROOT, check=True)
     assert Compiling().done

@@ -39,7 +39,7 @@ MOST_CELLS = 60
 
 
 def cell_targets(
-    asked: Seeing, around: Surroundings, margin_m: float, enough: Stop
+    asked: Seeing, around: Surroundings, margin_m: float, stop: Stop, enough: Stop
 ) -> tuple[Target, ...] | None:
     """A target for each cell of each region's open ground; None where too many, or none to be flown.
 
@@ -47,6 +47,8 @@ def cell_targets(
     ----------
     margin_m
         Kept from what may not be entered: turns at the end of lanes have to have room there.
+    stop, enough
+        The one cancels; the other ends the search for cells that promise more.
     """
     found: list[Target] = []
     for region in asked.regions:
@@ -60,7 +62,7 @@ def cell_targets(
                 family, how = family_of(sensor), (part, sensor, height_m, there)
                 found += family.targets(*how, wide=True, division="auto", enough=enough)
                 continue
-            trial = Pieces(sensor, height_m, there)
+            trial = Pieces(sensor, height_m, there, stop)
             pieces = _best(part, ground, trial, enough)
             if pieces is None or len(found) + len(pieces) > MOST_CELLS:
                 return None

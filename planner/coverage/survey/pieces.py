@@ -20,7 +20,7 @@ from planner.coverage.survey.lanes import Survey
 from planner.coverage.survey.options import LaneOptions, allowed
 from planner.coverage.survey.targets import LaneTarget
 from planner.errors import InfeasibleError
-from planner.progress import Stop
+from planner.progress import Stop, never, raise_if
 from planner.sensors.camera import TWICE, CameraSensor
 
 #: What seeing all of these pieces costs, about; inf where it cannot be.
@@ -40,6 +40,7 @@ class Pieces:
     camera: CameraSensor
     height_m: float
     around: Surroundings
+    stop: Stop = never
     _known: dict[bytes, LaneOptions | None] = field(default_factory=dict)
     _cut: set[bytes] = field(default_factory=set)
 
@@ -58,6 +59,7 @@ class Pieces:
         """A few ways to see a piece; None where there are none."""
         key = piece.area.wkb
         if key not in self._known:
+            raise_if(self.stop)
             try:
                 self._known[key] = self.target(piece).coarse(STEP_RAD, ETAS, TELLING)
             except InfeasibleError:

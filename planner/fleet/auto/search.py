@@ -12,10 +12,12 @@ from planner.fleet.auto.insert_kernels import SLOPE, cost_of
 from planner.fleet.auto.search_kernels import improve
 from planner.fleet.auto.tables import Costs, Crew, Floats, Ints, Jobs, Routes, Weights
 from planner.fleet.auto.times_kernels import renew
-from planner.progress import Stop
+from planner.progress import Stop, never
 
 #: Iterations between two looks at ``stop``.
 CHUNK = 500
+#: Iterations between two looks at ``enough``.
+LOOK = 20
 #: Temperatures at the begin and at the end, as parts of what one job costs on average.
 HOT, COLD = 8.0, 0.08
 
@@ -68,6 +70,7 @@ def search(
     done: Callable[[int], float],
     stop: Stop,
     progress: Callable[[float], None],
+    enough: Stop = never,
 ) -> Found:
     """The best solution found.
 
@@ -81,6 +84,8 @@ def search(
         The part of the search that so many iterations are; it ends at 1.
     stop, progress
         Asked, and told the part done, every ``CHUNK`` iterations.
+    enough
+        Asked every ``LOOK`` iterations: ends the search with the best found.
 
     Raises
     ------
@@ -98,9 +103,13 @@ def search(
             raise CancelledError("planning was cancelled")
         scale = _scale(jobs, best, value[1])
         heats = np.full(CHUNK, scale * HOT * (COLD / HOT) ** part) if iterations else np.zeros(1)
-        improve(jobs, costs, crew, weights, routes, work, best, windows, state, value, heats)
-        iterations += len(heats)
-        part = done(iterations)
+        for first in range(0, len(heats), LOOK):
+            some = heats[first : first + LOOK]
+            improve(jobs, costs, crew, weights, routes, work, best, windows, state, value, some)
+            iterations += len(some)
+            if enough():
+                break
+        part = 1.0 if enough() else done(iterations)
         progress(min(1.0, part))
     orders = tuple(
         tuple(int(node) for node in best.seq[r, : best.filled[r] + 2]) for r in range(len(best.filled))

@@ -33,7 +33,7 @@ from planner.coverage.ways import Division, Options, Sharing, Target
 from planner.dubins.estimate_kernels import transit_costs
 from planner.errors import InfeasibleError
 from planner.orders_kernels import best_orders
-from planner.progress import Progress, Stop, never, raise_if, silent
+from planner.progress import Progress, Stop, in_time, never, raise_if, silent
 from planner.route import CollectPass, Route, Terminal
 from planner.routing import tour
 from planner.routing.joint.chain import from_start, layers_of, to_end, true_choice
@@ -125,10 +125,9 @@ def joint_route(search: Search, seen: Visible, divided: Divided, share: Share) -
         raise InfeasibleError("swath", "scenario", "no region can be seen", "see the findings", None)
     search.progress("routing", 0.0)
     cost_m, passes = _route(seen, search)
-    again = replace(search, progress=silent)
     plain = tuple(target.plain() for target in seen.targets)
     if any(one is not other for one, other in zip(plain, seen.targets, strict=True)) and not search.enough():
-        fewer = _route(replace(seen, targets=plain), again)
+        fewer = _tried(replace(seen, targets=plain), search)
         cost_m, passes = min((cost_m, passes), fewer, key=lambda found: found[0])
     kept: dict[int, Division] = {}
     others: list[tuple[int, Division]] = [(index, "whole") for index in seen.divided[:MOST_WHOLE]]
@@ -139,7 +138,7 @@ def joint_route(search: Search, seen: Visible, divided: Divided, share: Share) -
         trial = divided(kept | {index: division})
         if (division == "whole" and index in trial.divided) or _alike(trial, seen):
             continue
-        trial_m, trial_passes = _route(trial, again)
+        trial_m, trial_passes = _tried(trial, search)
         if trial_m < cost_m - 1e-6:
             cost_m, passes, seen, kept = trial_m, trial_passes, trial, kept | {index: division}
     sharing = None
@@ -151,13 +150,22 @@ def joint_route(search: Search, seen: Visible, divided: Divided, share: Share) -
         shared = exchange.shared(passes, search.stop, search.enough) if number else exchange.fewest()
         if shared is not None:
             trial = replace(seen, targets=shared)
-            trial_m, trial_passes = _route(trial, again)
+            trial_m, trial_passes = _tried(trial, search)
             if trial_m < cost_m - 1e-6:
                 cost_m, passes, seen, sharing = trial_m, trial_passes, trial, None
                 continue
         if number:
             break
     return JointRoute(Route(passes), cost_m, seen)
+
+
+def _tried(seen: Visible, search: Search) -> tuple[float, tuple[CollectPass, ...]]:
+    """The passes of targets that may be had for less otherwise; none, at any price, where time ends that."""
+
+    def route(stop: Stop) -> tuple[float, tuple[CollectPass, ...]]:
+        return _route(seen, replace(search, progress=silent, stop=stop))
+
+    return in_time(route, search.stop, search.enough) or (math.inf, ())
 
 
 def _alike(one: Visible, other: Visible) -> bool:
@@ -206,6 +214,8 @@ def _truest(tours: Tours, choices: list[Choice], search: Search) -> tuple[float,
     choices = _apart(sorted(choices, key=lambda choice: choice.cost_m))[:TRUE_TOURS]
     for index, choice in enumerate(choices):
         raise_if(stop)
+        if index and search.enough():
+            break
         search.progress("routing", 0.7 + 0.3 * index / len(choices))
         passes = tours.passes(choice)
         true_m = legs.tour_m(passes) + tours.shadow_m(choice)

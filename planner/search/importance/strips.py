@@ -10,13 +10,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
-from functools import partial
 
 import numpy as np
 import shapely
 from numpy.typing import NDArray
 from shapely.geometry.base import BaseGeometry
 
+from planner.progress import Stop, never
 from planner.search.importance.auto import auto
 from planner.search.importance.grid import ImportanceGrid, Ints
 from planner.search.importance.snyder2021 import snyder2021
@@ -35,7 +35,11 @@ PARTS = (1.0, 0.85, 0.7, 0.55, 0.4)
 TOP_SCORE = 100.0
 
 
-def _published(grid: ImportanceGrid, base: int, battery: int) -> Walk:
+def _ours(grid: ImportanceGrid, base: int, battery: int, enough: Stop) -> Walk:
+    return auto(grid, base, battery, enough=enough, thorough=False)
+
+
+def _published(grid: ImportanceGrid, base: int, battery: int, _: Stop) -> Walk:
     """The published algorithm, with worth on the paper's scale."""
     top = float(grid.worth.max())
     scaled = replace(grid, worth=grid.worth * (TOP_SCORE / top)) if top > 0.0 else grid
@@ -43,8 +47,8 @@ def _published(grid: ImportanceGrid, base: int, battery: int) -> Walk:
 
 
 #: How a walk is planned, by name. Its strips are refined as those of any pattern.
-WALKS: dict[str, Callable[[ImportanceGrid, int, int], Walk]] = {
-    "importance": partial(auto, thorough=False),
+WALKS: dict[str, Callable[[ImportanceGrid, int, int, Stop], Walk]] = {
+    "importance": _ours,
     "snyder2021": _published,
 }
 
@@ -121,7 +125,13 @@ def _runs(walk: Ints, columns: int) -> Iterator[list[int]]:
 
 
 def walked(
-    name: str, worth: Worth, width_m: float, free: BaseGeometry, ends_m: tuple[Place, Place], budget_m: float
+    name: str,
+    worth: Worth,
+    width_m: float,
+    free: BaseGeometry,
+    ends_m: tuple[Place, Place],
+    budget_m: float,
+    enough: Stop = never,
 ) -> Iterator[Floats]:
     """Strips of walks within parts of a budget, from and to the cell nearest to the ends.
 
@@ -133,6 +143,8 @@ def walked(
         Where the flight begins and ends.
     budget_m
         For all of it; inf walks no farther than ``MOST_MOVES``.
+    enough
+        Asked between steps: each walk is then the best found.
     """
     cells = Cells.of(worth, width_m, free)
     base = cells.nearest(ends_m[0])
@@ -146,6 +158,6 @@ def walked(
         if moves < 2 or moves in tried:
             continue
         tried.add(moves)
-        strips = cells.strips(WALKS[name](cells.grid, base, moves).cells)
+        strips = cells.strips(WALKS[name](cells.grid, base, moves, enough).cells)
         if len(strips):
             yield strips

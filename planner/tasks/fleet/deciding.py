@@ -32,7 +32,7 @@ def decided(problem: Problem, method: Method, seed: int, controls: Controls) -> 
     """
     with controls.stage("assign"):
         if decided_by(method) != PRINTED:
-            return assign(problem, seed, controls.stop, silent)
+            return assign(problem, seed, controls.stop, silent, enough=controls.enough)
         try:
             return assign_stecz2020(problem, stop=controls.stop)
         except UnsuitedError as error:

@@ -83,13 +83,14 @@ def search_together(scenario: Scenario, controls: Controls) -> FleetAnswer:
         # What drifts is shared out as it lies in the middle of the longest flight.
         later = replace(scenario, importance=drifted(scenario.importance, 0.5 * longest_s))
         parts = shared_out(later, crews, shares)
-        for share, part in zip(shares, parts, strict=True):
+        for number, (share, part) in enumerate(zip(shares, parts, strict=True)):
+            own = replace(controls, enough=controls.enough.part(1.0 / (len(parts) - number)))
             crew = crews[share.crew]
             alone = _within(crew.alone, part)
             try:
                 if not alone.regions:
                     raise InfeasibleError("blocked", crew.aircraft.name, "has no ground left to search", "")
-                answers[share] = answer_to(sought(alone, controls), controls)
+                answers[share] = answer_to(sought(alone, own), own)
             except InfeasibleError as error:
                 refused = error
                 shares = [each for each in shares if each != share]
@@ -134,12 +135,13 @@ def _in_turn(
     """Each over all that those before it leave; None where one can do nothing of that, or it drifts."""
     answers: dict[_Share, Answer] = {}
     looks: list[Seen] = []
-    for share in shares:
+    for number, share in enumerate(shares):
+        own = replace(controls, enough=controls.enough.part(1.0 / (len(shares) - number)))
         alone = _after(crews[share.crew].alone, looks)
         if alone.importance.drift is not None or not alone.regions:
             return None
         try:
-            answers[share] = answer_to(sought(alone, controls), controls)
+            answers[share] = answer_to(sought(alone, own), own)
         except InfeasibleError:
             return None
         looks += [Seen(each.footprint) for each in answers[share].passes]

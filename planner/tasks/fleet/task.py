@@ -373,7 +373,8 @@ class _Rounds:
             )
         dropped = (*dropped, *(told for s in sorties for told in too_many_items(self._crews, s.flown)))
         unique = {each.roi: each for each in left}
-        told = told_of(problem, assigned, decided_by(self._scenario.method), self._controls.stop)
+        until = (self._controls.stop, self._controls.enough)
+        told = told_of(problem, assigned, decided_by(self._scenario.method), *until)
         methods = methods_of(self._scenario.method)
         return FleetAnswer(
             self._crews, sorties, methods, dropped, tuple(unique.values()), self._separation, told

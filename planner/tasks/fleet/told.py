@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 
 from planner.errors import Finding
@@ -20,8 +21,15 @@ from planner.tasks.fleet.flights import Flown, items_in
 MOST_TARGETS = 30
 
 
-def told_of(problem: Problem, assigned: Assignment, method: str, stop: Stop = never) -> Assigned:
+def told_of(
+    problem: Problem, assigned: Assignment, method: str, stop: Stop = never, enough: Stop = never
+) -> Assigned:
     """What is said of an assignment of a problem.
+
+    Parameters
+    ----------
+    stop, enough
+        The one cancels; the other ends the search for a bound.
 
     Raises
     ------
@@ -32,7 +40,8 @@ def told_of(problem: Problem, assigned: Assignment, method: str, stop: Stop = ne
     objective_s = float(assigned.cost + worth)
     bound_s = None if assigned.bound is None else float(assigned.bound + worth)
     if bound_s is None and len(problem.targets) <= MOST_TARGETS:
-        bound_s = float(lower_bound(tables(problem), stop))
+        found_s = float(lower_bound(tables(problem), stop, enough))
+        bound_s = found_s if math.isfinite(found_s) else None
     if bound_s is None or objective_s <= 0.0:
         return Assigned(method, assigned.status, round(objective_s, 3), bound_s, None)
     # Sums of large worths lose their last digits.

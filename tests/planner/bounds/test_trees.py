@@ -53,10 +53,13 @@ class Problem:
         begins = np.concatenate([[0], np.cumsum([len(block) for block in flat])]).astype(np.int64)
         base = np.full((len(self.nodes), len(self.nodes)), np.inf)
         slack = np.zeros(len(self.first))
-        given = (price, potential, back, self.shortest_m(), steps)
+        prices, state = kernels.Prices(price, potential, back), np.array([-np.inf, 1.0, 0.0])
+        told = [np.full(len(self.first), fill, dtype=np.int64) for fill in (0, -2, -2)]
+        given = (prices.copied(), prices.copied(), *told, state, self.shortest_m(), steps)
         ends = (self.first, self.last)
         args = (np.concatenate(flat), begins, pairs, base, *ends, slack, self.offsets, *given)
-        return float(kernels.ascent(*args)[0])
+        kernels.ascent(*args)
+        return float(state[0])
 
 
 def problem(seed: int, nodes: int, cells: int) -> Problem:
