@@ -20,7 +20,7 @@ from planner.airspace.airspace import Airspace
 from planner.as_flown import ground, spot, unknown
 from planner.as_flown.limits import MAX_BANK_RAD, MAX_PITCH_RAD
 from planner.as_flown.mount import in_gimbal, turned
-from planner.as_flown.passes import FlownPass, PlannedPass, Reason, flown_pass, matched, runs
+from planner.as_flown.passes import FlownPass, PlannedPass, Reason, flown_for, flown_pass, matched, runs
 from planner.as_flown.photo_judge import PhotoCoverage, PhotoJudge
 from planner.as_flown.track import Gap, Line, Record, TrackSample, gaps_of
 from planner.as_flown.unknown import UnknownPart
@@ -180,12 +180,16 @@ class _Judge:
             found = self._stretch(line, rows, passes[int(in_pass[rows[len(rows) // 2]])], passes, in_pass)
             counted[rows[found.counted]] = True
             reasons[run] = found.reason
+        at_work = line.sensor_on | line.nearest([photo.time_s for photo in record.photos])
         for row, planned in enumerate(passes):
             on = line.sensor_on
             if by_photos[row]:
                 along_m = planned.along_m(line.places)
                 on = (along_m >= 0.0) & (along_m <= planned.length_m)
-            stretches = [(line.places[r], line.time_s[r]) for r in runs(on & (in_pass == row), line)]
+            flown = runs(on & (in_pass == row), line)
+            if by_photos[row]:
+                flown = flown_for(flown, planned.across_m(line.places), at_work)
+            stretches = [(line.places[r], line.time_s[r]) for r in flown]
             if sum(len(places) for places, _ in stretches) > 1:
                 self._flown.setdefault(planned.key, []).extend(stretches)
         self._leave_out(number, line, counted, reasons)

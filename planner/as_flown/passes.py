@@ -148,6 +148,17 @@ def runs(held: NDArray[np.bool_], line: Line, label: NDArray[np.int64] | None = 
     return [slice(int(a), int(b) + 1) for a, b in zip(begins, ends, strict=True)]
 
 
+def flown_for(beside: Sequence[slice], across_m: Floats, at_work: NDArray[np.bool_]) -> list[slice]:
+    """Of the runs beside a pass, in its direction, those flown for it: its camera was at work in them.
+
+    The way back between lanes may lie beside one, too. Where nothing shows the camera, the nearest run is it.
+    """
+    shown = [run for run in beside if at_work[run].any()]
+    if shown or not beside:
+        return shown
+    return [min(beside, key=lambda run: float(across_m[run].mean()))]
+
+
 @dataclass(frozen=True, slots=True)
 class FlownPass:
     """How well one collect was flown: distance from its line while the sensor was on.

@@ -129,6 +129,18 @@ class Line:
             np.radians(np.array([s.mount_deg or NO_MOUNT for s in samples]).reshape(-1, 3)),
         )
 
+    def nearest(self, times_s: Sequence[float]) -> NDArray[np.bool_]:
+        """The samples nearest in time to some moments, (N,)."""
+        found = np.zeros(len(self.time_s), dtype=bool)
+        if len(found) and len(times_s):
+            wanted_s = np.asarray(times_s)[:, None]
+            order = np.argsort(self.time_s)
+            behind = np.clip(np.searchsorted(self.time_s[order], wanted_s[:, 0]), 1, max(len(found) - 1, 1))
+            pairs = order[np.clip(np.stack([behind - 1, behind], axis=1), 0, len(found) - 1)]
+            closest = np.abs(self.time_s[pairs] - wanted_s).argmin(axis=1)
+            found[pairs[np.arange(len(pairs)), closest]] = True
+        return found
+
     def pieces(self) -> NDArray[np.bool_]:
         """Which steps from one sample to the next are recorded."""
         recorded: NDArray[np.bool_] = self.piece[1:] == self.piece[:-1]

@@ -190,6 +190,26 @@ def test_flown_as_planned_all_is_seen_as_overlapping_as_planned() -> None:
     assert not found.not_counted
 
 
+@pytest.mark.parametrize("sensor_shown", [True, False])
+def test_ways_beside_a_lane_are_not_flown_for_it(sensor_shown: bool) -> None:
+    """Flown 12 m beside every lane in its direction without photos, passes are as far off as with them."""
+    scenario, _ = planned()
+    one = record(sensor_on=sensor_shown)
+    heading = math.radians(one.samples[0].heading_deg or 0.0)
+    aside_m = 12.0 * np.array([math.cos(heading), -math.sin(heading)])
+    later_s = one.samples[-1].time_s + 60.0
+    places = scenario.frame.to_wgs84(
+        scenario.frame.to_local([(s.lon_deg, s.lat_deg) for s in one.samples]) + aside_m
+    )
+    beside = tuple(
+        replace(s, time_s=s.time_s + later_s, lon_deg=float(lon), lat_deg=float(lat), sensor_on=False)
+        for s, (lon, lat) in zip(one.samples, places, strict=True)
+    )
+    passes = judged(replace(one, samples=one.samples + beside)).passes
+    assert len(passes) == len(planned()[1].collects)
+    assert max(each.cross_track_max_m for each in passes) < 0.1
+
+
 def test_photos_that_are_lost_are_told_and_leave_ground_out() -> None:
     """A run of five in every lane: their number, and a band across the region."""
     _, plan = planned()
