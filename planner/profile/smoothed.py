@@ -18,11 +18,9 @@ from planner.airspace.values import STILL_AIR, Wind
 from planner.profile.flight import Stretch
 from planner.profile.times import spots_s
 from planner.vehicle.jerks import HALVINGS, change_m, change_s, chords_of, corners_of, is_corner
-from planner.vehicle.manners import Manners
+from planner.vehicle.manners import ONE_PLACE_M, Manners
 from planner.vehicle.wind import held_speed_m_s
 
-#: Places nearer than this and the distance they are taken up early by are one in a mission.
-ONE_PLACE_M = 0.5
 #: Straights are one where they differ by no more.
 SAME_WAY_RAD = 1e-6
 #: Up to this angle off its way it does not hold its speed in for turning (its cosine is 0.98).

@@ -22,7 +22,7 @@ from planner.profile.flight import Stretch
 from planner.vehicle.aircraft import Aircraft
 from planner.vehicle.atmosphere import true_over_equivalent
 from planner.vehicle.jerks import HALVINGS, change_m, change_s, chords_of, corners_of, is_corner
-from planner.vehicle.manners import Manners
+from planner.vehicle.manners import ONE_PLACE_M, Manners
 from planner.vehicle.wind import duration_s, held_speed_m_s, no_headway
 
 #: Places of an arc at which the wind is asked for.
@@ -119,8 +119,8 @@ def rotor_times(
     named = [s.collects for s in stretches]
     beside = [any(pair) for pair in zip([False, *named[:-1]], [*named[1:], False], strict=True)]
     limits = [
-        _allowed_m_s(s, airspeed_m_s, manners, wind, short=short)
-        for s, short in zip(stretches, beside, strict=True)
+        min(_allowed_m_s(s, airspeed_m_s, manners, wind, short=short), leg_m_s)
+        for s, short, leg_m_s in zip(stretches, beside, _leg_speeds_m_s(stretches, manners), strict=True)
     ]
     joints = [0.0, *(min(pair) for pair in pairwise(limits)), 0.0]
     for k, s in enumerate(stretches):
@@ -131,6 +131,26 @@ def rotor_times(
     return [
         spot_s if s.segment is None else _between_s(s.length_m, joints[k], joints[k + 1], limits[k], manners)
         for k, (s, spot_s) in enumerate(zip(stretches, on_the_spot_s, strict=True))
+    ]
+
+
+def _leg_speeds_m_s(stretches: Sequence[Stretch], manners: Manners) -> list[float]:
+    """Fastest on each straight: ArduCopter begins the next leg as this one brakes, which adds no speed to it.
+
+    So a leg between two places of the mission is flown no faster than from rest to rest.
+    """
+    tangents_m = [
+        corners_of(abs(s.segment.turn_rad), s.segment.radius_m)[1]
+        if s.segment is not None and s.segment.kind != "straight" and is_corner(s.segment.radius_m)
+        else 0.0
+        for s in stretches
+    ]
+    beside_m = [sum(pair) for pair in zip([0.0, *tangents_m[:-1]], [*tangents_m[1:], 0.0], strict=True)]
+    return [
+        _reached_m_s(0.0, 0.5 * (s.ground_m + more_m), manners)
+        if s.segment is not None and s.segment.kind == "straight"
+        else math.inf
+        for s, more_m in zip(stretches, beside_m, strict=True)
     ]
 
 
@@ -179,7 +199,8 @@ def corner_speed_m_s(turn_rad: float, radius_m: float, manners: Manners, *, shor
     """
     count, tangent_m = corners_of(turn_rad, radius_m)
     half_rad = turn_rad / (2.0 * count)
-    if short or count > 1:
+    # Half an arc from the place beside it, a single corner as near as that is that place.
+    if count > 1 or (short and 0.5 * turn_rad * radius_m > ONE_PLACE_M):
         return float((tangent_m**2 * manners.jerk_m_s3) ** (1.0 / 3.0))
     blend_m = 2.0 * radius_m / math.sin(half_rad)
     return math.sqrt(2.0 * manners.accel_m_s2 * blend_m) * math.cos(half_rad)

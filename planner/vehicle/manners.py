@@ -22,6 +22,8 @@ VTOL_SPEED_UP_S, VTOL_BRAKING_M_S2, VTOL_STOPS = 7.5, 2.0, 1.5
 RETURN_HEIGHT_M = 100.0
 #: What missions leave of arcs: chords with this error, no more than so much of the arc each.
 CHORD_ERROR_M, LARGEST_STEP_RAD = 2.0, math.radians(45.0)
+#: Places of a mission that are no farther apart along the path are one.
+ONE_PLACE_M = 0.5
 #: Multirotors count as taken off from here on.
 LIFT_OFF_HEIGHT_M = 10.0
 

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from pyproj import Geod
 
 from mavlink.encoding.encode import encode
+from mavlink.encoding.stops import MERGE_M
 from mavlink.wire.items import Command
 from planner.dubins.path import Path
 from planner.dubins.words import candidates_between
@@ -23,7 +24,7 @@ from planner.profile.smoothed import smoothed_times
 from planner.profile.times import rotor_times
 from planner.route import Anchor
 from planner.vehicle.aircraft import Aircraft
-from planner.vehicle.manners import manners_of
+from planner.vehicle.manners import ONE_PLACE_M, manners_of
 
 GEOD = Geod(ellps="WGS84")
 LANE_M = 500.0
@@ -92,6 +93,11 @@ def test_each_corner_is_one_waypoint(plan: Plan) -> None:
     for place in places:
         # Vertices lie no farther apart than 0.2 m on arcs; the others are ends of straights.
         assert min(apart_m(place, vertex) for vertex in line) <= corner_m + 1.2
+
+
+def test_times_count_the_places_that_missions_name() -> None:
+    """What is one place in a mission is one where a flight's time is reckoned."""
+    assert ONE_PLACE_M == MERGE_M
 
 
 def test_a_stated_radius_is_kept() -> None:

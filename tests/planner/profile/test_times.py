@@ -76,6 +76,25 @@ def test_chords_are_flown_as_fast_as_arducopter_flew_them(chord_m: float, flown_
     assert chord_speed_m_s(turn_rad, radius_m, ROTOR) == pytest.approx(flown_m_s, rel=0.12)
 
 
+@pytest.mark.parametrize(
+    ("leg_m", "turns_deg", "flown_s"), [(26.98, (27.4, 152.6), 54.8), (19.64, (39.2, 140.8), 59.0)]
+)
+def test_lanes_are_flown_as_fast_as_arducopter_flew_them(
+    leg_m: float, turns_deg: tuple[float, float], flown_s: float
+) -> None:
+    """A lane at 8 m/s and the way to the next, from flights in ArduCopter 4.6-dev with its own parameters.
+
+    A slight corner at a lane's end is no place of its own in a mission, and is passed without a stop; where
+    the 24 m before a lane begin is one, and they are flown no faster than from rest to rest.
+    """
+    radius_m = 2.002
+    first, last = (Segment("right", ORIGIN, math.radians(turn) * radius_m, radius_m) for turn in turns_deg)
+    lane = replace(straight(308.78), collects=True)
+    around = [Stretch("mission", ORIGIN, arc, 0.0, 0.0, 0.0) for arc in (first, last)]
+    rows = [straight(24.0), lane, around[0], straight(leg_m), around[1], straight(24.0), lane]
+    assert math.fsum(rotor_times(rows, 8.0, ROTOR)[1:6]) == pytest.approx(flown_s, rel=0.03)
+
+
 def test_climbs_on_the_spot_that_follow_each_other_are_one() -> None:
     """Taking off to 10 m and on to 80 m takes as long as to 80 m at once; the last 10 m down are slow."""
     together = sum(rotor_times([lift(0.0, 10.0), lift(10.0, 80.0)], 12.0, ROTOR))
