@@ -9,6 +9,8 @@ import { keeping } from "./keeping";
 import { segments } from "./network";
 import { open, running } from "./plans";
 import { scenarios } from "./scenario";
+import { found } from "./search/looked_for";
+import { looked } from "./search/view";
 import { countAt } from "./survey/overlap";
 import { overlap, shots, takenShots } from "./survey/view";
 
@@ -39,6 +41,8 @@ export interface Hook {
   seenBy(lon_deg: number, lat_deg: number): number | null;
   /** Where each aircraft of the plan is at the time chosen. */
   crew(): { vehicle: string; at: [number, number] }[];
+  /** What part of what is looked for is found by a second of the plan's clock; null of no search. */
+  found(at_s: number): number | null;
   /** Segments round targets that are drawn, by state. */
   segments(): Record<string, number>;
   /** The flight whose seen ground is on the map. */
@@ -53,6 +57,7 @@ declare global {
 
 export function installHook(map: MapLibreMap): void {
   window.swathplan = {
+    found: (at_s) => looked.value && found(looked.value, at_s),
     rendered: () => {
       const counts: Record<string, number> = {};
       for (const feature of map.queryRenderedFeatures()) counts[feature.layer.id] = (counts[feature.layer.id] ?? 0) + 1;

@@ -34,6 +34,7 @@ import { phaseFeatures } from "./phases";
 import { coming, compared, keepOpenFresh, keepToTheScenario, open, openPlan, planFeatures, recent, refresh, rereadItems } from "./plans";
 import { scenarios } from "./scenario";
 import { scenarioFeatures } from "./scenario_view";
+import { showRemains } from "./search/view";
 import { keepSession, restore } from "./session";
 import { keepRasters } from "./terrain";
 import { showCursor } from "./survey/cursor";
@@ -81,6 +82,7 @@ async function start(): Promise<void> {
   showNetwork(map);
   showCursor(map);
   showCrew(map, () => palette().collect);
+  showRemains(map, () => isShown("remains"));
   keepToTheScenario();
   keepScenarios();
   keepFresh();

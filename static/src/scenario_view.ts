@@ -49,10 +49,21 @@ function spreadOf(scenario: Scenario, { geometry, properties }: ScenarioFeature,
   return [...discs, { type: "Feature", properties: shared, geometry: { type: "LineString", coordinates: [place, now.centre] } }];
 }
 
+/** Looks that were had before the search, of any aircraft. */
+function seenBefore(scenario: Scenario): Feature[] {
+  const seen = (scenario["search"] as Member | undefined)?.["seen"];
+  return (Array.isArray(seen) ? seen : []).flatMap((entry: unknown): Feature[] => {
+    const look = entry as { type?: string; geometry?: Geometry } | null;
+    const geometry = look?.type === "Feature" ? look.geometry : (look as Geometry | null);
+    if (geometry?.type !== "Polygon" && geometry?.type !== "MultiPolygon") return [];
+    return [{ type: "Feature", properties: { fid: "", kind: "seen_before", name: "", label: false }, geometry }];
+  });
+}
+
 /** Shapes and, apart from them, one label point a feature; discs become rings. */
 export function scenarioFeatures(scenario: Scenario): Feature[] {
   const most = Math.max(...scenario.features.map(({ properties }) => Number(properties["score"] ?? 0)), 0);
-  return scenario.features.flatMap((feature) => {
+  const shapes = scenario.features.flatMap((feature): Feature[] => {
     const weight = most > 0 ? { weight: Number(feature.properties["score"] ?? 0) / most } : {};
     const properties = { ...weight, fid: nameOf(feature), kind: kindOf(feature), name: nameOf(feature), label: false };
     const radius_m = radiusOf(feature);
@@ -61,4 +72,5 @@ export function scenarioFeatures(scenario: Scenario): Feature[] {
     if (!at) return [shape];
     return [shape, ...spreadOf(scenario, feature, properties), { type: "Feature", properties: { ...properties, label: true }, geometry: { type: "Point", coordinates: at } }];
   });
+  return [...seenBefore(scenario), ...shapes];
 }

@@ -4,10 +4,11 @@ import { coloursOf, doing, placeAt, type Flight } from "../crew/flights";
 import { button, fill, h, section } from "../dom";
 import { distance_m } from "../geo";
 import { PHASE_WORDS } from "../phases";
-import { open } from "../plans";
+import { isSearch, open } from "../plans";
 import { scenarios } from "../scenario";
 import { onThemeChange, palette } from "../theme";
-import { metres, number, seconds } from "../units";
+import { foundByNow, looked } from "../search/view";
+import { metres, number, percent, seconds } from "../units";
 
 const SVG = "http://www.w3.org/2000/svg";
 const WIDTH = 1000;
@@ -105,8 +106,9 @@ export function crewBox(): HTMLElement {
   const now = h("output", { id: "clock-now", for: "clock" });
   const list = h("ul", { class: "doing", id: "doing" });
   const near = h("p", { class: "quiet", id: "clock-near" });
+  const share = h("p", { id: "clock-found", class: "quiet" });
   const hand = svg("line", { class: "hand", y1: 0 });
-  const box = section("Who does what, and when", true, chart, h("div", { class: "row clock" }, play, slider, now), list, near);
+  const box = section("Who does what, and when", true, chart, h("div", { class: "row clock" }, play, slider, now), share, list, near);
   box.id = "crew";
   let timer: ReturnType<typeof setInterval> | null = null;
   let end_s = 1;
@@ -139,7 +141,7 @@ export function crewBox(): HTMLElement {
     box.hidden = all.length === 0;
     if (!shown || all.length === 0) return stop();
     // One aircraft alone is told of by its figures; several are not understood without it.
-    if (shown.record.id !== last) box.open = all.length > 1;
+    if (shown.record.id !== last) box.open = all.length > 1 || isSearch(shown.plan);
     last = shown.record.id;
     colours = coloursOf(shown.plan, isDark());
     end_s = Math.max(1, ...all.map((flight) => flight.end_s));
@@ -171,6 +173,7 @@ export function crewBox(): HTMLElement {
       fill(now, "");
       fill(list);
       fill(near);
+      fill(share, looked.value ? "Move the slider, or press Play: what is still to be found is drawn as it is then." : "");
       return;
     }
     const x = String((at_s / end_s) * WIDTH);
@@ -178,12 +181,15 @@ export function crewBox(): HTMLElement {
     hand.setAttribute("x2", x);
     if (document.activeElement !== slider || timer !== null) slider.value = String(Math.round(at_s));
     fill(now, clockWords(at_s));
+    const found = foundByNow();
+    fill(share, found === null ? "" : `Found by then, if it is there: ${percent(found, 0)} of what was left at take-off; drawn is what is still to be found.`);
     const usual = palette().collect;
     fill(list, ...all.map((flight) => h("li", { style: `--c:${colours.get(flight.vehicle) ?? usual}` }, `${nameOf(flight, all)}: ${doing(flight, at_s)}`)));
     fill(near, all.length > 1 ? nearest(all, at_s) : "");
   };
   flights.watch(draw);
   clock_s.watch(tell);
+  looked.watch(tell);
   onThemeChange(draw);
   return box;
 }

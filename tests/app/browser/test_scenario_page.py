@@ -320,3 +320,61 @@ def test_what_is_looked_for_at_sea_is_drawn_where_it_has_drifted_to(page: Page) 
     page.get_by_label("Spread (one standard deviation)").fill("500")
     page.keyboard.press("Tab")
     await_hook(page, "scenario().features.some(f => f.properties.spread_m === 500)")
+
+
+def _square(west_m: float, east_m: float) -> dict[str, object]:
+    """Ground of a kilometre from south to north, between two distances east of a place."""
+    places = [(west_m, -500.0), (east_m, -500.0), (east_m, 500.0), (west_m, 500.0)]
+    ring = [list(WGS84.fwd(*WGS84.fwd(8.5, 47.4, 90.0, east)[:2], 0.0, north)[:2]) for east, north in places]
+    return {"type": "Polygon", "coordinates": [[*ring, ring[0]]]}
+
+
+def test_what_is_left_to_be_found_changes_with_the_clock(page: Page) -> None:
+    """Of a square, its east seen before the search and its west in the plan's pass, each look finding 60 %:
+    half-way along the pass a quarter of the square has been looked at, of what the look before has left."""
+    west, east = _square(-500.0, 0.0), _square(0.0, 500.0)
+    line = [WGS84.fwd(8.5, 47.4, heading, 500.0)[:2] for heading in (180.0, 0.0)]
+    own = {"vehicle": "uav", "seq": 1, "roi": "all", "sensor": "eye"}
+    times = {"start_s": 100.0, "end_s": 200.0, "start_m": 0.0, "end_m": 1000.0}
+
+    def feature_of(geometry: object, **properties: object) -> dict[str, object]:
+        return {"type": "Feature", "geometry": geometry, "properties": properties}
+
+    track = {"type": "LineString", "coordinates": line}
+    mission = {"kind": "mission", **times, "start_s": 0.0}
+    metrics = {"length_m": 1000, "collection_length_m": 1000, "duty_cycle": 1, "path_length_ratio": None}
+    metrics |= {"risk_missile": 0, "risk_radar": 0, "turns": 0, "duration_s": 200, "area_seen_m2": 5e5}
+    metrics |= {"coverage": {}, "planning_time_s": {}, "lower_bound_m": 0.0}
+    features = [
+        feature_of(track, role="path", vehicle="uav", sortie=1, length_m=1000.0, phases=[mission]),
+        feature_of(track, role="collect", **own, **times),
+        feature_of(west, role="footprint", **own),
+    ]
+    square = feature_of(_square(-500.0, 500.0), role="importance", score=1.0, name="all")
+    scenario = {"type": "FeatureCollection", "name": "square", "features": [square], "task": "search"}
+    answers = {
+        "": {"id": "made", "name": "square", "state": "done"},
+        "/scenario": scenario | {"search": {"detection": 0.6, "seen": [east]}},
+        "/plan.geojson": {
+            "type": "FeatureCollection", "features": features, "metrics": metrics, "violations": [],
+        },
+        "/mission.plan": {},
+    }  # fmt: skip
+    page.route(
+        re.compile(r"/api/v1/plans(\?.*)?$"), lambda route: route.fulfill(json={"plans": [answers[""]]})
+    )
+    page.route(
+        re.compile(r"/api/v1/plans/made"),
+        lambda route: route.fulfill(json=answers[route.request.url.partition("/made")[2].partition("?")[0]]),
+    )
+    page.get_by_role("tab", name="Plan").click()
+    page.get_by_role("button", name="Refresh").last.click()
+    page.locator("#recent").get_by_role("button", name="square · done").click()
+    if page.locator("#dialog-go").count():
+        page.click("#dialog-go")
+    await_hook(page, "found(0) === 0")
+    assert ask(page, "found(200)") == pytest.approx(0.3 / 0.7, abs=0.01)
+    assert ask(page, "found(150)") == pytest.approx(0.15 / 0.7, abs=0.01)
+    page.locator("#crew input[type=range]").fill("150")
+    expect(page.locator("#clock-found")).to_contain_text("21 %")
+    await_hook(page, "rendered()['seen_before-fill'] > 0")
