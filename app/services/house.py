@@ -66,10 +66,14 @@ class House:
     ) -> None:
         self.database = Database(limits.database)
         self.pool = pool or WorkerPool(
-            limits.workers, partial(work.limited, initialiser, limits.plan_memory_bytes)
+            limits.workers,
+            partial(work.limited, initialiser, limits.plan_memory_bytes),
+            preloaded=initialiser is work.initialise,
         )
         request_pool = pool or WorkerPool(
-            limits.request_workers, partial(work.limited, initialiser, limits.request_memory_bytes)
+            limits.request_workers,
+            partial(work.limited, initialiser, limits.request_memory_bytes),
+            preloaded=initialiser is work.initialise,
         )
         self.desk = Desk(request_pool, limits.request_workers, limits.request_time_limit_s)
         folder = terrain_folder(limits.database)

@@ -7,14 +7,17 @@ import multiprocessing
 from collections.abc import Callable
 from concurrent.futures import Future
 from concurrent.futures.process import BrokenProcessPool
+from multiprocessing.context import BaseContext
 from typing import Any, Protocol
 
 import structlog
-from pebble import ProcessExpired, ProcessPool
+from pebble import ProcessExpired, ProcessPool, concurrent
 
 from app.services.plans import work
 
 log = structlog.get_logger(__name__)
+
+PRELOADED = "app.services.plans.preloaded"
 
 
 class WorkerDiedError(RuntimeError):
@@ -50,36 +53,53 @@ class WorkerPool:
         How many.
     initialiser
         Called once in each new process.
+    preloaded
+        Whether they are forked from a process that has loaded the kernels (``preloaded.py``) and does nothing
+        else; all such pools of a service share it.
     """
 
-    def __init__(self, workers: int, initialiser: Callable[[], None] = work.initialise) -> None:
+    def __init__(
+        self, workers: int, initialiser: Callable[[], None] = work.initialise, *, preloaded: bool = False
+    ) -> None:
         self._workers = workers
         self._initialiser = initialiser
+        # Never forked from the service itself: a child would inherit its sockets, threads and locks.
+        self._context: BaseContext = multiprocessing.get_context("forkserver" if preloaded else "spawn")
+        if preloaded:
+            self._context.set_forkserver_preload([PRELOADED])
         self._pool = self._build()
-        self._warm: Future[int] | None = None
+        self._begun: Future[Future[int]] | None = None
         self._stopped = False
 
     def _build(self) -> ProcessPool:
-        # spawn: a forked child would inherit the service's sockets, threads and locks
-        return ProcessPool(
-            max_workers=self._workers,
-            initializer=self._initialiser,
-            context=multiprocessing.get_context("spawn"),
-        )
+        return ProcessPool(max_workers=self._workers, initializer=self._initialiser, context=self._context)
+
+    def _begin(self) -> Future[Future[int]]:
+        """Start the processes where nobody has: in a thread, for they wait for what is preloaded."""
+        if self._begun is None:
+            self._begun = _started(self._pool)
+        return self._begun
 
     def warm(self) -> None:
-        """Start the processes, which compile their kernels; see ``ready``."""
-        self._warm = self._pool.schedule(work.ping)
+        """Start the processes, which load their kernels; see ``ready``."""
+        self._begin()
 
     @property
     def ready(self) -> bool:
         """Whether a process has answered since the pool was built, and the pool still stands."""
-        answered = self._warm is not None and self._warm.done() and self._warm.exception() is None
-        return answered and bool(self._pool.active)
+        if not self._has_begun or self._begun is None or self._begun.exception() is not None:
+            return False
+        ping = self._begun.result()
+        return ping.done() and ping.exception() is None and bool(self._pool.active)
+
+    @property
+    def _has_begun(self) -> bool:
+        """Whether the processes have been started; until then pebble keeps whoever asks it for anything."""
+        return self._begun is not None and self._begun.done()
 
     async def mend(self) -> None:
         """Build the pool anew where a process that was killed while idle has broken it."""
-        if self._warm is not None and not self._pool.active and not self._stopped:
+        if self._has_begun and not self._pool.active and not self._stopped:
             await self._replace(self._pool, "a process ended while it had nothing to do")
 
     async def run(self, function: Callable[..., Any], args: tuple[Any, ...], timeout_s: float) -> Any:
@@ -95,6 +115,7 @@ class WorkerPool:
         for attempt in (1, 2):
             pool = self._pool
             try:
+                await self._started()
                 return await asyncio.wrap_future(pool.schedule(function, args=args, timeout=timeout_s))
             except ProcessExpired as error:
                 raise WorkerDiedError(f"the planning process ended with {_exit(error.exitcode)}") from error
@@ -108,22 +129,40 @@ class WorkerPool:
                     raise WorkerDiedError("no planning process could be started") from error
         raise AssertionError("unreachable")
 
+    async def _started(self) -> None:
+        try:
+            await asyncio.shield(asyncio.wrap_future(self._begin()))
+        except (OSError, EOFError) as error:
+            self._begun = None
+            raise _unstarted(error) from error
+
     async def _replace(self, broken: ProcessPool, reason: str) -> None:
         # several runs learn of the same broken pool; the first replaces it
         if self._pool is broken:
             log.warning("worker pool rebuilt", reason=reason)
             try:
                 self._pool = self._build()
-                self.warm()
             except OSError as error:
-                # No descriptors, no shared memory: the next run tries again.
-                raise WorkerDiedError(f"no planning process could be started: {error.strerror}") from error
+                raise _unstarted(error) from error
+            self._begun = None
+            self.warm()
             await asyncio.to_thread(_end, broken)
 
     async def stop(self) -> None:
         """Kill every worker and wait for the end."""
         self._stopped = True
         await asyncio.to_thread(_end, self._pool)
+
+
+@concurrent.thread
+def _started(pool: ProcessPool) -> Future[int]:
+    return pool.schedule(work.ping)
+
+
+def _unstarted(error: Exception) -> WorkerDiedError:
+    """No descriptors, no shared memory, nothing to fork from: the next run tries again."""
+    reason = getattr(error, "strerror", None) or "what they are forked from has ended"
+    return WorkerDiedError(f"no planning process could be started: {reason}")
 
 
 def _end(pool: ProcessPool) -> None:
