@@ -73,6 +73,10 @@ class Until:
         return Until(self.clock, now_s + share * max(self.end_s - now_s, 0.0))
 
 
+#: No search for anything better.
+AT_ONCE = Until(lambda: 1.0, 0.0)
+
+
 def in_time(make: Callable[[Stop], T], stop: Stop, enough: Stop) -> T | None:
     """What may turn out better than what is at hand; None where time ends it before it is done.
 

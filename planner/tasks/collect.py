@@ -18,7 +18,7 @@ from planner.metrics import used
 from planner.plan import LeftOut, Plan
 from planner.profile.compose import Composed
 from planner.profile.ends import with_run
-from planner.progress import Progress, Stop, in_time, silent
+from planner.progress import AT_ONCE, Progress, Stop, Until, in_time, silent
 from planner.publish import Leg
 from planner.route import CollectPass
 from planner.routing.greedy.route import li2018_route
@@ -69,7 +69,7 @@ def collect(scenario: Scenario, controls: Controls) -> Answer:
     transits = Transits.of(setting, asked.objective, methods)
     sight = Sight.of(asked.regions, setting.suite, setting.airspace, setting.level)
 
-    def fly(names: frozenset[str], progress: Progress) -> _Flight:
+    def fly(names: frozenset[str], progress: Progress, enough: Until) -> _Flight:
         """The flight without some regions."""
         regions = tuple(region for region in asked.regions if region.name not in names)
         with controls.stage("routing"):
@@ -78,7 +78,7 @@ def collect(scenario: Scenario, controls: Controls) -> Answer:
                 setting,
                 methods,
                 scenario.seed,
-                replace(controls, progress=part_of(progress, 0.0, 0.5)),
+                replace(controls, progress=part_of(progress, 0.0, 0.5), enough=enough),
             )
             try:
                 refuse_unseen(asked, *found, sight)
@@ -90,9 +90,16 @@ def collect(scenario: Scenario, controls: Controls) -> Answer:
             composed, legs, notes = transits.through(found[0], part_of(progress, 0.5, 0.9), controls.stop)
         return _Flight(*found, composed, legs, notes, used(composed.flight, setting.model, setting.level))
 
+    def in_haste(names: frozenset[str]) -> _Flight:
+        try:
+            return fly(names, silent, AT_ONCE)
+        except InfeasibleError:
+            return fly(names, silent, controls.enough)
+
     flight, left = within_limits(
-        fly(frozenset(), controls.progress),
-        lambda names: fly(names, silent),
+        fly(frozenset(), controls.progress, controls.enough),
+        lambda names: fly(names, silent, controls.enough),
+        in_haste,
         {region.name: region.priority for region in asked.regions if not region.required},
         setting.model.aircraft,
         (scenario.start.position, scenario.end.position),

@@ -6,6 +6,7 @@ import itertools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -13,7 +14,7 @@ from shapely.geometry import Polygon
 
 from planner.fleet.prizes.choice import Choices
 from planner.route import CollectPass
-from planner.tasks.limits import within_limits
+from planner.tasks.limits import IN_EARNEST, TRIED_AGAIN, within_limits
 from planner.tasks.prizes import Offer
 from planner.vehicle.aircraft import Aircraft
 from planner.vehicle.limits import Use, strain
@@ -22,6 +23,8 @@ Point = tuple[float, float]
 HOME = (0.0, 0.0)
 #: Of the toy's flights besides their way between places: what no estimate of routes knows of.
 LIFT_M = 300.0
+#: By how much flights planned in haste are longer.
+HASTE = 1.01
 
 
 @dataclass(frozen=True)
@@ -80,12 +83,25 @@ def test_never_less_priority_than_greedily() -> None:
     for seed in range(30):
         places, optional, range_m = _case(seed)
         fly, aircraft = _fly(places), _aircraft(range_m)
-        arguments = (fly(frozenset()), fly, optional, aircraft, (HOME, HOME))
+        earnest: list[frozenset[str]] = []
+
+        def in_earnest(names: frozenset[str], f: Any = fly, told: Any = earnest) -> Toy:
+            told.append(names)
+            return cast(Toy, f(names))
+
+        def in_haste(names: frozenset[str], f: Any = fly) -> Toy:
+            flown = f(names)
+            longer_m = HASTE * flown.use.length_m
+            return Toy(flown.passes, Use(longer_m, longer_m / 20.0, None))
+
+        arguments = (fly(frozenset()), in_earnest, in_haste, optional, aircraft, (HOME, HOME))
         plain, dropped = within_limits(*arguments)
         if strain(aircraft, plain.use) > 1.0:
             # What is required is too far by itself: nothing to choose.
             continue
         flight, left = within_limits(*arguments, lambda p=places, o=optional: _offer(p, o))
+        # Those in earnest are of what is chosen, of longer routes, and of what lies near.
+        assert len(earnest) <= 2 * (1 + TRIED_AGAIN) + IN_EARNEST
         lost = sum(optional[each.name] for each in left)
         assert flight.use.length_m <= range_m
         assert lost <= sum(optional[each.name] for each in dropped)
