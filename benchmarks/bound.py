@@ -7,6 +7,7 @@ shortest plan known of each, by whatever method, heading, merging or division of
 
 from __future__ import annotations
 
+import itertools
 import json
 import math
 import statistics
@@ -86,7 +87,11 @@ def others(document: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
 
 
 def run(
-    seeds: Any = 3, kinds: Any = KINDS, compared: bool = False, first: int = 0
+    seeds: Any = 3,
+    kinds: Any = KINDS,
+    compared: bool = False,
+    first: int = 0,
+    seconds: float = math.inf,
 ) -> Iterator[dict[str, Any]]:
     """One row a scenario, then one a kind, and the last of them all.
 
@@ -96,13 +101,19 @@ def run(
         How many scenarios of each kind, and the seed of the first.
     compared
         Whether plans of the same task put otherwise are made as well.
+    seconds
+        Of processor time: once they are over no scenario is begun. There is one of each kind before there are
+        two of any, so that what is told then is of a sample, by ``scenarios``.
     """
     warm_up()
-    rows = []
-    for seed in range(first, first + seeds):
-        for kind in [kinds] if isinstance(kinds, str) else kinds:
-            rows.append(_row(kind, seed, compared))
-            yield rows[-1]
+    end_s = time.process_time() + seconds
+    each = [kinds] if isinstance(kinds, str) else list(kinds)
+    rows: list[dict[str, Any]] = []
+    for seed, kind in itertools.product(range(first, first + seeds), each):
+        if rows and time.process_time() > end_s:
+            break
+        rows.append(_row(kind, seed, compared))
+        yield rows[-1]
     yield from summaries(rows)
 
 

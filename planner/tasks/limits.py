@@ -28,7 +28,7 @@ TRIED_AGAIN = 4
 #: Lengths of route tried, and what of one that turned out too long is asked for next.
 LENGTHS, SHORTER = 4, 0.998
 #: The same where flights are planned in earnest.
-IN_EARNEST = 2
+IN_EARNEST = 4
 #: What is left out is tried again where straight lines to it are no longer than there is room for, and this
 #: part of the flight.
 ROOM = 0.02

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import itertools
 from typing import Any
 
+import pytest
+
+from benchmarks import bound
 from benchmarks.bound import summaries
 
 
@@ -36,3 +40,17 @@ def test_kinds_and_all_are_summed_up_from_their_rows() -> None:
     assert everything["are_bounds"]
     assert (everything["part_of_time"], everything["most_of_time"]) == (0.25, 0.25)
     assert not list(summaries([*rows, row("bent", 0.1, 0.1) | {"is_a_bound": False}]))[-1]["are_bounds"]
+
+
+def test_time_ends_a_run_between_scenarios_and_all_kinds_have_their_turn(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """With a second of processor time for each scenario, five of them are told of, the kinds in turn."""
+    now = itertools.count()
+    monkeypatch.setattr(bound, "warm_up", lambda: None)
+    monkeypatch.setattr(bound, "_row", lambda kind, seed, _: row(kind, 0.1, 0.1) | {"seed": seed})
+    monkeypatch.setattr(bound.time, "process_time", lambda: float(next(now)))
+    rows = list(bound.run(seeds=7, kinds=("points", "wide", "bent"), seconds=5.0))
+    told = [(each["kind"], each["seed"]) for each in rows if "seed" in each]
+    assert told == [("points", 0), ("wide", 0), ("bent", 0), ("points", 1), ("wide", 1), ("bent", 1)]
+    assert rows[-1]["scenarios"] == len(told)
