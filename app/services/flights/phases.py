@@ -19,6 +19,10 @@ OFF_GROUND_M = 1.0
 NEAR_M = 150.0
 #: Times at which a place is passed this much farther off count as passing it, too.
 AS_NEAR_M = 10.0
+#: A record that begins higher over home began in the air.
+IN_THE_AIR_M = 10.0
+#: Who has come a smaller part of a phase's way has not flown it, though it was near the place where it ends.
+LEAST_PART = 0.5
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +41,8 @@ def flown_phases(
 
     A phase ends when the track comes nearest, in three dimensions, to where its end is planned, behind the
     end of the phase before; of several times at the one planned. The first begins as the aircraft leaves the
-    ground; a landing ends as it is back.
+    ground; a landing ends as it is back. Who joined a plan in the air flew neither its take-off nor its climb; who
+    left it did not end the phase that it was in.
 
     Parameters
     ----------
@@ -53,16 +58,24 @@ def flown_phases(
     heights_m = np.array([s.altitude_home_m for s in flown], dtype=np.float64)
     places = np.column_stack([frame.to_local([(s.lon_deg, s.lat_deg) for s in flown]), heights_m])
     times_s = np.array([s.time_s for s in flown])
+    way_m = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(places, axis=0), axis=1))])
     found: list[FlownPhase] = []
-    begun_s: float | None = off_ground[0]
+    joined = home_altitude_m is None and heights_m[0] > IN_THE_AIR_M
+    begun_s: float | None = None if joined else off_ground[0]
     after_s = off_ground[0]
     for phase in path.phases:
         if phase.kind == "landing":
             ended_s = _landed_s(flown, after_s)
+        elif joined and phase.kind in ("take_off", "climb"):
+            ended_s = None
         else:
             place = _place_at(path, phase.end_m)
             local = np.array([*frame.to_local([place[:2]])[0], place[2] - ground_m])
             ended_s = _passed_s(times_s, places, local, after_s, after_s + phase.end_s - phase.start_s)
+            if begun_s is not None and ended_s is not None:
+                come_m = float(np.diff(np.interp([begun_s, ended_s], times_s, way_m))[0])
+                least_m = LEAST_PART * (phase.end_m - phase.start_m) - AS_NEAR_M
+                ended_s = ended_s if come_m >= least_m else None
         flown_s = None if begun_s is None or ended_s is None else ended_s - begun_s
         found.append(FlownPhase(phase.kind, phase.end_s - phase.start_s, flown_s))
         begun_s, after_s = ended_s, after_s if ended_s is None else ended_s

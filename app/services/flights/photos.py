@@ -7,7 +7,7 @@ as on from the first to the last photo of a run, and a run ends where a photo is
 from __future__ import annotations
 
 import math
-from bisect import bisect_left
+from bisect import bisect_left, bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -85,11 +85,20 @@ def switched_by_photos(
         if made and len(run) > 1:
             added += [_sample(made, times_s, photo) for photo in (run[0], run[-1])]
     for before, after in pairwise(runs):
-        # Two runs are two, be there a place of the track between them or not.
-        end = _sample(made, times_s, before[-1]) if made else None
-        if end is not None:
-            middle_s = (before[-1].time_s + after[0].time_s) / 2.0
-            added.append(replace(end, time_s=middle_s, sensor_on=False))
+        # Two runs are two where the track has no place between them, either.
+        ended_s, begins_s = before[-1].time_s, after[0].time_s
+        if made and bisect_right(times_s, ended_s) >= bisect_left(times_s, begins_s):
+            end, begin = (_sample(made, times_s, photo) for photo in (before[-1], after[0]))
+            east_deg = math.remainder(begin.lon_deg - end.lon_deg, 360.0)
+            added.append(
+                replace(
+                    end,
+                    time_s=(ended_s + begins_s) / 2.0,
+                    lon_deg=math.remainder(end.lon_deg + east_deg / 2.0, 360.0),
+                    lat_deg=(end.lat_deg + begin.lat_deg) / 2.0,
+                    sensor_on=False,
+                )
+            )
     whole = [replace(sample, sensor_on=is_on) for sample, is_on in zip(made, on, strict=True)]
     return tuple(sorted([*whole, *added], key=lambda sample: sample.time_s))
 

@@ -50,17 +50,34 @@ def test_what_was_not_recorded_is_unknown() -> None:
     assert cut[-1].flown_s is None
 
 
-def test_what_lands_where_it_took_off_passes_each_height_twice() -> None:
-    """A multirotor planned from home and back: its climb and its mission are not taken for the landing."""
+@pytest.fixture(scope="module")
+def there_and_back() -> FlownPath:
+    """Of a multirotor, from home to lanes and back."""
     document = small(altitude_m=90.0)
     document["features"] = [each for each in document["features"] if each["id"] != "B"]
     document["sensors"] = [{"name": "eye", "type": "camera", "model": "Sony RX1R II", "min_interval_s": 0.0}]
     document["vehicles"][0] |= {"type": "multirotor", "autopilot": "px4", "airspeed_m_s": 10.0}
     (path,) = flight_plan(read_scenario(document)).paths
+    return path
+
+
+def test_what_lands_where_it_took_off_passes_each_height_twice(there_and_back: FlownPath) -> None:
+    """A multirotor planned from home and back: its climb and its mission are not taken for the landing."""
+    path = there_and_back
     assert path.line[0][:2] == pytest.approx(path.line[-1][:2], abs=1e-5)
     for phase in flown_phases(path, recorded(path, 1.1)):
         if phase.kind == "mission":
             assert phase.flown_s == pytest.approx(1.1 * phase.planned_s, rel=0.15)
+
+
+def test_a_plan_joined_or_left_in_the_air_is_told_by_what_was_flown_of_it(there_and_back: FlownPath) -> None:
+    """Half of a flight, as where a mission is replaced: no phase that was not flown whole has a duration."""
+    samples = recorded(there_and_back, 1.0)
+    half = len(samples) // 2
+    left = {p.kind: p.flown_s for p in flown_phases(there_and_back, samples[:half])}
+    joined = {p.kind: p.flown_s for p in flown_phases(there_and_back, samples[half:])}
+    assert {kind for kind, flown_s in left.items() if flown_s is not None} == {"take_off", "climb"}
+    assert {kind for kind, flown_s in joined.items() if flown_s is not None} == {"landing"}
 
 
 def test_flights_that_begin_in_the_air_are_told_by_phase() -> None:

@@ -76,7 +76,10 @@ def test_payloads_that_take_photos(payload: str | None, spacing: Spacing | None)
 def test_on_is_from_photo_to_photo_until_one_is_missing(
     spacing: Spacing, missing: set[int], every_s: float
 ) -> None:
-    """Forty photos 25 m apart, some missing: on between neighbours, off where one is missing between two."""
+    """Forty photos 25 m apart, some missing: on between neighbours, off where one is missing between two.
+
+    Whatever places that adds, the aircraft was there at their time.
+    """
     samples = [sample(t) for t in np.arange(0.0, 70.0, every_s)]
     taken = [n for n in range(40) if n not in missing]
     photos = [photo(n, 10.0 + 1.25 * n) for n in taken]
@@ -89,7 +92,9 @@ def test_on_is_from_photo_to_photo_until_one_is_missing(
         run = [number]
     expected.append(run)
     wanted = [(10.0 + 1.25 * r[0], 10.0 + 1.25 * r[-1]) for r in expected if len(r) > 1]
-    found = [times for times in on_s(switched_by_photos(samples, photos, spacing)) if times[1] > times[0]]
+    made = switched_by_photos(samples, photos, spacing)
+    assert all(each.lon_deg == pytest.approx(sample(each.time_s).lon_deg, abs=1e-9) for each in made)
+    found = [times for times in on_s(made) if times[1] > times[0]]
     assert len(found) == len(wanted)
     assert np.allclose(found, wanted)
 
