@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from planner.plan import Plan, Replanned
-from planner.wishes import GoingOn
+from planner.scenario import Scenario
+from planner.wishes import GoingOn, Unflown
 
 
 def replanned(going_on: GoingOn, plan: Plan) -> Replanned:
@@ -39,6 +40,20 @@ def order_of(plan: Plan, after_s: float = 0.0) -> dict[str, tuple[str, ...]]:
             (name, None) for name in collect.regions if not done or (collect.vehicle, name) not in left
         )
     return {name: tuple(regions) for name, regions in found.items()}
+
+
+def unflown_of(scenario: Scenario, plan: Plan, after_s: float) -> dict[str, tuple[Unflown, ...]]:
+    """By aircraft, the passes that are flown after a time, of one being flown then what is left of it."""
+    found: dict[str, list[Unflown]] = {}
+    for collect in sorted(plan.collects, key=lambda each: (each.vehicle, each.start_s)):
+        if collect.end_s <= after_s:
+            continue
+        begin, end = scenario.frame.to_local([place[:2] for place in collect.line])
+        done = max(after_s - collect.start_s, 0.0) / (collect.end_s - collect.start_s)
+        (east_m, north_m), (east_to_m, north_to_m) = (begin + done * (end - begin)).tolist(), end.tolist()
+        one = Unflown((east_m, north_m), (east_to_m, north_to_m), collect.look)
+        found.setdefault(collect.vehicle, []).append(one)
+    return {name: tuple(passes) for name, passes in found.items()}
 
 
 def _longest_common(one: Sequence[str], other: Sequence[str]) -> list[str]:

@@ -63,6 +63,15 @@ DEFAULT_SEPARATION = Separation(100.0, 30.0)
 
 
 @dataclass(frozen=True, slots=True)
+class Unflown:
+    """A pass that a search was still to fly, east and north in metres, and the side looked to."""
+
+    start: tuple[float, float]
+    end: tuple[float, float]
+    look: Literal["left", "right", "down"]
+
+
+@dataclass(frozen=True, slots=True)
 class GoingOn:
     """What a plan takes the place of another for, while that is being flown.
 
@@ -74,11 +83,14 @@ class GoingOn:
         By the name of an aircraft, what it was still to see, in flight order.
     unless_better
         Another order is flown where it is better by this part.
+    unflown
+        By the name of an aircraft, what of a search it was still to fly, in flight order.
     """
 
     begins_in_s: float = 0.0
     order: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     unless_better: float = 0.05
+    unflown: Mapping[str, tuple[Unflown, ...]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)

@@ -193,7 +193,7 @@ def _read(document: Any, findings: Findings, terrains: Terrains | None) -> Scena
     separation = read_separation(document.get("separation"), findings)
     if len(aircraft) == 1 and separation is not None:
         findings.warning("separation", "not-used", "is kept between aircraft, and there is one", "Remove it.")
-    going_on = read_going_on(document.get("replan"), findings)
+    going_on = read_going_on(document.get("replan"), frame, findings)
     start = start_of(starts, bases, aircraft, raws, findings)
     if findings.errors or start is None or clearance_m is None:
         return None

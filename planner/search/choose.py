@@ -21,7 +21,7 @@ from planner.search.belief.strips import drifting_strips
 from planner.search.families import FAMILIES, patterns
 from planner.search.horizon import VARIANTS
 from planner.search.importance.strips import WALKS, walked
-from planner.search.programme import Pricing, Programme, Sweep, cut_to, seen_worth, thinned_to
+from planner.search.programme import Place, Pricing, Programme, Sweep, cut_to, seen_worth, thinned_to
 from planner.search.room import LEAST_PASS_M, Room
 from planner.search.shifted import shifted, strip_of
 from planner.search.straights import horizon_strips
@@ -68,7 +68,10 @@ class Laid:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Search:
-    """One search as the choice sees it; of one family alone where that is named."""
+    """One search as the choice sees it; of one family alone where that is named.
+
+    ``kept`` are passes of a plan that is being flown, lines and the sides looked to.
+    """
 
     ground: Polygon | MultiPolygon
     worth: Worth
@@ -81,6 +84,7 @@ class Search:
     detection: float = 1.0
     drifting: Drifting | None = None
     seed: int = 0
+    kept: tuple[tuple[Place, Place, Look], ...] = ()
 
     def found(self, sweeps: Sequence[Sweep]) -> float:
         """What passes find: of the worth of ground, or of what drifts, the sooner the better."""
@@ -120,7 +124,21 @@ class Search:
         refined.sort(key=lambda each: (-each.worth, each.cost_m))
         # What is estimated to be better may take more when it is flown: both are offered in turn.
         pairs = [each for pair in zip(refined, ways, strict=False) for each in pair]
-        return [*pairs, *ways[len(refined) :]]
+        return [*self.going_on(), *pairs, *ways[len(refined) :]]
+
+    def going_on(self) -> tuple[Programme, ...]:
+        """What was still to be flown by a plan that is being flown, where it may be flown now: all of it."""
+        sweeps: list[Sweep] = []
+        for start, end, look in self.kept:
+            swath = self.looking.swath(math.atan2(end[1] - start[1], end[0] - start[0]), look)
+            least_m = max(0.0, swath.run_in_m + swath.run_out_m) + LEAST_PASS_M
+            (ways,) = self.room.flyable(np.array([[start, end]]))
+            sweeps += [Sweep(*way, look, swath) for way in ways if math.dist(*way) >= least_m]
+        if not sweeps:
+            return ()
+        strips = np.array([strip_of(sweep) for sweep in sweeps])
+        laid = Laid(self.family or REFINED, tuple(sweeps), strips, sweeps[0].look)
+        return self._cut(laid, math.inf, thin=False)
 
     def _over(self, found: Sequence[Programme]) -> bool:
         """Whether what has been found is to do, asked between steps."""

@@ -25,6 +25,7 @@ from planner.tasks.setting import Setting
 from planner.tasks.spare import Spare, out_of_reach, refuse_blocked, spare_of
 from planner.tasks.task import Answer, Controls, Task
 from planner.tasks.transits import Transits
+from planner.tasks.unflown import unflown_of
 from planner.tasks.worth import drifted, ground_of, worth_of
 from planner.vehicle.aircraft import Aircraft
 from planner.vehicle.limits import exceeded
@@ -76,8 +77,10 @@ def reach(scenario: Scenario, controls: Controls) -> tuple[float, float]:
     return spare.metres * asked.looking.narrowest_m(), _lasting_s(asked, spare)
 
 
-def sought(scenario: Scenario, controls: Controls) -> Sought:
+def sought(scenario: Scenario, controls: Controls, *, as_before: bool = False) -> Sought:
     """What one aircraft may fly, that which sees most first.
+
+    ``as_before`` leaves it what it was still to fly alone.
 
     Raises
     ------
@@ -96,12 +99,12 @@ def sought(scenario: Scenario, controls: Controls) -> Sought:
         asked = _drifting(asked, scenario, spare)
     with controls.stage("search"):
         controls.progress("search", 0.0)
-        ranked = asked.ranked(spare.metres)
+        ranked = asked.going_on() if as_before else asked.ranked(spare.metres)
     return Sought(setting, transits, asked, spare, tuple(ranked))
 
 
-def answer_to(one: Sought, controls: Controls) -> Answer:
-    """The best of what was ranked, flown as long as the limits allow.
+def answer_to(one: Sought, controls: Controls, *, improved: bool = True) -> Answer:
+    """The best of what was ranked, flown as long as the limits allow, and improved then.
 
     Raises
     ------
@@ -118,7 +121,7 @@ def answer_to(one: Sought, controls: Controls) -> Answer:
 
     with controls.stage("transit"):
         best = _best(one, fly, controls)
-        if asked.family in (None, REFINED) and best.programme.family not in PUBLISHED:
+        if improved and asked.family in (None, REFINED) and best.programme.family not in PUBLISHED:
             best = _improved(best, asked, fly, setting.model.aircraft, controls)
             best = filled(best, asked, fly, setting.model.aircraft, controls.enough)
     methods = one.transits.methods | {"search": best.programme.family}
@@ -155,7 +158,8 @@ def asked_of(scenario: Scenario, setting: Setting) -> Search:
     family = None if scenario.method.search == "auto" else scenario.method.search
     detection = scenario.importance.detection
     pricing = Pricing(setting.model, start, end)
-    return Search(ground, worth, looking, room, pricing, family=family, detection=detection)
+    kept = unflown_of(scenario, setting, looking)
+    return Search(ground, worth, looking, room, pricing, family=family, detection=detection, kept=kept)
 
 
 def _lasting_s(asked: Search, spare: Spare) -> float:

@@ -20,7 +20,7 @@ from planner.geojson.geometry import areal, written
 from planner.plan import Plan
 from planner.scenario import Scenario
 from planner.vehicle.aircraft import Aircraft
-from planner.wishes import GoingOn
+from planner.wishes import GoingOn, Unflown
 
 AT_ONCE = GoingOn()
 #: Corners of what is left lie on a grid, so that written places round to no other shape.
@@ -111,6 +111,13 @@ def replanned(
         "unless_better": going_on.unless_better,
         "order": {name: list(order) for name, order in going_on.order.items() if name not in changes.lost},
     }
+    unflown = {
+        name: [_pass(one, scenario) for one in passes]
+        for name, passes in going_on.unflown.items()
+        if name not in changes.lost
+    }
+    if unflown:
+        made["replan"]["unflown"] = unflown
     coming = {_name(feature): feature for feature in changes.features}
     features: list[dict[str, Any]] = []
     for feature in made["features"]:
@@ -140,6 +147,12 @@ def replanned(
             (Finding("lost", "no-aircraft", "names every aircraft", "Leave one that flies."),),
         )
     return made
+
+
+def _pass(one: Unflown, scenario: Scenario) -> dict[str, Any]:
+    """A pass of a search as a scenario says it."""
+    line = scenario.frame.to_wgs84([one.start, one.end]).round(7).tolist()
+    return {"line": line, "look": one.look}
 
 
 def _left(

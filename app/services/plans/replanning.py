@@ -25,7 +25,7 @@ from planner.geojson import read_scenario
 from planner.geojson.fields import Findings
 from planner.geojson.geometry import area
 from planner.plan import Plan
-from planner.replanned import order_of
+from planner.replanned import order_of, unflown_of
 from planner.scenario import Scenario
 from planner.wishes import GoingOn
 
@@ -138,7 +138,8 @@ def left_of(
             Looked(s.ground, at_s + s.in_s, at_s + s.until_s, heading_deg(scenario, s.collect)) for s in soon
         ]
         begins_s = at_s + begins_in_s
-        return replanned(document, scenario, now, {}, begins_s, asked.changes, looks, GoingOn(begins_in_s))
+        going_on = GoingOn(begins_in_s, unflown=unflown_of(scenario, plan, begins_s))
+        return replanned(document, scenario, now, {}, begins_s, asked.changes, looks, going_on)
     if asked.seen is not None:
         ground = union_all([_area(shape, scenario, k) for k, shape in enumerate(asked.seen)])
         seen: Mapping[str, BaseGeometry] = {region.name: ground for region in scenario.regions}

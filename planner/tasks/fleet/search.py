@@ -24,7 +24,7 @@ from planner.tasks.fleet.crews import Crew, crews_of
 from planner.tasks.fleet.flights import Flown, Order
 from planner.tasks.fleet.placing import Errand, placed
 from planner.tasks.fleet.task import FleetAnswer
-from planner.tasks.search import answer_to, reach, sought
+from planner.tasks.search import answer_to, asked_of, reach, sought
 from planner.tasks.task import Answer, Controls
 from planner.tasks.worth import drifted, ground_of, worth_of
 from planner.wishes import Seen
@@ -39,6 +39,11 @@ Floats = NDArray[np.float64]
 _NO_ROOM = InfeasibleError(
     "separation", "its line", "comes too near to the others' wherever it searches; it flies to its end",
     "Lower separation, or plan it anew later.",
+)  # fmt: skip
+
+_NOTHING_LEFT = InfeasibleError(
+    "nothing-left", "its limits", "let it find no more than the others do; it flies to its end",
+    "Raise its limits, or leave it more to see.",
 )  # fmt: skip
 
 
@@ -105,9 +110,11 @@ def search_together(scenario: Scenario, controls: Controls) -> FleetAnswer:
     ways = [answers]
     if any(crew.aircraft.aloft is not None for crew in crews):
         # Bands do not lie as those lie that are in the air already.
-        turns = _in_turn(crews, list(answers), controls)
-        if turns is not None and _found(scenario, turns) > _found(scenario, answers) * MUCH_BETTER:
-            ways.insert(0, turns)
+        shares = list(answers)
+        turns = [
+            _in_turn(crews, order, controls) for order in (shares, shares[::-1]) if not controls.enough()
+        ]
+        ways = _best_first(scenario, [*_as_before(crews, shares, controls), answers, *turns])
         # Where none of that keeps them apart, fewer search, and the others fly to their ends.
         ways += [dict(list(answers.items())[:many]) for many in range(len(answers) - 1, 0, -1)]
     separation = scenario.kept_apart
@@ -123,29 +130,81 @@ def search_together(scenario: Scenario, controls: Controls) -> FleetAnswer:
         except InfeasibleError:
             if number == len(ways) - 1:
                 raise
-    dropped += [_stays(crews[share.crew], _NO_ROOM) for share in ways[0] if share not in answers]
+    idle = [share for share in shares if share not in answers]
+    dropped += [_stays(crews[share.crew], _NO_ROOM if share in ways[0] else _NOTHING_LEFT) for share in idle]
     families = dict.fromkeys(answer.methods["search"] for answer in answers.values())
     methods = next(iter(answers.values())).methods | {"search": "+".join(families)}
     return FleetAnswer(crews, sorties, methods, tuple(dict.fromkeys(dropped)), (), separation)
 
 
-def _in_turn(
+def _best_first(
+    scenario: Scenario, ways: Sequence[dict[_Share, Answer] | None]
+) -> list[dict[_Share, Answer]]:
+    """Ways by what they find, but for those of which one before finds nearly as much."""
+    found: list[tuple[float, dict[_Share, Answer]]] = []
+    for way in ways:
+        if way is None:
+            continue
+        worth = _found(scenario, way)
+        place = sum(other * MUCH_BETTER >= worth for other, _ in found)
+        found.insert(place, (worth, way))
+    return [way for _, way in found]
+
+
+def _as_before(
     crews: Sequence[Crew], shares: Sequence[_Share], controls: Controls
+) -> list[dict[_Share, Answer] | None]:
+    """What each was still to fly, improved over all that the others leave; and as it was."""
+    going_on = crews[shares[0].crew].alone.going_on
+    if going_on is None or not all(crews[share.crew].aircraft.name in going_on.unflown for share in shares):
+        return []
+    looks = {share: _looks_to_come(crews[share.crew]) for share in shares}
+    found = []
+    for improved in (True, False):
+        found.append(_in_turn(crews, shares, controls, looks, improved=improved))
+    return found
+
+
+def _looks_to_come(crew: Crew) -> list[Seen]:
+    """What an aircraft was still to see."""
+    going_on = crew.alone.going_on
+    looking = asked_of(crew.alone, crew.setting).looking
+    passes = () if going_on is None else going_on.unflown.get(crew.aircraft.name, ())
+    return [Seen(looking.collect(one.start, one.end, one.look).footprint) for one in passes]
+
+
+def _in_turn(
+    crews: Sequence[Crew],
+    shares: Sequence[_Share],
+    controls: Controls,
+    to_come: Mapping[_Share, Sequence[Seen]] | None = None,
+    *,
+    improved: bool = True,
 ) -> dict[_Share, Answer] | None:
-    """Each over all that those before it leave; None where one can do nothing of that, or it drifts."""
+    """Each over all that those before it leave; None where none can do anything of that, or it drifts.
+
+    ``to_come`` is what each was still to see: each then begins with its own, and leaves the others theirs.
+    """
     answers: dict[_Share, Answer] = {}
     looks: list[Seen] = []
     for number, share in enumerate(shares):
         own = replace(controls, enough=controls.enough.part(1.0 / (len(shares) - number)))
-        alone = _after(crews[share.crew].alone, looks)
-        if alone.importance.drift is not None or not alone.regions:
+        later = [look for other in shares[number + 1 :] for look in (to_come or {}).get(other, ())]
+        alone = _after(crews[share.crew].alone, [*looks, *later])
+        if to_come is None:
+            alone = replace(alone, going_on=None)
+        if alone.importance.drift is not None:
             return None
         try:
-            answers[share] = answer_to(sought(alone, own), own)
+            if not alone.regions:
+                continue
+            one = sought(alone, own, as_before=to_come is not None)
+            answers[share] = answer_to(one, own, improved=improved)
         except InfeasibleError:
-            return None
+            # It has nothing to do that it can; others may.
+            continue
         looks += [Seen(each.footprint) for each in answers[share].passes]
-    return answers
+    return answers or None
 
 
 def _after(alone: Scenario, looks: Sequence[Seen]) -> Scenario:

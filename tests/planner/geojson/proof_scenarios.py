@@ -115,6 +115,12 @@ def value(**properties: Any) -> Document:
     return feature("I", "importance", "Polygon", square(0.0, 0.0, 0.01), **{"score": 1.0, **properties})
 
 
+def flying_on(*passes: Any) -> Document:
+    """A search planned anew, with passes that it was still to fly."""
+    told = {"unflown": {"uav": list(passes)}} if passes else {}
+    return {**last_known(), "replan": told}
+
+
 def last_known(spread_m: float = 400.0, **search: Any) -> Document:
     """A search round a last known point, within an hour's flight."""
     point = feature("K", "importance", "Point", [0.01, 0.01], score=1.0, spread_m=spread_m)

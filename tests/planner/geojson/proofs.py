@@ -18,6 +18,7 @@ from tests.planner.geojson.proof_scenarios import (
     doubted,
     drifting,
     end,
+    flying_on,
     last_known,
     line,
     looked_at,
@@ -247,6 +248,7 @@ PROOFS: dict[tuple[str, str], tuple[Document, Document]] = {
     ("scenario", "seed"): (small(), member("seed", 5)),
     ("replan", "begins_in_s"): (small(), member("replan", {"begins_in_s": 5.0})),
     ("replan", "order"): (member("replan", {}), member("replan", {"order": {"uav": ["A"]}})),
+    ("replan", "unflown"): (flying_on(), flying_on({"line": [[0.0, 0.01]], "look": "right"})),
     ("replan", "unless_better"): (member("replan", {}), member("replan", {"unless_better": 0.5})),
     ("scenario", "time_budget_s"): (many(1e9), many(1e-3)),
 }  # fmt: skip

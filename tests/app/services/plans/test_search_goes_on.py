@@ -30,6 +30,7 @@ RICH = rectangle("importance", 800.0, 500.0, 1100.0, 800.0, name="rich", score=2
 PLAIN = rectangle("importance", 0.0, 0.0, 1200.0, 900.0, name="plain", score=1.0)
 LOST = feature("importance", "Point", lonlat(600, 450), score=1e-5, spread_m=120.0, name="lost")
 DRIFT = {"speed_m_s": 0.6, "toward_deg": 70.0, "spread_m_s": 0.1, "elapsed_s": 300.0}
+CLOSE = {"horizontal_m": 30.0, "vertical_m": 10.0}
 STORED = {key: value for key, value in WING.items() if key != "energy_wh"} | {
     "charge_mah": 1800, "voltage_v": 14.8,
 }  # fmt: skip
@@ -42,6 +43,10 @@ def asked(kind: str) -> tuple[dict[str, Any], Scenario, Plan]:
         "finds": lambda: document(RICH, PLAIN, vehicle=STORED, method={"search": "parallel"}),
         "misses": lambda: document(
             RICH, PLAIN, sensor=RADAR, method={"search": "parallel"}, search={"detection": 0.6}
+        ),
+        "together": lambda: (
+            document(RICH, PLAIN, method={"search": "parallel"}, separation=CLOSE)
+            | {"vehicles": [WING | {"name": "a", "energy_wh": 14}, WING | {"name": "b", "energy_wh": 18}]}
         ),
         "drifts": lambda: document(
             LOST, method={"search": "parallel"}, search={"detection": 0.8, "drift": DRIFT}
@@ -86,6 +91,19 @@ def test_a_search_goes_on_over_what_it_has_not_seen() -> None:
     assert on.aircraft[0].energy_wh * on.aircraft[0].reserve == pytest.approx(0.2 * store_wh)
     assert new.metrics.energy_wh <= on.aircraft[0].usable_wh
     assert new.paths[0].phases[0].kind == "mission"
+
+
+def test_several_find_about_as_much_planned_anew_as_they_would_going_on() -> None:
+    """By the judge: what was found until then and what the new plan finds, against the plan made whole."""
+    _, scenario, plan = asked("together")
+    at_s = 0.6 * max(path.start_s + path.duration_s for path in plan.paths)
+    scenario_left = left("together", at_s=at_s)
+    assert set(scenario_left["replan"]["unflown"]) == {"a", "b"}
+    new = make_plan(read_scenario(scenario_left))
+    assert new.hard_violations == ()
+    whole = searched(scenario, plan)
+    found = whole.total - new.metrics.importance_total
+    assert found + new.metrics.importance_collected > 0.95 * whole.importance
 
 
 def test_a_pass_that_is_being_flown_is_seen_as_far_as_it_has_come() -> None:
