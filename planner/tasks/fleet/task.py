@@ -28,8 +28,9 @@ from planner.tasks.task import Controls
 from planner.tasks.urban import cut_by_obstacles, lanes_cut
 from planner.wishes import Separation
 
-#: Rounds of assignment and flight, and of those that gave a plan.
-MOST_ROUNDS, ROUNDS = 8, 2
+#: Rounds of assignment and flight, and of those that gave a plan; so many where an assignment is proved, for
+#: that takes little: what it is proved for are estimates, and flights teach better ones.
+MOST_ROUNDS, ROUNDS, PROVED_ROUNDS = 8, 2, 6
 #: Flights of so few regions are chosen by all that one aircraft has; of more by the order that was assigned.
 FEW = 1
 #: Times thought and flown that are this near teach nothing.
@@ -123,6 +124,7 @@ class _Rounds:
         found: list[tuple[float, FleetAnswer]] = []
         failed: InfeasibleError | None = None
         least = math.inf
+        flown: set[frozenset[Key]] = set()
         for number in range(MOST_ROUNDS):
             self._controls.progress("assign", number / MOST_ROUNDS)
             try:
@@ -161,8 +163,11 @@ class _Rounds:
                 self.too_long = answer
                 continue
             found.append((cost_of(sorties, self._scenario.objective), answer))
-            if near or len(found) >= ROUNDS or self._controls.enough():
+            trips = frozenset(_key(jobs, trip) for trip in assigned.trips)
+            most = PROVED_ROUNDS if assigned.status == "optimal" else ROUNDS
+            if near or len(found) >= most or trips in flown or self._controls.enough():
                 break
+            flown.add(trips)
         if not found:
             raise failed or InfeasibleError(
                 "energy", "scenario", "no assignment of the regions keeps within the aircraft's limits",

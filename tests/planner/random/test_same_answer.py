@@ -1,4 +1,4 @@
-"""One question has one answer however it is put: some draws in each run.
+"""One question has one answer however it is put: some draws in each run, of polygons and of other kinds.
 
 ``SWATHPLAN_RANDOM`` set to ``all`` tries twenty.
 """
@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,7 @@ import pytest
 
 from tests.planner.moved import put_at
 from tests.planner.random.test_plain_rules import CHOSEN, SAME, Places, asked, length_m, polygon
+from tests.planner.scenarios import feature
 
 
 def turned(place: tuple[float, float], angle_deg: float) -> tuple[float, float]:
@@ -58,4 +60,45 @@ def test_one_question_has_one_answer(number: int) -> None:
     off = {
         name: length_m(document) / factor / known_m - 1.0 for name, (document, factor) in ways(number).items()
     }
+    assert {name: part for name, part in off.items() if abs(part) > SAME} == {}
+
+
+#: Metres east and north of what is drawn to where it is put.
+Move = Callable[[tuple[float, float]], tuple[float, float]]
+EYE = {"name": "eye", "type": "camera", "model": "Sony a6000 20 mm", "forward_overlap": 0.7}
+
+
+def of_kind(kind: str, number: int, put: Callable[[float, float], list[float]], move: Move) -> dict[str, Any]:
+    """Regions in two parts, a corridor with bends, or a survey by a camera."""
+
+    def ring(places: Places) -> list[list[float]]:
+        corners = [put(*move(place)) for place in places]
+        return [*corners, corners[0]]
+
+    first, second = polygon(number), [(0.4 * e + 1500.0, 0.4 * n) for e, n in polygon(number + 1)]
+    document = asked([], lambda e, n: put(*move((e, n))))
+    if kind == "parts":
+        small = [(0.4 * e, 0.4 * n) for e, n in first]
+        regions = [feature("R", "roi", "MultiPolygon", [[ring(small)], [ring(second)]])]
+    elif kind == "corridor":
+        line = [(-800.0, 0.0), (-300.0, 150.0), (200.0, 100.0), (600.0, 500.0)]
+        regions = [feature("C", "roi", "LineString", [put(*move(p)) for p in line], width_m=50.0)]
+    else:
+        regions = [feature("R", "roi", "Polygon", [ring(first)])]
+        document["sensors"] = [EYE]
+    return document | {"features": [*regions, *document["features"]]}
+
+
+@pytest.mark.parametrize("kind", ["parts", "corridor", "camera"])
+@pytest.mark.parametrize("number", range(20) if CHOSEN == "all" else [2])
+def test_so_have_other_kinds(kind: str, number: int) -> None:
+    """Turned, mirrored, across the antimeridian or with noise a plan of any kind is as long."""
+    rng, put = np.random.default_rng(number), put_at((8.55, 47.4))
+    known_m = length_m(of_kind(kind, number, put, lambda place: place))
+    ways = {
+        "turned and mirrored": of_kind(kind, number, put, lambda p: turned((-p[0], p[1]), 37.0)),
+        "across 180°": of_kind(kind, number, put_at((179.995, -12.0)), lambda place: place),
+        "noisy": of_kind(kind, number, put, lambda p: (p[0] + rng.uniform(-1e-4, 1e-4), p[1])),
+    }
+    off = {name: length_m(document) / known_m - 1.0 for name, document in ways.items()}
     assert {name: part for name, part in off.items() if abs(part) > SAME} == {}
