@@ -165,12 +165,12 @@ function result({ record, plan, items, madeFrom }: OpenPlan, view: PlanView): HT
   );
 }
 
-function line(record: PlanRecord): HTMLElement {
+function line(record: PlanRecord, view: PlanView): HTMLElement {
   const time = record.created_at ? new Date(record.created_at).toLocaleString() : "";
   const length = record.metrics ? ` · ${metres(record.metrics.length_m)}` : "";
   const show = async (): Promise<void> => {
     if (!(await mayLeave("Show this plan with its own scenario?", "Show"))) return;
-    await attempt("The plan was not opened", () => openPlan(record.id));
+    if (await attempt("The plan was not opened", () => openPlan(record.id))) view.zoomToAll();
   };
   const label = `${record.name ?? record.id} · ${record.state}${length}`;
   const gone = async (): Promise<void> => {
@@ -186,8 +186,8 @@ function line(record: PlanRecord): HTMLElement {
   );
 }
 
-function earlier(): HTMLElement {
-  return section("Recent plans", true, moreOf("recent", recent, line, [open]), button("Refresh", () => void attempt("The plans were not listed", refresh)));
+function earlier(view: PlanView): HTMLElement {
+  return section("Recent plans", true, moreOf("recent", recent, (record) => line(record, view), [open]), button("Refresh", () => void attempt("The plans were not listed", refresh)));
 }
 
 export function planPanel(view: PlanView): HTMLElement {
@@ -227,5 +227,5 @@ export function planPanel(view: PlanView): HTMLElement {
     fill(box, plan ? result(plan, view) : null);
     beside.hidden = plan === null;
   });
-  return h("div", {}, h("div", { class: "row" }, go), progress(view), reading, stale, crewBox(), replanBox(), box, surveyBox(), profileBox(), waypointList(view.zoomToPlace), beside, earlier());
+  return h("div", {}, h("div", { class: "row" }, go), progress(view), reading, stale, crewBox(), replanBox(), box, surveyBox(), profileBox(), waypointList(view.zoomToPlace), beside, earlier(view));
 }

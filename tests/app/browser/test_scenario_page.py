@@ -373,6 +373,9 @@ def test_what_is_left_to_be_found_changes_with_the_clock(page: Page) -> None:
     if page.locator("#dialog-go").count():
         page.click("#dialog-go")
     await_hook(page, "found(0) === 0")
+    # What was opened is looked at, wherever the map was before.
+    lon, lat = ask(page, "centre()")
+    assert WGS84.inv(lon, lat, 8.5, 47.4)[2] < 1000.0
     assert ask(page, "found(200)") == pytest.approx(0.3 / 0.7, abs=0.01)
     assert ask(page, "found(150)") == pytest.approx(0.15 / 0.7, abs=0.01)
     page.locator("#crew input[type=range]").fill("150")
