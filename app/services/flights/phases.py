@@ -41,8 +41,8 @@ def flown_phases(
 
     A phase ends when the track comes nearest, in three dimensions, to where its end is planned, behind the
     end of the phase before; of several times at the one planned. The first begins as the aircraft leaves the
-    ground; a landing ends as it is back. Who joined a plan in the air flew neither its take-off nor its climb; who
-    left it did not end the phase that it was in.
+    ground; a landing ends as it is back. Who joined a plan in the air flew neither its take-off nor its
+    climb; who left it did not end the phase that it was in.
 
     Parameters
     ----------
