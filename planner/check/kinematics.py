@@ -12,6 +12,7 @@ from planner.check.places import lonlat
 from planner.plan import FlownPath, Violation
 from planner.scenario import Scenario
 from planner.vehicle.aircraft import Aircraft
+from planner.vehicle.limits import raised
 
 #: Arcs have vertices at most this far apart, so a longer edge is straight.
 MAX_ARC_EDGE_M = 10.0
@@ -19,6 +20,8 @@ RADIUS_TOLERANCE = 1e-4
 LENGTH_TOLERANCE = 1e-3
 ROTOR_TIME_TOLERANCE = 2e-2
 ROTOR_SLOWER = 4.0
+#: Planning reckons by its pieces, the judge by vertices: by a thousandth or so another way.
+SPARED = 1.003
 #: What rounding to 11 decimals of a degree may move both ends of an edge against each other.
 DIRECTION_NOISE_M = 2e-6
 
@@ -67,7 +70,8 @@ def limit_violations(
             yield Violation(
                 constraint,
                 path.vehicle,
-                f"needs {used:.0f} {unit} but has {limit:.0f} {unit}",
+                f"needs {used:.0f} {unit} but has {limit:.0f} {unit}. "
+                f"{raised(aircraft, constraint, used * SPARED)}",
                 used - limit,
                 unit,
             )

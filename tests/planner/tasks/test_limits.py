@@ -54,6 +54,23 @@ def left_out(found: Plan) -> set[str]:
     return names
 
 
+@pytest.mark.parametrize(
+    ("name", "vehicle"),
+    [
+        ("max_range_m", {"max_range_m": 4_000.0}),
+        ("max_flight_time_s", {"max_flight_time_s": 120.0}),
+    ],
+)
+def test_what_a_violated_limit_is_said_to_need_does(name: str, vehicle: dict[str, float]) -> None:
+    """With the value that the violation names the same regions are planned without it."""
+    asked = document(roi("A", 0.0, 1.0), **vehicle)
+    (said,) = plan(asked).hard_violations
+    found = re.search(rf"Set {name} to ([\d.]+) or more", said.message)
+    assert found is not None
+    asked["vehicles"][0][name] = float(found[1])
+    assert plan(asked).hard_violations == ()
+
+
 LIMITS = {
     "range": {"max_range_m": 12_000.0},
     "flight-time": {"max_flight_time_s": 600.0},
