@@ -45,7 +45,7 @@ def test_ground_that_is_built_over_whole_stays_asked_for() -> None:
 
 
 @pytest.mark.parametrize(
-    ("size_m", "kind", "deep_m"), [(40.0, "multirotor", 60.0), (60.0, "fixed_wing", 300.0)]
+    ("size_m", "kind", "deep_m"), [(40.0, "multirotor", 60.0), (60.0, "fixed_wing", 200.0)]
 )
 def test_ground_round_a_tower_is_seen_and_none_under_it_is_missed(
     size_m: float, kind: str, deep_m: float

@@ -104,7 +104,7 @@ def relaxed_m(of: Problem) -> float:
 
 
 @given(seed=st.integers(0, 10_000), nodes=st.integers(2, 5), cells=st.integers(1, 3))
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=25, deadline=None)
 def test_any_prices_give_a_bound(seed: int, nodes: int, cells: int) -> None:
     """Whatever prices, potentials and prices of turning back: no tour is shorter."""
     of = problem(seed, nodes, cells)

@@ -34,7 +34,7 @@ def test_visits_of_one_target_are_apart() -> None:
         replace(target, visits=3, revisit_after_s=900.0) if number < 2 else target
         for number, target in enumerate(given.targets)
     )
-    answer = assign(replace(given, targets=often), iterations=1500)
+    answer = assign(replace(given, targets=often), iterations=300)
     assert broken(replace(given, targets=often), answer.trips) == ()
     assert answer.left_out == ()
     for number in range(2):

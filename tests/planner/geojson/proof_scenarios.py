@@ -244,6 +244,8 @@ def powered(case: str, **properties: Any) -> Document:
 
 
 CROSSED = feature("T", "threat", "Point", [0.016, 0.006], model="missile", radius_m=900.0)
+#: In the way of one leg, small: its programme has few steps.
+NEAR = feature("T", "threat", "Point", [0.016, 0.006], model="missile", radius_m=300.0)
 WIND = {"speed_m_s": 8.0, "from_deg": 200.0}
 EXTRA = {
     "threat": (threat(hard=True),), "no_fly": (disc(),), "obstacle": (block(),), "end": (end(),),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from tests.planner.geojson.proof_scenarios import (
     CROSSED,
+    NEAR,
     POWERS,
     ROUTED,
     SSAS,
@@ -218,8 +219,8 @@ PROOFS: dict[tuple[str, str], tuple[Document, Document]] = {
         small(CROSSED, method=SSAS), small(CROSSED, method=SSAS | {"smoothing": "shortcut"}),
     ),
     ("method", "directions"): (
-        small(CROSSED, method={"transit": "milp-length", "directions": 2}),
-        small(CROSSED, method={"transit": "milp-length", "directions": 3}),
+        small(NEAR, method={"transit": "milp-length", "directions": 2}),
+        small(NEAR, method={"transit": "milp-length", "directions": 3}),
     ),
     ("method", "search"): (small(), member("method", {"search": "belief"})),
     ("scenario", "name"): (small(), member("name", "other")),
