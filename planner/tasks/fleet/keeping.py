@@ -55,10 +55,10 @@ def _orders(
 
 
 def kept_alone(scenario: Scenario, controls: Controls) -> Answer | None:
-    """The flight of one aircraft that keeps the order being flown; None where another is better by so much.
+    """The flight of one aircraft that keeps the order being flown, or the one that is better by so much.
 
-    Both are compared by the ways and times that fleets are assigned by. What asks for more than the best pass
-    or sweep over each region in turn, or cannot be seen, is planned freely.
+    Both are compared by the ways and times that fleets are assigned by, and flown in the order so found. What
+    asks for more than the best pass or sweep over each region in turn, or cannot be seen, is planned freely.
     """
     going_on, aircraft = scenario.going_on, scenario.aircraft[0]
     methods = chosen_methods(scenario.method)
@@ -77,7 +77,7 @@ def kept_alone(scenario: Scenario, controls: Controls) -> Answer | None:
             problem = problem_of((crew,), jobs, ways, scenario.objective, Lessons())
             free = decided(problem, scenario.method, scenario.seed, controls)
             found = kept_or(going_on, (crew,), jobs, problem, free)
-        if found is free or found.left_out or len(found.trips) != 1:
+        if found.left_out or len(found.trips) != 1:
             return None
         order = [(jobs[visit.target], 0) for visit in found.trips[0].visits]
         flown = in_given_order(crew, 0, order, controls)
