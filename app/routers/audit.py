@@ -6,7 +6,7 @@ from datetime import UTC, datetime
 from typing import Annotated
 
 from fastapi import APIRouter, Query
-from pydantic import AfterValidator
+from pydantic import AfterValidator, BeforeValidator
 
 from app.deps import AuditDep
 from app.problems import responses
@@ -25,7 +25,14 @@ def _utc(moment: datetime) -> datetime:
         raise ValueError("the moment is beyond the years 1 to 9999 of UTC") from None
 
 
-Moment = Annotated[datetime, AfterValidator(_utc)]
+def _dated(value: str) -> str:
+    # A bare number would be taken for seconds since 1970, a year for half an hour of that day.
+    if value.strip().lstrip("+-").replace(".", "", 1).isdigit():
+        raise ValueError("a moment is written as in 2026-11-29T10:00:00Z")
+    return value
+
+
+Moment = Annotated[datetime, BeforeValidator(_dated), AfterValidator(_utc)]
 
 
 @router.get("", summary="List what was ordered", responses=responses(422))

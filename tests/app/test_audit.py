@@ -76,7 +76,15 @@ async def test_all_that_is_ordered_is_there_with_its_outcome(
 
 
 @pytest.mark.parametrize(
-    "which", [{"since": "0001-01-01T00:00:00+05:00"}, {"until": "soon"}, {"kind": "x"}, {"limit": 0}]
+    "which",
+    [
+        {"since": "0001-01-01T00:00:00+05:00"},
+        {"until": "soon"},
+        {"since": "2026"},
+        {"until": "-5.0"},
+        {"kind": "x"},
+        {"limit": 0},
+    ],
 )
 async def test_odd_filters_are_refused(client: httpx.AsyncClient, which: dict[str, Any]) -> None:
     """What is no moment, no kind, no number of entries is a 422."""

@@ -334,8 +334,9 @@ class _Rounds:
         closes_s = (job.region.time_window_s or (0.0, math.inf))[1]
         more = late.late_s / max(closes_s, late.late_s) if math.isfinite(closes_s) else 0.0
         self._lessons.hurry(late.crew, (1.0 + more) / TIGHTER)
-        message = f"is seen {late.late_s:.0f} s after its window closes, as far as was found"
-        relaxation = f"Let time_window_s close {late.late_s:.0f} s later, or add an aircraft."
+        late_s = math.ceil(late.late_s)
+        message = f"is seen up to {late_s} s after its window closes, as far as was found"
+        relaxation = f"Let time_window_s close {late_s} s later, or add an aircraft."
         error = InfeasibleError("window", job.of, message, relaxation)
         if not job.region.required:
             self._given_up[job.of] = not_seen(job, error)

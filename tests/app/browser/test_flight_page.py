@@ -19,7 +19,7 @@ pytestmark = pytest.mark.browser
 CASE_1 = json.loads((EXAMPLES / "sar-case-1.geojson").read_text(encoding="utf-8"))
 QUEUED_BEFORE = 25
 SHORT_RANGE_M = 20_000.0
-PLANNING_LIMIT_S = 60.0
+PLANNING_LIMIT_S = 180.0
 FLIGHT_LIMIT_S = 90.0
 
 

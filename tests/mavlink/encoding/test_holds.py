@@ -23,11 +23,11 @@ STEP_S = 0.1
 
 
 def waiting(autopilot: str, kind: str) -> Plan:
-    """Two regions of which the second's window opens five minutes after the first one's has closed."""
+    """Two regions of which the second's window opens minutes after the first one's has closed."""
     document = of_two(altitude_m=120.0)
     one = document["vehicles"][0] | {"type": kind, "autopilot": autopilot, "airspeed_m_s": 20.0}
     document["vehicles"] = [one | {"min_turn_radius_m": 60.0}]
-    for feature, window in zip(document["features"], ([0, 500], [1000, 1500]), strict=False):
+    for feature, window in zip(document["features"], ([0, 600], [1000, 1500]), strict=False):
         feature["properties"]["time_window_s"] = window
     return make_plan(read_scenario(document))
 
