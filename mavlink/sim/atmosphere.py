@@ -1,4 +1,7 @@
-"""The air's density by height: autopilots hold the airspeed that their pitot tube tells, not the true one."""
+"""The air's density by height: autopilots hold the airspeed that their pitot tube tells, not the true one.
+
+Written for itself: what judges missions by flying them shares nothing with what encodes them.
+"""
 
 from __future__ import annotations
 

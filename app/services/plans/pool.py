@@ -98,8 +98,13 @@ class WorkerPool:
         return self._begun is not None and self._begun.done()
 
     async def mend(self) -> None:
-        """Build the pool anew where a process that was killed while idle has broken it."""
-        if self._has_begun and not self._pool.active and not self._stopped:
+        """Start again what could not be started; build anew what a process killed while idle has broken."""
+        if not self._has_begun or self._begun is None or self._stopped:
+            return
+        if self._begun.exception() is not None:
+            self._begun = None
+            self.warm()
+        elif not self._pool.active:
             await self._replace(self._pool, "a process ended while it had nothing to do")
 
     async def run(self, function: Callable[..., Any], args: tuple[Any, ...], timeout_s: float) -> Any:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import signal
 import sys
+from concurrent.futures import Future
 
 import pytest
 
@@ -35,5 +36,20 @@ async def test_who_follows_a_dead_worker_has_its_kernels_at_once() -> None:
         loaded, _, other = await pool.run(begun_with, (), 60.0)
         assert loaded
         assert other != origin
+    finally:
+        await pool.stop()
+
+
+async def test_what_could_not_be_started_is_started_again() -> None:
+    """Nor does asking whether it is ready fail meanwhile."""
+    pool = WorkerPool(1, fakes.no_warm_up)
+    failed: Future[Future[int]] = Future()
+    failed.set_exception(OSError(24, "too many open files"))
+    pool._begun = failed
+    try:
+        assert not pool.ready
+        await pool.mend()
+        assert pool._begun is not failed
+        assert await pool.run(os.getpid, (), 60.0) != os.getpid()
     finally:
         await pool.stop()
