@@ -22,6 +22,7 @@ from mavlink.sim.settings import SimSettings
 from mavlink.wire.codec import Codec
 from mavlink.wire.messages import Message
 from tests.app.conftest import fake_house, serving
+from tests.app.deaf import deaf_vehicle
 from tests.app.test_problems import check_problem
 from tests.app.test_restart import autopilot, free_port, service
 from tests.app.test_two_operators import uploading
@@ -29,8 +30,6 @@ from tests.app.test_vehicles import VEHICLES, faulty_vehicle, until
 from tests.mavlink.station.forward.test_hub import Station
 
 ARM = 400
-#: The first announcement of a list is lost: an upload that takes its time.
-LATE = SimSettings(faults=("no_response_to_first_count",))
 
 
 @contextlib.asynccontextmanager
@@ -159,13 +158,14 @@ async def test_forwards_are_remembered(settings: Settings) -> None:
 
 async def test_a_station_does_not_disturb_an_upload(client: httpx.AsyncClient, plan_id: str) -> None:
     """In mid-upload it neither clears nor arms; the upload is accepted and reads back as meant."""
-    async with station() as (peer, url), faulty_vehicle(client, LATE) as vehicle:
+    async with station() as (peer, url), deaf_vehicle(client) as (vehicle, link):
         await forward(client, vehicle, {"url": url, "write": True})
         await peer.until("HEARTBEAT")
         upload = await uploading(client, vehicle, plan_id)
         peer.say("MISSION_CLEAR_ALL")
         peer.say("COMMAND_LONG", command=ARM, param1=1.0)
         await until(client, vehicle, lambda body: body["forward"][0]["frames"]["held_back"] == 2)
+        link.hears = True
         assert (await upload).json()["verified"]
         body = (await client.get(vehicle)).json()
         assert (body["plan_id"], body["state"]["armed"]) == (plan_id, False)

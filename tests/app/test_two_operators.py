@@ -14,6 +14,7 @@ import pytest
 
 from app.settings import Settings
 from mavlink.sim.settings import SimSettings
+from tests.app.deaf import deaf_vehicle
 from tests.app.test_problems import check_problem
 from tests.app.test_process import ROOT
 from tests.app.test_restart import free_port, service
@@ -21,8 +22,6 @@ from tests.app.test_vehicles import VEHICLES, connected, faulty_vehicle, until
 
 #: Nothing answers the announcement of a list: an upload that takes its time.
 SLOW = SimSettings(faults=("no_response_to_count",))
-#: The first announcement is lost: an upload that takes its time, and then is accepted.
-LATE = SimSettings(faults=("no_response_to_first_count",))
 
 
 async def uploading(client: httpx.AsyncClient, vehicle: str, plan_id: str) -> asyncio.Task[httpx.Response]:
@@ -34,7 +33,7 @@ async def uploading(client: httpx.AsyncClient, vehicle: str, plan_id: str) -> as
 
 async def test_orders_to_fly_wait_for_the_end_of_an_upload(client: httpx.AsyncClient, plan_id: str) -> None:
     """In mid-upload nobody arms or starts, uploads or clears; pause and return are taken at any time."""
-    async with faulty_vehicle(client, LATE) as vehicle:
+    async with deaf_vehicle(client) as (vehicle, link):
         upload = await uploading(client, vehicle, plan_id)
         for command in ("arm", "start", "resume", "goto_item"):
             answer = await client.post(vehicle + "/commands", json={"command": command, "seq": 1})
@@ -45,6 +44,7 @@ async def test_orders_to_fly_wait_for_the_end_of_an_upload(client: httpx.AsyncCl
         for command in ("pause", "rtl"):
             answer = await client.post(vehicle + "/commands", json={"command": command})
             assert (answer.status_code, answer.json()["outcome"]) == (200, "done"), answer.text
+        link.hears = True
         assert (await upload).json()["verified"]
         assert (await client.post(vehicle + "/commands", json={"command": "arm"})).status_code == 200
 
@@ -68,9 +68,10 @@ async def test_a_plan_deleted_in_mid_upload_is_uploaded_all_the_same(
     client: httpx.AsyncClient, plan_id: str
 ) -> None:
     """The vehicle got what was meant, so the answer says so, and the check behind it is made."""
-    async with faulty_vehicle(client, LATE) as vehicle:
+    async with deaf_vehicle(client) as (vehicle, link):
         upload = await uploading(client, vehicle, plan_id)
         assert (await client.delete(f"/api/v1/plans/{plan_id}")).status_code == 204
+        link.hears = True
         answer = await upload
         assert (answer.status_code, answer.json()["verified"]) == (200, True), answer.text
         assert answer.json()["preflight"] is not None
