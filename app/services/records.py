@@ -24,6 +24,7 @@ FlightState = Literal["flying", "ended", "interrupted"]
 class TrackSample:
     """One recorded place of a flight; ``time_s`` is the vehicle's time since boot.
 
+    ``sensor_on`` is None where nothing told of it.
     ``mount_…``: of the gimbal that holds the sensor, yaw from true north; None where it told nothing.
     ``from_log``: the vehicle's own log told of it afterwards, where the link had not.
     """
@@ -37,7 +38,7 @@ class TrackSample:
     roll_deg: float | None
     ground_speed_m_s: float | None
     mission_seq: int | None
-    sensor_on: bool
+    sensor_on: bool | None
     pitch_deg: float | None = None
     from_log: bool = False
     mount_roll_deg: float | None = None

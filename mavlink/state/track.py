@@ -27,7 +27,8 @@ _MOST_POINTS: Final = 200_000
 _WRAP_S: Final = 2**32 / 1e6
 # An attitude is that of a place when it is no older: it comes several times a second.
 _ATTITUDE_S: Final = 2.0
-# A relay or servo last said to be on so long ago counts as off: unasked it is told every two seconds.
+# What a relay, a servo or a sensor that repeats itself said so long ago tells no more: unasked, a relay is
+# told every two seconds.
 _OUTPUT_S: Final = 5.0
 # A camera's clock that says less or more than this beside the vehicle's is another clock.
 _SAME_CLOCK_S: Final = 5.0
@@ -148,6 +149,8 @@ class TrackRecorder:
         self._points: list[TrackPoint] = []
         self._events: list[SensorEvent] = []
         self._sensor_on: bool | None = None
+        self._sensor_s: float | None = None
+        self._sensor_repeats = False
         self._output_on: bool | None = None
         self._output_s: float | None = None
         self._relays_on: int | None = None
@@ -190,6 +193,8 @@ class TrackRecorder:
                 self._began_s = self._went_on_s if self._began_s is None else self._began_s
         elif is_sensor_switch(message):
             on = bool(message.integer("value"))
+            self._sensor_repeats |= on == self._sensor_on
+            self._sensor_s = state.time_s
             if on != self._sensor_on:
                 self._sensor_on = on
                 self._event(state, "on" if on else "off", "payload", time_s=_boot_s(message))
@@ -251,7 +256,7 @@ class TrackRecorder:
                 state.roll_deg if level else None,
                 state.pitch_deg if level else None,
                 state.ground_speed_m_s,
-                self._shown(time_s) if state.sensor_on is None else state.sensor_on,
+                self._told(state, time_s),
                 state.mission_current,
                 self._mount.at(time_s) if self.in_gimbal else None,
             )
@@ -260,15 +265,27 @@ class TrackRecorder:
             del self._points[1::2]
             self._keep_every *= 2
 
+    def _told(self, state: VehicleState, time_s: float) -> bool | None:
+        """Whether the sensor is on, by its own report, else by its output; None where nothing tells.
+
+        One that repeats itself and has fallen silent may be dead, whatever was ordered; one that tells
+        changes alone still counts.
+        """
+        if state.sensor_on is None:
+            return self._shown(time_s)
+        if not self._sensor_repeats or self._sensor_s is None or abs(time_s - self._sensor_s) <= _OUTPUT_S:
+            return state.sensor_on
+        return False if self._shown(time_s) is False else None
+
     def _shown(self, time_s: float) -> bool | None:
-        """What the output says now: that it is on only for a while, unless it goes on saying so.
+        """What the output says now: for a while, unless it goes on saying so.
 
         Cameras tell of their captures when these begin and end.
         """
-        if not self._output_on or not isinstance(self.output, (RelayOutput, ServoOutput)):
+        if self._output_on is None or not isinstance(self.output, (RelayOutput, ServoOutput)):
             return self._output_on
         self._output_s = time_s if self._output_s is None else self._output_s
-        return abs(time_s - self._output_s) <= _OUTPUT_S
+        return self._output_on if abs(time_s - self._output_s) <= _OUTPUT_S else None
 
     def _relays(self, message: Message, state: VehicleState) -> None:
         present, on = message.integer("present"), message.integer("on")

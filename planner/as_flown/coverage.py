@@ -37,6 +37,8 @@ __all__ = ["Asked", "FlownCoverage", "FlownPass", "NotCounted", "Record", "Track
 
 Rows = NDArray[np.int64]
 
+#: What leaves open where a sensor that was on looked.
+UNTOLD: frozenset[Reason] = frozenset({"height-unknown", "attitude-unknown"})
 #: Overlays are done on a grid: without one, outlines equal but for rounding can be taken for disjoint.
 GRID_M = 1e-6
 
@@ -134,6 +136,7 @@ class _Judge:
         self._lines: dict[str | None, list[tuple[Line, tuple[Gap, ...]]]] = {}
         self._gaps: list[tuple[Gap, ...]] = []
         self._not_counted: list[NotCounted] = []
+        self._untold: list[UnknownPart] = []
 
     def _beside_m(self, collect: Collect) -> float:
         """A swath's width aside, nothing of what the pass was to see is seen."""
@@ -181,8 +184,11 @@ class _Judge:
             counted[rows[found.counted]] = True
             reasons[run] = found.reason
         at_work = line.sensor_on | line.nearest([photo.time_s for photo in record.photos])
+        unclear = ~line.sensor_told | (line.sensor_on & np.isin(np.array(why, dtype=object), list(UNTOLD)))
         for row, planned in enumerate(passes):
             on = line.sensor_on
+            if not by_photos[row]:
+                self._untold += unknown.untold_parts(planned, line, unclear & (in_pass == row))
             if by_photos[row]:
                 along_m = planned.along_m(line.places)
                 on = (along_m >= 0.0) & (along_m <= planned.length_m)
@@ -273,7 +279,7 @@ class _Judge:
     def verdict(self) -> FlownCoverage:
         """What all of them saw."""
         seen_by = {name: _areal(union_all(parts, grid_size=GRID_M)) for name, parts in self._ground.items()}
-        parts = (*self._unknown_parts(), *self.cameras.unknown_parts())
+        parts = (*self._unknown_parts(), *self._untold, *self.cameras.unknown_parts())
         photos = self._photos()
         nobody_knows = self._unknown_ground(parts)
         fraction, seen, unseen, dark, dark_fraction = {}, {}, {}, {}, {}
@@ -319,7 +325,7 @@ class _Judge:
                 passes = [planned for planned in self._passes if planned.collect.vehicle == name]
                 lines = [line for line, _ in told]
                 yield from unknown.unknown_parts(
-                    passes, lines, gaps, self._asked.frame, self._speed_m_s(name)
+                    passes, lines, gaps, self._asked.frame, self._speed_m_s(name), self.cameras.by_photos
                 )
 
     def _unknown_ground(self, parts: Sequence[UnknownPart]) -> dict[str, BaseGeometry]:

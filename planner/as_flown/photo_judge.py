@@ -1,8 +1,8 @@
 """What the cameras of flights saw: photo by photo, each from its own place, height and attitude.
 
 An order is no photo: what counts was reported as taken. Where an autopilot reports none at all, photos where
-the plan has them on the line as flown are assumed, and told apart from what is proven. A video sees as long
-as it is on.
+the plan has them on the line as flown are assumed, and told apart from what is proven: nobody knows of them.
+A video sees as long as it is on; where nothing told of it, it is assumed likewise.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ from planner.as_flown.photo_pass import (
     untold,
 )
 from planner.as_flown.track import Line, Record
-from planner.as_flown.unknown import UnknownPart
+from planner.as_flown.unknown import UnknownPart, untold_parts
 from planner.frames import LocalFrame
 from planner.plan import Plan, PlanCamera
 from planner.sensors.camera import CameraSensor
@@ -144,6 +144,7 @@ class PhotoJudge:
         self._heaps: dict[str, _Heap] = {name: _Heap() for name in self._cameras}
         self._taken: dict[tuple[str, int], list[Taken]] = {key: [] for key in self._passes}
         self._why: Counter[str] = Counter()
+        self._untold: list[UnknownPart] = []
         self._count = self._counted = self._assumed = 0
 
     @property
@@ -154,6 +155,11 @@ class PhotoJudge:
     def sees(self, sensor: str) -> bool:
         """Whether a sensor is a camera."""
         return sensor in self._cameras
+
+    @property
+    def by_photos(self) -> frozenset[str]:
+        """The sensors that take photos; what tells of a video is its switch."""
+        return frozenset(name for name, camera in self._cameras.items() if camera.trigger != "video")
 
     def take(
         self, record: Record, line: Line, in_pass: NDArray[np.int64], passes: Sequence[PlannedPass]
@@ -181,16 +187,15 @@ class PhotoJudge:
                 among = np.isin(frames.row, list(here)) | (alone & ~np.isin(frames.row, list(mine)))
                 self._add(camera, frames.chosen(among), here)
                 continue
-            on = np.ones(len(line.places), dtype=bool)
-            proven = camera.trigger == "video" and bool(line.sensor_on.any())
-            made = [
-                frames_on(record, line, planned, row, run, at_m, self._frame)
-                for row, planned in here.items()
-                for run in runs((in_pass == row) & (line.sensor_on if proven else on), line)
-                for at_m in [self._wanted_m(camera, planned)]
-            ]
-            for each in made:
-                self._add(camera, each, here, proven=proven)
+            video = camera.trigger == "video"
+            untold = ~line.sensor_told if video else np.ones(len(line.places), dtype=bool)
+            for row, planned in here.items():
+                at_m = self._wanted_m(camera, planned)
+                for proven, held in ((True, video & line.sensor_on), (False, untold)):
+                    for run in runs((in_pass == row) & held, line):
+                        made = frames_on(record, line, planned, row, run, at_m, self._frame)
+                        self._add(camera, made, here, proven=proven)
+                self._untold += untold_parts(planned, line, untold & (in_pass == row))
 
     def _wanted_m(self, camera: PlanCamera, planned: PlannedPass) -> Floats:
         """Where along a pass its photos are planned, or frames of its video looked at."""
@@ -260,13 +265,21 @@ class PhotoJudge:
         for row, planned in passes.items():
             own = (frames.row == row) | self._at_an_end(frames, planned)
             along_m = planned.along_m(frames.places[own])
+            half_m = float(np.diff(self._wanted_m(camera, planned)[:2]).sum()) / 2.0
+            for at_m in along_m[~(known & high)[own]].tolist():
+                from_m, until_m = np.clip([at_m - half_m, at_m + half_m], 0.0, planned.length_m).tolist()
+                self._untold += [UnknownPart(*planned.key, from_m, until_m)] if until_m > from_m else []
             order = np.argsort(along_m, kind="stable")
             self._taken[planned.key].append(
                 Taken(along_m[order], frames.index[own][order], corners[own][order])
             )
 
     def unknown_parts(self) -> Iterator[UnknownPart]:
-        """Parts of passes with photos that the camera counted and nobody heard of."""
+        """Parts of passes with photos that nobody heard of, or that do not tell where they looked.
+
+        The camera counted them, or nothing told of any.
+        """
+        yield from self._untold
         for key in self._passes:
             for taken in self._taken[key]:
                 for from_m, to_m, _ in untold(taken):
@@ -322,7 +335,7 @@ class PhotoJudge:
             if self.sees(self._suite.of(region).name)
         }
         told = [
-            photo_pass(planned, self._photos[key], _joined(self._taken[key]), self._count > 0)
+            photo_pass(planned, self._photos[key], Taken.joined(self._taken[key]), self._count > 0)
             for key, planned in self._passes.items()
             if key in self._photos and self._cameras[planned.collect.sensor].trigger != "video"
         ]
@@ -369,7 +382,7 @@ class PhotoJudge:
         gsd_m = grid.finest_m[grid.counts > 0]
         rows = dict(enumerate(self._passes.values()))
         mine = {row: each for row, each in rows.items() if region.name in each.collect.regions}
-        taken = {row: _joined(self._taken[planned.key]) for row, planned in mine.items()}
+        taken = {row: Taken.joined(self._taken[planned.key]) for row, planned in mine.items()}
         forward = [part for each in taken.values() for part in forward_overlaps(each, region.area)]
         video = camera.trigger == "video"
         return RegionPhotos(
@@ -385,12 +398,3 @@ class PhotoJudge:
 
 def _share(part: BaseGeometry, whole: BaseGeometry) -> float:
     return min(float(intersection(part, whole).area / whole.area), 1.0)
-
-
-def _joined(parts: Sequence[Taken]) -> Taken:
-    """Photos of several flights of one pass, in order along it."""
-    along_m = np.concatenate([np.zeros(0), *(part.along_m for part in parts)])
-    index = np.concatenate([np.zeros(0), *(part.index for part in parts)])
-    corners = np.concatenate([np.zeros((0, 4, 2)), *(part.corners for part in parts)])
-    order = np.argsort(along_m, kind="stable")
-    return Taken(along_m[order], index[order], corners[order])

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 import shapely
@@ -69,6 +70,15 @@ class Taken:
     along_m: Floats
     index: Floats
     corners: Floats
+
+    @classmethod
+    def joined(cls, parts: Sequence[Taken]) -> Self:
+        """Photos of several flights of one pass, in order along it."""
+        along_m = np.concatenate([np.zeros(0), *(part.along_m for part in parts)])
+        index = np.concatenate([np.zeros(0), *(part.index for part in parts)])
+        corners = np.concatenate([np.zeros((0, 4, 2)), *(part.corners for part in parts)])
+        order = np.argsort(along_m, kind="stable")
+        return cls(along_m[order], index[order], corners[order])
 
 
 def photo_pass(planned: PlannedPass, photos: Photos, taken: Taken, reported: bool) -> PhotoPass:

@@ -28,7 +28,7 @@ NO_MOUNT = (math.nan, math.nan, math.nan)
 
 @dataclass(frozen=True, slots=True)
 class TrackSample:
-    """Where the aircraft was, and whether the sensor was on.
+    """Where the aircraft was, and whether the sensor was on; None where nothing told of it.
 
     ``height_m`` is over the ground, on terrain over home; ``roll_deg`` is positive with the right wing down,
     ``pitch_deg`` with the nose up; ``heading_deg`` is where the nose points, clockwise from true north, None
@@ -41,7 +41,7 @@ class TrackSample:
     lat_deg: float
     height_m: float
     roll_deg: float
-    sensor_on: bool
+    sensor_on: bool | None
     heading_deg: float | None = None
     pitch_deg: float | None = None
     mount_deg: tuple[float, float, float] | None = None
@@ -93,6 +93,7 @@ class Record:
 class Line:
     """A record in a local frame, one row a sample; rows of one ``piece`` follow each other without a gap.
 
+    ``sensor_told`` is where something told whether the sensor was on, which it is nowhere else.
     ``pitch_rad`` counts from the attitude that the aircraft cruises with; ``mount_rad`` (N, 3) are a gimbal's
     roll, pitch and yaw, NaN where untold.
     """
@@ -104,6 +105,7 @@ class Line:
     pitch_rad: Floats
     heading_rad: Floats
     sensor_on: NDArray[np.bool_]
+    sensor_told: NDArray[np.bool_]
     piece: NDArray[np.int64]
     mount_rad: Floats
 
@@ -112,7 +114,7 @@ class Line:
         """The line of a record flown at a speed over the ground at most; ``levelled``: without pitch."""
         samples = record.samples
         pitch_rad = np.radians([0.0 if s.pitch_deg is None else s.pitch_deg for s in samples])
-        on = np.array([s.sensor_on for s in samples], dtype=bool)
+        on = np.array([bool(s.sensor_on) for s in samples], dtype=bool)
         trim_rad = float(np.median(pitch_rad[on])) if on.any() else 0.0
         places = frame.to_local(np.array([(s.lon_deg, s.lat_deg) for s in samples]).reshape(-1, 2))
         time_s = np.array([s.time_s for s in samples])
@@ -125,6 +127,7 @@ class Line:
             0.0 * pitch_rad if levelled else pitch_rad - min(max(trim_rad, -MAX_TRIM_RAD), MAX_TRIM_RAD),
             np.radians([np.nan if s.heading_deg is None else s.heading_deg for s in samples]),
             on,
+            np.array([s.sensor_on is not None for s in samples], dtype=bool),
             np.concatenate([[0], np.cumsum(broken)]) if len(samples) else np.zeros(0, dtype=np.int64),
             np.radians(np.array([s.mount_deg or NO_MOUNT for s in samples]).reshape(-1, 3)),
         )

@@ -1,9 +1,11 @@
-"""Ground that may have been seen while nothing was recorded: neither seen nor missed."""
+"""Ground that may have been seen while nothing was recorded, or nothing told of the sensor: neither seen
+nor missed.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,7 +14,7 @@ from shapely import union_all
 from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
-from planner.as_flown.passes import PlannedPass, courses
+from planner.as_flown.passes import PlannedPass, courses, runs
 from planner.as_flown.track import Floats, Gap, Line
 from planner.frames import LocalFrame
 
@@ -26,7 +28,7 @@ ALONG_COSINE = math.cos(math.radians(45.0))
 
 @dataclass(frozen=True, slots=True)
 class UnknownPart:
-    """A part of a collect, metres along it, that may have been flown in a gap."""
+    """A part of a collect, metres along it, that may have been flown in a gap, or with the sensor on."""
 
     vehicle: str
     seq: int
@@ -40,6 +42,7 @@ def unknown_parts(
     gaps: Sequence[Gap],
     frame: LocalFrame,
     speed_m_s: float,
+    by_photos: Container[str],
 ) -> tuple[UnknownPart, ...]:
     """Parts of the passes of one aircraft that no record tells of and that gaps left time to fly.
 
@@ -49,6 +52,8 @@ def unknown_parts(
         Everything recorded of the aircraft.
     speed_m_s
         Over the ground, the most it flies.
+    by_photos
+        Sensors whose photos tell of them, whatever is told of a switch.
     """
     found = []
     told = [(line, courses(line)) for line in lines if len(line.places) > 1]
@@ -62,12 +67,33 @@ def unknown_parts(
         if not open_.any():
             continue
         for line, course in told:
-            open_ &= ~_recorded(planned, line, course, at_m)
+            told_by_photos = planned.collect.sensor in by_photos
+            open_ &= ~_recorded(planned, line, course, at_m, line.sensor_told | told_by_photos)
         turns = np.flatnonzero(np.diff(np.concatenate([[0], open_.astype(np.int8), [0]])))
         half_m = (at_m[1] - at_m[0]) / 2.0
         for a, b in zip(turns[::2].tolist(), turns[1::2].tolist(), strict=True):
             start_m, end_m = max(at_m[a] - half_m, 0.0), min(at_m[b - 1] + half_m, planned.length_m)
             found.append(UnknownPart(*planned.key, float(start_m), float(end_m)))
+    return tuple(found)
+
+
+def untold_parts(planned: PlannedPass, line: Line, untold: NDArray[np.bool_]) -> tuple[UnknownPart, ...]:
+    """Parts of a pass flown while nothing told whether its sensor worked, or where it looked.
+
+    Parameters
+    ----------
+    untold
+        The places of the line at which it was flown so, (N,).
+    """
+    found = []
+    for run in runs(untold, line):
+        # From the last place that was told of to the next one.
+        same = [k for k in range(max(run.start - 1, 0), run.stop + 1) if k < len(untold)]
+        rows = [k for k in same if line.piece[k] == line.piece[run.start]]
+        along_m = np.clip(planned.along_m(line.places[rows]), 0.0, planned.length_m)
+        start_m, end_m = float(along_m.min()), float(along_m.max())
+        if end_m > start_m:
+            found.append(UnknownPart(*planned.key, start_m, end_m))
     return tuple(found)
 
 
@@ -84,10 +110,13 @@ def _within_reach(places: Floats, gap: Gap, frame: LocalFrame, speed_m_s: float)
     return found
 
 
-def _recorded(planned: PlannedPass, line: Line, course: Floats, at_m: Floats) -> NDArray[np.bool_]:
-    """Which places of a pass a record tells of: flown beside, in its direction, the sensor on or off."""
+def _recorded(
+    planned: PlannedPass, line: Line, course: Floats, at_m: Floats, told: NDArray[np.bool_]
+) -> NDArray[np.bool_]:
+    """Which places of a pass a record tells of: flown beside, in its direction, the sensor told on or off."""
     found = np.zeros(len(at_m), dtype=bool)
     near = (planned.across_m(line.places) <= planned.beside_m) & (course @ planned.ahead >= ALONG_COSINE)
+    near &= told
     steps = np.flatnonzero(line.pieces() & near[1:] & near[:-1])
     along_m = planned.along_m(line.places)
     for k in steps.tolist():

@@ -7,12 +7,15 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Any
 
+from shapely import box, union_all
+
 from app.services.flights.as_flown import MISSED_PART, Trigger, TriggerState
 from app.services.records import FlightEvent, TrackSample
 from planner.as_flown.coverage import FlownCoverage
 from planner.as_flown.photo import Photo
 from planner.as_flown.photo_judge import RegionPhotos
 from planner.as_flown.photo_pass import PhotoPass
+from planner.as_flown.unknown import UnknownPart
 from planner.plan import Plan
 from planner.scenario import Scenario
 
@@ -99,12 +102,12 @@ def photo_triggers(plan: Plan, result: FlownCoverage, vehicles: set[str | None])
         photos = next(p for p in plan.photos if (p.vehicle, p.seq) == (told.vehicle, told.seq))
         length_m = photos.interval_m * max(told.planned - 1, 0)
         late_m, early_m = _ends_m(told, length_m)
-        reported = result.photos.taken > 0
+        parts = [p for p in result.unknown_parts if (p.vehicle, p.seq) == (told.vehicle, told.seq)]
         found.append(
             Trigger(
                 told.seq,
                 collects[told.vehicle, told.seq].roi,
-                _state(told, length_m, reported),
+                _state(told, length_m, _unclear(told, parts, photos.interval_m, result.photos.taken > 0)),
                 length_m,
                 length_m * min(told.taken / max(told.planned, 1), 1.0),
                 late_m,
@@ -112,7 +115,7 @@ def photo_triggers(plan: Plan, result: FlownCoverage, vehicles: set[str | None])
                 told.taken,
                 told.planned,
                 tuple((from_m, to_m) for from_m, to_m, _ in told.lost),
-                0.0 if reported else length_m,
+                min(sum(part.end_m - part.start_m for part in parts), length_m),
             )
         )
     return tuple(found)
@@ -126,12 +129,20 @@ def _ends_m(told: PhotoPass, length_m: float) -> tuple[float | None, float | Non
     return max(late, default=0.0), max(early, default=0.0)
 
 
-def _state(told: PhotoPass, length_m: float, reported: bool) -> TriggerState:
+def _unclear(told: PhotoPass, parts: Sequence[UnknownPart], interval_m: float, reported: bool) -> bool | None:
+    """Whether all photos that are missing may have been taken where nobody heard of them; None for none."""
     if not reported:
-        return "unknown"
+        return bool(parts)
     if not told.lost:
+        return None
+    dark = union_all([box(p.start_m - interval_m, 0.0, p.end_m + interval_m, 1.0) for p in parts])
+    return all(dark.buffer(1e-6).covers(box(from_m, 0.0, to_m, 1.0)) for from_m, to_m, _ in told.lost)
+
+
+def _state(told: PhotoPass, length_m: float, unclear: bool | None) -> TriggerState:
+    if unclear is None:
         return "ok"
-    if told.untold >= told.missing:
+    if unclear or (told.lost and told.untold >= told.missing):
         return "unknown"
     if told.taken < MISSED_PART * told.planned:
         return "missed"

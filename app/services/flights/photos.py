@@ -70,9 +70,12 @@ def switched_by_photos(
 ) -> tuple[TrackSample, ...]:
     """The track with the sensor on where photos were taken one after the other.
 
-    Each run of photos begins and ends with a sample of its own, where the camera says it was.
+    Each run of photos begins and ends with a sample of its own, where the camera says it was. Without any
+    photo nobody knows of any.
     """
     made = list(samples)
+    if not photos:
+        return tuple(replace(sample, sensor_on=None) for sample in made)
     times_s = [sample.time_s for sample in made]
     on = [False] * len(made)
     added: list[TrackSample] = []

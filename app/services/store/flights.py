@@ -83,7 +83,14 @@ def _merged(rows: Sequence[TrackSample]) -> tuple[TrackSample, ...]:
 
 
 def _rows(flight_id: str, values: Sequence[TrackSample] | Sequence[FlightEvent]) -> list[dict[str, Any]]:
-    return [{"flight_id": flight_id} | asdict(value) for value in values]
+    return [{"flight_id": flight_id} | asdict(value) | _sensor(value) for value in values]
+
+
+def _sensor(value: TrackSample | FlightEvent) -> dict[str, bool]:
+    """A place's sensor as two columns: the first has a value where nothing told of it, too."""
+    if isinstance(value, FlightEvent):
+        return {}
+    return {"sensor_on": bool(value.sensor_on), "sensor_untold": value.sensor_on is None}
 
 
 class FlightStore:
@@ -241,7 +248,7 @@ class FlightStore:
                         roll_deg=row.roll_deg,
                         ground_speed_m_s=row.ground_speed_m_s,
                         mission_seq=row.mission_seq,
-                        sensor_on=row.sensor_on,
+                        sensor_on=None if row.sensor_untold else row.sensor_on,
                         pitch_deg=row.pitch_deg,
                         from_log=bool(row.from_log),
                         mount_roll_deg=row.mount_roll_deg,

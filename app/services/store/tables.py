@@ -177,6 +177,7 @@ class TrackPointRow(Base):
     ground_speed_m_s: Mapped[float | None] = mapped_column(Float)
     mission_seq: Mapped[int | None] = mapped_column(Integer)
     sensor_on: Mapped[bool] = mapped_column(Boolean)
+    sensor_untold: Mapped[bool | None] = mapped_column(Boolean)
     pitch_deg: Mapped[float | None] = mapped_column(Float)
     from_log: Mapped[bool | None] = mapped_column(Boolean)
     mount_roll_deg: Mapped[float | None] = mapped_column(Float)

@@ -208,7 +208,8 @@ class FlightRecorder:
             self._stop_listening()
             raise
         self._latest_id = self.flight_id
-        self._thinner = Thinner(self._interval_s)
+        untold = plan is None or (plan.payload is None and plan.output is None)
+        self._thinner = Thinner(self._interval_s, by_relays=untold)
         self._landed_looks = self._events_saved = 0
         self._energy_due_s, self._lost = 0.0, False
         log.info("flight begun", vehicle=self._vehicle_name, flight_id=self.flight_id)
@@ -307,10 +308,17 @@ def flight_event(event: SensorEvent) -> FlightEvent:
 
 
 class Thinner:
-    """New places of a growing track, no closer together than an interval unless the sensor changed."""
+    """New places of a growing track, no closer together than an interval unless the sensor changed.
 
-    def __init__(self, interval_s: float) -> None:
+    Parameters
+    ----------
+    by_relays
+        Whether any relay tells of a sensor that nothing else tells of: nobody said what switches it.
+    """
+
+    def __init__(self, interval_s: float, *, by_relays: bool = True) -> None:
         self._interval_s = interval_s
+        self._by_relays = by_relays
         self._taken = 0
         self._kept: TrackSample | None = None
 
@@ -320,7 +328,7 @@ class Thinner:
         switches = [
             (event.time_s, event.kind == "on")
             for event in track.events
-            if event.source == "relay" and event.kind != "photo"
+            if self._by_relays and event.source == "relay" and event.kind != "photo"
         ]
         # A recorder that has run for many hours drops every second place and gets shorter.
         new = track.points[self._taken :]
@@ -340,7 +348,7 @@ class Thinner:
 
 def _sample(point: TrackPoint, switches: list[tuple[float, bool]]) -> TrackSample:
     sensor_on = point.sensor_on
-    if sensor_on is None:
+    if sensor_on is None and switches:
         # Autopilots that do not report the payload report its relay.
         sensor_on = next((on for time_s, on in reversed(switches) if time_s <= point.time_s), False)
     return TrackSample(

@@ -184,6 +184,18 @@ def test_a_sensor_that_reports_itself_is_believed_before_its_output() -> None:
     assert [point.sensor_on for point in track.points] == [True, False]
 
 
+@pytest.mark.parametrize("on", [True, False])
+def test_a_sensor_that_repeats_itself_and_falls_silent_tells_nothing(on: bool) -> None:
+    """Its output closed it may be dead; open it is off. One that tells changes alone still counts."""
+    output = output_of(parse_payload("relay:0"), "ardupilot")
+    told = received("NAMED_VALUE_INT", name="SAR_ON", value=int(on))
+    switched = received("RELAY_STATUS", on=int(on), present=1)
+    track = recorded(output, at(500), told, at(1000), told, at(5500), switched, at(9000))
+    assert [point.sensor_on for point in track.points] == [None, on, on, None if on else False]
+    track = recorded(output, at(500), told, at(1000), at(60_000))
+    assert [point.sensor_on for point in track.points] == [None, on, on]
+
+
 PAYLOADS: list[Payload] = [parse_payload(t) for t in ("relay:0", "servo:9", "actuator:1", "image:interval=1")]
 
 
@@ -297,12 +309,12 @@ def test_videos_show_on_px4() -> None:
         (ServoOutput(0, 9, 1900.0, 1100.0), pulses(1.0, servo9_raw=1900), pulses(1.0, servo9_raw=1100)),
     ],
 )
-def test_an_output_that_is_silent_is_not_on_for_ever(output: SensorOutput, on: Message, off: Message) -> None:
-    """Places that come long after it was last told count for nothing; told again, it is on again."""
+def test_an_output_that_is_silent_tells_nothing(output: SensorOutput, on: Message, off: Message) -> None:
+    """Of places that come long after it was last told nobody knows; told again, it is on again."""
 
     def shown(*messages: Message) -> list[bool | None]:
         return [point.sensor_on for point in recorded(output, *messages).points]
 
-    assert shown(at(1000), on, at(2000), at(5500), at(6500), at(60_000)) == [None, True, True, False, False]
-    assert shown(on, at(1000), at(5500), at(6500), on, at(7000)) == [True, True, False, True]
-    assert shown(at(1000), off, at(2000), at(60_000)) == [None, False, False]
+    assert shown(at(1000), on, at(2000), at(5500), at(6500), at(60_000)) == [None, True, True, None, None]
+    assert shown(on, at(1000), at(5500), at(6500), on, at(7000)) == [True, True, None, True]
+    assert shown(at(1000), off, at(2000), at(60_000)) == [None, False, None]

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import replace
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 import pytest
-from shapely.geometry import Polygon
+from shapely.geometry import Point, Polygon, box
 
 from planner.as_flown.coverage import FlownCoverage
 from planner.as_flown.track import TrackSample
@@ -68,6 +70,36 @@ def test_sensor_off_sees_nothing() -> None:
     found = flown(lambda s: replace(s, sensor_on=False))
     assert set(found.fraction.values()) == {0.0}
     assert found.passes == ()
+    assert set(found.unknown_fraction.values()) == {0.0}
+
+
+@pytest.mark.parametrize("change", [{"sensor_on": None}, {"roll_deg": math.nan}, {"height_m": math.nan}])
+def test_what_nobody_told_of_is_neither_seen_nor_missed(change: dict[str, Any]) -> None:
+    """Whether the sensor was on, or where it looked: all of the ground is unknown, and so are the passes."""
+    found = flown(lambda s: replace(s, **change))
+    assert set(found.fraction.values()) == {0.0}
+    assert all(fraction > 0.999 for fraction in found.unknown_fraction.values())
+    assert {part.seq for part in found.unknown_parts} == {1, 2, 3, 4, 5, 6, 7, 8}
+
+
+def test_a_sensor_told_of_again_leaves_unknown_what_was_flown_meanwhile() -> None:
+    """Of pass 3 the middle: the rest of its region is seen, nothing of any is missed."""
+    scenario, plan = planned()
+    third = plan.collects[2]
+    begin, end = (scenario.frame.to_local([p[:2]])[0] for p in third.line)
+    middle = np.linspace(begin, end, 11)[[4, 6]]
+    heard = box(*(middle.min(axis=0) - 1.0), *(middle.max(axis=0) + 1.0))
+
+    def told(sample: TrackSample) -> TrackSample:
+        at = Point(scenario.frame.to_local([(sample.lon_deg, sample.lat_deg)])[0])
+        return replace(sample, sensor_on=None if heard.covers(at) else sample.sensor_on)
+
+    found = flown(told)
+    (part,) = [part for part in found.unknown_parts if part.seq == third.seq]
+    length_m = float(np.hypot(*(end - begin)))
+    assert (part.start_m, part.end_m) == pytest.approx((0.4 * length_m, 0.6 * length_m), abs=10.0)
+    assert 0.0 < found.unknown_fraction[third.roi] < 1.0
+    assert all(unseen.area < 1.0 for unseen in found.unseen.values())
 
 
 def test_flying_beside_the_line_loses_ground_and_is_measured() -> None:

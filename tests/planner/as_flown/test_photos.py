@@ -58,7 +58,7 @@ def record(
     roll_deg: float = 0.0,
     photos: bool = True,
     untold: bool = False,
-    sensor_on: bool = True,
+    sensor_on: bool | None = True,
 ) -> Record:
     """Every lane flown on its line; photos as planned but for those lost, by lane and number there."""
     scenario, plan = planned(trigger)
@@ -234,7 +234,7 @@ def test_photos_that_nobody_heard_of_are_unknown() -> None:
 
 
 def test_photos_that_no_autopilot_reports_are_assumed_and_prove_nothing() -> None:
-    """With the whole flight flown: nothing is seen, all of it assumed."""
+    """With the whole flight flown: nothing is seen, all of it assumed, and so unknown."""
     found = judged(record(photos=False))
     assert found.photos is not None
     assert found.fraction["A"] == 0.0
@@ -242,6 +242,7 @@ def test_photos_that_no_autopilot_reports_are_assumed_and_prove_nothing() -> Non
     assert found.photos.assumed > 0
     area_m2 = planned()[0].regions[0].area.area
     assert found.photos.regions["A"].assumed.area > 0.99 * area_m2
+    assert found.unknown_fraction["A"] > 0.999
 
 
 @pytest.mark.parametrize(
@@ -260,6 +261,8 @@ def test_what_shows_not_where_it_looked_does_not_count(changed: dict[str, Any], 
     assert found.photos is not None
     assert found.photos.not_counted == {reason: found.photos.taken}
     assert found.fraction["A"] == 0.0
+    # Where a photo looked that was turned away is known.
+    assert (found.unknown_fraction["A"] > 0.999) is (reason != "turned")
 
 
 def test_a_mount_s_own_attitude_goes_before_the_airframe_s() -> None:
@@ -293,11 +296,14 @@ def test_a_photo_without_attitude_has_that_of_the_track() -> None:
     assert (told.regions["A"].grid.counts == untold.regions["A"].grid.counts).mean() > 0.999
 
 
-@pytest.mark.parametrize("sensor_on", [True, False])
-def test_a_video_sees_while_it_is_on(sensor_on: bool) -> None:
-    """All of the region where it was on along all lanes; where nobody told that it was, it is assumed."""
+@pytest.mark.parametrize("sensor_on", [True, False, None])
+def test_a_video_sees_while_it_is_on(sensor_on: bool | None) -> None:
+    """All of the region where it was on along all lanes; where nobody told whether it was, it is unknown."""
     found = judged(record("video", sensor_on=sensor_on), "video")
     assert found.photos is not None
     region = found.photos.regions["A"]
-    assert (found.fraction["A"] > 0.999) is sensor_on
-    assert (region.assumed.area > 0.99 * planned("video")[0].regions[0].area.area) is not sensor_on
+    area_m2 = planned("video")[0].regions[0].area.area
+    assert found.fraction["A"] == pytest.approx(1.0 if sensor_on else 0.0, abs=1e-3)
+    assert region.assumed.area == pytest.approx(area_m2 if sensor_on is None else 0.0, rel=1e-2)
+    assert found.unknown_fraction["A"] == pytest.approx(1.0 if sensor_on is None else 0.0, abs=1e-3)
+    assert found.unseen["A"].area == pytest.approx(0.0 if sensor_on is not False else area_m2, abs=10.0)

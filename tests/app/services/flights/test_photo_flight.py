@@ -143,10 +143,11 @@ async def test_lost_photos_are_told_and_flown_again_for(flown: Flown) -> None:
 
 
 async def test_photos_nobody_reported_are_assumed(flown: Flown) -> None:
-    """The region is unseen, and told apart as assumed; nobody knows how the camera was released."""
+    """The region is unknown, and told apart as assumed; nobody knows how the camera was released."""
     at = await flown.flight(photos=False)
     told = (await flown.client.get(f"{at}/coverage.geojson")).json()
     assert told["coverage"]["A"] == 0.0
+    assert told["unknown_coverage"]["A"] > 0.99
     assert told["photos"]["regions"][0]["assumed_fraction"] > 0.99
     assert {t["state"] for t in told["triggers"]} == {"unknown"}
     assert any(f["properties"]["role"] == "assumed" for f in told["features"])

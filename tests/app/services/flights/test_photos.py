@@ -99,13 +99,13 @@ def test_on_is_from_photo_to_photo_until_one_is_missing(
     assert np.allclose(found, wanted)
 
 
-def test_without_photos_nothing_was_seen() -> None:
+def test_without_photos_nobody_knows_of_any() -> None:
     """A shutter that was ordered is no photo; photos without a place are none either."""
     ordered = [replace(sample(t), sensor_on=True) for t in (1.0, 2.0)]
     placeless = photos_of([FlightEvent(1.0, "photo", "camera", 1), FlightEvent(1.0, "on", "camera")])
     assert placeless == ()
     made = switched_by_photos(ordered, placeless, Spacing(distance_m=SPACING_M))
-    assert not any(each.sensor_on for each in made)
+    assert {each.sensor_on for each in made} == {None}
 
 
 def photos_along(plan: Plan, taken: Callable[[int, float], bool]) -> list[FlightEvent]:

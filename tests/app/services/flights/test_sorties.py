@@ -87,6 +87,22 @@ async def test_a_gap_is_named_with_its_time_neither_seen_nor_missed(flown: Flown
     assert again.status_code == 202
 
 
+async def test_a_sensor_that_nothing_told_of_is_unknown(flown: Flown) -> None:
+    """Of a whole pass: unknown to the trigger, to the ground and in the track; none of it is missed."""
+    first = flown.plan.collects[0]
+    start_s, end_s = first.start_m / 20.0 - 5.0, first.end_m / 20.0 + 5.0
+    samples = [replace(s, sensor_on=None) if start_s < s.time_s < end_s else s for s in whole(flown)]
+    place = f"/api/v1/flights/{await recorded(flown, samples)}"
+    told = (await flown.client.get(place + "/coverage.geojson")).json()
+    assert [t["state"] for t in told["triggers"]] == ["unknown", *["ok"] * (len(told["triggers"]) - 1)]
+    assert told["gaps"] == []
+    for region in told["regions"]:
+        assert region["fraction"] + region["unknown_fraction"] == pytest.approx(1.0, abs=1e-3)
+    assert all(told["unknown_coverage"][name] > 0.1 for name in first.regions)
+    track = (await flown.client.get(place + "/track.geojson")).json()["features"][0]["properties"]
+    assert set(track["sensor_on"]) == {True, False, None}
+
+
 async def test_parts_of_a_split_flight_are_one_sortie(flown: Flown) -> None:
     """Cut by a restart between two passes: each part leaves ground out, both together nothing."""
     collects = flown.plan.collects

@@ -209,6 +209,22 @@ async def test_another_plan_in_flight_is_another_flight(recorder: FlightRecorder
     assert (await store.get(second)).plan_id == "plan-2"
 
 
+@pytest.mark.parametrize(("payload", "told"), [("trigger:video", None), (None, True)])
+async def test_relays_tell_of_a_sensor_alone_that_nobody_named(
+    recorder: FlightRecorder, store: FlightStore, payload: str | None, told: bool | None
+) -> None:
+    """A relay that closes says nothing of a video; where no payload is known it may be the sensor's."""
+    client, plan = Client(), HeldPlan("plan-1", "uav-1", payload)
+    client.told = FLIGHT
+    await recorder.look(client, plan)
+    client.recorders[0].take(received("RELAY_STATUS", time_boot_ms=0, on=0, present=0xFF), FLIGHT)
+    client.hear(1)
+    flight_id = recorder.flight_id
+    await recorder.end("ended")
+    assert flight_id is not None
+    assert [sample.sensor_on for sample in await store.track(flight_id)] == [told]
+
+
 async def test_a_flight_that_cannot_be_stored_is_tried_again(
     recorder: FlightRecorder, store: FlightStore, monkeypatch: pytest.MonkeyPatch
 ) -> None:
