@@ -310,7 +310,7 @@ async def change_signing(vehicle_id: str, body: SigningIn, fleet: FleetDep) -> V
 
     The key stands in `SWATHPLAN_SIGNING_KEYS` or the environment and is in no request, answer, recording or
     log. It goes to the vehicle unsigned the first time: over a link that nobody else hears, best by USB. 409
-    when the vehicle does not show within some seconds that it has taken it; then all is as before.
+    when the vehicle, if it is heard, does not show within some seconds that it has it; then all is as before.
     """
     vehicle = fleet.get(vehicle_id)
     await signing.change(vehicle, body.action)

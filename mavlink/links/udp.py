@@ -30,8 +30,8 @@ class Sieve(Protocol):
     """Says which senders on a listening port are believed."""
 
     @property
-    def answered(self) -> Address | None:
-        """Where alone to send to; None: nowhere yet."""
+    def answered(self) -> tuple[Address, ...]:
+        """Where alone to send to."""
 
     def sift(self, sender: Address, data: bytes) -> bytes:
         """What of a datagram is to be read."""
@@ -86,7 +86,7 @@ class UdpLink:
             return (self._fixed_peer,)
         if self._sieve is None:
             return tuple(self._peers)
-        return () if self._sieve.answered is None else (self._sieve.answered,)
+        return self._sieve.answered
 
     def believe(self, sieve: Sieve) -> None:
         """Let a sieve say from now on who is heard and answered on a listening port."""

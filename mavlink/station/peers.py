@@ -78,12 +78,13 @@ class Peers:
         self._behind: Address | None = None
 
     @property
-    def answered(self) -> Address | None:
+    def answered(self) -> tuple[Address, ...]:
         """Where alone to send to.
 
-        A vehicle whose clock is behind hears what time it is from there, and is believed with the next frame.
+        A vehicle whose clock is behind, at first or after a restart on another port, hears what time it is
+        from there too, and is believed with the next frame.
         """
-        return self.address or self._behind
+        return tuple(address for address in (self.address, self._behind) if address is not None)
 
     @property
     def place(self) -> str | None:
@@ -121,9 +122,10 @@ class Peers:
         if self.signing is not None:
             verdicts = [(self.signing.check(frame), frame, message) for frame, message in claims]
             claims = [(frame, message) for verdict, frame, message in verdicts if verdict is Verdict.GENUINE]
-            if self.address is None and any(verdict is Verdict.REPLAYED for verdict, _, _ in verdicts):
+            silent = self.address is None or self._lost
+            if silent and any(verdict is Verdict.REPLAYED for verdict, _, _ in verdicts):
                 self._behind = sender
-            if not claims and (self.address is None or self._lost):
+            if not claims and silent:
                 # Nothing of it counts; what its signature says is told, by whoever reads it.
                 return b"".join(frame for _, frame, message in verdicts)
         mine = [message for _, message in claims if self._system_id in (0, message.system_id)]
@@ -146,7 +148,7 @@ class Peers:
 
     def _bind(self, sender: Address, system_id: int) -> None:
         self._strangers.pop(sender, None)
-        self.address, self._system_id = sender, system_id
+        self.address, self._system_id, self._behind = sender, system_id, None
         self._lost = self.acknowledged = False
         self._changed()
 
@@ -172,11 +174,11 @@ class Peers:
 
     def heard(self) -> None:
         """The vehicle is there."""
-        self._lost = False
+        self._lost, self._behind = False, None
 
     def adopt(self, system_id: int) -> None:
         """Another aircraft is the vehicle; its address is the one it is heard from next."""
-        self.address, self._system_id, self.acknowledged = None, system_id, False
+        self.address, self._behind, self._system_id, self.acknowledged = None, None, system_id, False
         self._strangers.clear()
         self._changed()
 

@@ -41,9 +41,24 @@ class SigningSetup(ABC):
     def _target(self) -> tuple[int, int]:
         """System and component to talk to. Raises NotConnectedError while there is none."""
 
-    def use_key(self, signing: Signing) -> None:
-        """Sign and verify from now on with a key that the vehicle has already."""
+    async def use_key(self, signing: Signing) -> None:
+        """Sign and verify from now on with a key that the vehicle has already.
+
+        Raises
+        ------
+        SigningError
+            The vehicle is heard, and does not sign with it: nothing it says would count. All is as before.
+        """
+        before, heard = self._driver.signing, self.state.connected
         self._driver.sign(signing)
+        if heard and not await self._shown(Verdict.GENUINE):
+            said = self._driver.said
+            self._driver.sign(before)
+            raise SigningError(
+                "the vehicle signs with another key than this one: give its key here"
+                if said is Verdict.WRONG_KEY
+                else "the vehicle does not sign with this key: hand it over first (set_up)"
+            )
 
     async def set_up_signing(self, signing: Signing) -> None:
         """Hand the vehicle a key, and let nothing count from now on that is not signed with it.

@@ -18,7 +18,8 @@ from mavlink.wire.signing import Signing, Verdict
 _SAID_FOR_S: Final = 10.0
 _ABSENCES: Final = {
     Verdict.UNSIGNED: "system {0} is heard, but does not sign, and where a key is known nothing unsigned"
-    " counts: have it sign with the key, or take the key away here",
+    " counts: have it sign with the key (swathplan signing set-up), or give no key of it here and connect it"
+    " anew",
     Verdict.WRONG_KEY: "system {0} signs with another key than the one known here: give its key here, or hand"
     " it this one over a link that it trusts",
     Verdict.REPLAYED: "system {0} signs with the right key and a time long past: its clock is behind, or"

@@ -21,7 +21,7 @@ async def change(vehicle: Vehicle, action: Action) -> None:
     Raises
     ------
     ConflictError
-        No key of it is given, or the vehicle does not show that it has taken it; all is as before.
+        No key of it is given, or the vehicle does not show that it has it; all is as before.
     RefusedError
         The key that is given is none, or others may read it.
     LinkError
@@ -36,7 +36,7 @@ async def change(vehicle: Vehicle, action: Action) -> None:
             if signing is None:
                 await vehicle.client.stop_signing()
             elif action == "use":
-                vehicle.client.use_key(signing)
+                await vehicle.client.use_key(signing)
             else:
                 await vehicle.client.set_up_signing(signing)
         except BaseException as error:

@@ -144,6 +144,29 @@ async def test_no_key_is_changed_in_flight_or_without_the_old_one(monkeypatch: p
         await client.wait_for(lambda state: state.connected and state.signing == "no_key", 5)
 
 
+@pytest.mark.parametrize(
+    ("has", "used", "words"),
+    [
+        (SECRET, OTHER, "signs with another key"),
+        (OTHER, None, "signs with another key"),
+        (b"", None, "does not sign"),
+    ],
+)
+async def test_a_key_that_the_vehicle_has_not_is_not_used(
+    monkeypatch: pytest.MonkeyPatch, has: bytes, used: bytes | None, words: str
+) -> None:
+    """In flight it would cut off all that is heard of the vehicle: all is as before, and the reason said."""
+    monkeypatch.setattr(signing_setup, "SHOWN_WITHIN_S", 1.5)
+    async with simulated(has, SECRET if used else b"") as client:
+        before = (await client.connect(5)).signing
+        with pytest.raises(SigningError, match=words):
+            await client.use_key(signing(used or SECRET))
+        await client.wait_for(lambda state: state.connected and state.signing == before, 5)
+        if has:
+            await client.use_key(signing(has))
+            assert client.state.signing == "verified"
+
+
 class Keyed(Stranger):
     """A socket of the test's own that signs as pymavlink does."""
 
@@ -205,3 +228,11 @@ async def test_a_vehicle_whose_clock_is_behind_is_told_the_time() -> None:
                 vehicle.beat()
                 await asyncio.sleep(0.05)
             assert (await connecting).signing == "verified"
+        # It starts again, on another port, and does not remember what time it was.
+        await client.wait_for(lambda state: not state.connected, 5)
+        with Keyed(ground.local_port, SECRET, behind_s=7200.0) as vehicle:
+            while not client.state.connected:
+                vehicle.read()
+                vehicle.beat()
+                await asyncio.sleep(0.05)
+            assert (client.state.signing, client.state.address) == ("verified", vehicle.address)
