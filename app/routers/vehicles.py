@@ -206,10 +206,17 @@ async def clear(
     vehicle_id: str,
     fleet: FleetDep,
     transfers: TransfersDep,
+    response: Response,
     part: Parts = ["mission"],  # noqa: B006
+    in_flight: Annotated[bool, Query(description="Clear them even while it flies.")] = False,
 ) -> ClearedOut:
-    """Empty the vehicle's lists."""
-    outcomes = await transfers.clear(fleet.get(vehicle_id), list(dict.fromkeys(part)))
+    """Empty the vehicle's lists; 409 where the vehicle refuses, 202 where nobody can tell.
+
+    Of one in flight only with `in_flight=true` (409 `in-flight`): it would have nothing left to land by.
+    """
+    outcomes = await transfers.clear(fleet.get(vehicle_id), list(dict.fromkeys(part)), in_flight)
+    if any(outcome.kind == "unknown" for outcome in outcomes.values()):
+        response.status_code = 202
     return ClearedOut(vehicle_id=vehicle_id, parts={name: o.kind for name, o in outcomes.items()})
 
 

@@ -126,7 +126,7 @@ def carry_out(aircraft: Aircraft, order: Order, sender: tuple[int, int]) -> Outc
         case Command.COMPONENT_ARM_DISARM:
             return _arm(aircraft) if order.param1 == 1.0 else _disarm(aircraft)
         case Command.MISSION_START:
-            return _start(aircraft)
+            return _start(aircraft, order)
         case Command.DO_SET_MODE:
             mode = mode_of_command(
                 aircraft.settings.autopilot, order.param2, order.param3, hovers=aircraft.settings.hovers
@@ -225,7 +225,8 @@ def _disarm(aircraft: Aircraft) -> Outcome:
     return CommandResult.ACCEPTED, [status_text(6, "Throttle disarmed"), *_now(aircraft, "HEARTBEAT")]
 
 
-def _start(aircraft: Aircraft) -> Outcome:
+def _start(aircraft: Aircraft, order: Order) -> Outcome:
+    """MISSION_START; PX4 begins at the item named, in flight too, and goes on where none is (below 0)."""
     reason = aircraft.pilot.why_not_auto(aircraft.state)
     if reason:
         return _denied(f"Mission not started: {reason}")
@@ -236,6 +237,8 @@ def _start(aircraft: Aircraft) -> Outcome:
         if result is not CommandResult.ACCEPTED:
             return result, said
     result, more = change_mode(aircraft, Mode.AUTO)
+    if aircraft.settings.autopilot is Flavour.PX4 and order.param1 >= 0.0:
+        aircraft.pilot.select(int(order.param1), aircraft.state)
     aircraft.pilot.start()
     return result, said + more
 

@@ -54,16 +54,18 @@ class FlightCommands(ABC):
         return await self.command(Command.DO_SET_MODE, parameters)
 
     async def start_mission(self) -> CommandOutcome:
-        """Fly the mission from its current item. PX4 arms by itself; ArduPilot wants to be armed first.
+        """Take off and fly the mission, or in the air go on with it at its current item.
 
-        Raises DoubtError.
+        PX4 arms by itself, and begins at the item named, which in the air is none (−1): at 0 it would turn
+        back to its take-off. ArduPilot wants to be armed first. Raises DoubtError.
         """
         self.require_certain()
         if self.state.autopilot == "ardupilot":
             outcome = await self.set_mode("AUTO")
             if not outcome.accepted:
                 return outcome
-        return await self.command(Command.MISSION_START)
+        in_air = self.state.autopilot == "px4" and self.state.armed and self.state.landed is not True
+        return await self.command(Command.MISSION_START, (-1.0,) if in_air else ())
 
     async def pause(self) -> CommandOutcome:
         """Stop the mission and wait in the air."""
@@ -82,7 +84,10 @@ class FlightCommands(ABC):
         self.require_certain()
         if self.state.autopilot == "px4":
             return await self.set_mode("AUTO.MISSION")
-        if self.state.autopilot == "ardupilot" and self.state.type != "multirotor":
+        # What ArduCopter's AUTO goes on with is a pause within it; out of another mode it has to come back.
+        if self.state.autopilot == "ardupilot" and (
+            self.state.type != "multirotor" or self.state.mode != "AUTO"
+        ):
             return await self.set_mode("AUTO")
         return await self.command(Command.DO_PAUSE_CONTINUE, (1.0,))
 

@@ -222,16 +222,18 @@ class MissionTransfers(ABC):
         """Make an item the one flown next. Raises BusyError, NotConnectedError.
 
         Sent to an item that is no place to fly to, a vehicle goes on to the next that is, and reports that
-        one. Which it is the mission tells: as last read, or else read when the answer leaves it open.
+        one; so does ArduPilot sent to its home row, 0, which begins the mission anew. Which it is the mission
+        tells: as last read, or else read when the answer leaves it open.
         """
         known = self._held_mission
-        answers = frozenset[int]() if known is None else flown_for(known, seq)
+        first = seq + 1 if seq == 0 and self.state.autopilot == "ardupilot" else seq
+        answers = frozenset[int]() if known is None else flown_for(known, first)
         machine = SetCurrentMachine(seq, *self._target(), self._settings, answers)
         with self.reserved(changes=False):
             outcome = await self._driver.transfer(machine)
         if known is None and machine.reported and outcome == Unknown("timeout"):
             with contextlib.suppress(TransferFailedError, NotConnectedError):
-                if machine.reported & flown_for(await self.download(MissionType.MISSION), seq):
+                if machine.reported & flown_for(await self.download(MissionType.MISSION), first):
                     return Accepted()
         return outcome
 

@@ -97,6 +97,17 @@ async def test_hold_and_land(ground: Ground, autopilot: str, kind: str) -> None:
     assert held.json()["outcome"] == "done", held.text
     waiting = {"ardupilot": "BRAKE" if kind == "multirotor" else "LOITER", "px4": "AUTO.LOITER"}[autopilot]
     assert (await client.get(vehicle)).json()["state"]["mode"] == waiting
+    # In the air both go on with the mission at its item: none begins it anew.
+    items = report["parts"]["mission"]["held"]
+    seq = max(each["seq"] for each in items[:-4] if each["command"] == Command.NAV_WAYPOINT)
+    for again, words in (("start", "goes on"), ("resume", "")):
+        assert (await order(client, vehicle, "goto_item", seq=seq)).json()["outcome"] == "done"
+        went_on = await order(client, vehicle, again)
+        assert went_on.json()["outcome"] == "done", went_on.text
+        assert words in went_on.json()["reason"]
+        state = (await client.get(vehicle)).json()["state"]
+        assert (state["mode"], state["mission_current"] >= seq) == (MISSION[autopilot], True), state
+        assert (await order(client, vehicle, "hold")).json()["outcome"] == "done"
     landing = await order(client, vehicle, "land")
     assert landing.json()["outcome"] == "done", landing.text
     state = (await client.get(vehicle)).json()["state"]
@@ -104,7 +115,6 @@ async def test_hold_and_land(ground: Ground, autopilot: str, kind: str) -> None:
         await until(client, vehicle, lambda body: not body["state"]["armed"])
         return
     assert state["mode"] == MISSION[autopilot]
-    items = report["parts"]["mission"]["held"]
     assert items[-1]["command"] == Command.NAV_LAND
     assert state["mission_current"] >= len(items) - 4
     last = max(each["seq"] for each in items if each["command"] in (181, 187) and each["seq"] < len(items))
@@ -140,8 +150,8 @@ async def test_a_newer_command_overtakes_an_unsettled_one(impatient: httpx.Async
 
 
 async def test_what_nobody_can_tell_is_a_504(impatient: httpx.AsyncClient) -> None:
-    """An item that is not there: the vehicle says nothing, so nobody can tell."""
-    vehicle = await connected(impatient, "sim:")
+    """Its mission cannot be read, and it says nothing to an item that is not there."""
+    vehicle = await connected(impatient, "sim:?fault=no_response_to_list")
     answer = await order(impatient, vehicle, "goto_item", seq=60_000)
     check_problem(answer, 504)
     assert answer.json()["outcome"] == "unknown"

@@ -69,7 +69,10 @@ async def test_in_flight_each_refusal_has_its_own_reason(client: httpx.AsyncClie
         refused = await order(client, vehicle, "goto_item", seq=seq)
         check_problem(refused, 409, "item-out-of-range")
         assert f"0 to {count - 1}" in refused.json()["reason"]
+    # ArduPilot's home row begins the mission anew; PX4's first item is 0.
+    assert (await order(client, vehicle, "goto_item", seq=0)).json()["outcome"] == "done"
     await in_flight(client, vehicle)
+    check_problem(await client.delete(vehicle + "/mission"), 409, "in-flight")
     refused = await order(client, vehicle, "disarm")
     check_problem(refused, 409, "in-flight")
     assert "in the air" in refused.json()["reason"]
@@ -87,6 +90,14 @@ async def test_in_flight_each_refusal_has_its_own_reason(client: httpx.AsyncClie
         assert "skipped: pass 1 (field)" in told["message"]
     assert told["item"] is None or abs(told["item"] - current) <= 2
     assert (await client.delete(vehicle, params={"in_flight": "true"})).status_code == 204
+
+
+async def test_without_a_mission_there_is_no_item(client: httpx.AsyncClient) -> None:
+    """Whatever its number: refused unsent, and not left open."""
+    vehicle = await connected(client)
+    refused = await order(client, vehicle, "goto_item", seq=0)
+    check_problem(refused, 409, "item-out-of-range")
+    assert "no mission" in refused.json()["reason"]
 
 
 async def test_the_loss_of_a_flights_link_is_an_event(impatient: httpx.AsyncClient) -> None:

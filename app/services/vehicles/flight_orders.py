@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from app.services.vehicles.order_book import Order, OrderOutcome
+from app.services.vehicles.recorder import is_flying
 from app.services.vehicles.said import EXPLAINED_S, refusal, said_of
 from app.services.vehicles.vehicle import Vehicle
 from mavlink.encoding.options import DEFAULT_PAYLOAD
@@ -163,8 +164,10 @@ async def _start(vehicle: Vehicle, wish: Wish, order: Order) -> Told:
             return told
         armed_here = True
     shows: Shows = lambda state: state.armed and _in(vehicle, MISSION_MODES)(state)  # noqa: E731 - typed
+    flying = is_flying(client.state)
+    reason = "it was in flight: it goes on with the mission at its current item" if flying else ""
     try:
-        return await _settled(vehicle, order, client.start_mission(), shows)
+        return await _settled(vehicle, order, client.start_mission(), shows, reason)
     except OrderRefusedError as error:
         if not armed_here:
             raise
@@ -202,8 +205,7 @@ async def _resume(vehicle: Vehicle, wish: Wish, order: Order) -> Told:
         else f"the sensor was switched off in the pass of items {cut[0]} to {cut[-1]}: what is left of it is "
         f"not seen; goto_item {max(cut[0] - 1, 0)} flies it whole"
     )
-    shows: Shows = (lambda _: True) if _is_copter(client.state) else _in(vehicle, MISSION_MODES)
-    return await _settled(vehicle, order, client.resume(), shows, reason)
+    return await _settled(vehicle, order, client.resume(), _in(vehicle, MISSION_MODES), reason)
 
 
 async def _rtl(vehicle: Vehicle, wish: Wish, order: Order) -> Told:
@@ -223,7 +225,11 @@ async def _goto_item(vehicle: Vehicle, wish: Wish, order: Order) -> Told:
     assert wish.seq is not None
     client = vehicle.client
     count = await _items_held(vehicle, client)
-    if count and not 0 <= wish.seq < count:
+    if count == 0:
+        raise OrderRefusedError(
+            "item-out-of-range", "not sent: there is no mission on board", "upload one, and send it then"
+        )
+    if count is not None and not 0 <= wish.seq < count:
         raise OrderRefusedError(
             "item-out-of-range",
             f"not sent: the mission on board has no item {wish.seq}, its items are 0 to {count - 1}",

@@ -9,7 +9,14 @@ from typing import Any
 
 import structlog
 
-from app.services.errors import ConflictError, LinkError, NotFoundError, RefusedError, StorageError
+from app.services.errors import (
+    ConflictError,
+    LinkError,
+    NotFoundError,
+    RefusedError,
+    StorageError,
+    UnsafeError,
+)
 from app.services.metrics import UPLOADS
 from app.services.plans.library import PlanLibrary
 from app.services.plans.missions import PARTS, MissionChoice, PartName
@@ -132,8 +139,29 @@ class Transfers:
             except mavlink_errors.TransferFailedError as error:
                 raise LinkError(f"{vehicle.name}: {error}") from error
 
-    async def clear(self, vehicle: Vehicle, parts: Sequence[PartName]) -> dict[str, Outcome]:
-        """Empty a vehicle's lists."""
+    async def clear(
+        self, vehicle: Vehicle, parts: Sequence[PartName], in_flight: bool = False
+    ) -> dict[str, Outcome]:
+        """Empty a vehicle's lists.
+
+        Parameters
+        ----------
+        in_flight
+            Also of one that flies, which is left without a mission to land by, or a fence.
+
+        Raises
+        ------
+        UnsafeError
+            It flies, and nobody said that it may: rule ``in-flight``.
+        ConflictError
+            The vehicle refused; which part, and what was cleared, in words.
+        """
+        if not in_flight and is_flying(vehicle.state):
+            message = (
+                f"{vehicle.name} is in flight: cleared, it has nothing left to fly, land or be kept in by"
+            )
+            fix = "land it first; or say in_flight=true to clear it all the same"
+            raise UnsafeError(message, (Finding("vehicle", "in-flight", message, fix),))
         async with vehicle.turns.busy("clearing", changes=True):
             outcomes: dict[str, Outcome] = {}
             entry = await self._audit.begin("clear", vehicle.id, vehicle.name, {"parts": list(parts)})
@@ -151,6 +179,8 @@ class Transfers:
                 worst = next(kind for kind in ("unknown", "refused", "accepted") if kind in kinds)
                 words = "; ".join(f"{name}: {outcome}" for name, outcome in outcomes.items())
                 self._audit.end(entry, worst, words)
+            if worst == "refused":
+                raise ConflictError(f"{vehicle.name}: {words}")
             return outcomes
 
     async def _cleared(self, vehicle: Vehicle) -> None:
