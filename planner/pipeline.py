@@ -28,7 +28,7 @@ from planner.together import Part, together
 from planner.version import __version__
 
 if TYPE_CHECKING:
-    from planner.tasks.fleet.task import FleetAnswer
+    from planner.tasks.fleet.answer import FleetAnswer
 
 #: The search for better routes ends after this part of the scenario's time budget.
 ROUTING_SHARE = 0.6

@@ -14,6 +14,12 @@ from planner.progress import Stop, raise_if
 
 #: Up to so many jobs, and no more than so many labels of one aircraft.
 JOBS, LABELS = 9, 300_000
+#: Of so many ways to share jobs out at most the nearly best are looked for.
+SHARES = 500_000
+
+
+#: The jobs of each aircraft in flight order.
+Shared = tuple[tuple[int, ...], ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,15 +43,12 @@ class _Share:
 def exact(tables: Tables, stop: Stop) -> Found | None:
     """The best solution, or None where the problem is too large, has revisits or further trips."""
     jobs, crew = tables.jobs, tables.crew
-    total = len(jobs.prize)
-    if total > JOBS or (np.diff(crew.first) > 1).any() or (jobs.after >= 0).any():
+    every = _every(tables, stop)
+    if every is None:
         return None
     shares: dict[int, list[_Share]] = {0: [_Share(0.0, 0.0, ())]}
-    for member in range(len(crew.profile)):
+    for ways in every:
         raise_if(stop)
-        ways = _ways(tables, member)
-        if ways is None:
-            return None
         grown: dict[int, list[_Share]] = {}
         for done, former in shares.items():
             for own, choice in ways.items():
@@ -69,6 +72,93 @@ def exact(tables: Tables, stop: Stop) -> Found | None:
     )
     members = tuple(range(len(crew.profile)))
     return Found(tuple(way.nodes for way in best.ways), members, jobs.early, jobs.late, cost, 0)
+
+
+def nearly_best(tables: Tables, jobs: int, part: float, most: int, stop: Stop) -> tuple[float, list[Shared]]:
+    """Other ways to share some jobs out that cost little more than the best, the cheapest first.
+
+    Of each set of jobs every aircraft has its own best order, and there are no windows.
+
+    Parameters
+    ----------
+    jobs
+        All that are shared out, as a set of bits.
+    part
+        By how much they may cost more, of the best.
+    most
+        So many of them at most.
+
+    Returns
+    -------
+    tuple
+        What the best costs, and the jobs of each aircraft in flight order; infinity and none where there are
+        too many to look at.
+    """
+    every = _every(tables, stop)
+    if every is None:
+        return math.inf, []
+    dear = tables.weights.landing
+    best = [
+        {own: min(ways, key=lambda way: (way.cost, way.landing_s)) for own, ways in of.items()}
+        for of in every
+    ]
+    done = np.zeros(1, dtype=np.int64)
+    cost, landing_s, sets = np.zeros(1), np.zeros(1), np.zeros((1, 0), dtype=np.int64)
+    for number, of in enumerate(best):
+        own = np.array(sorted(each for each in of if each & ~jobs == 0), dtype=np.int64)
+        costs, landings_s = (
+            np.array([getattr(of[int(e)], name) for e in own]) for name in ("cost", "landing_s")
+        )
+        free = (done[:, None] & own[None, :]) == 0
+        if number == len(best) - 1:
+            free &= (done[:, None] | own[None, :]) == jobs
+        if free.sum() > SHARES:
+            return math.inf, []
+        former, taken = np.nonzero(free)
+        done, cost = done[former] | own[taken], cost[former] + costs[taken]
+        landing_s = np.maximum(landing_s[former], landings_s[taken])
+        sets = np.concatenate([sets[former], own[taken][:, None]], axis=1)
+    whole = np.round(cost + dear * landing_s, 3)
+    if not len(whole):
+        return math.inf, []
+    order = np.lexsort((*sets.T[::-1], whole))
+    order = order[whole[order] <= (1.0 + part) * whole.min()][:most]
+    return float(whole.min()), [
+        tuple(
+            tuple(int(tables.jobs.of[node]) for node in of[int(own)].nodes[1:-1])
+            for of, own in zip(best, sets[row], strict=True)
+        )
+        for row in order
+    ]
+
+
+def _every(tables: Tables, stop: Stop) -> list[dict[int, list[_Way]]] | None:
+    """The best ways of each aircraft, found once for those that are alike; None where it is too large."""
+    jobs, crew = tables.jobs, tables.crew
+    if len(jobs.prize) > JOBS or (np.diff(crew.first) > 1).any() or (jobs.after >= 0).any():
+        return None
+    found: list[dict[int, list[_Way]]] = []
+    for member in range(len(crew.profile)):
+        raise_if(stop)
+        alike = next((other for other in range(member) if _alike(tables, member, other)), None)
+        ways = _ways(tables, member) if alike is None else found[alike]
+        if ways is None:
+            return None
+        found.append(ways)
+    return found
+
+
+def _alike(tables: Tables, member: int, other: int) -> bool:
+    """Whether two aircraft take the same for everything."""
+    costs, crew = tables.costs, tables.crew
+    own, others = (crew.ends[crew.ends_first[m] : crew.ends_first[m + 1]] for m in (member, other))
+    one, two = int(crew.profile[member]), int(crew.profile[other])
+    return (
+        crew.start[member] == crew.start[other]
+        and np.array_equal(own, others)
+        and np.array_equal(crew.limits[member], crew.limits[other])
+        and all(len(table) == 1 or np.array_equal(table[one], table[two]) for table in costs)
+    )
 
 
 def _left(prizes: np.ndarray, done: int) -> float:

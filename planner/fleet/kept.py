@@ -38,7 +38,7 @@ def kept(problem: Problem, orders: Mapping[int, Sequence[int]]) -> Assignment | 
     routes = {member: list(orders.get(member, ())) for member in range(len(problem.members))}
     trips: dict[int, Trip] = {}
     for member, route in routes.items():
-        trip = _trip(problem, member, route) if route else None
+        trip = shortest(problem, member, route) if route else None
         if route and trip is None:
             return None
         if trip is not None:
@@ -58,7 +58,7 @@ def _put_in(problem: Problem, routes: dict[int, list[int]], trips: dict[int, Tri
     for member, route in routes.items():
         for at in range(len(route) + 1):
             longer = [*route[:at], target, *route[at:]]
-            trip = _trip(problem, member, longer)
+            trip = shortest(problem, member, longer)
             if trip is None:
                 continue
             cost = cost_of(problem, list((trips | {member: trip}).values()))
@@ -68,7 +68,7 @@ def _put_in(problem: Problem, routes: dict[int, list[int]], trips: dict[int, Tri
         member, routes[member], trips[member] = place
 
 
-def _trip(problem: Problem, member: int, order: Sequence[int]) -> Trip | None:
+def shortest(problem: Problem, member: int, order: Sequence[int]) -> Trip | None:
     """The shortest trip of a member by targets in an order, of all ways to do each; None over a limit."""
     aircraft = problem.members[member]
     seconds = aircraft.travel.seconds

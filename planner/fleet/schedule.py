@@ -121,17 +121,21 @@ def _grounded(member: int, bases: tuple[int, int]) -> Trip:
 def cost_of(problem: Problem, trips: Sequence[Trip]) -> float:
     """The objective of these trips: term by term as ``Objective`` says."""
     weights = problem.objective
-    collected = sum(
-        problem.targets[visit.target].priority / problem.targets[visit.target].visits
-        for trip in trips
-        for visit in trip.visits
-    )
     return (
         weights.last_landing * max((trip.landing_s for trip in trips), default=0.0)
         + weights.total_time * sum(trip.duration_s for trip in trips)
         + weights.travel_time * sum(trip.duration_s - _waited_s(trip) for trip in trips)
         + weights.risk * sum(trip.risk for trip in trips)
-        - weights.priority * collected
+        - worth_of(problem, trips)
+    )
+
+
+def worth_of(problem: Problem, trips: Sequence[Trip]) -> float:
+    """What the targets that trips do are worth in the objective."""
+    return problem.objective.priority * sum(
+        problem.targets[visit.target].priority / problem.targets[visit.target].visits
+        for trip in trips
+        for visit in trip.visits
     )
 
 

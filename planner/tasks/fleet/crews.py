@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,7 @@ from planner.route import Terminal
 from planner.routing.joint.chain import estimates, from_start, to_end
 from planner.scenario import Scenario
 from planner.tasks.fleet.jobs import Job
+from planner.tasks.fleet.looks import Looks
 from planner.tasks.setting import Setting, seeing
 from planner.vehicle.aircraft import Aircraft
 from planner.vehicle.energy import FlightState
@@ -27,10 +28,10 @@ from planner.wishes import Region
 
 Floats = NDArray[np.float64]
 
-#: Options of a region are looked at by headings so far apart; the best of each sector are the ways to do it.
-STEP_RAD = math.radians(15.0)
-ETAS = np.array([0.0, 1.0])
+#: Of a region's options the best of so many sectors of headings are the ways to do it.
 SECTORS = 4
+#: A change of height takes so much more than its slope says, in turn radii: some of the leg is turns.
+LEVEL_OFF = 0.5
 #: No touch-down is thought slower.
 MIN_LAND_M_S = 0.1
 
@@ -58,6 +59,8 @@ class Crew:
         At cruise; None without a power model.
     landings
         Where it may end, the end of ``ends`` first.
+    looks
+        What crews of its kind have seen of jobs.
     """
 
     aircraft: Aircraft
@@ -68,6 +71,7 @@ class Crew:
     ends: tuple[Terminal, Terminal]
     power_w: float | None
     landings: tuple[Terminal, ...]
+    looks: Looks = field(default_factory=Looks)
 
     @classmethod
     def of(cls, scenario: Scenario, aircraft: Aircraft) -> Crew:
@@ -118,6 +122,17 @@ class Crew:
         )  # fmt: skip
         return (plain, self.setting.suite)
 
+    def seen(self, job: Job) -> tuple[int, ...]:
+        """Numbers of a job's targets among the looks.
+
+        Raises
+        ------
+        InfeasibleError
+            Where it cannot be seen.
+        """
+        asked = replace(self.asked, regions=(job.asked,))
+        return self.looks.numbers(job.asked, lambda: asked.visible(self.around).targets)
+
     def ways(self, job: Job) -> Ways:
         """The ways to do a job.
 
@@ -126,9 +141,7 @@ class Crew:
         InfeasibleError
             Where there are none.
         """
-        asked = replace(self.asked, regions=(job.asked,))
-        targets = asked.visible(self.around).targets
-        coarse = [target.coarse(STEP_RAD, ETAS) for target in targets]
+        coarse = self.looks.coarse(self.seen(job))
         first = coarse[0]
         # Of a divided region the parts follow each other as they come; the ways differ in their ends.
         inner_m, exits = self._on(first, coarse[1:])
@@ -151,23 +164,57 @@ class Crew:
 
     @property
     def besides_s(self) -> float:
-        """What a flight takes besides its way over the ground, about: climbing and descending on the spot."""
+        """What a flight of one that hovers takes besides its way over the ground: up and down on the spot."""
         height_m, model = self.setting.level.height_m, self.setting.model
+        if not model.aircraft.hovers:
+            return 0.0
+        manners = manners_of(model.aircraft)
+        landing_s = manners.land_below_m / max(manners.land_m_s, MIN_LAND_M_S)
+        return height_m / manners.climb_m_s + height_m / manners.sink_m_s + landing_s
+
+    def up_m(self, legs_m: Floats) -> Floats:
+        """Legs from the start with the circles that a climb takes besides where they are short."""
+        if self.ends[0].over_home_m is not None:
+            return legs_m
+        return self._with_circles(legs_m, climb_slope_rad(self.setting.model))
+
+    def down_m(self, legs_m: Floats) -> Floats:
+        """Legs to the end with the circles that a descent takes besides."""
+        return self._with_circles(legs_m, sink_slope_rad(self.setting.model))
+
+    def _with_circles(self, legs_m: Floats, slope_rad: float) -> Floats:
+        model = self.setting.model
         if model.aircraft.hovers:
-            manners = manners_of(model.aircraft)
-            landing_s = manners.land_below_m / max(manners.land_m_s, MIN_LAND_M_S)
-            return height_m / manners.climb_m_s + height_m / manners.sink_m_s + landing_s
-        slopes = (climb_slope_rad(model), sink_slope_rad(model))
-        return sum(height_m / math.tan(slope) for slope in slopes) / model.airspeed_m_s / 2.0
+            return legs_m
+        circle_m = math.tau * model.turn_radius_m
+        wanted_m = self.setting.level.height_m / math.tan(slope_rad) + LEVEL_OFF * model.turn_radius_m
+        lacking_m = wanted_m - legs_m
+        return legs_m + circle_m * np.ceil(np.maximum(lacking_m, 0.0) / circle_m)
 
     def seconds(self, entries: Floats, exits: Floats) -> tuple[Floats, Floats, tuple[Floats, ...]]:
         """Between ways (N, N), from the start (N,), and to each landing (N,): seconds."""
         start = self.ends[0]
         discs, speed_m_s = self.around.discs, self.setting.model.airspeed_m_s
         between = estimates(exits, entries, self.around, discs) / speed_m_s
-        out = from_start(start, self.around, entries, discs) / speed_m_s
-        home = tuple(to_end(end, self.around, exits, discs) / speed_m_s for end in self.landings)
+        out = self.up_m(from_start(start, self.around, entries, discs)) / speed_m_s
+        home = tuple(self.down_m(to_end(end, self.around, exits, discs)) / speed_m_s for end in self.landings)
         return between, out, home
+
+    def thought_s(self, numbers: Sequence[int]) -> float:
+        """How long a flight takes by targets in an order; infinity where no line leads through.
+
+        Parameters
+        ----------
+        numbers
+            Of the targets among the looks.
+        """
+        choice = self.looks.refined(self.ends, self.around, numbers)
+        legs_m = (
+            from_start(self.ends[0], self.around, choice.picked[0].entries, self.around.discs),
+            to_end(self.ends[1], self.around, choice.picked[-1].exits, self.around.discs),
+        )
+        more_m = float((self.up_m(legs_m[0]) - legs_m[0] + self.down_m(legs_m[1]) - legs_m[1])[0])
+        return (choice.cost_m + more_m) / self.setting.model.airspeed_m_s
 
     def travel(self, seconds: Floats, power: float) -> Travel:
         """What ways of so many seconds take of everything, at a mean power by that at cruise."""
@@ -205,11 +252,13 @@ def crews_of(
         ``"wind"``: none can, or one that flies already cannot.
     """
     crews: list[Crew] = []
+    looks: dict[tuple[object, ...], Looks] = {}
     said: list[Finding] = []
     refused: InfeasibleError | None = None
     for aircraft in scenario.aircraft if some is None else some:
         try:
-            crews.append(Crew.of(scenario, aircraft))
+            crew = Crew.of(scenario, aircraft)
+            crews.append(replace(crew, looks=looks.setdefault(crew.kind, crew.looks)))
         except InfeasibleError as error:
             if error.constraint != "wind" or aircraft.aloft is not None:
                 raise
@@ -310,4 +359,7 @@ def most_s(crew: Crew) -> float:
         limits.append(aircraft.max_range_m / aircraft.airspeed_m_s)
     if aircraft.usable_wh is not None and crew.power_w:
         limits.append(3600.0 * aircraft.usable_wh / crew.power_w)
-    return max(min(limits) - crew.besides_s, 1.0)
+    model, height_m = crew.setting.model, crew.setting.level.height_m
+    levels_m = sum(height_m / math.tan(slope) for slope in (climb_slope_rad(model), sink_slope_rad(model)))
+    besides_s = crew.besides_s or levels_m / model.airspeed_m_s / 2.0
+    return max(min(limits) - besides_s, 1.0)

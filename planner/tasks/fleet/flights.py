@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from planner.airspace.zones import TRANSIT_MARGIN_M, keep_out
-from planner.coverage.ways import Target
 from planner.dubins.path import Path
 from planner.errors import InfeasibleError
 from planner.fleet.waiting import Due, Timing, holds, least_hold_s, timing
@@ -18,10 +17,8 @@ from planner.profile.items import items_of
 from planner.progress import silent
 from planner.publish import Leg
 from planner.route import Anchor, CollectPass, Pose, Terminal
-from planner.routing.joint.chain import layers_of
-from planner.routing.joint.tours import Choice, Tours
 from planner.tasks.collect import collect
-from planner.tasks.fleet.crews import ETAS, STEP_RAD, Crew
+from planner.tasks.fleet.crews import Crew
 from planner.tasks.fleet.jobs import Job, as_asked, renamed
 from planner.tasks.flying import Station
 from planner.tasks.methods import chosen_methods
@@ -177,21 +174,14 @@ def in_order(crew: Crew, jobs: Sequence[tuple[Job, int]], controls: Controls) ->
     InfeasibleError
         Where one cannot be seen.
     """
-    targets: list[Target] = []
-    owners: list[int] = []
-    for place, (job, _) in enumerate(jobs):
-        own = replace(crew.asked, regions=(job.asked,)).visible(crew.around).targets
-        targets.extend(own)
-        owners.extend([place] * len(own))
-    coarse = [target.coarse(STEP_RAD, ETAS) for target in targets]
-    layers = layers_of(crew.ends, crew.around, coarse, crew.around.discs)
-    cost_m, picked = layers.best()
-    if not math.isfinite(cost_m):
+    numbers, owners = _numbered(crew, jobs)
+    choice = crew.looks.refined(crew.ends, crew.around, numbers)
+    if not math.isfinite(choice.cost_m):
         raise InfeasibleError(
             "transit", crew.aircraft.name, "no line leads through its regions in time", "Widen the windows."
         )
-    tours = Tours(crew.ends, crew.around, targets)
-    choice = tours.fitted(tours.refined(Choice.of(range(len(targets)), coarse, picked, cost_m)))
+    tours = crew.looks.tours(crew.ends, crew.around)
+    choice = tours.fitted(choice)
     passes: list[CollectPass] = []
     of: list[int] = []
     for owner, target, row in zip(owners, tours.visited(choice), choice.picked, strict=True):
@@ -199,6 +189,28 @@ def in_order(crew: Crew, jobs: Sequence[tuple[Job, int]], controls: Controls) ->
         passes.extend(own_passes)
         of.extend([owner] * len(own_passes))
     return Order(tuple(passes), tuple(of))
+
+
+def thought_s(crew: Crew, jobs: Sequence[tuple[Job, int]]) -> float:
+    """How long a flight takes in an order given over the ground, about; infinity where no line leads through.
+
+    Raises
+    ------
+    InfeasibleError
+        Where one cannot be seen.
+    """
+    return crew.thought_s(_numbered(crew, jobs)[0])
+
+
+def _numbered(crew: Crew, jobs: Sequence[tuple[Job, int]]) -> tuple[list[int], list[int]]:
+    """Of targets in the order of their jobs the numbers among the looks, and which job each is of."""
+    numbers: list[int] = []
+    owners: list[int] = []
+    for place, (job, _) in enumerate(jobs):
+        own = crew.seen(job)
+        numbers.extend(own)
+        owners.extend([place] * len(own))
+    return numbers, owners
 
 
 def with_waits(

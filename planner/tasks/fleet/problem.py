@@ -9,11 +9,12 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from planner.fleet.assignment import Trip
+from planner.fleet.assignment import Assignment, Trip
 from planner.fleet.problem import Alternative, Member, Objective, Problem, Service, Target
 from planner.route import Terminal
 from planner.tasks.fleet.crews import Crew, Ways
 from planner.tasks.fleet.jobs import Job
+from planner.tasks.fleet.placing import LateError
 from planner.vehicle.aircraft import Aircraft
 from planner.wishes import Objective as Weights
 
@@ -33,7 +34,8 @@ class Lessons:
 
     ``besides_s`` is what each flight takes more, ``power`` the mean power by that at cruise, ``factors`` are
     of all times in the air once one was late, ``spare`` of what one flight may take. ``most_s`` is how long
-    one may last so that its mission has no more items than its autopilot holds.
+    one may last so that its mission has no more items than its autopilot holds. ``closes_s`` is when jobs, by
+    their names, are to be over by so that others in their way do not make them late.
     """
 
     besides_s: dict[int, float] = field(default_factory=dict)
@@ -41,15 +43,35 @@ class Lessons:
     factors: dict[int, float] = field(default_factory=dict)
     spare: dict[int, float] = field(default_factory=dict)
     most_s: dict[int, float] = field(default_factory=dict)
+    closes_s: dict[str, float] = field(default_factory=dict)
 
-    def learn(self, told_s: Mapping[int, Sequence[float]]) -> None:
-        """By how much each crew's flights took longer than was thought."""
-        for crew, more_s in told_s.items():
-            self.besides_s[crew] = self.besides_s.get(crew, 0.0) + sum(more_s) / len(more_s)
+    def learn(self, told_s: Mapping[int, Sequence[float]], crews: Sequence[Crew]) -> None:
+        """By how much flights took longer than was thought, for all crews of a kind: they are alike."""
+        for number, crew in enumerate(crews):
+            more_s = [s for other, own in told_s.items() if crews[other].kind == crew.kind for s in own]
+            if more_s:
+                self.besides_s[number] = self.besides_s.get(number, 0.0) + sum(more_s) / len(more_s)
 
     def hurry(self, crew: int, part: float) -> None:
         """A flight was late: the next ones are thought to take longer."""
         self.factors[crew] = self.factor(crew) * part
+
+    def late(self, late: LateError, jobs: Sequence[Job], assigned: Assignment, tighter: float) -> None:
+        """A window was missed: the job is to be over earlier, or its crew thought to take longer."""
+        name = late.job.region.name
+        if late.crowded and late.job.visits == 1:
+            # Its flight waits for others, and takes as long as was thought.
+            ends_s = [
+                visit.end_s
+                for trip in assigned.trips
+                for visit in trip.visits
+                if jobs[visit.target].region.name == name
+            ]
+            self.closes_s[name] = min(ends_s) - late.late_s
+            return
+        closes_s = (late.job.region.time_window_s or (0.0, math.inf))[1]
+        more = late.late_s / max(closes_s, late.late_s) if math.isfinite(closes_s) else 0.0
+        self.hurry(late.crew, (1.0 + more) / tighter)
 
     def tighten(self, crew: int, part: float) -> None:
         """A flight was over a limit: the next ones are planned with less."""
@@ -157,12 +179,20 @@ def _targets(
                 tuple(alternatives),
                 region.priority * job.share,
                 region.required,
-                region.time_window_s,
+                _window(region.time_window_s, lessons.closes_s.get(region.name, math.inf)),
                 job.visits,
                 region.revisit_after_s,
             )
         )
     return nodes, tuple(targets)
+
+
+def _window(asked_s: tuple[float, float] | None, closes_s: float) -> tuple[float, float] | None:
+    """A window that closes no later than was learnt."""
+    if not math.isfinite(closes_s):
+        return asked_s
+    opens_s, until_s = asked_s or (0.0, math.inf)
+    return opens_s, max(min(until_s, closes_s), opens_s)
 
 
 def _service(crew: Crew, number: int, inner_m: float, lessons: Lessons) -> Service:

@@ -20,10 +20,10 @@ from planner.scenario import Scenario
 from planner.search.seen import missed_before
 from planner.search.values import Worth
 from planner.tasks.fleet.aloft import homewards
+from planner.tasks.fleet.answer import FleetAnswer
 from planner.tasks.fleet.crews import Crew, crews_of
 from planner.tasks.fleet.flights import Flown, Order
 from planner.tasks.fleet.placing import Errand, placed
-from planner.tasks.fleet.task import FleetAnswer
 from planner.tasks.search import answer_to, asked_of, reach, sought
 from planner.tasks.task import Answer, Controls
 from planner.tasks.worth import drifted, ground_of, worth_of

@@ -9,10 +9,10 @@ from dataclasses import replace
 from planner.errors import InfeasibleError
 from planner.route import CollectPass
 from planner.scenario import Scenario
+from planner.tasks.fleet.answer import FleetAnswer
 from planner.tasks.fleet.crews import Crew
 from planner.tasks.fleet.flights import Flown, by_passes, items_in
 from planner.tasks.fleet.placing import Sortie
-from planner.tasks.fleet.task import FleetAnswer
 from planner.tasks.task import Answer, Controls
 from planner.vehicle.limits import Use, exceeded
 

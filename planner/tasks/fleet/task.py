@@ -10,10 +10,12 @@ from planner.errors import Finding, InfeasibleError
 from planner.fleet.assignment import Assignment, Trip
 from planner.fleet.assignment import LeftOut as Unassigned
 from planner.fleet.problem import Problem
-from planner.plan import Assigned, LeftOut
+from planner.plan import LeftOut
 from planner.scenario import Scenario
 from planner.tasks.fleet.aloft import homewards
+from planner.tasks.fleet.answer import FleetAnswer
 from planner.tasks.fleet.barred import BarredError, barred, infeasible
+from planner.tasks.fleet.bettering import Hand, bettered
 from planner.tasks.fleet.crews import Crew, crews_of, left_by, not_seen, ways_of
 from planner.tasks.fleet.deciding import AUTO, decided, decided_by, methods_of
 from planner.tasks.fleet.flights import Flown, Order, in_best_order, in_given_order, in_order, items_in, over
@@ -22,11 +24,10 @@ from planner.tasks.fleet.keeping import kept_or
 from planner.tasks.fleet.parts import Cutting
 from planner.tasks.fleet.placing import CROWDED, Errand, LateError, Sortie, cost_of, placed, powers_of
 from planner.tasks.fleet.problem import Lessons, landing_of, problem_of, trips_of
-from planner.tasks.fleet.told import told_of, too_many_items
+from planner.tasks.fleet.told import told_of, too_late, too_many_items
 from planner.tasks.methods import chosen_methods
 from planner.tasks.task import Controls
 from planner.tasks.urban import cut_by_obstacles, lanes_cut
-from planner.wishes import Separation
 
 #: Rounds of assignment and flight, and of those that gave a plan; so many where an assignment is proved, for
 #: that takes little: what it is proved for are estimates, and flights teach better ones.
@@ -40,26 +41,12 @@ TIGHTER = 0.98
 
 
 @dataclass(frozen=True, slots=True)
-class FleetAnswer:
-    """What several aircraft are to fly.
+class _Made:
+    """An assignment of jobs and its flights."""
 
-    Parameters
-    ----------
-    crews, sorties
-        The aircraft; their flights, by aircraft and in flight order.
-    dropped, left_out
-        As ``Answer`` has them.
-    assigned
-        How good it is that these do this; None where nothing was assigned.
-    """
-
-    crews: tuple[Crew, ...]
+    jobs: tuple[Job, ...]
+    assigned: Assignment
     sorties: tuple[Sortie, ...]
-    methods: dict[str, str]
-    dropped: tuple[Finding, ...]
-    left_out: tuple[LeftOut, ...]
-    separation: Separation
-    assigned: Assigned | None = None
 
 
 Key = tuple[int, tuple[tuple[str, int], ...]]
@@ -121,7 +108,7 @@ class _Rounds:
 
     def best(self) -> FleetAnswer:
         """Of the plans of a few rounds."""
-        found: list[tuple[float, FleetAnswer]] = []
+        found: list[tuple[float, FleetAnswer, _Made]] = []
         failed: InfeasibleError | None = None
         least = math.inf
         flown: set[frozenset[Key]] = set()
@@ -138,10 +125,10 @@ class _Rounds:
                 if found:
                     break
                 nearest = min(lacking, key=lambda each: each.margin)
-                if nearest.margin < least or failed is None:
+                if not self._lessons.closes_s and (nearest.margin < least or failed is None):
                     least, failed = nearest.margin, infeasible(jobs, nearest)
                 if not self._cut_more(jobs, lacking):
-                    raise failed
+                    raise failed or infeasible(jobs, nearest)
                 continue
             if not assigned.trips:
                 failed = failed or self._nothing_flown(jobs, assigned)
@@ -149,7 +136,7 @@ class _Rounds:
             try:
                 sorties, near = self._flight_plan(jobs, assigned, errands)
             except LateError as late:
-                failed = self._late(late)
+                failed = self._late(late, jobs, assigned)
                 continue
             except InfeasibleError as error:
                 if found:
@@ -162,7 +149,8 @@ class _Rounds:
             if self._shortened(sorties):
                 self.too_long = answer
                 continue
-            found.append((cost_of(sorties, self._scenario.objective), answer))
+            cost = cost_of(sorties, self._scenario.objective)
+            found.append((cost, answer, _Made(jobs, assigned, sorties)))
             trips = frozenset(_key(jobs, trip) for trip in assigned.trips)
             most = PROVED_ROUNDS if assigned.status == "optimal" else ROUNDS
             if near or len(found) >= most or trips in flown or self._controls.enough():
@@ -173,7 +161,27 @@ class _Rounds:
                 "energy", "scenario", "no assignment of the regions keeps within the aircraft's limits",
                 "Raise the limits, or add batteries or aircraft.",
             )  # fmt: skip
-        return min(found, key=lambda each: each[0])[1]
+        _, answer, made = min(found, key=lambda each: each[0])
+        return self._bettered(made) or answer
+
+    def _bettered(self, made: _Made) -> FleetAnswer | None:
+        """What is better and close to the best that was flown; None where nothing is."""
+        if decided_by(self._scenario.method) != AUTO or self._scenario.going_on is not None:
+            return None
+        seed, controls = self._scenario.seed, self._controls
+
+        def clocked(errands: Sequence[Errand]) -> tuple[Sortie, ...]:
+            with controls.stage("separation"):
+                return placed(self._crews, errands, self._separation, controls, seed)
+
+        hand = Hand(lambda trip: self._errand(made.jobs, trip), clocked)
+        better = bettered(
+            self._crews, made.jobs, self._ways, made.assigned, made.sorties, self._lessons,
+            self._scenario.objective, hand, controls,
+        )  # fmt: skip
+        if better is None:
+            return None
+        return self._answer(made.jobs, better.problem, better.assigned, better.sorties)
 
     def _refused(self, error: InfeasibleError) -> InfeasibleError:
         """What is learnt of a flight that there is no room for; raised where that is no help."""
@@ -272,7 +280,7 @@ class _Rounds:
                 tighter[crew] = min(tighter.get(crew, 1.0), TIGHTER * least)
         for crew, part in tighter.items():
             self._lessons.tighten(crew, part)
-        self._lessons.learn(told)
+        self._lessons.learn(told, self._crews)
         self._lessons.power.update(powers_of(self._crews, sorties))
         return (None if tighter else sorties), far <= NEAR
 
@@ -328,18 +336,12 @@ class _Rounds:
             or cut_by_obstacles(asked)
         )
 
-    def _late(self, late: LateError) -> InfeasibleError:
+    def _late(self, late: LateError, jobs: Sequence[Job], assigned: Assignment) -> InfeasibleError:
         """What is learnt of a window that was missed; a region that need not be seen is given up at last."""
-        job = late.job
-        closes_s = (job.region.time_window_s or (0.0, math.inf))[1]
-        more = late.late_s / max(closes_s, late.late_s) if math.isfinite(closes_s) else 0.0
-        self._lessons.hurry(late.crew, (1.0 + more) / TIGHTER)
-        late_s = math.ceil(late.late_s)
-        message = f"is seen up to {late_s} s after its window closes, as far as was found"
-        relaxation = f"Let time_window_s close {late_s} s later, or add an aircraft."
-        error = InfeasibleError("window", job.of, message, relaxation)
-        if not job.region.required:
-            self._given_up[job.of] = not_seen(job, error)
+        self._lessons.late(late, jobs, assigned, TIGHTER)
+        error = too_late(late)
+        if not late.job.region.required:
+            self._given_up[late.job.of] = not_seen(late.job, error)
         return error
 
     @property

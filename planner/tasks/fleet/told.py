@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 
-from planner.errors import Finding
+from planner.errors import Finding, InfeasibleError
 from planner.fleet.assignment import Assignment
 from planner.fleet.auto.build import tables
 from planner.fleet.bound import lower_bound
@@ -16,6 +16,7 @@ from planner.profile.items import too_many
 from planner.progress import Stop, never
 from planner.tasks.fleet.crews import Crew
 from planner.tasks.fleet.flights import Flown, items_in
+from planner.tasks.fleet.placing import LateError
 
 #: Of more targets no bound is looked for: it would take longer than a second.
 MOST_TARGETS = 30
@@ -48,6 +49,14 @@ def told_of(
     bound_s = min(max(bound_s, 0.0), objective_s)
     gap = round(1.0 - bound_s / objective_s, 6)
     return Assigned(method, assigned.status, round(objective_s, 3), round(bound_s, 3), gap)
+
+
+def too_late(late: LateError) -> InfeasibleError:
+    """What is said of a window that a flight does not keep."""
+    late_s = math.ceil(late.late_s)
+    message = f"is seen up to {late_s} s after its window closes, as far as was found"
+    relaxation = f"Let time_window_s close {late_s} s later, or add an aircraft."
+    return InfeasibleError("window", late.job.of, message, relaxation)
 
 
 def too_many_items(crews: Sequence[Crew], flown: Flown) -> Iterator[Finding]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Iterator
 
 import pytest
@@ -12,7 +13,7 @@ from planner.fleet.answer import trips_of
 from planner.fleet.assignment import Trip
 from planner.fleet.auto.build import tables
 from planner.fleet.auto.search import search
-from planner.fleet.exact import exact
+from planner.fleet.exact import exact, nearly_best
 from planner.fleet.problem import Objective, Problem
 from planner.fleet.schedule import broken, cost_of, fly, stop_at
 from planner.progress import never
@@ -91,3 +92,19 @@ def test_the_search_never_beats_it_and_finds_it_on_few_targets(seed: int) -> Non
     found = search(known, 1, lambda done: done / 6000, never, lambda _: None)
     assert best is not None
     assert found.cost == pytest.approx(best.cost, rel=1e-9)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_nearly_as_good_are_all_that_enumeration_finds(seed: int) -> None:
+    """Every way to share three targets out that costs up to a tenth more, each in its best order."""
+    given = problem(seed, targets=3, windows=0.0, objective=OBJECTIVES[seed % 2])
+    shares: dict[tuple[frozenset[int], ...], float] = {}
+    for trips in orders(given):
+        own = {trip.member: frozenset(visit.target for visit in trip.visits) for trip in trips}
+        if sum(map(len, own.values())) == len(given.targets):
+            share = tuple(own.get(member, frozenset()) for member in range(len(given.members)))
+            shares[share] = min(shares.get(share, math.inf), cost_of(given, trips))
+    cost, found = nearly_best(tables(given), 0b111, 0.1, 100, never)
+    assert cost == pytest.approx(min(shares.values()), abs=1e-3)
+    expected = {share for share, each in shares.items() if each <= 1.1 * min(shares.values())}
+    assert {tuple(frozenset(own) for own in each) for each in found} == expected

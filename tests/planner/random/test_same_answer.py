@@ -12,6 +12,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from planner.geojson import read_scenario
+from planner.pipeline import make_plan
 from tests.planner.moved import put_at
 from tests.planner.random.test_plain_rules import CHOSEN, SAME, Places, asked, length_m, polygon
 from tests.planner.scenarios import feature
@@ -102,3 +104,35 @@ def test_so_have_other_kinds(kind: str, number: int) -> None:
     }
     off = {name: length_m(document) / known_m - 1.0 for name, document in ways.items()}
     assert {name: part for name, part in off.items() if abs(part) > SAME} == {}
+
+
+def shared_out(number: int, put: Callable[[float, float], list[float]], move: Move) -> dict[str, Any]:
+    """Small regions strewn about for two or three aircraft that turn wide."""
+    rng = np.random.default_rng([91, number])
+    count, fleet = int(rng.integers(4, 10)), int(rng.integers(2, 4))
+    document = asked([], lambda e, n: put(*move((e, n))))
+    for k in range(count):
+        middle, part = rng.uniform(-4000.0, 4000.0, 2), 0.25 * rng.uniform(0.15, 0.7)
+        corners = polygon(int(rng.integers(0, 200)))
+        ring = [put(*move((part * e + middle[0], part * n + middle[1]))) for e, n in corners]
+        document["features"].append(feature(f"R{k}", "roi", "Polygon", [[*ring, ring[0]]]))
+    vehicle = document["vehicles"][0] | {"min_turn_radius_m": 120.0}
+    return document | {"vehicles": [vehicle | {"name": f"uav {k}"} for k in range(fleet)]}
+
+
+@pytest.mark.parametrize("number", range(20) if CHOSEN == "all" else [2])
+def test_fleets_share_out_what_is_asked_otherwise_as_well(number: int) -> None:
+    """Turned, mirrored or with noise the flights of several aircraft land as early, and are as long."""
+    rng, put = np.random.default_rng(number), put_at((8.55, 47.4))
+
+    def figures(move: Move) -> tuple[float, float]:
+        metrics = make_plan(read_scenario(shared_out(number, put, move))).metrics
+        assert metrics.last_landing_s is not None
+        return metrics.last_landing_s, metrics.length_m
+
+    known = figures(lambda place: place)
+    for move in (
+        lambda p: turned((-p[0], p[1]), 37.0),
+        lambda p: (p[0] + rng.uniform(-1e-4, 1e-4), p[1]),
+    ):
+        assert figures(move) == pytest.approx(known, rel=SAME)
