@@ -13,9 +13,9 @@ from shapely.geometry import LineString, MultiLineString
 from planner.bounds.allowance import Allowance
 from planner.check import judge
 from planner.check.edge import near_edge
-from planner.errors import Finding
+from planner.errors import Finding, InfeasibleError
 from planner.metrics import measure
-from planner.plan import LeftOut, Plan
+from planner.plan import LeftOut, Plan, Violation
 from planner.profile.items import items_of, too_many
 from planner.progress import Clock, Progress, Stop, Until, never, silent
 from planner.publish import Chart, assemble, fence, uncovered
@@ -36,6 +36,8 @@ ROUTING_SHARE = 0.6
 #: What planning takes at least, in lines between cells of the bound, half a microsecond each: for a pass or
 #: region by the paper's stages and by the joint routing; by this for each pass beyond visits, up to so many.
 LINES_BY_PAPER, LINES_EACH, LINES_FURTHER, MOST_FURTHER = 30_000, 80_000, 120_000, 15
+#: A search that breaks one of these is refused.
+BARRING = ("area", "hard-zone", "clearance")
 #: The bound is looked for in this part of the work for plan and bound together at most.
 BOUND_SHARE = 0.3
 
@@ -159,6 +161,7 @@ def _judged(
         verdict = judge(scenario, draft)
         near = tuple(str(finding) for finding in near_edge(scenario, draft))
     if scenario.task == "search":
+        _refuse_barred(scenario, verdict.violations)
         # Here: collecting needs nothing of searches.
         from planner.tasks.most import most
 
@@ -191,6 +194,31 @@ def _judged(
         violations=verdict.violations,
         uncovered=uncovered(chart, verdict.unseen, reasons),
     )
+
+
+def _refuse_barred(scenario: Scenario, violations: Sequence[Violation]) -> None:
+    """Refuse a search that leads through what may never be entered, or out of the area: it need not be flown.
+
+    One in the air has to come down somewhere: its plan tells what it breaks.
+
+    Raises
+    ------
+    InfeasibleError
+        With the zone, the place, and what would help.
+    """
+    if any(aircraft.aloft is not None for aircraft in scenario.aircraft):
+        return
+    for each in violations:
+        if each.hard and each.constraint in BARRING:
+            place = None if each.where is None else scenario.frame.to_local(each.where[:2])
+            raise InfeasibleError(
+                each.constraint,
+                each.feature,
+                f"no flight to the ground and home was found that keeps out of it: {each.message}, in climb, "
+                "landing or on the way",
+                "Start and end where there is room to climb and to come down, fly lower, or move it.",
+                None if place is None else (float(place[0]), float(place[1])),
+            )
 
 
 def _fleet_plan(scenario: Scenario, controls: Controls, watch: _Stopwatch) -> Plan:

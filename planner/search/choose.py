@@ -23,7 +23,7 @@ from planner.search.horizon import VARIANTS
 from planner.search.importance.strips import WALKS, walked
 from planner.search.programme import Place, Pricing, Programme, Sweep, cut_to, seen_worth, thinned_to
 from planner.search.room import LEAST_PASS_M, Room
-from planner.search.shifted import shifted, strip_of
+from planner.search.shifted import moves, shifted, strip_of
 from planner.search.straights import horizon_strips
 from planner.search.swaths import Looking
 from planner.search.values import Worth
@@ -52,6 +52,8 @@ REFINED = "refined"
 PUBLISHED = ("snyder2021", *VARIANTS)
 #: Where nothing else is within a budget so many flights by one pass are tried.
 NEAREST = 3
+#: Less than this part of all that can be found is nothing.
+NOTHING = 1e-7
 #: Strips by the width of the swath: wider ones leave gaps, and reach farther.
 WIDTHS = (1.0, 1.08)
 
@@ -85,6 +87,15 @@ class Search:
     drifting: Drifting | None = None
     seed: int = 0
     kept: tuple[tuple[Place, Place, Look], ...] = ()
+
+    @property
+    def total(self) -> float:
+        """All that can be found."""
+        return self.worth.total if self.drifting is None else self.drifting.total
+
+    def finds(self, worth: float) -> bool:
+        """Whether that is anything of what is looked for."""
+        return worth > NOTHING * self.total
 
     def found(self, sweeps: Sequence[Sweep]) -> float:
         """What passes find: of the worth of ground, or of what drifts, the sooner the better."""
@@ -155,7 +166,7 @@ class Search:
             moved = True
             while moved:
                 moved = False
-                for strips in _moves(best.strips, part, width_m):
+                for strips in moves(best.strips, part, width_m):
                     if self._over((best,)):
                         return best
                     sweeps = tuple(self.sweeps_over(strips, best.look))
@@ -183,8 +194,7 @@ class Search:
             return next(iter(self._cut(laid, budget_m, thin=False)), None)
 
         laid = np.array([strip_of(sweep) for sweep in start.sweeps])
-        total = self.worth.total if self.drifting is None else self.drifting.total
-        return shifted(laid, tried, self.looking.narrowest_m(), total, self.seed, self.enough) or start
+        return shifted(laid, tried, self.looking.narrowest_m(), self.total, self.seed, self.enough) or start
 
     def _again(self, way: Programme, budget_m: float) -> Iterator[Programme]:
         """A pattern to and fro for as long as the budget lasts, where looks again find something."""
@@ -205,16 +215,30 @@ class Search:
         return (each.whole for each in laid)
 
     def nearest(self) -> list[Programme]:
-        """Patterns cut to their first pass, whatever that costs: the nearest of them."""
+        """Patterns cut to one pass that finds something, whatever that costs: the nearest of them.
+
+        That is their first; of a pattern whose first finds nothing the nearest that does. Where none does at
+        all, their first ones.
+        """
         of_all = self if self.family in FAMILIES else replace(self, family=None)
         found = [
             Programme(
-                laid.family, laid.whole[:1], self.found(laid.whole[:1]), self.pricing.cost_m(laid.whole[:1]),
-                laid.whole, False, laid.strips, laid.look,
+                laid.family, way, self.found(way), self.pricing.cost_m(way), laid.whole, False, laid.strips,
+                laid.look,
             )
             for laid in of_all._laid(self.ground, self.looking.narrowest_m(), (1.0,))
+            for way in (self._one_of(laid.whole),)
         ]  # fmt: skip
+        found = [each for each in found if self.finds(each.worth)] or found
         return sorted(found, key=lambda each: each.cost_m)[:NEAREST]
+
+    def _one_of(self, whole: tuple[Sweep, ...]) -> tuple[Sweep, ...]:
+        """The first of passes where it finds something, else the nearest that does, else the first."""
+        if self.finds(self.found(whole[:1])):
+            return whole[:1]
+        alone = zip(whole, self._alone(whole), strict=True)
+        finding = [(each,) for each, worth in alone if self.finds(worth)]
+        return min(finding, key=self.pricing.cost_m, default=whole[:1])
 
     def _cut(self, laid: Laid | Programme, budget_m: float, *, thin: bool) -> tuple[Programme, ...]:
         """A pattern within a budget: its first passes, or those worth most; none where no pass fits."""
@@ -382,19 +406,3 @@ class Search:
 
 def _size(part: Polygon) -> float:
     return float(part.area)
-
-
-def _moves(strips: Floats, part: float, width_m: float) -> Iterator[Floats]:
-    """Strips moved along and across the first of them, stretched along both, and turned."""
-    middle = strips.reshape(-1, 2).mean(axis=0)
-    first = strips[0, 1] - strips[0, 0]
-    along = first / max(float(np.hypot(*first)), 1e-9)
-    axes = np.array([along, [-along[1], along[0]]])
-    own = (strips - middle) @ axes.T
-    for axis in (0, 1):
-        for way in (-part, part):
-            yield middle + (own + way * width_m * np.eye(2)[axis]) @ axes
-            yield middle + (own * (1.0 + 0.2 * way * np.eye(2)[axis])) @ axes
-    for turn_rad in (-part * math.radians(12.0), part * math.radians(12.0)):
-        cos, sin = math.cos(turn_rad), math.sin(turn_rad)
-        yield middle + own @ np.array([[cos, sin], [-sin, cos]]) @ axes

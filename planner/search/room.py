@@ -14,6 +14,7 @@ from shapely.geometry.base import BaseGeometry
 from planner.airspace.airspace import Airspace, Level
 from planner.airspace.surroundings import MARGIN_M, surroundings
 from planner.airspace.zones import AREA, TRANSIT_MARGIN_M, keep_out
+from planner.search.reached import ALL_OF_IT, Reached
 from planner.vehicle.model import FlightModel
 from planner.wishes import Objective
 
@@ -45,6 +46,8 @@ class Room:
         What is kept out of by name, margins included, the area's outside among it.
     barred
         What of the ground may never be flown over, whatever that costs.
+    reached
+        What hangs together with the start, and what of the ground does not.
     """
 
     free: BaseGeometry
@@ -53,6 +56,7 @@ class Room:
     settle_m: float
     zones: tuple[tuple[str, BaseGeometry], ...] = ()
     barred: BaseGeometry = EMPTY
+    reached: Reached = ALL_OF_IT
 
     @classmethod
     def of(
@@ -62,6 +66,7 @@ class Room:
         model: FlightModel,
         objective: Objective,
         ground: Polygon | MultiPolygon,
+        reached: Reached = ALL_OF_IT,
     ) -> Room:
         """The room at a level over ground and round it; threats that cost anything are kept out of."""
         around = surroundings(airspace, level, model, objective)
@@ -73,6 +78,8 @@ class Room:
         soft = around.soft if around.prices is None else around.soft[around.prices > 0.0]
         discs = [Point(e, n).buffer(r, quad_segs=32) for e, n, r in np.vstack([around.hard, soft]).tolist()]
         free = shapely.difference(free, shapely.union_all([*around.hard_polygons, *discs]))
+        if reached.free is not None:
+            free = shapely.intersection(free, reached.free)
         turning = free.buffer(-model.turn_radius_m)
         for place in (free, turning):
             shapely.prepare(place)
@@ -87,7 +94,7 @@ class Room:
             shapes.append((AREA, outside, True))
         zones = tuple((name, shape) for name, shape, _ in shapes)
         barred = ground.intersection(shapely.union_all([shape for _, shape, hard in shapes if hard]))
-        return cls(free, turning, model.turn_radius_m, model.settle_m, zones, barred)
+        return cls(free, turning, model.turn_radius_m, model.settle_m, zones, barred, reached)
 
     def blocking(self, ground: BaseGeometry) -> tuple[str, ...]:
         """Names of what leaves no pass over ground, or no turn beside it: most of it first."""

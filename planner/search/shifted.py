@@ -8,7 +8,7 @@ the end (threshold accepting; G. Dueck, T. Scheuer 1990). The same seed gives th
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 import numpy as np
 from numpy.typing import NDArray
@@ -133,3 +133,19 @@ def _moved(strips: Floats, step_m: float, width_m: float, rng: np.random.Generat
         own[..., int(rng.integers(2))] *= 1.0 + way_m / half_m
         moved = middle + own @ first
     return moved
+
+
+def moves(strips: Floats, part: float, width_m: float) -> Iterator[Floats]:
+    """Strips moved along and across the first of them, stretched along both, and turned."""
+    middle = strips.reshape(-1, 2).mean(axis=0)
+    first = strips[0, 1] - strips[0, 0]
+    along = first / max(float(np.hypot(*first)), 1e-9)
+    axes = np.array([along, [-along[1], along[0]]])
+    own = (strips - middle) @ axes.T
+    for axis in (0, 1):
+        for way in (-part, part):
+            yield middle + (own + way * width_m * np.eye(2)[axis]) @ axes
+            yield middle + (own * (1.0 + 0.2 * way * np.eye(2)[axis])) @ axes
+    for turn_rad in (-part * math.radians(12.0), part * math.radians(12.0)):
+        cos, sin = math.cos(turn_rad), math.sin(turn_rad)
+        yield middle + own @ np.array([[cos, sin], [-sin, cos]]) @ axes

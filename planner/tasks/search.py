@@ -16,13 +16,14 @@ from planner.scenario import Scenario
 from planner.search.belief.drifting import Drifting, believed
 from planner.search.choose import PUBLISHED, REFINED, Search
 from planner.search.programme import Pricing, Programme
+from planner.search.reached import ALL_OF_IT, reached
 from planner.search.room import Room
 from planner.search.swaths import Looking
 from planner.tasks.budget import MOST, Flight, part_used
 from planner.tasks.leftover import filled
 from planner.tasks.methods import chosen_methods
 from planner.tasks.setting import Setting
-from planner.tasks.spare import Spare, out_of_reach, refuse_blocked, spare_of
+from planner.tasks.spare import Spare, cut_off, out_of_reach, refuse_blocked, refuse_worthless, spare_of
 from planner.tasks.task import Answer, Controls, Task
 from planner.tasks.transits import Transits
 from planner.tasks.unflown import unflown_of
@@ -38,6 +39,10 @@ FLOWN, LENGTHS = 6, 6
 ENOUGH = 0.99
 #: The best flight is improved so often, for so much more at least.
 MOST_IMPROVED, LEAST_BETTER = 3, 1e-3
+#: So many flights that cannot be flown are tried before the search is refused for them.
+MOST_REFUSED = 24
+#: An aircraft so near to a level is flying at it.
+LEVEL_M = 1.0
 #: A flight that nothing limits looks for what drifts for so many times what sees all ground once.
 UNLIMITED = 1.5
 
@@ -71,7 +76,7 @@ def reach(scenario: Scenario, controls: Controls) -> tuple[float, float]:
     """
     setting = Setting.of(scenario)
     asked = asked_of(scenario, setting)
-    refuse_blocked(asked)
+    refuse_blocked(asked, *(terminal.name for terminal in setting.ends))
     transits = Transits.of(setting, scenario.objective, chosen_methods(scenario.method))
     spare = spare_of(transits, asked, controls.stop)
     return spare.metres * asked.looking.narrowest_m(), _lasting_s(asked, spare)
@@ -93,7 +98,7 @@ def sought(scenario: Scenario, controls: Controls, *, as_before: bool = False) -
     asked = replace(
         asked_of(scenario, setting), stop=controls.stop, enough=controls.enough, seed=scenario.seed
     )
-    refuse_blocked(asked)
+    refuse_blocked(asked, *(terminal.name for terminal in setting.ends))
     spare = spare_of(transits, asked, controls.stop)
     if scenario.importance.drift is not None:
         asked = _drifting(asked, scenario, spare)
@@ -125,7 +130,8 @@ def answer_to(one: Sought, controls: Controls, *, improved: bool = True) -> Answ
             best = _improved(best, asked, fly, setting.model.aircraft, controls)
             best = filled(best, asked, fly, setting.model.aircraft, controls.enough)
     methods = one.transits.methods | {"search": best.programme.family}
-    return Answer(setting, best.composed, best.legs, best.passes, methods, (), best.notes)
+    notes = (*best.notes, *cut_off(asked, setting.ends[0].name))
+    return Answer(setting, best.composed, best.legs, best.passes, methods, (), notes)
 
 
 def refuse_unsearchable(scenario: Scenario) -> None:
@@ -139,7 +145,7 @@ def refuse_unsearchable(scenario: Scenario) -> None:
     setting = Setting.of(scenario)
     transits = Transits.of(setting, scenario.objective, chosen_methods(scenario.method))
     asked = asked_of(scenario, setting)
-    refuse_blocked(asked)
+    refuse_blocked(asked, *(terminal.name for terminal in setting.ends))
     spare_of(transits, asked, never)
 
 
@@ -152,8 +158,12 @@ def asked_of(scenario: Scenario, setting: Setting) -> Search:
     sensor, height_m = setting.suite.over(regions[0].sensor, ground_of(whole), setting.airspace, level)
     looking = Looking(sensor, height_m, tuple(region.name for region in regions))
     width_m = looking.narrowest_m()
-    room = Room.of(setting.airspace, level, setting.model, scenario.objective, ground)
     start, end = (terminal.position for terminal in setting.ends)
+    # One that is in the air elsewhere than at the height of the search comes to that on its way.
+    aloft_m = setting.ends[0].over_home_m
+    level_with = aloft_m is None or abs(aloft_m - level.height_m) < LEVEL_M
+    where = reached(setting.airspace, level, (start, end), ground) if level_with else ALL_OF_IT
+    room = Room.of(setting.airspace, level, setting.model, scenario.objective, ground, where)
     worth = worth_of(scenario, ground, _cell_m(ground, width_m))
     family = None if scenario.method.search == "auto" else scenario.method.search
     detection = scenario.importance.detection
@@ -198,7 +208,7 @@ def _best(one: Sought, fly: Callable[[Programme], Flight], controls: Controls) -
     """The best programmes flown, each as long as the limits allow; the one that sees most."""
     best: Flight | None = None
     refused: InfeasibleError | None = None
-    flown = 0
+    flown = barred = 0
     aircraft = one.setting.model.aircraft
     # Of flights that hardly reach the ground more is thought than they take: some are flown all the same.
     for lay in (lambda: one.ranked, one.asked.nearest):
@@ -209,16 +219,21 @@ def _best(one: Sought, fly: Callable[[Programme], Flight], controls: Controls) -
             try:
                 found = _as_long_as_can_be(programme, one.asked, one.spare.metres, fly, aircraft)
             except InfeasibleError as error:
-                refused = error
+                refused, barred = error, barred + 1
+                if barred >= MOST_REFUSED:
+                    break
                 continue
             flown += 1
-            if found is not None and (best is None or found.programme.worth > best.programme.worth):
+            if found is None or not one.asked.finds(found.programme.worth):
+                continue
+            if best is None or found.programme.worth > best.programme.worth:
                 best = found
         if best is not None:
             return best
-        flown = 0
+        flown = barred = 0
     if refused is not None:
         raise refused
+    refuse_worthless(one.asked, one.setting.ends[0].name)
     raise out_of_reach(one.transits, one.asked, one.spare, controls.stop)
 
 

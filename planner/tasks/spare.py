@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -26,6 +27,8 @@ from planner.vehicle.limits import Use, raised
 HOVERED_M = 5.0
 #: So much of what blocks is named; ground of which this part is barred is.
 NAMED, ALL = 5, 1.0 - 1e-6
+#: No word is lost on less of the ground than this.
+LEAST_TOLD = 1e-3
 
 
 @dataclass(frozen=True, slots=True)
@@ -183,22 +186,39 @@ def _over_end(transits: Transits, asked: Search) -> tuple[float, float]:
     return (float(east_m), float(north_m))
 
 
-def refuse_blocked(asked: Search) -> None:
-    """Refuse ground that nothing may be flown over, or that no pass sees, by what blocks it.
+def refuse_blocked(asked: Search, start: str, end: str) -> None:
+    """Refuse an end that no flight leads to; ground so, that nothing may be flown over, or that no pass sees.
 
     What a radar sees of ground that is barred from beside it is no search of it.
 
     Raises
     ------
     InfeasibleError
-        ``"blocked"``.
+        ``"blocked"``; ``"hard-zone"`` where zones lie between.
     """
+    if asked.room.reached.end_off:
+        raise InfeasibleError(
+            "hard-zone",
+            end,
+            f"no flight leads there from {start}: {_listed(asked.room.reached.walls)} in between",
+            f"Move {end}, or leave a way open.",
+            asked.pricing.end,
+        )
     barred = asked.room.barred.area >= ALL * asked.ground.area
     if not barred and next(asked.flyable(), None) is not None:
         return
     place = asked.ground.representative_point()
-    blocking = asked.room.blocking(asked.ground)
-    listed = ", ".join(blocking[:NAMED]) + f" and {len(blocking) - NAMED} more" * (len(blocking) > NAMED)
+    where = (float(place.x), float(place.y))
+    walls = asked.room.reached.walls
+    if walls and not barred:
+        raise InfeasibleError(
+            "hard-zone",
+            asked.looking.names[0],
+            f"no flight leads there from {start}: {_listed(walls)} in between, and no way leads round",
+            f"Move {start} to the other side, or leave a way open.",
+            where,
+        )
+    listed = _listed(asked.room.blocking(asked.ground))
     turns = f"turns of {asked.room.radius_m:.0f} m leave no pass over it from {asked.looking.height_m:.0f} m"
     raise InfeasibleError(
         "blocked",
@@ -207,5 +227,44 @@ def refuse_blocked(asked: Search) -> None:
         if barred
         else f"nothing of it can be seen: {listed or 'its shape'} and {turns}",
         "Widen the area, move what blocks it, or fly at another altitude or with tighter turns.",
+        where,
+    )
+
+
+def refuse_worthless(asked: Search, start: str) -> None:
+    """Refuse a search that finds nothing whatever it takes: what is looked for lies where none leads to.
+
+    Raises
+    ------
+    InfeasibleError
+        ``"blocked"``, or ``"hard-zone"`` where zones lie between.
+    """
+    if asked.finds(asked.nearest()[0].worth):
+        return
+    walls = asked.room.reached.walls
+    listed = _listed(walls or asked.room.blocking(asked.ground))
+    place = asked.ground.representative_point()
+    raise InfeasibleError(
+        "hard-zone" if walls else "blocked",
+        asked.looking.names[0],
+        f"no flight from {start} finds anything of what is looked for: {listed or 'its shape'} in between",
+        f"Move what is in the way, {start}, or what is important.",
         (float(place.x), float(place.y)),
     )
+
+
+def cut_off(asked: Search, start: str) -> tuple[str, ...]:
+    """What is said of ground that no flight leads to from a start, where there is some."""
+    where = asked.room.reached
+    share = where.cut_off.area / asked.ground.area
+    if share < LEAST_TOLD:
+        return ()
+    return (
+        f"{asked.looking.names[0]}: no flight leads to {share:.1%} of the ground from {start}: "
+        f"{_listed(where.walls)} in between",
+    )
+
+
+def _listed(names: Sequence[str]) -> str:
+    """Names, the first of them."""
+    return ", ".join(names[:NAMED]) + f" and {len(names) - NAMED} more" * (len(names) > NAMED)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from planner.airspace.terrain import Terrain
-from planner.errors import ScenarioError
+from planner.errors import InfeasibleError, ScenarioError
 from planner.geojson import read_scenario
 from planner.pipeline import make_plan
 from planner.tasks.worth import worth_of
@@ -52,6 +52,10 @@ def walls(west, south, east, north, thick=80):
             document(*walls(200, 200, 1000, 800), feature("end", "Point", lonlat(600, 500), name="E")),
             ("E", "hard-zone"),
         ),
+        (
+            document(*walls(300, 300, 1150, 880), rectangle("roi", 480, 480, 900, 650, name="R")),
+            ("R", "hard-zone"),
+        ),
         (document(vehicle=WING | {"energy_wh": 3}), ("uav", "energy")),
         (document(vehicle=WING | {"energy_wh": 3, "reserve": 1.5}), ("vehicle uav", "out-of-range")),
         (document(altitude_m=100, max_height_m=80), ("area", "above-ceiling")),
@@ -66,6 +70,7 @@ def walls(west, south, east, north, thick=80):
         "barred",
         "barred-to-radar",
         "walled-in",
+        "walled-off",
         "energy",
         "reserve",
         "ceiling",
@@ -79,6 +84,67 @@ def walls(west, south, east, north, thick=80):
 def test_what_no_search_can_keep_is_refused(asked, found):
     """Each is an error that names the feature and the rule."""
     assert found in rules(asked)
+
+
+def yard(wide, gate):
+    """Four walls round a yard from 600, 400 on, so wide, with a gate in the east."""
+    until = 400 + wide
+    return [
+        rectangle("no_fly", 540, 340, 660 + wide, 400, name="S"),
+        rectangle("no_fly", 540, until, 660 + wide, until + 60, name="N"),
+        rectangle("no_fly", 540, 340, 600, until + 60, name="W"),
+        rectangle("no_fly", 600 + wide, 340, 660 + wide, until - gate, name="E"),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("asked", "found"),
+    [
+        (
+            document(
+                *walls(300, 300, 1150, 880), rectangle("importance", 480, 480, 900, 650, score=1.0),
+                method={"search": "spiral"}, vehicle=WING | {"energy_wh": 10},
+            ),
+            ("area", "hard-zone", "S, N, W, Z in between"),
+        ),
+        (
+            document(
+                *yard(300, 30), rectangle("roi", 100, 500, 200, 560, name="R"),
+                feature("end", "Point", lonlat(750, 550), name="home"), clearance_m=5,
+                method={"search": "parallel"},
+            ),
+            ("W", "hard-zone", "are flown inside W"),
+        ),
+        (
+            document(
+                rectangle("importance", 900, 650, 1150, 850, score=1.0), method={"search": "parallel"},
+                vehicle=WING | {"energy_wh": 4.5},
+            ),
+            ("uav", "energy", "Wh short, "),
+        ),
+    ],
+    ids=["all-that-counts-walled-off", "a-gate-too-near-to-climb", "all-that-counts-out-of-reach"],
+)  # fmt: skip
+def test_a_search_that_finds_nothing_or_leads_through_what_is_hard_is_refused(asked, found):
+    """Where only planning shows it: no plan that sees other ground alone, none that breaks a zone."""
+    feature_, rule, said = found
+    with pytest.raises(InfeasibleError) as refused:
+        make_plan(read_valid(asked))
+    assert (refused.value.feature, refused.value.constraint) == (feature_, rule)
+    assert said in refused.value.message
+
+
+def test_ground_beyond_a_wall_is_told_and_the_rest_searched():
+    """A wall across the area: the part at the start is seen, of the other its share is said."""
+    ground = rectangle("roi", 300, 100, 760, 300, name="R")
+    wall = rectangle("no_fly", 500, 0, 560, 900, name="wall")
+    asked = document(ground, wall, method={"search": "parallel"}, vehicle=WING | {"energy_wh": 10})
+    plan = make_plan(read_valid(asked))
+    assert plan.hard_violations == ()
+    said = next(each for each in plan.warnings if "no flight leads" in each)
+    assert "wall in between" in said
+    assert said.startswith("R: no flight leads to 36.5% of the ground")
+    assert 0.2 < plan.metrics.coverage["R"] < 0.5
 
 
 def test_what_blocks_a_search_is_named():
