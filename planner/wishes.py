@@ -85,12 +85,16 @@ class GoingOn:
         Another order is flown where it is better by this part.
     unflown
         By the name of an aircraft, what of a search it was still to fly, in flight order.
+    until
+        By the name of an aircraft, the line that it flies until its plan begins: east, north, and metres over
+        home.
     """
 
     begins_in_s: float = 0.0
     order: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     unless_better: float = 0.05
     unflown: Mapping[str, tuple[Unflown, ...]] = field(default_factory=dict)
+    until: Mapping[str, tuple[tuple[float, float, float], ...]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)

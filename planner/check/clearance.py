@@ -72,6 +72,45 @@ def place_violations(
         )
 
 
+def begun_violations(scenario: Scenario) -> Iterator[Violation]:
+    """Where aircraft in flight enter what is hard, or leave the area, before the plan begins.
+
+    They fly by another plan until then: this one can help it by nothing but beginning sooner, so that none of
+    it forbids the upload.
+    """
+    going_on = scenario.going_on
+    if going_on is None:
+        return
+    home_amsl_m = scenario.level.amsl_m - scenario.level.height_m
+    hard = [banded for banded in banded_shapes(scenario.airspace, home_amsl_m) if banded.hard]
+    flying = {aircraft.name for aircraft in scenario.aircraft}
+    for name, places in going_on.until.items():
+        if name not in flying:
+            continue
+        line_m, heights_m = np.array(places)[:, :2], np.array(places)[:, 2]
+        entered = [
+            (banded.shape.name, between(line_m, heights_m, banded.low_m, banded.high_m).intersection(shape))
+            for banded in hard
+            for shape in (banded.shape.polygon(),)
+        ]
+        if scenario.area is not None:
+            outside = LineString(line_m).difference(scenario.area.buffer(PLACE_TOLERANCE_M))
+            entered.append(("the outside of the area", outside))
+        for zone, inside in entered:
+            if inside.length <= PLACE_TOLERANCE_M:
+                continue
+            yield Violation(
+                "hard-zone",
+                zone,
+                f"{name} flies {inside.length:.1f} m inside {zone} by the old plan, before this one begins "
+                f"{going_on.begins_in_s:g} s after it was asked for",
+                float(inside.length),
+                "m",
+                middle(scenario, inside),
+                hard=False,
+            )
+
+
 def _too_near(
     scenario: Scenario, banded: Banded, line_m: NDArray[np.float64], heights_m: NDArray[np.float64]
 ) -> Iterator[Violation]:

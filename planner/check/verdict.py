@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 from shapely.geometry import MultiPolygon, Polygon
 
-from planner.check.clearance import clearance_violations, place_violations
+from planner.check.clearance import begun_violations, clearance_violations, place_violations
 from planner.check.continuity import collect_violations, terminal_violations
 from planner.check.coverage import covered
 from planner.check.energy import line_wh
@@ -127,6 +127,7 @@ def judge(scenario: Scenario, plan: Plan) -> Verdict:
         violations += followed_violations(scenario, plan, path)
         violations += ceiling_violations(scenario, plan, path)
     scenario, plan = asked, published
+    violations += begun_violations(scenario)
     violations += window_violations(scenario, plan)
     violations += fleet_violations(scenario, plan, scenario.kept_apart)
     coverage, unseen, missed = covered(scenario, plan)

@@ -10,8 +10,8 @@ from planner.wishes import GoingOn, Unflown
 
 #: No plan begins later after the call for it, s.
 MOST_S = 600.0
-
-
+#: Nothing is flown higher.
+MOST_HEIGHT_M = 30_000.0
 #: Sides that a sensor looks to.
 LOOKS = ("left", "right", "down")
 
@@ -33,10 +33,46 @@ def read_going_on(raw: Any, frame: LocalFrame, findings: Findings) -> GoingOn | 
     share = fields.number("unless_better", GoingOn().unless_better, minimum=0.0, maximum=1.0)
     order = _order(raw.get("order"), findings)
     unflown = _unflown(raw.get("unflown"), frame, findings)
-    fields.refuse_unknown(also_known=("order", "unflown"))
-    if begins_in_s is None or share is None or order is None or unflown is None:
+    until = _until(raw.get("until"), frame, findings)
+    fields.refuse_unknown(also_known=("order", "unflown", "until"))
+    if begins_in_s is None or share is None or order is None or unflown is None or until is None:
         return None
-    return GoingOn(begins_in_s, order, share, unflown)
+    return GoingOn(begins_in_s, order, share, unflown, until)
+
+
+def _until(
+    raw: Any, frame: LocalFrame, findings: Findings
+) -> dict[str, tuple[tuple[float, float, float], ...]] | None:
+    """Lines flown until the plan begins, by the name of an aircraft."""
+    if raw is None:
+        return {}
+    lines = raw.values() if isinstance(raw, dict) else [None]
+    if all(_is_line(line) for line in lines):
+        found = {}
+        for name, line in raw.items():
+            places = frame.to_local([place[:2] for place in line]).tolist()
+            rows = zip(places, line, strict=True)
+            found[str(name)] = tuple((east, north, float(place[2])) for (east, north), place in rows)
+        return found
+    findings.error(
+        "replan", "bad-value", "until is not an object of lines",
+        'Write until: {"the aircraft": [[10.0, 47.0, 80.0], [10.1, 47.0, 80.0]]}, longitude, latitude and '
+        "metres over home, or leave it out.",
+    )  # fmt: skip
+    return None
+
+
+def _is_line(raw: Any) -> bool:
+    return (
+        isinstance(raw, list)
+        and len(raw) >= 2
+        and all(isinstance(p, list) and len(p) == 3 and _on_earth(*p[:2]) and _is_height(p[2]) for p in raw)
+    )
+
+
+def _is_height(raw: Any) -> bool:
+    plain = isinstance(raw, int | float) and not isinstance(raw, bool)
+    return plain and abs(raw) <= MOST_HEIGHT_M
 
 
 def _unflown(raw: Any, frame: LocalFrame, findings: Findings) -> dict[str, tuple[Unflown, ...]] | None:

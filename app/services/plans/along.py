@@ -112,6 +112,16 @@ class Course:
             left_wh = aircraft.energy_wh - since_s / self.duration_s * self._path.energy_wh
         return Now(lon_deg, lat_deg, altitude_m - self._home_m, heading_deg, along_m, since_s, left_wh)
 
+    def line(self, from_s: float, until_s: float) -> tuple[tuple[float, float, float], ...]:
+        """Its way between two times: degrees, and metres over home."""
+        first_m, last_m = self._mark_m(from_s), self._mark_m(until_s)
+        between = self._along_m[(self._along_m > first_m) & (self._along_m < last_m)]
+        at_m = np.concatenate([[first_m], between, [last_m]])
+        places = np.column_stack([np.interp(at_m, self._along_m, column) for column in self._places.T])
+        lonlats = self._scenario.frame.to_wgs84(places[:, :2])
+        rows = np.column_stack([lonlats, places[:, 2] - self._home_m]).tolist()
+        return tuple((lon_deg, lat_deg, height_m) for lon_deg, lat_deg, height_m in rows)
+
     def _mark_m(self, since_s: float) -> float:
         return float(np.interp(since_s, self._times_s, self._marks_m))
 
@@ -181,7 +191,26 @@ def allowance_s(plan: Plan, names: Sequence[str]) -> float:
     return round(PLANNING_S + ITEM_S * max(items), 1) if items else 0.0
 
 
-def ahead(scenario: Scenario, plan: Plan, name: str, now: Now, by_s: float) -> tuple[Now, list[Soon]] | None:
+@dataclass(frozen=True, slots=True)
+class Ahead:
+    """What an aircraft flies until it takes up another mission.
+
+    Parameters
+    ----------
+    then
+        Where it is by then.
+    soon
+        What it sees on its way there.
+    line
+        That way: degrees, and metres over home.
+    """
+
+    then: Now
+    soon: list[Soon]
+    line: tuple[tuple[float, float, float], ...]
+
+
+def ahead(scenario: Scenario, plan: Plan, name: str, now: Now, by_s: float) -> Ahead | None:
     """Where an aircraft is so much later by the mission that it flies, and what it sees until then.
 
     One that begins to land before is where it does. None where it is on no line of the plan, or lands.
@@ -208,4 +237,4 @@ def ahead(scenario: Scenario, plan: Plan, name: str, now: Now, by_s: float) -> t
         flown_s=now.flown_s + until_s - since_s,
         energy_left_wh=left_wh,
     )
-    return later, course.seen(since_s, until_s)
+    return Ahead(later, course.seen(since_s, until_s), course.line(since_s, until_s))

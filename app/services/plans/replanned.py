@@ -118,6 +118,9 @@ def replanned(
     }
     if unflown:
         made["replan"]["unflown"] = unflown
+    until = {name: _line(line, scenario) for name, line in going_on.until.items() if name not in changes.lost}
+    if until:
+        made["replan"]["until"] = until
     coming = {_name(feature): feature for feature in changes.features}
     features: list[dict[str, Any]] = []
     for feature in made["features"]:
@@ -153,6 +156,12 @@ def _pass(one: Unflown, scenario: Scenario) -> dict[str, Any]:
     """A pass of a search as a scenario says it."""
     line = scenario.frame.to_wgs84([one.start, one.end]).round(7).tolist()
     return {"line": line, "look": one.look}
+
+
+def _line(line: Sequence[tuple[float, float, float]], scenario: Scenario) -> list[list[float]]:
+    """What is flown until a plan begins, as a scenario says it."""
+    lonlats = scenario.frame.to_wgs84([place[:2] for place in line]).round(7).tolist()
+    return [[*lonlat, round(place[2], 2)] for lonlat, place in zip(lonlats, line, strict=True)]
 
 
 def _left(

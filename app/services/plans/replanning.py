@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
+import numpy as np
 from pyproj import Geod
 from shapely import union_all
 from shapely.geometry.base import BaseGeometry
@@ -28,6 +29,8 @@ from planner.plan import Plan
 from planner.replanned import order_of, unflown_of
 from planner.scenario import Scenario
 from planner.wishes import GoingOn
+
+Line = tuple[tuple[float, float, float], ...]
 
 GEOD = Geod(ellps="WGS84")
 #: The course is told by places this far apart.
@@ -130,7 +133,7 @@ def left_of(
     begins_in_s = asked.begins_in_s
     if begins_in_s is None:
         begins_in_s = allowance_s(plan, list(now))
-    now, soon = _ahead(scenario, plan, now, begins_in_s)
+    now, soon, until = _ahead(scenario, plan, now, begins_in_s)
     as_flown = sortie if flying or (flights and asked.at_s is None) else None
     if scenario.task == "search":
         looks = _looks(scenario, plan, asked, as_flown, at_s)
@@ -138,7 +141,7 @@ def left_of(
             Looked(s.ground, at_s + s.in_s, at_s + s.until_s, heading_deg(scenario, s.collect)) for s in soon
         ]
         begins_s = at_s + begins_in_s
-        going_on = GoingOn(begins_in_s, unflown=unflown_of(scenario, plan, begins_s))
+        going_on = GoingOn(begins_in_s, unflown=unflown_of(scenario, plan, begins_s), until=until)
         return replanned(document, scenario, now, {}, begins_s, asked.changes, looks, going_on)
     if asked.seen is not None:
         ground = union_all([_area(shape, scenario, k) for k, shape in enumerate(asked.seen)])
@@ -150,21 +153,26 @@ def left_of(
         # What is being seen then is seen from its beginning.
         soon = [replace(s, ground=footprint_of(scenario, plan, s.collect)) for s in soon]
     seen = _and_soon(seen, soon)
-    going_on = GoingOn(begins_in_s, order_of(plan, at_s + begins_in_s), asked.unless_better)
+    going_on = GoingOn(begins_in_s, order_of(plan, at_s + begins_in_s), asked.unless_better, until=until)
     return replanned(document, scenario, now, seen, at_s + begins_in_s, asked.changes, going_on=going_on)
 
 
 def _ahead(
     scenario: Scenario, plan: Plan, now: Mapping[str, Now], by_s: float
-) -> tuple[dict[str, Now], list[Soon]]:
-    """Where aircraft are so much later, and what they see until then; those on no line of the plan stay."""
+) -> tuple[dict[str, Now], list[Soon], dict[str, Line]]:
+    """Where aircraft are so much later, what they see and fly until then; those on no line of it stay."""
     found: dict[str, Now] = {}
     soon: list[Soon] = []
+    until: dict[str, Line] = {}
     for name, place in now.items():
         later = ahead(scenario, plan, name, place, by_s) if by_s > 0.0 else None
-        found[name] = place if later is None else later[0]
-        soon += [] if later is None else later[1]
-    return found, soon
+        found[name] = place if later is None else later.then
+        if later is not None:
+            soon += later.soon
+            lonlats = np.array(later.line)
+            places = np.column_stack([scenario.frame.to_local(lonlats[:, :2]), lonlats[:, 2]]).tolist()
+            until[name] = tuple((east_m, north_m, height_m) for east_m, north_m, height_m in places)
+    return found, soon, until
 
 
 def _and_soon(seen: Mapping[str, BaseGeometry], soon: Sequence[Soon]) -> dict[str, BaseGeometry]:

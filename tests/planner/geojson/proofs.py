@@ -250,6 +250,10 @@ PROOFS: dict[tuple[str, str], tuple[Document, Document]] = {
     ("replan", "begins_in_s"): (small(), member("replan", {"begins_in_s": 5.0})),
     ("replan", "order"): (member("replan", {}), member("replan", {"order": {"uav": ["A"]}})),
     ("replan", "unflown"): (flying_on(), flying_on({"line": [[0.0, 0.01]], "look": "right"})),
+    ("replan", "until"): (
+        with_features(disc(), replan={}),
+        with_features(disc(), replan={"until": {"uav": [[0.0, 0.004, 80.0], [0.03, 0.004, 80.0]]}}),
+    ),
     ("replan", "unless_better"): (member("replan", {}), member("replan", {"unless_better": 0.5})),
     ("scenario", "time_budget_s"): (many(1e9), many(1e-3)),
 }  # fmt: skip

@@ -8,12 +8,14 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from pyproj import Geod
 
 from app.services.plans.along import Course, ahead, allowance_s, where_planned
 from app.services.plans.replanned import Changes, seen_by_plan
 from app.services.plans.replanning import Asked, Told, left_of
+from planner.check.clearance import begun_violations
 from planner.geojson import read_scenario
 from planner.pipeline import make_plan
 from planner.plan import Plan
@@ -51,10 +53,14 @@ def test_an_aircraft_beside_its_line_is_later_where_the_line_goes(flown: tuple[S
             off = replace(place, lon_deg=lon_deg, lat_deg=lat_deg, flown_s=since_s + rng.uniform(-4.0, 4.0))
             found = ahead(scenario, plan, path.vehicle, off, by_s)
             assert found is not None
-            there, soon = found
+            there = found.then
+            line_m = scenario.frame.to_local([at[:2] for at in found.line])
+            along_m = float(np.hypot(*np.diff(line_m, axis=0).T).sum())
+            assert along_m == pytest.approx(there.flown_m - off.flown_m, rel=0.02, abs=1.0)
+            assert found.line[-1][:2] == pytest.approx((there.lon_deg, there.lat_deg))
             assert GEOD.inv(there.lon_deg, there.lat_deg, meant.lon_deg, meant.lat_deg)[2] < 12.0
             assert there.flown_s - off.flown_s == pytest.approx(by_s)
-            over = {s.collect.seq for s in soon if s.whole}
+            over = {s.collect.seq for s in found.soon if s.whole}
             own = plan.of(path.vehicle, path.sortie).collects
             assert over == {c.seq for c in own if since_s < c.end_s <= since_s + by_s}
 
@@ -90,6 +96,33 @@ def test_a_plan_made_in_flight_begins_where_aircraft_are_by_then(
     )
     (north,) = (v for v in left_of(document, scenario, plan, told)["vehicles"] if v["name"] == "north")
     assert north["in_flight"]["lat_deg"] == told.vehicles["north"].lat_deg
+
+
+def test_a_zone_drawn_across_what_is_flown_until_then_is_told(
+    document: dict[str, Any], flown: tuple[Scenario, Plan]
+) -> None:
+    """Ahead of one aircraft, and behind it by then: in it is the old line alone, and that is named."""
+    scenario, plan = flown
+    at_s, by_s = 300.0, 12.0
+    line = Course(scenario, plan, "north", 1).line(at_s, at_s + by_s)
+    lon_deg, lat_deg, _ = line[len(line) // 2] if len(line) > 2 else np.mean(line, axis=0).tolist()
+    zone = {
+        "type": "Feature", "id": "new zone",
+        "geometry": {"type": "Point", "coordinates": [lon_deg, lat_deg]},
+        "properties": {"role": "no_fly", "radius_m": 20.0},
+    }  # fmt: skip
+
+    def told(in_s: float) -> list[str]:
+        asked = Asked(at_s, {}, None, Changes(features=(zone,)), in_s)
+        left = left_of({**document, "clearance_m": 5.0}, scenario, plan, asked)
+        read = read_scenario(left)
+        return [found.message for found in begun_violations(read) if found.feature == "new zone"]
+
+    (said,) = told(by_s)
+    assert said.startswith("north flies")
+    assert "by the old plan, before this one begins 12 s after" in said
+    assert told(0.0) == []
+    assert list(begun_violations(scenario)) == []
 
 
 def test_of_a_pass_that_is_over_by_then_nothing_is_left(
