@@ -65,6 +65,11 @@ class SensorGuard:
         """A pass is broken off in a way that the vehicle does not show: until the sensor is off."""
         self._interrupted = reason
 
+    @property
+    def passes(self) -> tuple[range, ...]:
+        """Those held, by the numbers of their items."""
+        return self._passes
+
     def pass_at(self, current: int | None) -> range | None:
         """The pass that an item belongs to; None where it is in none."""
         return next((each for each in self._passes if current in each), None)

@@ -21,7 +21,7 @@ from mavlink.state.modes import (
     WAITING_MODES,
     takes_off_when_armed,
 )
-from mavlink.state.passes import landing_of
+from mavlink.state.passes import landing_of, lead_in
 from mavlink.state.telemetry import VehicleState
 from mavlink.station.client import VehicleClient
 from mavlink.transfer.command import CommandOutcome
@@ -198,13 +198,16 @@ async def _resume(vehicle: Vehicle, wish: Wish, order: Order) -> Told:
         raise OrderRefusedError(
             "not-armed", "the aircraft is not armed: there is nothing to go on with", "send start"
         )
-    cut = vehicle.safety.cut_pass(client.state)
-    reason = (
-        ""
-        if cut is None
-        else f"the sensor was switched off in the pass of items {cut[0]} to {cut[-1]}: what is left of it is "
-        f"not seen; goto_item {max(cut[0] - 1, 0)} flies it whole"
-    )
+    cut, reason = vehicle.safety.cut_pass(client.state), ""
+    if cut is not None:
+        reason = (
+            f"the sensor was switched off in the pass of items {cut[0]} to {cut[-1]}: what is left of it is "
+            "not seen"
+        )
+        with contextlib.suppress(OrderRefusedError):
+            items = await _mission_of(vehicle, client)
+            begin = lead_in(items, cut, vehicle.safety.passes, hovers=client.state.type == "multirotor")
+            reason += f"; {begin}"
     return await _settled(vehicle, order, client.resume(), _in(vehicle, MISSION_MODES), reason)
 
 

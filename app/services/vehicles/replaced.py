@@ -8,7 +8,7 @@ from mavlink.dialects.mission import Mission
 from mavlink.encoding.options import DEFAULT_PAYLOAD
 from mavlink.encoding.payload import parse_payload
 from mavlink.state.modes import RETURN_MODES, WAITING_MODES
-from mavlink.state.passes import passes_of
+from mavlink.state.passes import LeadIn, lead_in, passes_of
 from mavlink.station.client import VehicleClient
 from mavlink.wire.items import MissionType
 from planner.plan import Plan
@@ -33,6 +33,8 @@ class Replaced:
         Passes that lie behind it in the new mission: number and region. They are not flown.
     cut
         The pass in whose middle it goes on, so that its sensor is not switched on; None where there is none.
+    again
+        Where to send it for the first of these passes, and all behind it; None where none is left out.
     """
 
     mode: str
@@ -40,6 +42,7 @@ class Replaced:
     items: int
     skipped: tuple[tuple[int, str], ...]
     cut: tuple[int, str] | None
+    again: LeadIn | None = None
 
     def __str__(self) -> str:
         if self.mode in OFF_ITS_MISSION:
@@ -58,7 +61,7 @@ class Replaced:
             )
         if not self.skipped and self.cut is None:
             return words + "; no pass is skipped"
-        return words + "; goto_item 1 flies all of it"
+        return words if self.again is None else f"{words}; to fly them begin with the first: {self.again}"
 
 
 async def replaced(
@@ -84,4 +87,6 @@ async def replaced(
     here = -1 if item is None else item
     skipped = tuple(name for run, name in zip(passes, named, strict=False) if run[-1] < here)
     cut = [name for run, name in zip(passes, named, strict=False) if run[0] < here <= run[-1]]
-    return Replaced(state.mode, item, len(items), skipped, cut[0] if cut else None)
+    behind = [run for run in passes if run[0] < here]
+    again = lead_in(items, behind[0], passes, hovers=state.type == "multirotor") if behind else None
+    return Replaced(state.mode, item, len(items), skipped, cut[0] if cut else None, again)

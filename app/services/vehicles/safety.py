@@ -81,6 +81,11 @@ class SensorSafety:
         """The pass whose items are flown with the sensor off, as it was switched off in it; None else."""
         return None if state.sensor_shown else self._guard.pass_at(state.mission_current)
 
+    @property
+    def passes(self) -> tuple[range, ...]:
+        """Those of the mission from here, by the numbers of their items."""
+        return self._guard.passes
+
     def release(self) -> None:
         """Its mission is being replaced or cleared."""
         self._guard.release()

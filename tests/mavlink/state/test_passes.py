@@ -8,7 +8,7 @@ from mavlink.dialects.base import Autopilot, VehicleType
 from mavlink.encoding.encode import encode
 from mavlink.encoding.options import DEFAULT_PAYLOAD, EncodeOptions
 from mavlink.encoding.payload import parse_payload
-from mavlink.state.passes import landing_of, passes_of
+from mavlink.state.passes import landing_of, lead_in, passes_of
 from mavlink.wire.items import Command, Frame, MissionItem
 from tests.mavlink.plans import make_plan
 
@@ -46,6 +46,21 @@ def test_every_pass_lies_between_its_orders(autopilot: Autopilot, kind: VehicleT
         assert all(
             (item.command, item.param1, item.param2) != (on.command, on.param1, on.param2) for on in begun
         )
+
+
+@pytest.mark.parametrize(("autopilot", "kind"), CRAFT)
+def test_a_pass_is_led_into_from_behind_the_one_before(autopilot: Autopilot, kind: VehicleType) -> None:
+    """From a waypoint before its own first place; a wing's lies farther before it, where there is room."""
+    items = encode(make_plan(autopilot=autopilot, vehicle_type=kind)).mission
+    passes = passes_of(items, DEFAULT_PAYLOAD, autopilot)
+    ended = 0
+    for run in passes:
+        wing, hovers = (lead_in(items, run, passes, hovers=each) for each in (False, True))
+        assert hovers.whole or run is passes[0]
+        winged, hovering = wing.seq, hovers.seq
+        assert ended <= winged <= hovering < run.start
+        assert {items[seq].command for seq in (winged, hovering)} == {Command.NAV_WAYPOINT}
+        ended = run.stop
 
 
 @pytest.mark.parametrize(("autopilot", "kind"), CRAFT)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from app.services.vehicles.replaced import Replaced
+from mavlink.state.passes import LeadIn
 
 
 @pytest.mark.parametrize("mode", ["RTL", "AUTO.LOITER"])
@@ -19,3 +20,6 @@ def test_one_on_its_mission_goes_on_at_an_item() -> None:
     """With what lies behind it there."""
     told = str(Replaced("AUTO", 7, 23, ((1, "pond"),), None))
     assert "goes on at item 7 of 22 (mode AUTO); skipped: pass 1 (pond)" in told
+    assert "goto_item" not in told
+    again = str(Replaced("AUTO", 7, 23, ((1, "pond"),), None, LeadIn(3, whole=True)))
+    assert again.endswith("goto_item 3 flies it whole")
