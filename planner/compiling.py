@@ -9,16 +9,18 @@ from __future__ import annotations
 
 import contextlib
 import fcntl
+import functools
 import hashlib
 import os
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 import llvmlite
 import numba
 from llvmlite.binding import get_host_cpu_features, get_host_cpu_name
+from numba.core.caching import IndexDataCacheFile
 
 from planner.dubins.kernels import dubins_length
 
@@ -58,6 +60,7 @@ class Compiling:
         load
             Loads what is kept and compiles what is not; says whether it has compiled anything.
         """
+        keep_in_turn()
         if self.done and not load():
             return
         with self._turn():
@@ -102,6 +105,38 @@ class Compiling:
             for old in self._folder.glob("compiled-*"):
                 old.unlink(missing_ok=True)
             self._stamp.touch()
+
+
+@functools.cache
+def keep_in_turn() -> None:
+    """Let several processes compile at once, from here on in this one.
+
+    numba numbers the forms of a kernel after those in its index, and writes the index before the form: of two
+    processes that save at the same moment both take the same number, and what is loaded under one signature
+    could be the other's code. Here one process at a time reads or writes what is kept in a folder.
+    """
+    kept: Any = IndexDataCacheFile
+    save, load = kept.save, kept.load
+
+    def save_in_turn(file: IndexDataCacheFile, key: object, data: object) -> None:
+        with _locked(file):
+            save(file, key, data)
+
+    def load_in_turn(file: IndexDataCacheFile, key: object) -> object:
+        with _locked(file):
+            return load(file, key)
+
+    kept.save, kept.load = save_in_turn, load_in_turn
+
+
+@contextlib.contextmanager
+def _locked(file: IndexDataCacheFile) -> Iterator[None]:
+    with contextlib.ExitStack() as held:
+        # What cannot be locked cannot be written either: an image's read-only kernels are loaded as they are.
+        with contextlib.suppress(OSError):
+            lock = held.enter_context(Path(file._index_path).with_name("keeping.lock").open("w"))
+            fcntl.flock(lock, fcntl.LOCK_EX)
+        yield
 
 
 def _key() -> str:

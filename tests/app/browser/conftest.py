@@ -35,7 +35,7 @@ PATIENCE_MS = 90_000.0
 #: Slower for a good picture: see docs/map.md.
 SPEEDUP = int(os.environ.get("SWATHPLAN_TEST_SPEEDUP", "200"))
 #: The processor draws a quarter of the points where nobody looks; the page's own pixels are as ever.
-SCALE = 1.0 if "SWATHPLAN_SCREENSHOT" in os.environ else 0.5
+SCALE = 1.0 if "SWATHPLAN_SCREENSHOT" in os.environ else 0.2
 
 
 @dataclass(frozen=True, slots=True)

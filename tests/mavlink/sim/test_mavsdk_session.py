@@ -55,7 +55,7 @@ async def session(flavour: Flavour, kind: str) -> AsyncIterator[System]:
             yield system
         finally:
             stop.set()
-            await asyncio.wait_for(server, 10.0)
+            await asyncio.wait_for(server, 60)
 
 
 async def height_m(telemetry: TelemetryAsync) -> float:
