@@ -1,4 +1,7 @@
-"""Gaps of a flight's record, filled from a log that the vehicle kept aboard or another station recorded."""
+"""Gaps of a flight's record, filled from a log that the vehicle kept aboard or another station recorded.
+
+Times with places of which nothing told whether the sensor was on are gaps, too.
+"""
 
 from __future__ import annotations
 
@@ -109,10 +112,16 @@ def filling(
         raise RefusedError(
             f"the log is refused: {message}", (Finding("log", "not-this-flight", message, fix),)
         )
-    spans = [Span(a.time_s, b.time_s) for a, b in pairwise(samples) if b.time_s - a.time_s > LONGEST_STEP_S]
+    by_photos = spacing_of(payload_text) is not None
+    spans = [] if by_photos else _untold(samples)
+    spans += [
+        Span(a.time_s, b.time_s)
+        for a, b in pairwise(samples)
+        if b.time_s - a.time_s > LONGEST_STEP_S
+        and not any(span.from_s <= a.time_s < (span.until_s or a.time_s) for span in spans)
+    ]
     if open_end:
         spans.append(Span(samples[-1].time_s, None))
-    by_photos = spacing_of(payload_text) is not None
     switch = (lambda _: False) if by_photos else switch_of(log, payload)
     made: list[TrackSample] = []
     events: list[FlightEvent] = []
@@ -130,6 +139,23 @@ def filling(
             if span.from_s < photo.time_s + clock_s and photo.time_s + clock_s < (span.until_s or np.inf)
         ]
     return Filling(tuple(made), tuple(events), clock_s, tuple(filled), tuple(left))
+
+
+def _untold(samples: Sequence[TrackSample]) -> list[Span]:
+    """Times with places, and nothing that tells whether the sensor was on; by one boot each."""
+    spans: list[Span] = []
+    for k, sample in enumerate(samples):
+        before = samples[k - 1] if k and samples[k - 1].time_s < sample.time_s else None
+        after = samples[k + 1] if k + 1 < len(samples) and samples[k + 1].time_s > sample.time_s else None
+        if sample.sensor_on is not None:
+            continue
+        from_s = sample.time_s - INTERVAL_S if before is None else before.time_s
+        until_s = sample.time_s + INTERVAL_S if after is None else after.time_s
+        if spans and before is not None and before.sensor_on is None:
+            spans[-1] = Span(spans[-1].from_s, until_s)
+        else:
+            spans.append(Span(from_s, until_s))
+    return spans
 
 
 def _clock_s(log: OnboardLog, samples: Sequence[TrackSample], unix_minus_boot_s: float) -> float | None:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import uuid
+from bisect import bisect_left
 from collections.abc import Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from datetime import datetime
 from typing import Any, cast
 
@@ -23,6 +24,9 @@ from app.services.records import (
 from app.services.store.database import Database
 from app.services.store.plans import now
 from app.services.store.tables import FlightEventRow, FlightRow, TrackPointRow
+
+#: A log's place so near in time tells of the sensor at one heard.
+TOLD_BY_LOG_S = 1.0
 
 
 def _records() -> Select[FlightRow, int, int]:
@@ -63,7 +67,10 @@ def _record(row: FlightRow, points: int, photos: int) -> FlightRecord:
 
 
 def _merged(rows: Sequence[TrackSample]) -> tuple[TrackSample, ...]:
-    """Places of onboard logs among those heard, by time; the time goes back where the clock began anew."""
+    """Places of onboard logs among those heard, by time; the time goes back where the clock began anew.
+
+    Where nothing heard told of the sensor, the log's nearest place does.
+    """
     heard = [row for row in rows if not row.from_log]
     logged = sorted((row for row in rows if row.from_log), key=lambda row: row.time_s)
     if not logged:
@@ -79,7 +86,22 @@ def _merged(rows: Sequence[TrackSample]) -> tuple[TrackSample, ...]:
 
     for row in logged:
         min(boots, key=lambda boot: away_s(boot, row.time_s)).append(row)
-    return tuple(row for boot in boots for row in sorted(boot, key=lambda row: row.time_s))
+    return tuple(row for boot in boots for row in _told(sorted(boot, key=lambda row: row.time_s)))
+
+
+def _told(rows: Sequence[TrackSample]) -> list[TrackSample]:
+    """Places in order of time, with the sensor as the log's nearest says where nothing else does."""
+    logged = [row for row in rows if row.from_log]
+    times_s = [row.time_s for row in logged]
+    made = []
+    for row in rows:
+        if row.sensor_on is None and not row.from_log:
+            at = bisect_left(times_s, row.time_s)
+            near = min(logged[max(at - 1, 0) : at + 1], key=lambda k: abs(k.time_s - row.time_s), default=row)
+            if abs(near.time_s - row.time_s) <= TOLD_BY_LOG_S:
+                row = replace(row, sensor_on=near.sensor_on)
+        made.append(row)
+    return made
 
 
 def _rows(flight_id: str, values: Sequence[TrackSample] | Sequence[FlightEvent]) -> list[dict[str, Any]]:

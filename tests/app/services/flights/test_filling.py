@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import AsyncIterator, Callable, Sequence
+from dataclasses import replace
 
 import pytest
 from pymavlink import mavutil
@@ -89,11 +90,19 @@ KINDS: dict[str, Callable[[Sequence[TrackSample]], bytes]] = {
 }
 
 
-@pytest.mark.parametrize("kind", KINDS)
-async def test_a_log_fills_what_was_not_recorded(flown: Flown, kind: str) -> None:
-    """Thirty seconds of a pass without a record: unknown, and seen once the log has told of them."""
+@pytest.mark.parametrize(("kind", "places"), [*((kind, False) for kind in KINDS), ("ulg", True)])
+async def test_a_log_fills_what_was_not_recorded(flown: Flown, kind: str, places: bool) -> None:
+    """Thirty seconds of a pass without a record: unknown, and seen once the log has told of them.
+
+    So where the places were recorded, and nothing told of the sensor.
+    """
     samples, middle = whole(flown), middle_s(flown, 0)
-    kept = [s for s in samples if not middle - 15.0 < s.time_s < middle + 15.0]
+    dark = [middle - 15.0 < s.time_s < middle + 15.0 for s in samples]
+    kept = [
+        replace(s, sensor_on=None) if gone else s
+        for s, gone in zip(samples, dark, strict=True)
+        if places or not gone
+    ]
     place = f"/api/v1/flights/{await recorded(flown, kept)}"
     before = (await flown.client.get(place + "/coverage.geojson")).json()
     assert max(before["unknown_coverage"].values()) > 0.05
