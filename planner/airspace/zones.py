@@ -173,6 +173,8 @@ class KeepOut:
 
     def without(self, names: Collection[str]) -> KeepOut:
         """The same without the zones of these names; ``"area"`` takes the area away."""
+        if not names:
+            return self
         return replace(
             self,
             discs=tuple(disc for disc in self.discs if disc.name not in names),

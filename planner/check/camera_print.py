@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -90,6 +91,7 @@ def camera_footprint(
     return turned
 
 
+@lru_cache(maxsize=64)
 def apart_m(photo: Polygon, sensor: CameraSensor) -> float:
     """How far along the next photo may be taken for it to share the overlap's part of the ground."""
     west_m, _, east_m, _ = photo.bounds

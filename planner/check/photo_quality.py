@@ -169,8 +169,10 @@ def _free_of_obstacles(
         math.tan(sensor.optics.half_height_rad) + math.tan(abs(sensor.tilt_rad)),
     )
     kept_m = half_m + max(each.ground_turn_radius_m + each.settle_m for each in fleet)
-    solid = shapely.union_all(shapes)
-    return np.asarray(shapely.distance(shapely.points(places_m), solid) > kept_m)
+    beside, _ = shapely.STRtree(shapes).query(shapely.points(places_m), predicate="dwithin", distance=kept_m)
+    free = np.ones(len(places_m), dtype=np.bool_)
+    free[beside] = False
+    return free
 
 
 def _too_soon(scenario: Scenario, plan: Plan) -> Iterator[Violation]:

@@ -8,10 +8,12 @@ the stretch is halved.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 import shapely
 from numpy.typing import NDArray
+from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
 from planner.airspace.zones import KeepOut
@@ -56,10 +58,9 @@ def clearance(path: Path, zones: KeepOut, tolerance_m: float = TOLERANCE_M) -> C
         Soft ones among them do not count.
     """
     discs = np.array([row for row, d in zip(zones.disc_array(), zones.discs, strict=True) if d.hard])
-    solid = shapely.union_all([zone.polygon for zone in zones.polygons if zone.hard])
+    solid = _solid(tuple(zone.polygon for zone in zones.polygons if zone.hard))
     if len(discs) == 0 and solid.is_empty and zones.area is None:
         return None
-    shapely.prepare(solid)
     discs = discs.reshape(-1, 3)
     begins = np.cumsum([0.0, *(segment.length_m for segment in path.segments)])
 
@@ -102,6 +103,14 @@ def clearance(path: Path, zones: KeepOut, tolerance_m: float = TOLERANCE_M) -> C
         low_m, high_m = np.concatenate([low_m, middle_m]), np.concatenate([middle_m, high_m])
         at_low, at_high = np.concatenate([at_low, at_middle]), np.concatenate([at_middle, at_high])
     return Clearance(proven_m, seen_m, (float(where[0]), float(where[1])))
+
+
+@lru_cache(maxsize=64)
+def _solid(polygons: tuple[Polygon, ...]) -> BaseGeometry:
+    """Zones as one; every leg of a plan is among the same."""
+    solid = shapely.union_all(polygons)
+    shapely.prepare(solid)
+    return solid
 
 
 def _signed(shape: BaseGeometry, points: Array) -> Array:

@@ -27,7 +27,7 @@ from planner.coverage.urban.visibility import edges_of
 from planner.coverage.visible import Seeing
 from planner.coverage.ways import Target
 from planner.errors import InfeasibleError
-from planner.progress import Stop
+from planner.progress import Stop, raise_if
 from planner.sensors.camera import CameraSensor
 
 #: Smaller cells are seen from their neighbours'.
@@ -63,7 +63,7 @@ def cell_targets(
                 found += family.targets(*how, wide=True, division="auto", enough=enough)
                 continue
             trial = Pieces(sensor, height_m, there, stop)
-            pieces = _best(part, ground, trial, enough)
+            pieces = _best(part, ground, trial, stop, enough)
             if pieces is None or len(found) + len(pieces) > MOST_CELLS:
                 return None
             found += [trial.target(visit) for piece in pieces for visit in visits(piece, trial)]
@@ -98,13 +98,14 @@ def left_targets(asked: Seeing, around: Surroundings, left: Iterable[BaseGeometr
 
 
 def _best(
-    part: MergedRegion, ground: BaseGeometry, trial: Pieces, enough: Stop
+    part: MergedRegion, ground: BaseGeometry, trial: Pieces, stop: Stop, enough: Stop
 ) -> tuple[MergedRegion, ...] | None:
     """The cells, for slices along some edges of the ground, that promise the shortest tour."""
     best: tuple[float, tuple[MergedRegion, ...]] | None = None
     if ground.area < LEAST_CELL_M2:
         return None
     for angle_rad in headings(edges_of(ground)):
+        raise_if(stop)
         if best is not None and enough():
             break
         outlines = list(_cells(ground, angle_rad))

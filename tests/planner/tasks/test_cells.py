@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
 import pytest
 from shapely.geometry import LineString, Polygon
 
-from planner.errors import InfeasibleError
+from planner.coverage.survey.among import cell_targets
+from planner.errors import CancelledError, InfeasibleError
 from planner.geojson import read_scenario
 from planner.pipeline import make_plan
 from planner.plan import Plan
+from planner.progress import never
+from planner.tasks.setting import Setting, seeing
 from planner.validate import findings
 from tests.planner.scenarios import feature, small, square
 
@@ -59,6 +63,22 @@ def test_overlaps_that_an_obstacle_takes_are_told_and_no_refusal() -> None:
     told = [each for each in flown(field(mast(height_m=200.0))).violations if each.constraint == "overlap"]
     assert told
     assert all("beside obstacles" in each.message and not each.hard for each in told)
+
+
+def test_directions_without_cells_do_not_hold_its_end_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where no direction gives cells the search for one ends when it is told to, not after all of them."""
+    scenario = read_scenario(field(mast(height_m=200.0)))
+    asked = seeing(scenario, Setting.of(scenario))
+    tried: list[float] = []
+
+    def none(_: object, angle_rad: float) -> Iterator[Polygon]:
+        tried.append(angle_rad)
+        return iter(())
+
+    monkeypatch.setattr("planner.coverage.survey.among._cells", none)
+    with pytest.raises(CancelledError):
+        cell_targets(asked, asked.surroundings(), 20.0, lambda: len(tried) > 1, never)
+    assert len(tried) == 2
 
 
 def test_what_is_lower_than_the_flight_changes_nothing() -> None:
