@@ -366,11 +366,6 @@ class Driver(Watched, Believing):
             self.sensor.output = output
             self._set_state(replace(self.sensor.unknown(self.state), sensor_on=shown_by_itself))
 
-    @property
-    def silent_s(self) -> float:
-        """How long nothing was heard of the vehicle; infinite before its first word."""
-        return self._clock() - self._heard_s
-
     def _fail(self, reason: str) -> None:
         if self._failure is not None:
             return

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
+
 from mavlink.errors import BusyError, DoubtError, NotConnectedError, ReadOnlyError
 from mavlink.links.link import Link
 from mavlink.state.telemetry import VehicleState
-from mavlink.station.identity import Identity
+from mavlink.station.identity import SILENT, Identity
 from mavlink.station.trust import Trust
 from mavlink.station.under_way import UnderWay
 
@@ -20,6 +23,13 @@ class Requirements:
     _identity: Identity
     _trust: Trust
     _under_way: UnderWay
+    _clock: Callable[[], float]
+    _heard_s: float
+
+    @property
+    def silent_s(self) -> float:
+        """How long nothing was heard of the vehicle; infinite before its first word."""
+        return self._clock() - self._heard_s
 
     def require_free(self) -> None:
         """Raise BusyError when a transfer is under way, and what ``require_connected`` raises."""
@@ -39,7 +49,10 @@ class Requirements:
     @property
     def absence(self) -> str:
         """Why a vehicle that is not connected cannot be talked to."""
-        return self._failure or self._trust.absence or self._identity.absence(self.state)
+        told = self._failure or self._trust.absence or self._identity.absence(self.state)
+        if told == SILENT and math.isfinite(self.silent_s):
+            return f"{SILENT}: it was last heard {self.silent_s:.0f} s ago, and nothing is sent"
+        return told
 
     def require_certain(self) -> None:
         """Raise DoubtError unless the vehicle meant hears, and it alone; NotConnectedError without one."""

@@ -125,4 +125,6 @@ async def test_the_loss_of_a_flights_link_is_an_event(impatient: httpx.AsyncClie
         assert event["kind"] == "lost"
         assert abs(datetime.fromisoformat(event["at"]) - silent) < timedelta(seconds=2.4)
         assert event["time_s"] is not None
+        check_problem(refused := await order(impatient, vehicle, "rtl"), 409)
+        assert "last heard" in refused.json()["detail"]
         await impatient.delete(vehicle, params={"in_flight": "true"})
