@@ -66,9 +66,10 @@ class Aircraft:
             await self.link.send(self._codec.pack(Message(name, fields)))
 
     async def _beat(self) -> None:
+        mode = 3 if (self.autopilot, self.kind) == (3, 2) else 10  # AUTO of ArduCopter, else of ArduPlane
         while True:
             await self.say(
-                "HEARTBEAT", autopilot=self.autopilot, type=self.kind, custom_mode=10, base_mode=0x80
+                "HEARTBEAT", autopilot=self.autopilot, type=self.kind, custom_mode=mode, base_mode=0x80
             )
             for answer in self.vehicle.tick(loop_time_s()):
                 await self.say(answer.name, **dict(answer.fields))

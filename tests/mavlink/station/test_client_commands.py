@@ -47,7 +47,8 @@ FLIGHT = [
     ("ardupilot", COPTER, "pause", [(193, (0.0, 0.0, 0.0))]),
     ("ardupilot", COPTER, "resume", [(193, (1.0, 0.0, 0.0))]),
     ("ardupilot", COPTER, "start_mission", [(176, (1.0, 3.0, 0.0)), (300, (0.0, 0.0, 0.0))]),
-    ("px4", PLANE, "start_mission", [(300, (0.0, 0.0, 0.0))]),
+    # Armed as it is: at the item it is at, where 0 would begin anew.
+    ("px4", PLANE, "start_mission", [(300, (-1.0, 0.0, 0.0))]),
     ("px4", PLANE, "pause", [(176, (1.0, 4.0, 3.0))]),
     ("px4", PLANE, "resume", [(176, (1.0, 4.0, 4.0))]),
     ("generic", PLANE, "pause", [(193, (0.0, 0.0, 0.0))]),
