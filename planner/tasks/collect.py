@@ -86,8 +86,20 @@ def collect(scenario: Scenario, controls: Controls) -> Answer:
                 if controls.enough():
                     raise _out_of_time(error, scenario) from error
                 raise
-        with controls.stage("transit"):
-            composed, legs, notes = transits.through(found[0], part_of(progress, 0.5, 0.9), controls.stop)
+        told = part_of(progress, 0.5, 0.9)
+        try:
+            with controls.stage("transit"):
+                composed, legs, notes = transits.through(found[0], told, controls.stop)
+        except InfeasibleError:
+            if methods["coverage"] in SEQUENCES or methods["routing"] != "joint":
+                raise
+            with controls.stage("routing"):
+                roomier = _roomier(replace(asked, regions=regions), setting, scenario.seed, controls)
+            if roomier is None:
+                raise
+            found = roomier
+            with controls.stage("transit"):
+                composed, legs, notes = transits.through(found[0], told, controls.stop)
         return _Flight(*found, composed, legs, notes, used(composed.flight, setting.model, setting.level))
 
     def in_haste(names: frozenset[str]) -> _Flight:
@@ -215,6 +227,22 @@ def _among_obstacles(
         return cells, left_of(asked, cells)
     assert found is not None
     return found
+
+
+def _roomier(asked: Seeing, setting: Setting, seed: int, controls: Controls) -> Found | None:
+    """Sweeps that end with room for a turn before obstacles; None where they leave ground, or none cut in.
+
+    Sweeps are laid without a look at the turns between them: as near to obstacles as lines may be.
+    """
+    if not cut_by_obstacles(asked):
+        return None
+    room_m = asked.airspace.clearance_m + setting.model.turn_radius_m
+    wide = replace(asked, airspace=replace(asked.airspace, clearance_m=room_m))
+    try:
+        passes, _ = swept(wide, setting, "auto", seed, controls.progress, controls.stop)
+    except InfeasibleError:
+        return None
+    return None if left_of(asked, passes) else (passes, ())
 
 
 def _joint(

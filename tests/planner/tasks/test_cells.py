@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator
 from typing import Any
 
@@ -16,6 +17,7 @@ from planner.plan import Plan
 from planner.progress import never
 from planner.tasks.setting import Setting, seeing
 from planner.validate import findings
+from tests.planner.moved import box, put_at
 from tests.planner.scenarios import feature, small, square
 
 FIELD = [[[0.0, 0.0], [0.009, 0.001], [0.008, 0.006], [0.004, 0.0045], [0.001, 0.007], [0.0, 0.0]]]
@@ -79,6 +81,42 @@ def test_directions_without_cells_do_not_hold_its_end_up(monkeypatch: pytest.Mon
     with pytest.raises(CancelledError):
         cell_targets(asked, asked.surroundings(), 20.0, lambda: len(tried) > 1, never)
     assert len(tried) == 2
+
+
+#: Buildings close together: metres west, south, east, north of a corner, and their height.
+BUILDINGS = (
+    (135, 77, 155, 107, 141), (148, 32, 172, 60, 72), (43, 100, 72, 140, 21), (156, 173, 199, 196, 38),
+    (166, 148, 185, 187, 71), (32, 120, 82, 169, 55), (87, 36, 119, 57, 90), (129, 101, 184, 127, 58),
+    (84, 106, 142, 123, 120),
+)  # fmt: skip
+
+
+def test_sweeps_that_end_without_room_for_a_turn_end_sooner() -> None:
+    """Without time for anything else, too, sweeps among buildings are flown, where they were refused."""
+    put = put_at((8.55, 47.4))
+    document = field()
+    document["features"] = [
+        feature("R", "roi", "Polygon", box(put, 0, 0, 260, 260)),
+        feature("start", "start", "Point", put(-60, -60)),
+        *(
+            feature(f"B{k}", "obstacle", "Polygon", box(put, *sides), height_m=height)
+            for k, (*sides, height) in enumerate(BUILDINGS)
+        ),
+    ]
+    document |= {
+        "time_budget_s": 1.0, "altitude_m": 60.0, "altitude_reference": "home", "clearance_m": 8.0,
+        "sensors": [
+            {
+                "name": "eye", "type": "camera", "model": "Sony a6000 20 mm", "forward_overlap": 0.7,
+                "side_overlap": 0.6,
+            }
+        ],
+        "vehicles": [{"name": "uav", "type": "multirotor", "airspeed_m_s": 8.0}],
+    }  # fmt: skip
+    ticks = itertools.count()
+    plan = make_plan(read_scenario(document), clock=lambda: 100.0 * next(ticks))
+    assert plan.metrics.coverage == {"R": 1.0}
+    assert plan.hard_violations == ()
 
 
 def test_what_is_lower_than_the_flight_changes_nothing() -> None:
