@@ -52,6 +52,8 @@ REFINED = "refined"
 PUBLISHED = ("snyder2021", *VARIANTS)
 #: Where nothing else is within a budget so many flights by one pass are tried.
 NEAREST = 3
+#: Where their first passes find nothing, so many patterns are looked through.
+LOOKED_THROUGH = 16
 #: Less than this part of all that can be found is nothing.
 NOTHING = 1e-7
 #: Strips by the width of the swath: wider ones leave gaps, and reach farther.
@@ -215,30 +217,23 @@ class Search:
         return (each.whole for each in laid)
 
     def nearest(self) -> list[Programme]:
-        """Patterns cut to one pass that finds something, whatever that costs: the nearest of them.
+        """Patterns cut to one pass, whatever that costs: the nearest of those that find something.
 
-        That is their first; of a pattern whose first finds nothing the nearest that does. Where none does at
-        all, their first ones.
+        The first pass; where no first one finds anything the nearest that does, of a few patterns.
         """
         of_all = self if self.family in FAMILIES else replace(self, family=None)
-        found = [
-            Programme(
-                laid.family, way, self.found(way), self.pricing.cost_m(way), laid.whole, False, laid.strips,
-                laid.look,
-            )
-            for laid in of_all._laid(self.ground, self.looking.narrowest_m(), (1.0,))
-            for way in (self._one_of(laid.whole),)
-        ]  # fmt: skip
-        found = [each for each in found if self.finds(each.worth)] or found
-        return sorted(found, key=lambda each: each.cost_m)[:NEAREST]
+        laid = tuple(of_all._laid(self.ground, self.looking.narrowest_m(), (1.0,)))
+        firsts = [self._alone_of(each, each.whole[:1]) for each in laid]
+        found = [each for each in firsts if self.finds(each.worth)]
+        for each in () if found else laid[:LOOKED_THROUGH]:
+            ways = [self._alone_of(each, (sweep,)) for sweep in each.whole]
+            found += [way for way in ways if self.finds(way.worth)]
+        return sorted(found or firsts, key=lambda each: each.cost_m)[:NEAREST]
 
-    def _one_of(self, whole: tuple[Sweep, ...]) -> tuple[Sweep, ...]:
-        """The first of passes where it finds something, else the nearest that does, else the first."""
-        if self.finds(self.found(whole[:1])):
-            return whole[:1]
-        alone = zip(whole, self._alone(whole), strict=True)
-        finding = [(each,) for each, worth in alone if self.finds(worth)]
-        return min(finding, key=self.pricing.cost_m, default=whole[:1])
+    def _alone_of(self, laid: Laid, way: tuple[Sweep, ...]) -> Programme:
+        """One pass of a pattern."""
+        worth, cost_m = self.found(way), self.pricing.cost_m(way)
+        return Programme(laid.family, way, worth, cost_m, laid.whole, False, laid.strips, laid.look)
 
     def _cut(self, laid: Laid | Programme, budget_m: float, *, thin: bool) -> tuple[Programme, ...]:
         """A pattern within a budget: its first passes, or those worth most; none where no pass fits."""
@@ -374,7 +369,7 @@ class Search:
             west_m, south_m = self.worth.west_m + columns * cell_m, self.worth.south_m + rows * cell_m
             cells = shapely.box(west_m, south_m, west_m + cell_m, south_m + cell_m)
             parts = shapely.get_parts(shapely.union_all(cells).simplify(cell_m))
-            large = sorted((part for part in parts if part.area > least_m2), key=_size)
+            large = sorted((part for part in parts if part.area > least_m2), key=shapely.area)
             if large:
                 found.append(MultiPolygon(large[-MOST_PARTS:]))
         return found
@@ -402,7 +397,3 @@ class Search:
         shape = self.ground if inner.is_empty else inner
         place = nearest_points(shape, Point(self.pricing.start))[0]
         return (float(place.x), float(place.y))
-
-
-def _size(part: Polygon) -> float:
-    return float(part.area)

@@ -25,6 +25,7 @@ from planner.errors import Finding
 from planner.geojson import read_scenario
 from planner.geojson.fields import Findings
 from planner.geojson.geometry import area
+from planner.geojson.going_on import MOST_S
 from planner.plan import Plan
 from planner.replanned import order_of, unflown_of
 from planner.scenario import Scenario
@@ -33,6 +34,8 @@ from planner.wishes import GoingOn
 Line = tuple[tuple[float, float, float], ...]
 
 GEOD = Geod(ellps="WGS84")
+#: A search that goes on in flight is planned for so long where its scenario does not say: sooner is more.
+SEARCH_S = 4.0
 #: The course is told by places this far apart.
 TELLING_M = 5.0
 
@@ -131,8 +134,12 @@ def left_of(
         )
     at_s = asked.at_s if asked.at_s is not None else max((n.flown_s for n in now.values()), default=0.0)
     begins_in_s = asked.begins_in_s
+    if scenario.task == "search" and now and scenario.time_budget_s is None:
+        document = {**document, "time_budget_s": SEARCH_S}
     if begins_in_s is None:
         begins_in_s = allowance_s(plan, list(now))
+        if scenario.task == "search" and now:
+            begins_in_s = min(begins_in_s + (scenario.time_budget_s or SEARCH_S), MOST_S)
     now, soon, until = _ahead(scenario, plan, now, begins_in_s)
     as_flown = sortie if flying or (flights and asked.at_s is None) else None
     if scenario.task == "search":

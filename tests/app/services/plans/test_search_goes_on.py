@@ -15,11 +15,13 @@ from shapely.geometry import Polygon
 from app.schemas.replans import ReplanIn
 from app.services.errors import ConflictError
 from app.services.flights.seen import Flown, Sortie
+from app.services.plans.along import allowance_s
 from app.services.plans.looked import Looked, flown_looks
-from app.services.plans.replanning import left_of
+from app.services.plans.replanning import SEARCH_S, left_of
 from app.services.records import FlightRecord, TrackSample
 from planner.check.searched import searched
 from planner.geojson import read_scenario
+from planner.geojson.going_on import MOST_S
 from planner.pipeline import make_plan
 from planner.plan import Plan
 from planner.scenario import Scenario
@@ -104,6 +106,24 @@ def test_several_find_about_as_much_planned_anew_as_they_would_going_on() -> Non
     whole = searched(scenario, plan)
     found = whole.total - new.metrics.importance_total
     assert found + new.metrics.importance_collected > 0.95 * whole.importance
+
+
+def test_in_flight_a_search_is_planned_soon_and_begins_so_much_later() -> None:
+    """Within a few seconds where its scenario says nothing, else as it says; aircraft fly on for as long."""
+    made, scenario, plan = asked("finds")
+    at_s = plan.collects[0].end_s
+
+    def begins_in_s(budget_s: float | None) -> float:
+        own = made if budget_s is None else made | {"time_budget_s": budget_s}
+        read = replace(scenario, time_budget_s=budget_s)
+        found = left_of(own, read, plan, ReplanIn.model_validate({"at_s": at_s}).asked())
+        assert found["time_budget_s"] == (budget_s or SEARCH_S)
+        return float(found["replan"]["begins_in_s"])
+
+    assert begins_in_s(None) == pytest.approx(allowance_s(plan, ["uav"]) + SEARCH_S)
+    assert begins_in_s(9.0) == pytest.approx(begins_in_s(None) - SEARCH_S + 9.0)
+    assert begins_in_s(1e4) == MOST_S
+    assert "time_budget_s" not in left("finds", at_s=0.0)
 
 
 def test_a_pass_that_is_being_flown_is_seen_as_far_as_it_has_come() -> None:
