@@ -47,7 +47,7 @@ async def test_what_a_flight_missed_is_flown_again_before_it_lands(
     record = (await client.post("/api/v1/plans", json=DOCUMENT, params={"wait": 60})).json()
     plan = (await client.get(record["links"]["plan.geojson"])).json()
     collects = [f["properties"] for f in plan["features"] if f["properties"]["role"] == "collect"]
-    vehicle = await connected(client, f"sim:?speedup=100&fault=sensor_skips&{aircraft}")
+    vehicle = await connected(client, f"sim:?speedup=50&fault=sensor_skips&{aircraft}")
     first = {"plan_id": record["id"], "payload": payload}
     report = (await client.post(vehicle + "/mission", json=first)).json()
     assert report["verified"], report
