@@ -72,7 +72,7 @@ def test_one_in_the_air_with_nothing_to_do_flies_home(
     assert working < aloft
 
 
-@pytest.mark.parametrize(("at_s", "left_one"), [(150.0, "weir"), (300.0, "sluice")])
+@pytest.mark.parametrize(("at_s", "left_one"), [(150.0, "weir"), (300.0, "mill")])
 def test_of_two_that_fly_home_at_once_one_waits_where_it_is(
     document: dict[str, Any], flown: tuple[Scenario, Plan], at_s: float, left_one: str
 ) -> None:
