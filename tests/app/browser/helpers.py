@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -18,7 +19,7 @@ def ask(page: Page, expression: str) -> Any:
     return page.evaluate(f"window.swathplan.{expression}")
 
 
-def await_hook(page: Page, condition: str, limit_s: float = 15.0) -> None:
+def await_hook(page: Page, condition: str, limit_s: float = 90.0) -> None:
     """Wait until an expression of the test hook is true."""
     page.wait_for_function(f"window.swathplan.{condition}", timeout=limit_s * 1000)
 
@@ -35,6 +36,9 @@ def open_scenario(page: Page, path: Path = EXAMPLES / "sar-case-1.geojson") -> N
         # Edits of a test before are nowhere else: the page asks.
         page.click("#dialog-go")
         page.wait_for_function("count => window.swathplan.replaced() > count", arg=count)
+    # A tab that was just opened may have taken the newest plan's scenario first.
+    if name := json.loads(path.read_text()).get("name"):
+        page.wait_for_function("name => window.swathplan.scenario().name === name", arg=name)
     page.wait_for_selector("#findings:not([data-state=asking]):not([data-state=empty])")
 
 

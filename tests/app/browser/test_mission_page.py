@@ -32,7 +32,7 @@ def rows(lat: float, lon: float) -> bytes:
 
 def opened(page: Page, before: str | None) -> str:
     """The id of the plan that came onto the map in place of another."""
-    await_hook(page, f"plan() !== null && window.swathplan.plan().id !== '{before}'", 30.0)
+    await_hook(page, f"plan() !== null && window.swathplan.plan().id !== '{before}'")
     return str(ask(page, "plan()")["id"])
 
 

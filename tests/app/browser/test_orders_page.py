@@ -44,7 +44,7 @@ def collecting(page: Page, service: Service) -> None:
     open_scenario(page, EXAMPLES / "sar-case-1.geojson")
     go_to(page, "Plan")
     page.click("#plan-start")
-    await_hook(page, "plan() !== null", 60.0)
+    await_hook(page, "plan() !== null")
     go_to(page, "Fly")
     page.click("#upload")
     page.wait_for_selector("#upload-result [data-outcome=accepted][data-verified=true]")

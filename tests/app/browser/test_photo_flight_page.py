@@ -44,7 +44,7 @@ def flight(page: Page, service: Service, tmp_path_factory: pytest.TempPathFactor
     open_scenario(page, path)
     page.get_by_role("tab", name="Plan").click()
     page.click("#plan-start")
-    await_hook(page, "plan() !== null", 60.0)
+    await_hook(page, "plan() !== null")
     page.get_by_role("tab", name="Fly").click()
     page.locator("#vehicles label", has_text="copter").click()
     page.click("#upload")

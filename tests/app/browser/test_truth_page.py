@@ -55,7 +55,7 @@ def planned(page: Page, service: Service, scenario: Path) -> str:
     open_scenario(page, scenario)
     go_to(page, "Plan")
     page.click("#plan-start")
-    await_hook(page, "plan() !== null", 60.0)
+    await_hook(page, "plan() !== null")
     return str(ask(page, "plan()")["id"])
 
 
@@ -272,7 +272,7 @@ def test_a_reload_brings_back_the_scenario_with_its_plan(page: Page, planned: st
             page.keyboard.press("Tab")
         page.reload()
         page.wait_for_function("window.swathplan !== undefined")
-        await_hook(page, f"plan()?.id === '{planned}'", 30.0)
+        await_hook(page, f"plan()?.id === '{planned}'")
         expect(cell(page, "planned")).to_have_text(words, timeout=LIMIT_MS)
 
 
@@ -332,7 +332,7 @@ def test_a_page_opened_too_early_takes_the_first_plan(page: Page, planned: str, 
     expect(early.locator("#recent")).to_contain_text("None yet.", timeout=LIMIT_MS)
     assert ask(early, "scenario()")["features"] == []
     early.unroute(lists)
-    await_hook(early, "scenario().features.length > 0", 60.0)
+    await_hook(early, "scenario().features.length > 0")
     early.close()
 
 

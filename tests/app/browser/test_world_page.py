@@ -39,7 +39,7 @@ CUT = (180.0, 68.0)
 def world(page: Page) -> Page:
     """The page once its world is drawn."""
     page.evaluate("window.swathplan.look(0, 0, 1)")
-    await_hook(page, "rendered()['land'] > 0", 30.0)
+    await_hook(page, "rendered()['land'] > 0")
     return page
 
 
