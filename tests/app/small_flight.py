@@ -9,6 +9,7 @@ import httpx
 
 from app.routers.bodies import EXAMPLE
 from tests.app.test_vehicles import connected, until
+from tests.patience import PATIENCE_S
 
 CRAFT = [
     ("ardupilot", "fixed_wing"),
@@ -63,7 +64,7 @@ async def ready(
 
 async def order(client: httpx.AsyncClient, vehicle: str, command: str, **more: Any) -> httpx.Response:
     """The answer to a command."""
-    return await client.post(vehicle + "/commands", json={"command": command, **more}, timeout=60)
+    return await client.post(vehicle + "/commands", json={"command": command, **more}, timeout=PATIENCE_S)
 
 
 async def in_flight(client: httpx.AsyncClient, vehicle: str) -> dict[str, Any]:

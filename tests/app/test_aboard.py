@@ -17,6 +17,7 @@ from mavlink.sim.settings import SimSettings
 from tests.app.conftest import impatient_house, serving, stored
 from tests.app.test_problems import check_problem
 from tests.app.test_restart import VEHICLES, flying, free_port, until
+from tests.patience import PATIENCE_S
 
 
 @asynccontextmanager
@@ -58,7 +59,7 @@ async def test_a_restart_empties_the_mission_and_nothing_is_started(
             body = await until(client, lambda body: body["sent"]["standing"] == "differs")
             assert body["plan_id"] is None
             assert not body["state"]["armed"]
-            async with asyncio.timeout(60):
+            async with asyncio.timeout(PATIENCE_S):
                 # It may just be read back once more.
                 while (report := await client.post(place + "/mission", json={"plan_id": plan_id})).is_error:
                     assert report.json()["type"].endswith(":busy"), report.text

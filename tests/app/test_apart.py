@@ -21,6 +21,7 @@ import pytest
 
 from app.services.links.place import Holder, Lock, PlaceTakenError, place_of
 from benchmarks.isolation import VEHICLES, Listening, ask, connect, flooded, free_port, measure
+from tests.patience import PATIENCE_S
 
 ROOT = Path(__file__).resolve().parents[2]
 #: Without links of their own heartbeats stopped for 15 s under such a load, and an order took 9 s; what is
@@ -45,7 +46,7 @@ def serving(database: Path) -> Iterator[tuple[str, subprocess.Popen[str]]]:
             process.wait(60)
 
 
-def until(what: Callable[[], Any], within_s: float = 30.0) -> Any:
+def until(what: Callable[[], Any], within_s: float = PATIENCE_S) -> Any:
     """What something is once it is true."""
     end_s = time.monotonic() + within_s
     while not (found := what()):

@@ -22,6 +22,7 @@ from tests.app.test_problems import check_problem
 from tests.app.test_restart import VEHICLES, add, autopilot, free_port, service, until
 from tests.app.test_storage import held
 from tests.app.test_vehicles import connected
+from tests.patience import PATIENCE_S
 
 AUDIT = "/api/v1/audit"
 
@@ -30,7 +31,7 @@ async def entries(
     client: httpx.AsyncClient, ready: Callable[[list[dict[str, Any]]], bool], **which: Any
 ) -> list[dict[str, Any]]:
     """Entries, the newest first, once they are as they should be."""
-    async with asyncio.timeout(60):
+    async with asyncio.timeout(PATIENCE_S):
         while not ready(found := (await client.get(AUDIT, params=which)).json()["entries"]):
             await asyncio.sleep(0.05)
     return found
@@ -165,7 +166,7 @@ async def test_an_upload_left_by_a_crash_is_resolved(settings: Settings, plan_fi
             assert {entry["outcome"] for entry in found} == {"unknown"}
             assert "may have been carried out" in found[0]["reason"]
             with closing(sqlite3.connect(settings.database)) as database:
-                async with asyncio.timeout(60):
+                async with asyncio.timeout(PATIENCE_S):
                     while (rows := database.execute("SELECT outcome FROM uploads").fetchall()) == [
                         ("pending",)
                     ]:

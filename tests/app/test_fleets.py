@@ -10,6 +10,7 @@ import pytest
 from tests.app.small_flight import planned
 from tests.app.test_problems import check_problem
 from tests.app.test_vehicles import connected
+from tests.patience import PATIENCE_S
 from tests.planner.scenarios import of_two
 
 PLANS, VEHICLES = "/api/v1/plans", "/api/v1/vehicles"
@@ -69,7 +70,7 @@ async def test_all_vehicles_are_sent_their_missions_in_one_call(
     for vehicle in ids.values():
         assert (await client.get(f"{VEHICLES}/{vehicle}")).json()["upload"] is None
     body = {"plan_id": fleet_plan, "vehicles": ids}
-    answer = await client.post(VEHICLES + "/missions", json=body, timeout=60)
+    answer = await client.post(VEHICLES + "/missions", json=body, timeout=PATIENCE_S)
     assert answer.status_code == 200, answer.text
     verdict = answer.json()
     assert (verdict["outcome"], verdict["verified"]) == ("accepted", True), verdict
@@ -87,7 +88,7 @@ async def test_one_vehicle_that_is_refused_holds_up_no_other(
     """A multirotor where a wing is meant: it is refused with the reason, the other holds its mission."""
     ids = {"north": await aircraft(client, "north"), "south": await aircraft(client, "south", "multirotor")}
     body = {"plan_id": fleet_plan, "vehicles": ids}
-    verdict = (await client.post(VEHICLES + "/missions", json=body, timeout=60)).json()
+    verdict = (await client.post(VEHICLES + "/missions", json=body, timeout=PATIENCE_S)).json()
     assert (verdict["outcome"], verdict["verified"]) == ("refused", False), verdict
     assert verdict["vehicles"]["north"]["upload"]["verified"]
     assert verdict["vehicles"]["south"]["upload"] is None

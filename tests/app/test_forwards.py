@@ -28,6 +28,7 @@ from tests.app.test_restart import autopilot, free_port, service
 from tests.app.test_two_operators import uploading
 from tests.app.test_vehicles import VEHICLES, faulty_vehicle, until
 from tests.mavlink.station.forward.test_hub import Station
+from tests.patience import PATIENCE_S
 
 ARM = 400
 
@@ -87,7 +88,7 @@ async def test_forwarded_from_the_start(client: httpx.AsyncClient, tmp_path: Pat
         # A station on TCP reads the same, by another route.
         reader, writer = await asyncio.open_connection("127.0.0.1", int(second["address"].rpartition(":")[2]))
         codec, heard = Codec(), set[str]()
-        async with asyncio.timeout(60):
+        async with asyncio.timeout(PATIENCE_S):
             while "HEARTBEAT" not in heard:
                 heard |= {message.name for message in codec.feed(await reader.read(4096))}
         writer.close()

@@ -11,6 +11,7 @@ from tests.app.conftest import fake_house, serving
 from tests.app.rasters import ramp
 from tests.app.test_restart import free_port
 from tests.app.test_strangers import aircraft
+from tests.patience import PATIENCE_S
 
 # The ramp of the raster: 100 m + 1 m a column and 2 m a row from 0.05° W, 0.07° N, every 0.002°.
 STEP_DEG, WEST_DEG, NORTH_DEG = 0.002, -0.05 + 0.001, 0.07 - 0.001
@@ -32,7 +33,7 @@ async def test_a_vehicle_is_served_the_ground_under_it(settings: Settings) -> No
             return [each for each in flying.heard if each.name == "TERRAIN_DATA"]
 
         await ask(50.0, 8.0)
-        async with asyncio.timeout(60):
+        async with asyncio.timeout(PATIENCE_S):
             while not answers():
                 await ask(0.01, 0.02)
                 await asyncio.sleep(0.1)

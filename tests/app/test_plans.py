@@ -16,6 +16,7 @@ from app.main import create_app
 from app.services.store.database import Database, DatabaseInUseError
 from app.settings import Settings
 from tests.app.conftest import pooled_house, serving, settings_in
+from tests.patience import PATIENCE_S
 
 pytestmark = pytest.mark.asyncio(loop_scope="module")
 
@@ -45,7 +46,7 @@ def scenario(fake: str = "done", **members: Any) -> dict[str, Any]:
 
 async def state_of(client: httpx.AsyncClient, place: str, *states: str) -> dict[str, Any]:
     """The record once it is in one of some states."""
-    async with asyncio.timeout(60):
+    async with asyncio.timeout(PATIENCE_S):
         while (record := (await client.get(place)).json())["state"] not in states:
             await asyncio.sleep(0.02)
     return record
@@ -117,14 +118,14 @@ async def test_a_bound_that_makes_room_comes_later(client: httpx.AsyncClient, tm
     answer = await client.post(PLANS, json=scenario(fake_bound=str(begun)), params={"wait": 20})
     place = answer.headers["location"]
     watched = asyncio.create_task(client.get(place + "/events"))
-    async with asyncio.timeout(60):
+    async with asyncio.timeout(PATIENCE_S):
         while not begun.exists():
             await asyncio.sleep(0.02)
     # Until the watcher is served: it must not come after the bound.
     await asyncio.sleep(1.0)
     other = (await client.post(PLANS, json=scenario(), params={"wait": 20})).json()
     assert other["state"] == "done"
-    async with asyncio.timeout(60):
+    async with asyncio.timeout(PATIENCE_S):
         (first, before), (second, after) = events_in((await watched).text)
     assert (first, second) == ("done", "bound")
     assert before["metrics"] == {"length_m": 1.0}
@@ -139,7 +140,7 @@ async def test_deleted_plan_waits_for_no_bound(client: httpx.AsyncClient) -> Non
     watched = asyncio.create_task(client.get(place + "/events"))
     await asyncio.sleep(0.2)
     assert (await client.delete(place)).status_code == 204
-    async with asyncio.timeout(60):
+    async with asyncio.timeout(PATIENCE_S):
         assert [name for name, _ in events_in((await watched).text)] == ["done"]
     assert (await client.post(PLANS, json=scenario(), params={"wait": 20})).json()["state"] == "done"
 
@@ -150,7 +151,7 @@ async def test_running_plan_reports_progress_and_can_be_cancelled(
     """A running plan tells its stage; deleting cancels it, deleting again removes it."""
     place = (await client.post(PLANS, json=scenario("slow"))).headers["location"]
     await state_of(client, place, "running")
-    async with asyncio.timeout(60):
+    async with asyncio.timeout(PATIENCE_S):
         while (await client.get(place)).json()["progress"] < 0.25:
             await asyncio.sleep(0.02)
     assert (await client.get(place)).json()["stage"]

@@ -20,6 +20,7 @@ from tests.app.small_flight import in_flight, order, planned, ready, small_scena
 from tests.app.test_problems import check_problem
 from tests.app.test_restart import flying
 from tests.app.test_vehicles import connected, listening, until
+from tests.patience import PATIENCE_S
 
 #: Texts of the firmwares, and the command each has to do with.
 TEXTS = {
@@ -82,7 +83,7 @@ async def test_in_flight_each_refusal_has_its_own_reason(client: httpx.AsyncClie
     assert went.status_code == 200, went.text
     plan_id = await planned(client, small_scenario(autopilot, "fixed_wing"))
     body = {"plan_id": plan_id, "override": True, "reason": "another strip"}
-    told = (await client.post(vehicle + "/mission", json=body, timeout=60)).json()["in_flight"]
+    told = (await client.post(vehicle + "/mission", json=body, timeout=PATIENCE_S)).json()["in_flight"]
     current = (await client.get(vehicle)).json()["state"]["mission_current"]
     assert told["mode"] == (await client.get(vehicle)).json()["state"]["mode"]
     if told["item"] is not None and told["item"] > count // 2:
@@ -113,7 +114,7 @@ async def test_the_loss_of_a_flights_link_is_an_event(impatient: httpx.AsyncClie
             await asyncio.sleep(0.005)
         async with flying(link, settings):
             vehicle = await connecting
-            sent = await impatient.post(vehicle + "/mission", json={"plan_id": plan_id}, timeout=60)
+            sent = await impatient.post(vehicle + "/mission", json={"plan_id": plan_id}, timeout=PATIENCE_S)
             assert sent.json()["verified"], sent.text
             await in_flight(impatient, vehicle)
             body = await until(impatient, vehicle, lambda body: body["flight_id"] is not None)

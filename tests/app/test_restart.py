@@ -27,6 +27,7 @@ from mavlink.sim.modes import Flavour
 from mavlink.sim.run import serve, serve_link
 from mavlink.sim.settings import SimSettings
 from tests.app.conftest import fake_house, impatient_house, serving, stored
+from tests.patience import PATIENCE_S
 
 VEHICLES = "/api/v1/vehicles"
 
@@ -90,7 +91,7 @@ async def flying(link: Link, settings: SimSettings) -> AsyncIterator[None]:
 
 async def until(client: httpx.AsyncClient, ready: Callable[[Any], bool]) -> Any:
     """The first vehicle, once it is ready."""
-    async with asyncio.timeout(60):
+    async with asyncio.timeout(PATIENCE_S):
         while not ready(body := (await client.get(VEHICLES)).json()["vehicles"][0]):
             await asyncio.sleep(0.05)
     return body
@@ -135,7 +136,7 @@ async def test_held_plan_is_read_back_not_believed(settings: Settings, plan_file
     async with autopilot(f"udpout:{url}"), service(settings) as client:
         # another aircraft at the same address, with an empty mission
         await until(client, lambda body: body["connected"])
-        async with asyncio.timeout(60):
+        async with asyncio.timeout(PATIENCE_S):
             while held_plan(settings) is not None:
                 await asyncio.sleep(0.1)
         assert (await until(client, lambda body: body["connected"]))["plan_id"] is None

@@ -18,6 +18,7 @@ from app.middleware import MOST_LARGE, BodyCap, RequestLog
 from app.server import listen
 from app.services.presence import LEFT
 from tests.app.test_problems import check_problem
+from tests.patience import PATIENCE_S
 
 
 async def _nothing(scope: object, receive: object, send: object) -> None:
@@ -44,7 +45,7 @@ async def served(app: ASGIApp) -> AsyncIterator[tuple[uvicorn.Server, str]]:
     server.capture_signals = contextlib.nullcontext  # type: ignore[method-assign,assignment]
     serving = asyncio.create_task(server.serve())
     try:
-        async with asyncio.timeout(10):
+        async with asyncio.timeout(PATIENCE_S):
             while not server.started:
                 await asyncio.sleep(0.01)
         yield server, f"http://127.0.0.1:{server.servers[0].sockets[0].getsockname()[1]}"
@@ -66,7 +67,7 @@ async def test_a_slow_request_is_told_that_the_service_ends() -> None:
         at_work.set()
         await asyncio.sleep(60)
 
-    async with served(around(slow)) as (server, address), httpx.AsyncClient(timeout=30) as client:
+    async with served(around(slow)) as (server, address), httpx.AsyncClient(timeout=PATIENCE_S) as client:
         asking = asyncio.create_task(client.post(address, content=b"{}"))
         await at_work.wait()
         server.should_exit = True
@@ -93,13 +94,13 @@ async def test_that_the_client_has_left_is_known_to_what_works_for_it(method: st
         await send({"type": "http.response.body", "body": b""})
 
     async with served(around(works)) as (_, address):
-        async with httpx.AsyncClient(timeout=30) as client:
+        async with httpx.AsyncClient(timeout=PATIENCE_S) as client:
             assert (await client.request(method, address + "/stays")).status_code == 204
             asking = asyncio.create_task(client.request(method, address + "/goes"))
             await at_work.wait()
             asking.cancel()
             await asyncio.gather(asking, return_exceptions=True)
-        async with asyncio.timeout(10):
+        async with asyncio.timeout(PATIENCE_S):
             await told.wait()
 
 

@@ -23,6 +23,7 @@ from tests.app.conftest import fake_house, serving
 from tests.app.rasters import ramp
 from tests.app.test_problems import check_problem
 from tests.app.test_process import PLANS, Service, service
+from tests.patience import PATIENCE_S
 
 READY = "/health/ready"
 SOUND = {"features": [{}], "name": "sound"}
@@ -42,7 +43,7 @@ def full_disk(process: Service) -> Iterator[None]:
 
 def wait_ready(running: Service, status: int) -> dict[str, bool]:
     """The checks of the probe once it answers with a status."""
-    end_s = time.monotonic() + 60
+    end_s = time.monotonic() + PATIENCE_S
     while (answer := running.client.get(READY)).status_code != status:
         assert time.monotonic() < end_s, answer.text
         time.sleep(0.05)
@@ -75,7 +76,7 @@ def test_a_plan_that_cannot_be_written_has_failed(tmp_path: Path) -> None:
         assert running.post("done", wait_s=20)["state"] == "done"
         wait_ready(running, 200)
         with closing(sqlite3.connect(f"file:{tmp_path / 'plans.db'}?mode=ro", uri=True)) as rows:
-            end_s = time.monotonic() + 60
+            end_s = time.monotonic() + PATIENCE_S
             while rows.execute("SELECT state FROM plans ORDER BY number").fetchall()[0] != ("failed",):
                 assert time.monotonic() < end_s
                 time.sleep(0.05)

@@ -18,6 +18,7 @@ from tests.app.test_problems import check_problem
 from tests.app.test_restart import free_port
 from tests.mavlink.station.aircraft import Aircraft
 from tests.mavlink.transfer.vehicle import StubVehicle
+from tests.patience import PATIENCE_S
 
 VEHICLES = "/api/v1/vehicles"
 
@@ -32,7 +33,7 @@ async def aircraft(port: int, system_id: int = 1) -> AsyncIterator[Aircraft]:
 
 async def until(client: httpx.AsyncClient, place: str, ready: Callable[[Any], bool]) -> Any:
     """The vehicle, once it is ready."""
-    async with asyncio.timeout(60):
+    async with asyncio.timeout(PATIENCE_S):
         while not ready(body := (await client.get(place)).json()):
             await asyncio.sleep(0.05)
     return body
@@ -117,7 +118,7 @@ async def test_a_station_that_two_of_one_system_id_are_forwarded_to_flies_neithe
             places.append((await client.post(VEHICLES, json=asked)).headers["location"])
         for place in places:
             await until(client, place + "/forward", lambda body: body["shared"])
-        async with asyncio.timeout(20):
+        async with asyncio.timeout(PATIENCE_S):
             while peer.link.peers < 2:
                 await peer.link.receive()
         peer.say("COMMAND_LONG", command=400, param1=1.0)

@@ -10,6 +10,7 @@ import pytest
 from sse_starlette import ServerSentEvent
 
 from app.routers.streams import event_stream
+from tests.patience import PATIENCE_S
 
 SCOPE = {"type": "http", "method": "GET", "path": "/", "headers": [], "asgi": {"version": "3.0"}}
 
@@ -53,7 +54,7 @@ async def listen(source: Source, *, leave: bool, cut: bool = False) -> list[dict
     if cut:
         await first.wait()
         answering.cancel()
-    await asyncio.wait_for(asyncio.gather(answering, return_exceptions=True), 5)
+    await asyncio.wait_for(asyncio.gather(answering, return_exceptions=True), PATIENCE_S)
     return got
 
 

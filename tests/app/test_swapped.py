@@ -17,6 +17,7 @@ from mavlink.sim.settings import SimSettings
 from tests.app.conftest import impatient_house, serving, stored
 from tests.app.test_problems import check_problem
 from tests.app.test_restart import free_port
+from tests.patience import PATIENCE_S
 
 VEHICLES = "/api/v1/vehicles"
 
@@ -34,7 +35,7 @@ async def aircraft(url: str, system_id: int) -> AsyncIterator[None]:
 
 async def until(client: httpx.AsyncClient, place: str, ready: Callable[[Any], bool]) -> Any:
     """The vehicle, once it is ready."""
-    async with asyncio.timeout(60):
+    async with asyncio.timeout(PATIENCE_S):
         while not ready(body := (await client.get(place)).json()):
             await asyncio.sleep(0.05)
     return body

@@ -19,6 +19,7 @@ from tests.app.test_problems import check_problem
 from tests.app.test_process import ROOT
 from tests.app.test_restart import free_port, service
 from tests.app.test_vehicles import VEHICLES, connected, faulty_vehicle, until
+from tests.patience import PATIENCE_S
 
 #: Nothing answers the announcement of a list: an upload that takes its time.
 SLOW = SimSettings(faults=("no_response_to_count",))
@@ -26,7 +27,9 @@ SLOW = SimSettings(faults=("no_response_to_count",))
 
 async def uploading(client: httpx.AsyncClient, vehicle: str, plan_id: str) -> asyncio.Task[httpx.Response]:
     """An upload that has begun."""
-    upload = asyncio.create_task(client.post(vehicle + "/mission", json={"plan_id": plan_id}, timeout=60))
+    upload = asyncio.create_task(
+        client.post(vehicle + "/mission", json={"plan_id": plan_id}, timeout=PATIENCE_S)
+    )
     await until(client, vehicle, lambda body: body["operation"] is not None and body["upload"] is not None)
     return upload
 
@@ -54,7 +57,9 @@ async def test_an_upload_waits_for_the_answer_to_an_order_to_fly(
 ) -> None:
     """While one operator's order is unanswered, the mission it is about is not exchanged by the other."""
     async with faulty_vehicle(client, SimSettings(faults=("no_command_ack",))) as vehicle:
-        order = asyncio.create_task(client.post(vehicle + "/commands", json={"command": "arm"}, timeout=60))
+        order = asyncio.create_task(
+            client.post(vehicle + "/commands", json={"command": "arm"}, timeout=PATIENCE_S)
+        )
         # Carried out, so it was given; the answer to it never comes.
         await until(client, vehicle, lambda body: body["state"]["armed"])
         refused = await client.post(vehicle + "/mission", json={"plan_id": plan_id})
@@ -94,7 +99,7 @@ async def test_a_vehicle_let_go_in_mid_upload_leaves_the_outcome_unknown(
 async def test_a_vehicle_let_go_while_it_is_opened_is_told_at_once(client: httpx.AsyncClient) -> None:
     """The request that waits for its heartbeat ends with the reason, and the port is free."""
     body = {"name": "quiet", "url": f"udpin:127.0.0.1:{free_port()}", "timeout_s": 60}
-    opening = asyncio.create_task(client.post(VEHICLES, json=body, timeout=90))
+    opening = asyncio.create_task(client.post(VEHICLES, json=body, timeout=PATIENCE_S))
     listed = await until(client, VEHICLES, lambda found: found["vehicles"])
     assert (await client.delete(f"{VEHICLES}/{listed['vehicles'][0]['id']}")).status_code == 204
     answer = await opening
@@ -158,7 +163,7 @@ async def _ended_meanwhile(
 ) -> httpx.Response:
     from tests.app.conftest import stored
 
-    async with httpx.AsyncClient(base_url=address, timeout=60) as client:
+    async with httpx.AsyncClient(base_url=address, timeout=PATIENCE_S) as client:
         if what == "opening":
             body = {"name": "quiet", "url": "udpin:127.0.0.1:0", "timeout_s": 60}
             waiting = asyncio.create_task(client.post(VEHICLES, json=body))

@@ -26,13 +26,14 @@ from mavlink.sim.settings import SimSettings
 from tests.app.conftest import fake_house, serving, stored
 from tests.app.test_problems import check_problem
 from tests.app.test_restart import flying
+from tests.patience import PATIENCE_S
 
 VEHICLES = "/api/v1/vehicles"
 
 
 async def until(client: httpx.AsyncClient, path: str, ready: Callable[[Any], bool]) -> Any:
     """What stands at a path once it is ready."""
-    async with asyncio.timeout(60):
+    async with asyncio.timeout(PATIENCE_S):
         while not ready(body := (await client.get(path)).json()):
             await asyncio.sleep(0.02)
     return body

@@ -18,6 +18,7 @@ from mavlink.links.link import open_link
 from mavlink.state.telemetry import VehicleState
 from mavlink.station.client import VehicleClient
 from tests.flows.flying import Flight, until_disarmed
+from tests.patience import PATIENCE_S
 
 BINARY = os.environ.get("SWATHPLAN_ARDUPLANE", "")
 #: Relay 0 exists only where it is given a function; nobody holds a remote control.
@@ -116,7 +117,7 @@ async def aeroplane(
 async def booted(client: VehicleClient) -> VehicleState:
     """Wait for the heartbeat and the end of the boot, before which nothing can be stored."""
     await client.connect(30.0)
-    return await client.wait_for(lambda state: state.mode not in ("", "INITIALISING"), 30.0)
+    return await client.wait_for(lambda state: state.mode not in ("", "INITIALISING"), PATIENCE_S)
 
 
 async def arm(client: VehicleClient) -> None:

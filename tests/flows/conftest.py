@@ -12,8 +12,9 @@ from pathlib import Path
 import httpx
 import pytest
 
+from tests.patience import PATIENCE_S
+
 #: Seconds; a busy machine takes its time to begin several processes.
-START_LIMIT_S = 120.0
 
 
 def _ready(address: str) -> bool:
@@ -42,11 +43,11 @@ def service(tmp_path: Path) -> Iterator[str]:
     process = subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     address = f"http://127.0.0.1:{port}"
     try:
-        end_s = time.monotonic() + START_LIMIT_S
+        end_s = time.monotonic() + PATIENCE_S
         while not _ready(address):
             assert time.monotonic() < end_s, "the service did not come up"
             time.sleep(0.1)
         yield address
     finally:
         process.terminate()
-        process.wait(timeout=30)
+        process.wait(timeout=PATIENCE_S)

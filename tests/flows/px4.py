@@ -24,6 +24,7 @@ from mavlink.station.client import VehicleClient
 from mavlink.wire.codec import Codec
 from mavlink.wire.messages import Message
 from tests.flows.flying import Flight, until_disarmed
+from tests.patience import PATIENCE_S
 
 BINARY = os.environ.get("SWATHPLAN_PX4", "")
 ROMFS = os.environ.get("SWATHPLAN_PX4_ROMFS", "")
@@ -182,7 +183,7 @@ async def fly(client: VehicleClient, payload: Payload = DEFAULT_PAYLOAD) -> Flig
             break
         await asyncio.sleep(0.5)
     assert started.accepted, (started, [text.text for text in client.state.texts])
-    await client.wait_for(lambda state: state.armed, 20.0)
+    await client.wait_for(lambda state: state.armed, PATIENCE_S)
     texts = await until_disarmed(client)
     client.stop_recording(recorder)
     return Flight(recorder.track(), texts, client.state)

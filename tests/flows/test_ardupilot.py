@@ -34,6 +34,7 @@ from planner.plan import Plan
 from planner.scenario import Scenario
 from tests.flows.arduplane import BINARY, aeroplane, arduplane, booted, fly, in_wind
 from tests.flows.flying import CASES, WIND, Figures, case_document, figures, from_end_m, inside_fence, store
+from tests.patience import PATIENCE_S
 
 pytestmark = [
     pytest.mark.ardupilot,
@@ -118,13 +119,13 @@ async def test_orders_in_flight(tmp_path: Path) -> None:
         flying = asyncio.create_task(fly(client))
         await client.wait_for(lambda state: (state.mission_current or 0) >= 4, 120.0)
         assert (await client.pause()).accepted
-        await client.wait_for(lambda state: state.mode == "LOITER", 10.0)
+        await client.wait_for(lambda state: state.mode == "LOITER", PATIENCE_S)
         assert (await client.resume()).accepted
-        await client.wait_for(lambda state: state.mode == "AUTO", 10.0)
+        await client.wait_for(lambda state: state.mode == "AUTO", PATIENCE_S)
         assert (await client.goto_item(20)).kind == "accepted"
-        await client.wait_for(lambda state: (state.mission_current or 0) >= 20, 10.0)
+        await client.wait_for(lambda state: (state.mission_current or 0) >= 20, PATIENCE_S)
         assert (await client.return_to_launch()).accepted
-        await client.wait_for(lambda state: state.mode == "RTL", 10.0)
+        await client.wait_for(lambda state: state.mode == "RTL", PATIENCE_S)
         flying.cancel()
         await asyncio.gather(flying, return_exceptions=True)
 
@@ -132,7 +133,7 @@ async def test_orders_in_flight(tmp_path: Path) -> None:
 def swathplan(*arguments: str) -> str:
     """What a command writes, in a process of its own; it must end well."""
     command = [sys.executable, "-m", "app.cli", *arguments]
-    ended = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    ended = subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE_S, check=False)
     assert ended.returncode == 0, ended.stderr
     return ended.stdout
 

@@ -22,6 +22,7 @@ from planner.geojson import read_scenario
 from planner.pipeline import make_plan
 from tests.flows.arduplane import BINARY, QUADPLANE, aeroplane, arm, fly
 from tests.flows.flying import case_document, figures, from_end_m, inside_fence, store
+from tests.patience import PATIENCE_S
 
 pytestmark = [
     pytest.mark.ardupilot,
@@ -50,7 +51,7 @@ async def test_a_vtol_hovers_up_sees_its_regions_and_hovers_down(tmp_path: Path)
     plan = make_plan(scenario)
     mission = encode(plan)
     async with aeroplane(tmp_path, plan.home, SPEEDUP, model="quadplane") as client:
-        await client.wait_for(lambda state: state.type == "vtol", 10.0)
+        await client.wait_for(lambda state: state.type == "vtol", PATIENCE_S)
         needs = needs_of(plan, mission, RelayPayload(), 150.0)
         names = names_to_read("ardupilot", "vtol", needs)
         values = {name: read.value for name, read in (await client.read_parameters(names)).items()}
@@ -87,7 +88,7 @@ async def test_a_return_circles_over_home_and_stays_armed(tmp_path: Path) -> Non
         assert (await client.start_mission()).accepted
         await client.wait_for(lambda state: (state.mission_current or 0) >= 5, 120.0)
         assert (await client.goto_item(len(mission.mission) - 1)).kind == "accepted"
-        await client.wait_for(lambda state: state.mode == "RTL", 20.0)
+        await client.wait_for(lambda state: state.mode == "RTL", PATIENCE_S)
         # 100 s of flight to come home, then 200 s over it.
         await asyncio.sleep(100.0 / SPEEDUP)
         recorder = client.start_recording()

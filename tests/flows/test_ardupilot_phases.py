@@ -22,6 +22,7 @@ from planner.vehicle.atmosphere import true_over_equivalent
 from tests.flows.arduplane import BINARY, HOME_ALTITUDE_M, aeroplane, arm, fly, in_wind
 from tests.flows.flying import WIND, Flight, case_document, figures, store, until_disarmed
 from tests.flows.phases import POWER_W, compared, small_case
+from tests.patience import PATIENCE_S
 
 pytestmark = pytest.mark.ardupilot
 
@@ -103,7 +104,7 @@ async def test_a_multirotor_takes_as_long_as_planned(tmp_path: Path, from_deg: f
         tmp_path, plan.home, 20.0, in_wind(wind), model="+", binary=COPTER, defaults=folder
     ) as client:
         # It takes no mission while it still reads its storage.
-        await client.wait_for(lambda state: state.home_lat_deg is not None, 60.0)
+        await client.wait_for(lambda state: state.home_lat_deg is not None, PATIENCE_S)
         await store(client, mission)
         flight = await hovering(client)
     found = compared(flight, plan.paths[0], "ArduCopter", told(from_deg))

@@ -17,6 +17,7 @@ from mavlink.wire.items import Command, MissionType
 from mavlink.wire.signing import Signing, SigningKey
 from tests.flows.arduplane import BINARY, arduplane, booted
 from tests.mavlink.transfer.vehicle import waypoints
+from tests.patience import PATIENCE_S
 
 pytestmark = [
     pytest.mark.ardupilot,
@@ -55,14 +56,14 @@ async def test_arduplane_signs(tmp_path: Path) -> None:
             radio = await open_link(f"udpin:127.0.0.1:{other}")
             async with VehicleClient(radio, signing=signing(OTHER, 2)) as stranger:
                 stranger._driver.start()
-                await stranger.wait_for(lambda state: state.signing == "wrong_key", 20)
+                await stranger.wait_for(lambda state: state.signing == "wrong_key", PATIENCE_S)
                 with pytest.raises(NotConnectedError, match="another key"):
                     stranger.require_certain()
             radio = await open_link(f"udpin:127.0.0.1:{other}")
             async with VehicleClient(radio, signing=signing(SECRET, 1)) as second:
                 assert (await second.connect(20)).signing == "verified"
                 assert (await second.command(Command.NAV_RETURN_TO_LAUNCH)).accepted
-                await second.wait_for(lambda state: state.mode == "RTL", 20)
+                await second.wait_for(lambda state: state.mode == "RTL", PATIENCE_S)
 
             await client.stop_signing()
             assert len(await client.download(MissionType.MISSION)) == 12

@@ -33,6 +33,7 @@ from planner.plan import Plan
 from tests.flows import arduplane, px4
 from tests.flows.flying import Flight, store
 from tests.flows.test_ardupilot_phases import COPTER, calibrated, hovering
+from tests.patience import PATIENCE_S
 from tests.planner.terrains import raster
 
 log = logging.getLogger(__name__)
@@ -132,7 +133,7 @@ def judged(name: str, plan: Plan, flight: Flight, within: float = WITHIN) -> tup
 @asynccontextmanager
 async def ready(client: VehicleClient, plan: Plan, home_m: float = 0.0) -> AsyncIterator[None]:
     """The plan's mission on board, read back equal."""
-    await client.wait_for(lambda state: state.home_lat_deg is not None, 60.0)
+    await client.wait_for(lambda state: state.home_lat_deg is not None, PATIENCE_S)
     await store(client, encode(plan, options=EncodeOptions(home_altitude_m=home_m)))
     yield
 
@@ -256,7 +257,7 @@ async def broken_off(client: VehicleClient, plan: Plan, how: str) -> tuple[int, 
             await asyncio.sleep(0.05)
     if how == "return":
         assert (await client.return_to_launch()).accepted
-        await client.wait_for(lambda state: "RTL" in state.mode, 30.0)
+        await client.wait_for(lambda state: "RTL" in state.mode, PATIENCE_S)
     else:
         # Without its passes: nothing of it switches the camera.
         items = [item for item in encode(plan).mission if item.command != Command.DO_SET_CAM_TRIGG_DIST]

@@ -15,6 +15,7 @@ import pytest
 from numba.core.caching import IndexDataCacheFile
 
 from planner.compiling import Compiling, keep_in_turn
+from tests.patience import PATIENCE_S
 
 ROOT = Path(__file__).resolve().parents[2]
 #: Loads at once what a file says is kept; else takes its time to make that file, and says so.
@@ -46,7 +47,7 @@ def begun(folder: Path, seconds: float = 0.0, patience_s: float = 60.0) -> subpr
 def test_of_several_that_begin_at_once_one_compiles(tmp_path: Path) -> None:
     """The others wait for it, and take what it has made."""
     processes = [begun(tmp_path, 1.0) for _ in range(4)]
-    said = [process.communicate(timeout=60)[0].split() for process in processes]
+    said = [process.communicate(timeout=PATIENCE_S)[0].split() for process in processes]
     assert sorted(said) == [["compiles", "ready"], ["ready"], ["ready"], ["ready"]]
     assert Compiling(tmp_path).done
 
@@ -60,7 +61,7 @@ def test_one_that_ends_or_hangs_keeps_nobody(tmp_path: Path, how: signal.Signals
         assert first.stdout.readline() == "compiles\n"
         first.send_signal(how)
         second = begun(tmp_path, 0.0, 60.0 if how == signal.SIGKILL else 0.5)
-        assert second.communicate(timeout=30)[0].split() == ["compiles", "ready"]
+        assert second.communicate(timeout=PATIENCE_S)[0].split() == ["compiles", "ready"]
     finally:
         first.kill()
         first.communicate()
@@ -70,7 +71,7 @@ def test_what_is_kept_no_more_is_compiled_anew_in_turn(tmp_path: Path) -> None:
     """A folder that says that all was compiled, and lacks it: in turn, too, and once."""
     Compiling(tmp_path).once(lambda: True)
     processes = [begun(tmp_path, 0.0) for _ in range(2)]
-    said = [process.communicate(timeout=60)[0].split() for process in processes]
+    said = [process.communicate(timeout=PATIENCE_S)[0].split() for process in processes]
     assert all(words[-1] == "ready" for words in said)
     assert (tmp_path / "kept").exists()
 

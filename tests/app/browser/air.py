@@ -13,6 +13,7 @@ import httpx
 from mavlink.wire.codec import Codec
 from mavlink.wire.messages import Message
 from tests.app.browser.conftest import Service
+from tests.patience import PATIENCE_S
 
 PAUSE_S = 0.1
 
@@ -37,7 +38,7 @@ class Air:
         self._port = free_port()
         self._codec = Codec(system_id, 1)
         there = {"name": name, "url": f"udpin:127.0.0.1:{self._port}", "timeout_s": 0.1}
-        made = httpx.post(f"{service.address}/api/v1/vehicles", json=there, timeout=20.0)
+        made = httpx.post(f"{service.address}/api/v1/vehicles", json=there, timeout=PATIENCE_S)
         assert made.status_code == 201
         self._place = f"{service.address}/api/v1/vehicles/{made.json()['id']}"
         self._began_s = time.monotonic()
@@ -52,7 +53,7 @@ class Air:
         self, kind: type[BaseException] | None, error: BaseException | None, where: TracebackType | None
     ) -> None:
         self.fall_silent()
-        httpx.delete(self._place, timeout=20.0)
+        httpx.delete(self._place, timeout=PATIENCE_S)
 
     def fall_silent(self) -> None:
         """Send nothing any more."""

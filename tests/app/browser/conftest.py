@@ -17,6 +17,8 @@ import httpx
 import pytest
 from playwright.sync_api import Browser, Page, expect, sync_playwright
 
+from tests.patience import PATIENCE_S
+
 ROOT = Path(__file__).resolve().parents[3]
 PAGE = ROOT / "static" / "dist" / "index.html"
 EXAMPLES = ROOT / "examples"
@@ -29,9 +31,8 @@ CHROMIUM_FLAGS = [
     "--disable-component-update",
     "--disable-sync",
 ]
-START_LIMIT_S = 120.0
 #: How long the page may take for anything, ms.
-PATIENCE_MS = 90_000.0
+PATIENCE_MS = PATIENCE_S * 1000.0
 #: Slower for a good picture: see docs/map.md.
 SPEEDUP = int(os.environ.get("SWATHPLAN_TEST_SPEEDUP", "200"))
 #: The processor draws a quarter of the points where nobody looks; the page's own pixels are as ever.
@@ -45,12 +46,12 @@ class Service:
     address: str
 
     def get(self, path: str) -> httpx.Response:
-        return httpx.get(self.address + path, timeout=20.0)
+        return httpx.get(self.address + path, timeout=PATIENCE_S)
 
 
 def _first_line(process: subprocess.Popen[str]) -> str:
     assert process.stdout is not None
-    ready, _, _ = select.select([process.stdout], [], [], START_LIMIT_S)
+    ready, _, _ = select.select([process.stdout], [], [], PATIENCE_S)
     line = process.stdout.readline() if ready else ""
     if not line:
         raise RuntimeError("the service did not say where it listens")

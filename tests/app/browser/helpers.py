@@ -12,6 +12,7 @@ import httpx
 from playwright.sync_api import Page
 
 from tests.app.browser.conftest import EXAMPLES, Service
+from tests.patience import PATIENCE_S
 
 
 def ask(page: Page, expression: str) -> Any:
@@ -19,7 +20,7 @@ def ask(page: Page, expression: str) -> Any:
     return page.evaluate(f"window.swathplan.{expression}")
 
 
-def await_hook(page: Page, condition: str, limit_s: float = 90.0) -> None:
+def await_hook(page: Page, condition: str, limit_s: float = PATIENCE_S) -> None:
     """Wait until an expression of the test hook is true."""
     page.wait_for_function(f"window.swathplan.{condition}", timeout=limit_s * 1000)
 
@@ -73,10 +74,12 @@ def connected(service: Service, *names: str, speedup: int = 50) -> Iterator[list
     ids: list[str] = []
     try:
         for name in names:
-            answer = httpx.post(path, json={"name": name, "url": f"sim:?speedup={speedup}"}, timeout=60.0)
+            answer = httpx.post(
+                path, json={"name": name, "url": f"sim:?speedup={speedup}"}, timeout=PATIENCE_S
+            )
             answer.raise_for_status()
             ids.append(answer.json()["id"])
         yield ids
     finally:
         for vehicle in ids:
-            httpx.delete(f"{path}/{vehicle}?in_flight=true", timeout=60.0).raise_for_status()
+            httpx.delete(f"{path}/{vehicle}?in_flight=true", timeout=PATIENCE_S).raise_for_status()

@@ -12,6 +12,7 @@ from playwright.sync_api import Page, expect
 
 from tests.app.browser.conftest import Service
 from tests.app.browser.helpers import ask, connected, on_screen, open_scenario
+from tests.patience import PATIENCE_S
 
 pytestmark = pytest.mark.browser
 
@@ -69,7 +70,7 @@ def test_all_aircraft_are_where_the_plan_has_them(page: Page, service: Service, 
     open_scenario(page, path)
     page.get_by_role("tab", name="Plan").click()
     page.click("#plan-start")
-    page.wait_for_selector("#vehicles", timeout=180_000)
+    page.wait_for_selector("#vehicles", timeout=PATIENCE_S * 1000)
     plan_id = ask(page, "plan()")["id"]
     plan = service.get(f"/api/v1/plans/{plan_id}/plan.geojson").json()
     collects = [f for f in plan["features"] if f["properties"]["role"] == "collect"]
@@ -89,9 +90,9 @@ def test_all_aircraft_are_where_the_plan_has_them(page: Page, service: Service, 
     # A vehicle for each of them, by their names: chosen without being asked. Others share the service.
     with connected(service, "red", "blue"):
         page.get_by_role("tab", name="Fly").click()
-        expect(page.locator("#upload-all")).to_be_enabled(timeout=30_000)
+        expect(page.locator("#upload-all")).to_be_enabled(timeout=PATIENCE_S * 1000)
         page.click("#upload-all")
-        page.wait_for_selector("#fleet-result", timeout=90_000)
+        page.wait_for_selector("#fleet-result", timeout=PATIENCE_S * 1000)
         assert page.get_attribute("#fleet-result", "data-outcome") == "accepted"
         assert page.get_attribute("#fleet-result", "data-verified") == "true"
 

@@ -13,14 +13,13 @@ from playwright.sync_api import Page, expect
 
 from tests.app.browser.conftest import EXAMPLES, Service
 from tests.app.browser.helpers import ask, await_hook, open_scenario
+from tests.patience import PATIENCE_S
 
 pytestmark = pytest.mark.browser
 
 CASE_1 = json.loads((EXAMPLES / "sar-case-1.geojson").read_text(encoding="utf-8"))
 QUEUED_BEFORE = 12
 SHORT_RANGE_M = 20_000.0
-PLANNING_LIMIT_S = 180.0
-FLIGHT_LIMIT_S = 90.0
 
 
 def start_planning(page: Page, path: Path) -> None:
@@ -40,7 +39,7 @@ def give(page: Page, command: str) -> None:
 def planned(page: Page) -> str:
     """The id of a plan of the first sample scenario, shown on the page."""
     start_planning(page, EXAMPLES / "sar-case-1.geojson")
-    await_hook(page, "plan() !== null", PLANNING_LIMIT_S)
+    await_hook(page, "plan() !== null", PATIENCE_S)
     return str(ask(page, "plan()")["id"])
 
 
@@ -67,7 +66,7 @@ def test_every_file_offered_can_be_fetched(page: Page, planned: str) -> None:
         "plan.geojson", "mission.plan", "mission.waypoints", "mission.kml", "report.html",
     }  # fmt: skip
     for link in links:
-        assert httpx.get(link, timeout=20.0).status_code == 200
+        assert httpx.get(link, timeout=PATIENCE_S).status_code == 200
         assert planned in link
 
 
@@ -89,13 +88,13 @@ def test_the_plan_is_uploaded_and_flown(page: Page, planned: str, service: Servi
             return Math.hypot(now.x - x, now.y - y) > 40;
         }""",
         arg=[before["x"], before["y"]],
-        timeout=FLIGHT_LIMIT_S * 1000,
+        timeout=PATIENCE_S * 1000,
     )
-    page.wait_for_function("window.swathplan.rendered()['track-on'] > 0", timeout=FLIGHT_LIMIT_S * 1000)
+    page.wait_for_function("window.swathplan.rendered()['track-on'] > 0", timeout=PATIENCE_S * 1000)
     if target := os.environ.get("SWATHPLAN_SCREENSHOT"):
-        await_hook(page, "rendered()['track-on'] >= 6", FLIGHT_LIMIT_S)
+        await_hook(page, "rendered()['track-on'] >= 6", PATIENCE_S)
         page.screenshot(path=target)
-    await_hook(page, "flown() !== null", FLIGHT_LIMIT_S)
+    await_hook(page, "flown() !== null", PATIENCE_S)
     flight = ask(page, "flown()")
     seen = service.get(f"/api/v1/flights/{flight}/coverage.geojson").json()
     assert seen["plan"] == planned
@@ -110,7 +109,7 @@ def test_the_plan_is_uploaded_and_flown(page: Page, planned: str, service: Servi
     await_hook(page, "rendered()['seen-fill'] > 0")
     report = page.locator("#flown a", has_text="Report").evaluate("a => a.href")
     assert flight in report
-    assert httpx.get(report, timeout=20.0).status_code == 200
+    assert httpx.get(report, timeout=PATIENCE_S).status_code == 200
 
 
 def test_readiness_is_asked_of_the_vehicle(page: Page, planned: str) -> None:
@@ -119,7 +118,7 @@ def test_readiness_is_asked_of_the_vehicle(page: Page, planned: str) -> None:
     expect(page.locator("#upload-result [data-ready]")).to_have_count(1)
     page.click("#preflight")
     asked = page.locator("#preflight-result [data-ready]")
-    expect(asked).to_have_count(1, timeout=20_000)
+    expect(asked).to_have_count(1, timeout=PATIENCE_S * 1000)
     expect(asked).to_contain_text("mission")
 
 
@@ -153,7 +152,7 @@ def test_what_was_sent_is_told_from_what_is_on_the_map(page: Page, planned: str,
 def test_two_plans_are_compared(page: Page, planned: str, service: Service) -> None:
     """Figures of another plan stand beside those of the one on the map, and its path is drawn."""
     other = CASE_1 | {"name": "other", "method": {"routing": "li2018"}}
-    record = httpx.post(f"{service.address}/api/v1/plans?wait=60", json=other, timeout=90.0).json()
+    record = httpx.post(f"{service.address}/api/v1/plans?wait=60", json=other, timeout=PATIENCE_S).json()
     assert record["state"] == "done"
     page.get_by_role("tab", name="Plan").click()
     page.get_by_role("button", name="Refresh").first.click()
@@ -187,7 +186,7 @@ def test_an_unsafe_plan_needs_a_reason(page: Page, planned: str, tmp_path: Path)
     path = tmp_path / "short.geojson"
     path.write_text(json.dumps(short), encoding="utf-8")
     start_planning(page, path)
-    await_hook(page, f"plan() !== null && window.swathplan.plan().id !== '{planned}'", PLANNING_LIMIT_S)
+    await_hook(page, f"plan() !== null && window.swathplan.plan().id !== '{planned}'", PATIENCE_S)
     expect(page.locator("#violations")).to_contain_text("range")
     page.get_by_role("tab", name="Fly").click()
     page.click("#upload")
@@ -197,7 +196,7 @@ def test_an_unsafe_plan_needs_a_reason(page: Page, planned: str, tmp_path: Path)
     page.fill("#reason", "bench test, propeller off")
     page.click("#dialog-go")
     result = page.locator("#upload-result [data-outcome=accepted]")
-    expect(result).to_contain_text("bench test, propeller off", timeout=20_000)
+    expect(result).to_contain_text("bench test, propeller off", timeout=PATIENCE_S * 1000)
 
 
 def test_a_failed_plan_says_why(page: Page, planned: str, tmp_path: Path) -> None:
@@ -214,7 +213,7 @@ def test_a_failed_plan_says_why(page: Page, planned: str, tmp_path: Path) -> Non
     path = tmp_path / "closed.geojson"
     path.write_text(json.dumps(closed), encoding="utf-8")
     start_planning(page, path)
-    page.wait_for_selector("#failure", timeout=PLANNING_LIMIT_S * 1000)
+    page.wait_for_selector("#failure", timeout=PATIENCE_S * 1000)
     expect(page.locator("#failure")).to_contain_text("Z")
     expect(page.locator("#notices")).to_contain_text("No plan can satisfy the scenario")
 
@@ -223,7 +222,9 @@ def test_planning_can_be_cancelled(page: Page, planned: str, service: Service) -
     """A plan that waits behind others is cancelled by its button, and the page says so."""
     before = []
     for seed in range(1, QUEUED_BEFORE + 1):
-        answer = httpx.post(f"{service.address}/api/v1/plans", json=CASE_1 | {"seed": seed}, timeout=60.0)
+        answer = httpx.post(
+            f"{service.address}/api/v1/plans", json=CASE_1 | {"seed": seed}, timeout=PATIENCE_S
+        )
         assert answer.status_code == 202
         before.append(answer.json()["id"])
     start_planning(page, EXAMPLES / "sar-case-1.geojson")
@@ -234,7 +235,7 @@ def test_planning_can_be_cancelled(page: Page, planned: str, service: Service) -
     assert newest["state"] == "cancelled"
     # Who plans next does not wait for them.
     for plan_id in before:
-        httpx.delete(f"{service.address}/api/v1/plans/{plan_id}", timeout=60.0)
+        httpx.delete(f"{service.address}/api/v1/plans/{plan_id}", timeout=PATIENCE_S)
 
 
 def test_a_lost_service_is_said_and_found_again(page: Page, planned: str) -> None:
@@ -243,11 +244,11 @@ def test_a_lost_service_is_said_and_found_again(page: Page, planned: str) -> Non
     status = page.locator("#service")
     expect(status).to_have_attribute("data-state", "up")
     page.context.set_offline(True)
-    expect(status).to_have_attribute("data-state", "down", timeout=90_000)
+    expect(status).to_have_attribute("data-state", "down", timeout=PATIENCE_S * 1000)
     begun = {"status": "starting", "version": "0", "checks": {"database": True, "workers": False}}
     page.route("**/health/ready", lambda route: route.fulfill(status=503, json=begun))
     page.context.set_offline(False)
-    expect(status).to_have_attribute("data-state", "starting", timeout=90_000)
+    expect(status).to_have_attribute("data-state", "starting", timeout=PATIENCE_S * 1000)
     expect(status).to_contain_text("getting ready to plan")
     page.unroute("**/health/ready")
-    expect(status).to_have_attribute("data-state", "up", timeout=90_000)
+    expect(status).to_have_attribute("data-state", "up", timeout=PATIENCE_S * 1000)

@@ -12,11 +12,11 @@ from tests.app.browser.air import vehicles_of
 from tests.app.browser.conftest import EXAMPLES, Service, serving
 from tests.app.browser.helpers import ask, await_hook, open_scenario
 from tests.app.browser.test_truth_page import cell, go_to
+from tests.patience import PATIENCE_S
 
 pytestmark = pytest.mark.browser
 
-LIMIT_S = 150.0
-LIMIT_MS = LIMIT_S * 1000.0
+LIMIT_MS = PATIENCE_S * 1000.0
 
 
 #: What is flown in half a minute here is over in three seconds at the speed of the other files: sooner than a
@@ -40,7 +40,7 @@ def give(page: Page, command: str) -> None:
 @pytest.fixture(scope="module")
 def collecting(page: Page, service: Service) -> None:
     """The aircraft in its first pass, with the sensor on."""
-    httpx.delete(vehicles_of(service)["sim-1"] + "/mission", timeout=20.0)
+    httpx.delete(vehicles_of(service)["sim-1"] + "/mission", timeout=PATIENCE_S)
     open_scenario(page, EXAMPLES / "sar-case-1.geojson")
     go_to(page, "Plan")
     page.click("#plan-start")
@@ -51,7 +51,7 @@ def collecting(page: Page, service: Service) -> None:
     give(page, "arm")
     await_hook(page, "vehicle().armed")
     give(page, "start")
-    await_hook(page, "vehicle().sensor_on", LIMIT_S)
+    await_hook(page, "vehicle().sensor_on", PATIENCE_S)
 
 
 def test_hold_stops_the_mission_and_the_sensor(page: Page, collecting: None) -> None:
@@ -66,11 +66,11 @@ def test_a_reload_in_flight_keeps_the_track(page: Page, service: Service, collec
     """What was flown before a reload is drawn from the service's record, from the place of take-off on."""
     page.reload()
     page.wait_for_function("window.swathplan !== undefined")
-    await_hook(page, "vehicle()?.track > 1", LIMIT_S)
+    await_hook(page, "vehicle()?.track > 1", PATIENCE_S)
     flight = ask(page, "vehicle()")["flight"]
-    track = httpx.get(f"{service.address}/api/v1/flights/{flight}/track.geojson", timeout=20.0).json()
+    track = httpx.get(f"{service.address}/api/v1/flights/{flight}/track.geojson", timeout=PATIENCE_S).json()
     line = next(f["geometry"] for f in track["features"] if f["properties"]["role"] == "track")
-    await_hook(page, f"vehicle().began[0] === {line['coordinates'][0][0]!r}", LIMIT_S)
+    await_hook(page, f"vehicle().began[0] === {line['coordinates'][0][0]!r}", PATIENCE_S)
     assert ask(page, "vehicle()")["began"] == line["coordinates"][0][:2]
 
 
@@ -78,7 +78,7 @@ def test_a_sensor_is_switched_off_by_its_button(page: Page, collecting: None) ->
     """Back in the mission the sensor comes on again; the button switches it off and the flight goes on."""
     give(page, "resume")
     expect(cell(page, "mode")).to_have_text("AUTO", timeout=LIMIT_MS)
-    await_hook(page, "vehicle().sensor_on", LIMIT_S)
+    await_hook(page, "vehicle().sensor_on", PATIENCE_S)
     give(page, "sensor_off")
     expect(cell(page, "sensor")).to_have_text("off", timeout=LIMIT_MS)
     expect(cell(page, "mode")).to_have_text("AUTO")
@@ -87,7 +87,7 @@ def test_a_sensor_is_switched_off_by_its_button(page: Page, collecting: None) ->
 def test_land_brings_it_down(page: Page, collecting: None) -> None:
     """A fixed wing goes over to its mission's landing, and stands disarmed at its end."""
     give(page, "land")
-    await_hook(page, "vehicle().armed === false", LIMIT_S)
+    await_hook(page, "vehicle().armed === false", PATIENCE_S)
     expect(cell(page, "flying")).to_have_text("on the ground", timeout=LIMIT_MS)
 
 

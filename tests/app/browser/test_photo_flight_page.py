@@ -14,10 +14,10 @@ from playwright.sync_api import Page, expect
 from tests.app.browser.conftest import Service, serving
 from tests.app.browser.helpers import ask, await_hook, open_scenario
 from tests.app.browser.test_survey_page import survey
+from tests.patience import PATIENCE_S
 
 pytestmark = pytest.mark.browser
 
-LIMIT_S = 150.0
 SPEEDUP = 20
 FIELD = [[8.4985, 47.3990], [8.5004, 47.3990], [8.5004, 47.4001], [8.4985, 47.4001], [8.4985, 47.3990]]
 
@@ -27,7 +27,7 @@ def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
     """A service with a simulated multirotor."""
     with serving(tmp_path_factory.mktemp("photos"), SPEEDUP) as started:
         there = {"name": "copter", "url": f"sim:?speedup={SPEEDUP}&type=multirotor&airspeed=12"}
-        made = httpx.post(f"{started.address}/api/v1/vehicles", json=there, timeout=30.0)
+        made = httpx.post(f"{started.address}/api/v1/vehicles", json=there, timeout=PATIENCE_S)
         assert made.status_code == 201
         yield started
 
@@ -48,10 +48,12 @@ def flight(page: Page, service: Service, tmp_path_factory: pytest.TempPathFactor
     page.get_by_role("tab", name="Fly").click()
     page.locator("#vehicles label", has_text="copter").click()
     page.click("#upload")
-    page.wait_for_selector("#upload-result [data-outcome=accepted][data-verified=true]", timeout=60_000)
+    page.wait_for_selector(
+        "#upload-result [data-outcome=accepted][data-verified=true]", timeout=PATIENCE_S * 1000
+    )
     page.click("[data-command=start]")
     page.click("#dialog-go")
-    await_hook(page, "flown() !== null", LIMIT_S)
+    await_hook(page, "flown() !== null", PATIENCE_S)
     seen: dict[str, Any] = service.get(f"/api/v1/flights/{ask(page, 'flown()')}/coverage.geojson").json()
     return seen
 
@@ -74,7 +76,7 @@ def test_its_rasters_can_be_fetched(page: Page, service: Service, flight: dict[s
     """The files of overlap and pixel size are offered, and there."""
     for label in ("Overlap (GeoTIFF)", "Pixel sizes (GeoTIFF)"):
         address = page.locator("#flown a", has_text=label).evaluate("a => a.href")
-        assert httpx.get(address, timeout=60.0).content[:2] in (b"II", b"MM")
+        assert httpx.get(address, timeout=PATIENCE_S).content[:2] in (b"II", b"MM")
 
 
 def test_a_log_of_something_else_is_refused(page: Page, flight: dict[str, Any], tmp_path: Path) -> None:

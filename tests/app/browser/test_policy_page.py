@@ -8,6 +8,7 @@ import pytest
 from playwright.sync_api import Browser
 
 from tests.app.browser.conftest import EXAMPLES, SCALE, Service
+from tests.patience import PATIENCE_S
 
 pytestmark = pytest.mark.browser
 
@@ -23,7 +24,7 @@ def test_nothing_of_the_page_is_refused(browser: Browser, service: Service) -> N
 
     def wait(condition: str) -> None:
         # Looked at from outside: waiting within the page would be evaluating a text there.
-        end_s = time.monotonic() + 60.0
+        end_s = time.monotonic() + PATIENCE_S
         while not page.evaluate(condition):
             assert time.monotonic() < end_s, told
             time.sleep(0.1)

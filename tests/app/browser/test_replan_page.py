@@ -12,6 +12,7 @@ from playwright.sync_api import Page, expect
 
 from tests.app.browser.conftest import EXAMPLES, Service
 from tests.app.browser.helpers import ask, connected, open_scenario
+from tests.patience import PATIENCE_S
 
 pytestmark = pytest.mark.browser
 
@@ -93,9 +94,9 @@ def test_an_aircraft_in_flight_takes_the_new_mission_and_begins_it(page: Page, s
     first = _planned(page, before and before["id"])
     with connected(service, "solo", speedup=6) as (vehicle,):
         at = f"{service.address}/api/v1/vehicles/{vehicle}"
-        httpx.post(f"{at}/mission", json={"plan_id": first}, timeout=60.0).raise_for_status()
+        httpx.post(f"{at}/mission", json={"plan_id": first}, timeout=PATIENCE_S).raise_for_status()
         start = {"command": "start", "arm_first": True}
-        httpx.post(f"{at}/commands", json=start, timeout=60.0).raise_for_status()
+        httpx.post(f"{at}/commands", json=start, timeout=PATIENCE_S).raise_for_status()
         page.get_by_role("tab", name="Fly").click()
         page.get_by_role("radio", name="solo").check()
         page.wait_for_function("window.swathplan.vehicle().flight !== null")
@@ -111,4 +112,4 @@ def test_an_aircraft_in_flight_takes_the_new_mission_and_begins_it(page: Page, s
         page.click("#dialog-go")
         # Where it flies to next is past soon; what was ordered of it stays.
         page.get_by_text(re.compile("Go to item 1: solo (confirmed|took) it")).wait_for()
-        assert httpx.get(at, timeout=20.0).json()["plan_id"] == second
+        assert httpx.get(at, timeout=PATIENCE_S).json()["plan_id"] == second

@@ -14,12 +14,13 @@ from playwright.sync_api import Page, Route, expect
 from tests.app.browser.air import Air, vehicles_of
 from tests.app.browser.conftest import EXAMPLES, Service
 from tests.app.browser.helpers import ask, await_hook, feature, on_screen, open_scenario
+from tests.patience import PATIENCE_S
 
 pytestmark = pytest.mark.browser
 
 CASE_1: dict[str, Any] = json.loads((EXAMPLES / "sar-case-1.geojson").read_text(encoding="utf-8"))
 TABS = ("Scenario", "Plan", "Fly")
-LIMIT_MS = 60_000
+LIMIT_MS = PATIENCE_S * 1000.0
 ZONE = [[-117.70, 33.52], [-117.69, 33.52], [-117.69, 33.526], [-117.70, 33.526], [-117.70, 33.52]]
 
 
@@ -51,7 +52,7 @@ def scenario(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def planned(page: Page, service: Service, scenario: Path) -> str:
     """The id of a plan of that scenario, made and shown by the page."""
-    httpx.delete(vehicles_of(service)["sim-1"] + "/mission", timeout=20.0)
+    httpx.delete(vehicles_of(service)["sim-1"] + "/mission", timeout=PATIENCE_S)
     open_scenario(page, scenario)
     go_to(page, "Plan")
     page.click("#plan-start")
@@ -204,7 +205,7 @@ def test_a_lost_link_is_seen_in_every_tab(page: Page, planned: str, service: Ser
 def test_a_cancelled_upload_says_what_is_held(page: Page, planned: str, service: Service) -> None:
     """Stepping back from an override leaves words of what the vehicle still holds."""
     short = CASE_1 | {"name": "short", "vehicles": [CASE_1["vehicles"][0] | {"max_range_m": 20_000.0}]}
-    made = httpx.post(f"{service.address}/api/v1/plans?wait=60", json=short, timeout=90.0).json()
+    made = httpx.post(f"{service.address}/api/v1/plans?wait=60", json=short, timeout=PATIENCE_S).json()
     go_to(page, "Plan")
     page.get_by_role("button", name="Refresh").first.click()
     page.locator("#recent button", has_text="short").first.click()
@@ -223,10 +224,10 @@ def test_plans_of_others_are_listed_unasked(page: Page, planned: str, service: S
     """A plan that another client posts, and one that it deletes, come and go in the list of the page."""
     go_to(page, "Plan")
     other = CASE_1 | {"name": "posted elsewhere"}
-    made = httpx.post(f"{service.address}/api/v1/plans?wait=60", json=other, timeout=90.0).json()
+    made = httpx.post(f"{service.address}/api/v1/plans?wait=60", json=other, timeout=PATIENCE_S).json()
     line = page.locator("#recent button", has_text="posted elsewhere")
     expect(line).to_have_count(1, timeout=LIMIT_MS)
-    assert httpx.delete(f"{service.address}/api/v1/plans/{made['id']}", timeout=20.0).status_code < 300
+    assert httpx.delete(f"{service.address}/api/v1/plans/{made['id']}", timeout=PATIENCE_S).status_code < 300
     expect(line).to_have_count(0, timeout=LIMIT_MS)
 
 
@@ -311,14 +312,14 @@ def test_two_tabs_do_not_overwrite_each_other(page: Page, service: Service, scen
         shown.keyboard.press("Tab")
         await_hook(shown, "kept().state !== 'waiting'")
     assert ask(other, "kept()")["state"] == "changed"
-    assert httpx.get(text, timeout=20.0).json()["scenario"]["altitude_m"] == 510
+    assert httpx.get(text, timeout=PATIENCE_S).json()["scenario"]["altitude_m"] == 510
     assert ask(other, "scenario()")["altitude_m"] == 490
     expect(other.locator("[data-vehicle='sim-1'] [data-cell=edited] .value")).to_contain_text("ANOTHER TAB")
     other.get_by_role("button", name="Keep this one beside it").click()
     await_hook(other, "kept().state === 'kept'")
     beside = ask(other, "kept()")["id"]
     assert beside != kept
-    assert httpx.get(text, timeout=20.0).json()["scenario"]["altitude_m"] == 510
+    assert httpx.get(text, timeout=PATIENCE_S).json()["scenario"]["altitude_m"] == 510
     other.close()
 
 

@@ -17,10 +17,11 @@ from mavlink.wire.messages import Message
 from tests.app.browser.air import free_port, vehicles_of
 from tests.app.browser.conftest import EXAMPLES, Service
 from tests.app.browser.helpers import await_hook, open_scenario
+from tests.patience import PATIENCE_S
 
 pytestmark = pytest.mark.browser
 
-LIMIT_MS = 60_000
+LIMIT_MS = PATIENCE_S * 1000.0
 
 
 CASE_1 = json.loads((EXAMPLES / "sar-case-1.geojson").read_text(encoding="utf-8"))
@@ -29,13 +30,13 @@ CASE_1 = json.loads((EXAMPLES / "sar-case-1.geojson").read_text(encoding="utf-8"
 @pytest.fixture(scope="module")
 def flying(page: Page, service: Service) -> Iterator[Page]:
     """The page with a sample scenario on it and the tab of vehicles open; the service is left as it was."""
-    httpx.delete(vehicles_of(service)["sim-1"] + "/mission", timeout=20.0)
+    httpx.delete(vehicles_of(service)["sim-1"] + "/mission", timeout=PATIENCE_S)
     open_scenario(page, EXAMPLES / "sar-case-1.geojson")
     page.get_by_role("tab", name="Fly").click()
     yield page
     for name, place in vehicles_of(service).items():
         if name != "sim-1":
-            httpx.delete(place, params={"in_flight": "true"}, timeout=20.0)
+            httpx.delete(place, params={"in_flight": "true"}, timeout=PATIENCE_S)
 
 
 @pytest.fixture(scope="module")
@@ -74,7 +75,9 @@ def test_what_is_simulated_is_chosen(flying: Page, service: Service) -> None:
     expect(row).to_contain_text("simulated", timeout=LIMIT_MS)
     expect(flying.locator("#panel-fly h2")).to_contain_text("ArduPilot, multirotor", timeout=LIMIT_MS)
     expect(flying.locator("#v-name")).to_have_value("uav-2")
-    assert httpx.get(vehicles_of(service)["uav-1"], timeout=20.0).json()["state"]["type"] == "multirotor"
+    assert (
+        httpx.get(vehicles_of(service)["uav-1"], timeout=PATIENCE_S).json()["state"]["type"] == "multirotor"
+    )
 
 
 def test_a_vehicle_nobody_hears_is_said_to_be_so(flying: Page, service: Service) -> None:
@@ -87,7 +90,9 @@ def test_a_vehicle_nobody_hears_is_said_to_be_so(flying: Page, service: Service)
     assert notice.inner_text().count("udp:14550 is no link address") == 1
     notice.get_by_role("button").click()
     silent = {"name": "silent", "url": "udpin:127.0.0.1:0", "timeout_s": 0.1}
-    assert httpx.post(f"{service.address}/api/v1/vehicles", json=silent, timeout=20.0).status_code == 201
+    assert (
+        httpx.post(f"{service.address}/api/v1/vehicles", json=silent, timeout=PATIENCE_S).status_code == 201
+    )
     flying.get_by_role("button", name="Refresh the list").click()
     row = flying.locator("#vehicles .vehicle", has_text="silent")
     expect(row).to_contain_text("not heard")
@@ -103,11 +108,11 @@ def test_a_vehicle_nobody_hears_is_said_to_be_so(flying: Page, service: Service)
 def beat_until(service: Service, name: str, system_id: int, ready: Callable[[Any], bool]) -> None:
     """Send heartbeats of a system to a vehicle's address until its record is so."""
     place = vehicles_of(service)[name]
-    port = int(httpx.get(place, timeout=20.0).json()["url"].rpartition(":")[2])
+    port = int(httpx.get(place, timeout=PATIENCE_S).json()["url"].rpartition(":")[2])
     heartbeat = Codec(system_id, 1).pack(Message("HEARTBEAT", {"type": 1, "autopilot": 3}))
     deadline_s = time.monotonic() + LIMIT_MS / 1000.0
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as air:
-        while not ready(httpx.get(place, timeout=20.0).json()):
+        while not ready(httpx.get(place, timeout=PATIENCE_S).json()):
             assert time.monotonic() < deadline_s, "nothing came of the heartbeats"
             air.sendto(heartbeat, ("127.0.0.1", port))
             time.sleep(0.1)
@@ -119,7 +124,7 @@ def test_a_swapped_aircraft_is_acknowledged(flying: Page, service: Service) -> N
     It takes the five seconds after which a silent vehicle is lost.
     """
     there = {"name": "swapped", "url": f"udpin:127.0.0.1:{free_port()}", "timeout_s": 0.1}
-    assert httpx.post(f"{service.address}/api/v1/vehicles", json=there, timeout=20.0).status_code == 201
+    assert httpx.post(f"{service.address}/api/v1/vehicles", json=there, timeout=PATIENCE_S).status_code == 201
     beat_until(service, "swapped", 1, lambda vehicle: bool(vehicle["connected"]))
     beat_until(service, "swapped", 2, lambda vehicle: bool(vehicle["other_system"] == 2))
     flying.get_by_role("button", name="Refresh the list").click()

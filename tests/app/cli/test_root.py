@@ -14,12 +14,13 @@ import pytest
 from app.cli.bench import ABOUT, Benchmark
 from app.routers.bodies import EXAMPLE
 from tests.app.cli.conftest import ROOT, Command
+from tests.patience import PATIENCE_S
 
 
 def test_help_lists_every_command() -> None:
     """A process of its own answers --help with all commands and exit code 0."""
     command = [sys.executable, "-m", "app.cli", "--help"]
-    ended = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=30, check=True)
+    ended = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=PATIENCE_S, check=True)
     commands = ("serve", "plan", "validate", "export", "upload", "download", "convert", "import", "sim")
     commands = (*commands, "bench", "demo", "audit", "flown")
     assert all(f" {name} " in ended.stdout for name in commands)
@@ -28,7 +29,7 @@ def test_help_lists_every_command() -> None:
 def test_help_says_what_every_benchmark_shows() -> None:
     """Each module of benchmarks that can be run by name stands there by itself, with a line on it."""
     command = [sys.executable, "-m", "app.cli", "bench", "--help"]
-    ended = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=30, check=True)
+    ended = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=PATIENCE_S, check=True)
     lines = [line.split() for line in ended.stdout.splitlines()]
     told = {words[0]: " ".join(words[1:]) for words in lines if words}
     files = [file for file in (ROOT / "benchmarks").glob("*.py") if "\ndef run(" in file.read_text()]
@@ -41,7 +42,7 @@ def test_help_says_what_every_benchmark_shows() -> None:
 def test_help_tells_what_is_taken_when_left_out(name: str) -> None:
     """The help's text reaches the screen whole: words in square brackets would be taken for markup."""
     command = [sys.executable, "-m", "app.cli", name, "--help"]
-    ended = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=30, check=True)
+    ended = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=PATIENCE_S, check=True)
     assert "when left out" in " ".join(ended.stdout.replace("│", " ").split())
 
 
@@ -50,7 +51,9 @@ def test_serve_on_what_is_taken_exits_1(tmp_path: Path) -> None:
 
     def serve(port: int, database: Path) -> subprocess.CompletedProcess[str]:
         command = [sys.executable, "-m", "app.cli", "serve", "--port", str(port), "--database", str(database)]
-        return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=60, check=False)
+        return subprocess.run(
+            command, cwd=ROOT, capture_output=True, text=True, timeout=PATIENCE_S, check=False
+        )
 
     with socket.create_server(("127.0.0.1", 0)) as taken:
         ended = serve(taken.getsockname()[1], tmp_path / "a.db")

@@ -21,6 +21,7 @@ from app.door.door import Door, Patience
 from app.door.lanes import CHANGES, OTHERS, READS
 from app.door.quiet import Quiet
 from app.serving import private_socket
+from tests.patience import PATIENCE_S
 
 USUAL = Patience()
 #: For tests of a client that is slow.
@@ -72,7 +73,7 @@ async def standing(app: FastAPI, path: Path) -> AsyncIterator[None]:
     server.capture_signals = contextlib.nullcontext  # type: ignore[method-assign,assignment]
     serving = asyncio.create_task(server.serve([private_socket(path)]))
     try:
-        async with asyncio.timeout(60):
+        async with asyncio.timeout(PATIENCE_S):
             while not server.started:
                 await asyncio.sleep(0.01)
         yield
@@ -106,7 +107,7 @@ async def house(folder: Path) -> AsyncIterator[tuple[httpx.AsyncClient, FastAPI,
         standing(web, folder / "web"),
         standing(links, folder / "links"),
         opened(folder / "web", folder / "links") as port,
-        httpx.AsyncClient(base_url=f"http://127.0.0.1:{port}", timeout=20) as client,
+        httpx.AsyncClient(base_url=f"http://127.0.0.1:{port}", timeout=PATIENCE_S) as client,
     ):
         yield client, web, links, port
 
@@ -157,7 +158,7 @@ async def test_a_chunk_that_holds_what_ends_a_body_does_not_end_it(folder: Path)
         await asyncio.sleep(0.1)  # so that the rest comes by itself
         writer.write(b"\r\n3\r\n\1\1\1\r\n0\r\n\r\n")
         expected = f"web POST /x 8 {sum(b'0') + 2 * (13 + 10) + 3}"
-        async with asyncio.timeout(60):
+        async with asyncio.timeout(PATIENCE_S):
             assert (await reader.read()).endswith(expected.encode())
         writer.close()
 
@@ -182,7 +183,7 @@ async def test_a_client_that_leaves_ends_what_it_asked_for(folder: Path) -> None
             lines = stream.aiter_lines()
             assert [await anext(lines) for _ in range(3)] == ["state"] * 3
             assert links.state.open == 1
-        async with asyncio.timeout(60):
+        async with asyncio.timeout(PATIENCE_S):
             while links.state.open:
                 await asyncio.sleep(0.01)
 
@@ -257,7 +258,7 @@ async def test_slow_and_wrong_clients_are_not_waited_for(
         reader, writer = await asyncio.open_connection("127.0.0.1", port)
         writer.write(spoken)
         with contextlib.suppress(ConnectionResetError):
-            async with asyncio.timeout(60):
+            async with asyncio.timeout(PATIENCE_S):
                 assert (await reader.read()).startswith(answered)
         writer.close()
 
@@ -275,14 +276,14 @@ async def test_idle_connections_make_room(folder: Path) -> None:
             writer.write(said)
             await writer.drain()
             left.append(writer)
-        async with httpx.AsyncClient(base_url=f"http://127.0.0.1:{port}", timeout=20) as client:
+        async with httpx.AsyncClient(base_url=f"http://127.0.0.1:{port}", timeout=PATIENCE_S) as client:
             for _ in range(3):
                 assert (await client.post("/", content=b"ab")).text == "web POST / 2 195"
         assert door.crowd.open <= 8
         for writer in left:
             writer.close()
         server.close()
-        async with asyncio.timeout(60):
+        async with asyncio.timeout(PATIENCE_S):
             while door.crowd.open:
                 await asyncio.sleep(0.01)
 
@@ -297,7 +298,7 @@ async def test_a_body_that_drips_ends(folder: Path) -> None:
         reader, writer = await asyncio.open_connection("127.0.0.1", port)
         writer.write(b"POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 100000\r\n\r\n")
         ended = asyncio.create_task(reader.read())
-        async with asyncio.timeout(60):
+        async with asyncio.timeout(PATIENCE_S):
             while not ended.done():
                 with contextlib.suppress(ConnectionError):
                     writer.write(b"x")
@@ -334,7 +335,7 @@ async def test_a_body_in_chunks_may_have_a_slow_answer(folder: Path) -> None:
     async with httpx.AsyncClient(base_url=f"http://127.0.0.1:{port}") as client:
         assert (await client.post("/", content=chunks())).text == "ok"
         await gone.wait()
-    async with asyncio.timeout(60):
+    async with asyncio.timeout(PATIENCE_S):
         while door.crowd.open:
             await asyncio.sleep(0.01)
     before.close()

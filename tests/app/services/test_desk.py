@@ -15,6 +15,7 @@ from app.services.plans import work
 from app.services.plans.pool import WorkerPool
 from app.services.presence import LEFT
 from tests.app import fakes
+from tests.patience import PATIENCE_S
 
 MEMORY_BYTES = 300_000_000
 
@@ -112,6 +113,6 @@ async def test_a_client_that_leaves_ends_its_work() -> None:
     for task in (endless, waiting):
         with pytest.raises(ClientGoneError):
             await task
-    async with asyncio.timeout(60):
+    async with asyncio.timeout(PATIENCE_S):
         assert await behind == 2.0
     await pool.stop()

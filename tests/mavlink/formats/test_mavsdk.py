@@ -26,6 +26,8 @@ from mavsdk.asyncio.mavsdk import Configuration, Mavsdk
 from mavsdk.asyncio.plugins.mission_raw import MissionRawAsync
 from mavsdk.component_type import ComponentType
 
+from tests.patience import PATIENCE_S
+
 pytestmark = pytest.mark.mavsdk
 
 FAULTS = Path(__file__).parents[2] / "faults"
@@ -42,7 +44,7 @@ async def importer() -> AsyncIterator[MissionRawAsync]:
     async with Mavsdk(station) as listening, Mavsdk(autopilot) as calling:
         await listening.add_any_connection(f"udpin://127.0.0.1:{port}")
         await calling.add_any_connection(f"udpout://127.0.0.1:{port}")
-        system = await listening.first_autopilot(timeout_s=10.0)
+        system = await listening.first_autopilot(timeout_s=PATIENCE_S)
         assert system is not None
         yield MissionRawAsync(system)
 

@@ -15,14 +15,15 @@ from mavlink.links.inbox import Inbox
 from mavlink.links.link import DirectLink, Link, LinkFaults, memory_pair, open_link
 from mavlink.links.tcp import TcpClientLink, TcpServerLink, open_tcp_server
 from mavlink.links.udp import open_udp
+from tests.patience import PATIENCE_S
 
 
 async def exchange(first: Link, second: Link) -> None:
     """Bytes go both ways; ``first`` speaks first."""
     await first.send(b"ping")
-    assert await asyncio.wait_for(second.receive(), 5) == b"ping"
+    assert await asyncio.wait_for(second.receive(), PATIENCE_S) == b"ping"
     await second.send(b"pong")
-    assert await asyncio.wait_for(first.receive(), 5) == b"pong"
+    assert await asyncio.wait_for(first.receive(), PATIENCE_S) == b"pong"
 
 
 @pytest.mark.parametrize(
@@ -69,9 +70,9 @@ async def test_udp_answers_every_peer() -> None:
     callers = [await open_udp("127.0.0.1", listener.local_port, listen=False) for _ in range(2)]
     for caller in callers:
         await caller.send(b"here")
-        assert await asyncio.wait_for(listener.receive(), 5) == b"here"
+        assert await asyncio.wait_for(listener.receive(), PATIENCE_S) == b"here"
     await listener.send(b"all")
-    assert [await asyncio.wait_for(caller.receive(), 5) for caller in callers] == [b"all", b"all"]
+    assert [await asyncio.wait_for(caller.receive(), PATIENCE_S) for caller in callers] == [b"all", b"all"]
     for link in (*callers, listener):
         await link.close()
 
@@ -82,10 +83,10 @@ async def test_a_udp_peer_that_talks_is_not_displaced() -> None:
     callers = [await open_udp("127.0.0.1", listener.local_port, listen=False) for _ in range(41)]
     for caller in callers:
         await caller.send(b"here")
-        assert await asyncio.wait_for(listener.receive(), 5) == b"here"
+        assert await asyncio.wait_for(listener.receive(), PATIENCE_S) == b"here"
     assert listener.peers < len(callers)
     await listener.send(b"all")
-    assert await asyncio.wait_for(callers[0].receive(), 5) == b"all"
+    assert await asyncio.wait_for(callers[0].receive(), PATIENCE_S) == b"all"
     for link in (*callers, listener):
         await link.close()
 
@@ -144,7 +145,7 @@ async def test_nobody_takes_the_place_of_a_tcp_peer_that_talks() -> None:
     reader, writer = await asyncio.open_connection("127.0.0.1", server.local_port)
     writer.write(b"forged")
     with contextlib.suppress(ConnectionResetError):  # its bytes were thrown away unread
-        assert await asyncio.wait_for(reader.read(), 5) == b""
+        assert await asyncio.wait_for(reader.read(), PATIENCE_S) == b""
     writer.close()
     await exchange(peer, server)
     await peer.close()
@@ -167,7 +168,7 @@ async def test_a_tcp_link_closes_while_it_connects_anew() -> None:
     await asyncio.sleep(0.05)
     await client.close()
     with pytest.raises(LinkError, match="closed"):
-        await asyncio.wait_for(reading, 60)
+        await asyncio.wait_for(reading, PATIENCE_S)
 
 
 async def test_nobody_to_connect_to_is_said() -> None:
@@ -188,13 +189,13 @@ async def test_serial_both_ways() -> None:
     os.write(master, b"\xfdping")
     received = b""
     while len(received) < 5:
-        received += await asyncio.wait_for(link.receive(), 5)
+        received += await asyncio.wait_for(link.receive(), PATIENCE_S)
     assert received == b"\xfdping"
     await link.send(b"\xfepong")
     assert await asyncio.to_thread(os.read, master, 100) == b"\xfepong"
     os.close(master)
     with pytest.raises(LinkError, match=device):
-        await asyncio.wait_for(link.receive(), 5)
+        await asyncio.wait_for(link.receive(), PATIENCE_S)
     await link.close()
 
 
@@ -209,7 +210,7 @@ async def test_closing_ends_a_waiting_receive(url: str) -> None:
     await asyncio.sleep(0)
     await link.close()
     with pytest.raises(LinkError, match="closed"):
-        await asyncio.wait_for(reading, 60)
+        await asyncio.wait_for(reading, PATIENCE_S)
     with pytest.raises(LinkError, match="closed"):
         await link.send(b"x")
     await link.close()
@@ -231,10 +232,10 @@ async def test_a_direct_link_hands_over_at_once() -> None:
     link.listen(heard.put_nowait)
     caller = await open_udp("127.0.0.1", link.local_port, listen=False)
     caller.send_now(b"direct")
-    assert await asyncio.wait_for(heard.get(), 5) == b"direct"
+    assert await asyncio.wait_for(heard.get(), PATIENCE_S) == b"direct"
     link.listen(None)
     caller.send_now(b"queued")
-    assert await asyncio.wait_for(link.receive(), 5) == b"queued"
+    assert await asyncio.wait_for(link.receive(), PATIENCE_S) == b"queued"
     await caller.close()
     await link.close()
 
@@ -294,7 +295,7 @@ async def test_a_stuck_tcp_peer_does_not_fill_the_memory() -> None:
     server = await open_tcp_server("127.0.0.1", 0)
     client = await open_link(f"tcp:127.0.0.1:{server.local_port}")
     assert isinstance(client, TcpClientLink)
-    async with asyncio.timeout(60):
+    async with asyncio.timeout(PATIENCE_S):
         while not server.peers:
             await asyncio.sleep(0.01)
     for _ in range(400):

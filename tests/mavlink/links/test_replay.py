@@ -17,6 +17,7 @@ from mavlink.wire.items import MissionType
 from mavlink.wire.messages import Message
 from tests.mavlink.station.aircraft import flying
 from tests.mavlink.transfer.vehicle import waypoints
+from tests.patience import PATIENCE_S
 from tests.virtual_time import loop_time_s
 
 pytestmark = pytest.mark.virtual_time
@@ -46,7 +47,7 @@ async def test_a_recording_is_watched_like_a_vehicle(tmp_path: Path) -> None:
         recorder = client.start_recording()
         state = await client.connect(5)
         assert (state.system_id, state.mode) == (7, "AUTO")
-        async with asyncio.timeout(10):
+        async with asyncio.timeout(PATIENCE_S):
             while client.failure is None:
                 await asyncio.sleep(0.01)
         assert "the recording is over" in client.failure
@@ -90,7 +91,7 @@ async def test_what_a_client_records_it_can_play(tmp_path: Path) -> None:
         with contextlib.suppress(NotConnectedError):  # it may be over before anybody waits
             await replayed.connect(5)
         with pytest.raises(NotConnectedError, match="is over"):
-            await replayed.wait_for(lambda state: False, 5)
+            await replayed.wait_for(lambda state: False, PATIENCE_S)
         assert replayed.state.system_id == system_id
 
 
@@ -124,7 +125,7 @@ async def test_a_recording_keeps_its_own_clock(tmp_path: Path) -> None:
         recorder = client.start_recording()
         assert recorder.recorded is None
         await client.connect(5)
-        async with asyncio.timeout(10):
+        async with asyncio.timeout(PATIENCE_S):
             while client.failure is None:
                 await asyncio.sleep(0.01)
         assert recorder.recorded == pytest.approx((1_790_000_000.0, 1_790_000_019.0), abs=1e-3)

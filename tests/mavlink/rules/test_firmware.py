@@ -18,6 +18,7 @@ from mavlink.state.telemetry import VehicleState, updated
 from mavlink.station.client import VehicleClient
 from mavlink.transfer.machine import TransferSettings
 from mavlink.wire.codec import Codec
+from tests.patience import PATIENCE_S
 from tests.virtual_time import loop_time_s
 
 pytestmark = pytest.mark.virtual_time
@@ -85,7 +86,7 @@ async def test_a_multirotor_is_read_whatever_its_version(firmware: tuple[int, in
     wanted = ("WPNAV_SPEED", "WPNAV_ACCEL", "WPNAV_JERK", "LAND_SPEED", "RTL_ALT", "ANGLE_MAX")
     async with VehicleClient(ground, settings=hasty, clock=loop_time_s) as client:
         await client.connect(5)
-        await client.wait_for(lambda state: state.firmware is not None, 5)
+        await client.wait_for(lambda state: state.firmware is not None, PATIENCE_S)
         assert client.state.firmware == f"{firmware[0]}.{firmware[1]}.0"
         report = await read_parameters(client, wanted, None)
     flying.cancel()

@@ -23,6 +23,8 @@ from mavsdk.asyncio.plugins.mission_raw import MissionRawAsync
 from mavsdk.asyncio.plugins.telemetry import TelemetryAsync
 from mavsdk.component_type import ComponentType
 
+from tests.patience import PATIENCE_S
+
 pytestmark = pytest.mark.mavsdk
 
 
@@ -55,7 +57,7 @@ async def test_mavsdk_uploads_reads_back_flies_and_watches(flavour: Flavour) -> 
         await ground.add_any_connection(f"udpin://127.0.0.1:{port}")
         settings = SimSettings(home=HOME, autopilot=flavour, speedup=20.0)
         server = asyncio.create_task(serve(f"udpout:127.0.0.1:{port}", settings, stop=stop))
-        system = await ground.first_autopilot(timeout_s=10.0)
+        system = await ground.first_autopilot(timeout_s=PATIENCE_S)
         assert system is not None
         raw, action, telemetry = MissionRawAsync(system), ActionAsync(system), TelemetryAsync(system)
         await raw.upload_mission([peer_item(each) for each in sent])
@@ -64,7 +66,7 @@ async def test_mavsdk_uploads_reads_back_flies_and_watches(flavour: Flavour) -> 
         assert [fields(each) for each in held] == [fields(each) for each in kept]
         await action.arm()
         await raw.start_mission()
-        async with asyncio.timeout(60):
+        async with asyncio.timeout(PATIENCE_S):
             position = await telemetry.position()
             # NaN until the first position arrives.
             while not position.relative_altitude_m >= 40.0:
@@ -74,4 +76,4 @@ async def test_mavsdk_uploads_reads_back_flies_and_watches(flavour: Flavour) -> 
         assert position.longitude_deg == pytest.approx(HOME.lon_deg, abs=1e-4)
         await action.return_to_launch()
         stop.set()
-        await asyncio.wait_for(server, 60)
+        await asyncio.wait_for(server, PATIENCE_S)

@@ -30,10 +30,11 @@ from mavsdk.plugins.gimbal.gimbal import ControlMode, GimbalMode, SendMode
 from mavsdk.plugins.mission.mission import MissionItem, MissionPlan
 from mavsdk.system import System
 
+from tests.patience import PATIENCE_S
+
 pytestmark = pytest.mark.mavsdk
 
 SPEEDUP = 10.0
-PATIENCE_S = 40.0
 RETURN_HEIGHT = {Flavour.PX4: "RTL_RETURN_ALT", Flavour.ARDUPILOT: "RTL_ALT"}
 
 
@@ -50,12 +51,12 @@ async def session(flavour: Flavour, kind: str) -> AsyncIterator[System]:
         settings = SimSettings(home=HOME, autopilot=flavour, vehicle_type=kind, speedup=SPEEDUP)
         server = asyncio.create_task(serve(f"udpout:127.0.0.1:{port}", settings, stop=stop))
         try:
-            system = await ground.first_autopilot(timeout_s=20.0)
+            system = await ground.first_autopilot(timeout_s=PATIENCE_S)
             assert system is not None
             yield system
         finally:
             stop.set()
-            await asyncio.wait_for(server, 60)
+            await asyncio.wait_for(server, PATIENCE_S)
 
 
 async def height_m(telemetry: TelemetryAsync) -> float:

@@ -20,8 +20,7 @@ from mavlink.wire.codec import Codec
 from mavlink.wire.items import Command, MissionItem
 from mavlink.wire.messages import Message
 from tests.mavlink.sim.helpers import HOME, from_ground, item_message, landing_mission, numbered, waypoint
-
-PATIENCE_S = 30.0
+from tests.patience import PATIENCE_S
 
 
 class Ground:
@@ -109,7 +108,7 @@ async def test_a_mission_is_flown_over_a_link_and_the_server_stops() -> None:
     ground = Ground(ours)
     await ground.fly()
     stop.set()
-    await asyncio.wait_for(server, 5.0)
+    await asyncio.wait_for(server, PATIENCE_S)
     stamps = [m.integer("time_boot_ms") for m in ground.heard if m.name == "GLOBAL_POSITION_INT"]
     assert max(b - a for a, b in pairwise(stamps)) < 400
     assert {m.system_id for m in ground.heard} == {1}
@@ -130,7 +129,7 @@ async def test_nonsense_on_the_link_does_not_end_it() -> None:
     await ground.say(from_ground("PARAM_REQUEST_READ", param_id="NOPE", param_index=999))
     assert await ground.command(Command.COMPONENT_ARM_DISARM, 1.0) == 0
     stop.set()
-    await asyncio.wait_for(server, 5.0)
+    await asyncio.wait_for(server, PATIENCE_S)
 
 
 async def test_as_a_process_it_flies_and_stops_on_sigterm() -> None:
@@ -147,7 +146,7 @@ async def test_as_a_process_it_flies_and_stops_on_sigterm() -> None:
     try:
         await Ground(link).fly()
         process.send_signal(signal.SIGTERM)
-        out, err = await asyncio.wait_for(process.communicate(), 10.0)
+        out, err = await asyncio.wait_for(process.communicate(), PATIENCE_S)
     finally:
         if process.returncode is None:
             process.kill()

@@ -21,6 +21,7 @@ from mavlink.wire.items import MissionItem, MissionType
 from mavlink.wire.messages import Message
 from tests.mavlink.station.aircraft import flying
 from tests.mavlink.transfer.vehicle import waypoints
+from tests.patience import PATIENCE_S
 from tests.virtual_time import loop_time_s
 
 pytestmark = pytest.mark.virtual_time
@@ -179,13 +180,13 @@ async def test_a_client_asks_for_a_lost_event() -> None:
     async with VehicleClient(ground, clock=loop_time_s) as client:
         await client.connect(5.0)
         request = None
-        async with asyncio.timeout(5.0):
+        async with asyncio.timeout(PATIENCE_S):
             while request is None:
                 heard = vehicle.feed(await air.receive())
                 request = next((message for message in heard if message.name == "REQUEST_EVENT"), None)
         assert (request.fields["first_sequence"], request.fields["target_system"]) == (7, 1)
         await air.send(vehicle.pack(event(LAND_MISSING, 7)))
-        state = await client.wait_for(lambda state: bool(state.texts), 5.0)
+        state = await client.wait_for(lambda state: bool(state.texts), PATIENCE_S)
         assert state.texts[-1].text == "mission rejected: a landing is required"
     await air.close()
 

@@ -34,6 +34,7 @@ from mavlink.station.client import VehicleClient
 from mavlink.wire.codec import Codec
 from mavlink.wire.messages import Message
 from tests.mavlink.state.test_telemetry import at, received
+from tests.patience import PATIENCE_S
 from tests.virtual_time import loop_time_s
 
 pytestmark = pytest.mark.virtual_time
@@ -246,7 +247,7 @@ async def test_the_track_follows_the_orders_of_every_payload(
         for item, wanted in ((on, True), (off, False), (on, True)):
             parameters = (item.param1, item.param2, item.param3, item.param4)
             assert (await client.command(item.command, parameters)).accepted
-            async with asyncio.timeout(5.0):
+            async with asyncio.timeout(PATIENCE_S):
                 while [point.sensor_on for point in recorder.track().points[-1:]] != [wanted]:
                     await asyncio.sleep(0.02)
         kinds = [event.kind for event in recorder.track().events if event.kind != "photo"]
@@ -265,7 +266,7 @@ async def test_cameras_beside_the_autopilot_are_heard() -> None:
         recorder = client.start_recording()
         for system, component in ((8, 100), (7, 100), (7, 101)):
             await there.send(Codec(system, component).pack(photo))
-        async with asyncio.timeout(5.0):
+        async with asyncio.timeout(PATIENCE_S):
             while len(recorder.track().events) < 2:
                 await asyncio.sleep(0.01)
     assert [event.kind for event in recorder.track().events] == ["photo", "photo"]

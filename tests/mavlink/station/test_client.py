@@ -20,6 +20,7 @@ from mavlink.wire.items import Command, MissionType
 from mavlink.wire.messages import Message
 from tests.mavlink.station.aircraft import HASTY, Aircraft, flying
 from tests.mavlink.transfer.vehicle import StubVehicle, waypoints
+from tests.patience import PATIENCE_S
 from tests.virtual_time import loop_time_s
 
 pytestmark = pytest.mark.virtual_time
@@ -96,9 +97,9 @@ async def test_states_reach_every_reader_until_the_end() -> None:
 
         readers = [asyncio.create_task(read(states)) for states in seen]
         await aircraft.say("MISSION_CURRENT", seq=3)
-        await client.wait_for(lambda state: state.mission_current == 3, 5)
+        await client.wait_for(lambda state: state.mission_current == 3, PATIENCE_S)
         await client.close()
-        await asyncio.wait_for(asyncio.gather(*readers), 5)
+        await asyncio.wait_for(asyncio.gather(*readers), PATIENCE_S)
         for states in seen:
             assert any(state.mission_current == 3 for state in states)
             assert not states[-1].connected
@@ -108,13 +109,13 @@ async def test_a_recording_holds_what_was_sent_meanwhile() -> None:
     """Positions before and after the recording are not in it."""
     async with flying() as (client, aircraft):
         await aircraft.say("GLOBAL_POSITION_INT", time_boot_ms=1000, lat=10)
-        await client.wait_for(lambda state: state.time_s == 1.0, 5)
+        await client.wait_for(lambda state: state.time_s == 1.0, PATIENCE_S)
         recorder = client.start_recording()
         await aircraft.say("GLOBAL_POSITION_INT", time_boot_ms=2000, lat=20)
-        await client.wait_for(lambda state: state.time_s == 2.0, 5)
+        await client.wait_for(lambda state: state.time_s == 2.0, PATIENCE_S)
         client.stop_recording(recorder)
         await aircraft.say("GLOBAL_POSITION_INT", time_boot_ms=3000, lat=30)
-        await client.wait_for(lambda state: state.time_s == 3.0, 5)
+        await client.wait_for(lambda state: state.time_s == 3.0, PATIENCE_S)
         assert [point.time_s for point in recorder.track().points] == [2.0]
 
 
@@ -136,7 +137,7 @@ async def test_closing_leaves_no_task_and_no_waiter() -> None:
         transfer = asyncio.create_task(client.upload(waypoints(3), MISSION))
         await asyncio.sleep(0.01)
         await client.close()
-        assert await asyncio.wait_for(transfer, 5) == Unknown("link-lost")
+        assert await asyncio.wait_for(transfer, PATIENCE_S) == Unknown("link-lost")
         assert not [task for task in asyncio.all_tasks() if task.get_name().startswith("mavlink ")]
         with pytest.raises(NotConnectedError, match="closed"):
             await client.arm()
@@ -154,7 +155,7 @@ async def test_a_link_that_fails_ends_the_client() -> None:
     ):
         await client.connect(5)
         await ground.close()
-        await client.wait_for(lambda state: not state.connected, 5)
+        await client.wait_for(lambda state: not state.connected, PATIENCE_S)
         with pytest.raises(NotConnectedError, match="link closed"):
             await client.arm()
 

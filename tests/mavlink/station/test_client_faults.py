@@ -22,6 +22,7 @@ from mavlink.station.verify import Compare
 from mavlink.transfer.machine import TransferSettings
 from mavlink.transfer.outcome import Accepted, Refused, Unknown
 from mavlink.wire.items import Command, MissionItem, MissionType
+from tests.patience import PATIENCE_S
 from tests.virtual_time import loop_time_s
 
 pytestmark = pytest.mark.virtual_time
@@ -147,7 +148,7 @@ async def test_an_aircraft_that_vanishes_is_resolved_on_its_return(flavour: Flav
         compare = comparison(flavour)
         result = await client.upload_verified(mission(flavour), MissionType.MISSION, compare)
         assert (result.status, result.held, client.pending) == ("unknown", None, True)
-        await client.wait_for(lambda state: state.connected, 10)
+        await client.wait_for(lambda state: state.connected, PATIENCE_S)
         resolved = await client.resolve_pending()
         assert resolved is not None
         assert resolved.held is not None

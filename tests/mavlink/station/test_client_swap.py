@@ -16,6 +16,7 @@ from mavlink.wire.items import Command, MissionType
 from mavlink.wire.messages import Message
 from tests.mavlink.station.aircraft import HASTY, LOST_AFTER_S, Aircraft
 from tests.mavlink.transfer.vehicle import StubVehicle, waypoints
+from tests.patience import PATIENCE_S
 from tests.virtual_time import loop_time_s
 
 pytestmark = pytest.mark.virtual_time
@@ -73,7 +74,7 @@ async def test_another_system_is_named_and_gets_no_word(seated: tuple[VehicleCli
     """Not connected, orders and transfers refused with both ids, and nothing at all is sent to it."""
     client, seat = seated
     other = await seat.sit(2)
-    state = await client.wait_for(lambda state: state.other_system == 2, 20)
+    state = await client.wait_for(lambda state: state.other_system == 2, PATIENCE_S)
     assert (state.connected, state.system_id) == (False, 1)
     for asked in (client.arm(), client.start_mission(), client.download(MISSION), client.clear(MISSION)):
         with pytest.raises(NotConnectedError, match="system 2 answers where system 1 did"):
@@ -90,14 +91,14 @@ async def test_once_acknowledged_it_is_a_vehicle_of_its_own(seated: tuple[Vehicl
     assert seat.sitting is not None
     await seat.sitting.say("GLOBAL_POSITION_INT", lat=10, lon=20, time_boot_ms=1000)
     await seat.sitting.say("STATUSTEXT", severity=6, text="of the first")
-    await client.wait_for(lambda state: len(state.texts) == 1 and state.lat_deg is not None, 20)
+    await client.wait_for(lambda state: len(state.texts) == 1 and state.lat_deg is not None, PATIENCE_S)
     other = await seat.sit(2)
-    await client.wait_for(lambda state: state.other_system == 2, 20)
+    await client.wait_for(lambda state: state.other_system == 2, PATIENCE_S)
     for wrong in (0, 1, 3):
         with pytest.raises(NotConnectedError, match=f"system {wrong} is heard"):
             client.adopt(wrong)
     client.adopt(2)
-    state = await client.wait_for(lambda state: state.connected, 20)
+    state = await client.wait_for(lambda state: state.connected, PATIENCE_S)
     assert (state.system_id, state.other_system, state.lat_deg, state.texts) == (2, None, None, ())
     assert (await client.arm()).accepted
     assert Command.COMPONENT_ARM_DISARM in [number for number, _ in other.commands]
@@ -110,12 +111,12 @@ async def test_the_vehicle_itself_comes_back_without_a_word(seated: tuple[Vehicl
     """The other one goes, the first returns: connected as before, and the other is forgotten."""
     client, seat = seated
     await seat.sit(2)
-    await client.wait_for(lambda state: state.other_system == 2, 20)
+    await client.wait_for(lambda state: state.other_system == 2, PATIENCE_S)
     await seat.leave()
-    await client.wait_for(lambda state: state.other_system is None, 20)
+    await client.wait_for(lambda state: state.other_system is None, PATIENCE_S)
     assert not client.state.connected
     await seat.sit(1)
-    state = await client.wait_for(lambda state: state.connected, 20)
+    state = await client.wait_for(lambda state: state.connected, PATIENCE_S)
     assert (state.system_id, state.other_system) == (1, None)
     assert (await client.arm()).accepted
 
@@ -134,7 +135,7 @@ async def test_others_beside_a_vehicle_that_is_there_mean_nothing() -> None:
         ]:
             await air.send(sender.pack(Message("HEARTBEAT", fields)))
         await aircraft.say("MISSION_CURRENT", seq=7)
-        state = await client.wait_for(lambda state: state.mission_current == 7, 5)
+        state = await client.wait_for(lambda state: state.mission_current == 7, PATIENCE_S)
         assert (state.system_id, state.connected, state.other_system) == (1, True, None)
 
 
@@ -144,7 +145,7 @@ async def test_a_client_that_knows_its_vehicle_takes_no_other() -> None:
     client = VehicleClient(ground, settings=HASTY, vehicle_system=1, clock=loop_time_s)
     async with Aircraft(air, StubVehicle(), system_id=2), client:
         connecting = asyncio.create_task(client.connect(20))
-        await client.wait_for(lambda state: state.other_system == 2, 20)
+        await client.wait_for(lambda state: state.other_system == 2, PATIENCE_S)
         with pytest.raises(NotConnectedError, match="system 2 answers where system 1 did"):
             await client.arm()
         client.adopt(2)

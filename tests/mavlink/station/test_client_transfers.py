@@ -22,6 +22,7 @@ from mavlink.wire.items import Command, MissionItem, MissionResult, MissionType
 from mavlink.wire.messages import Message
 from tests.mavlink.station.aircraft import HASTY, LOST_AFTER_S, flying
 from tests.mavlink.transfer.vehicle import waypoints
+from tests.patience import PATIENCE_S
 
 pytestmark = pytest.mark.virtual_time
 
@@ -176,12 +177,12 @@ async def test_a_vehicle_that_vanishes_is_resolved_when_it_returns(vanish_at: in
         result = await client.upload_verified(waypoints(10), MISSION, compare)
         assert (result.status, result.held) == ("unknown", None)
         assert isinstance(result.outcome, Unknown)
-        await client.wait_for(lambda state: not state.connected, 5)
+        await client.wait_for(lambda state: not state.connected, PATIENCE_S)
         assert client.pending
         with pytest.raises(NotConnectedError):
             await client.resolve_pending()
         aircraft.come_back()
-        await client.wait_for(lambda state: state.connected, 5)
+        await client.wait_for(lambda state: state.connected, PATIENCE_S)
         resolved = await client.resolve_pending()
         assert resolved is not None
         assert resolved.status == status
@@ -196,7 +197,7 @@ async def test_losing_the_vehicle_ends_what_is_under_way() -> None:
         aircraft.vanish()
         transfer = asyncio.create_task(client.upload(waypoints(3), MISSION))
         command = asyncio.create_task(client.command(Command.MISSION_START))
-        assert await asyncio.wait_for(transfer, 5) == Unknown("link-lost")
-        assert (await asyncio.wait_for(command, 5)).result is None
+        assert await asyncio.wait_for(transfer, PATIENCE_S) == Unknown("link-lost")
+        assert (await asyncio.wait_for(command, PATIENCE_S)).result is None
         with pytest.raises(NotConnectedError, match="no vehicle"):
             await client.clear(MISSION)

@@ -17,6 +17,7 @@ from mavlink.station.client import VehicleClient
 from mavlink.transfer.machine import DEFAULT_SETTINGS
 from mavlink.transfer.outcome import Accepted, Unknown
 from mavlink.wire.items import Command, Frame, MissionItem, MissionType
+from tests.patience import PATIENCE_S
 from tests.virtual_time import loop_time_s
 
 pytestmark = pytest.mark.virtual_time
@@ -52,7 +53,7 @@ async def in_flight(flavour: Flavour) -> AsyncIterator[VehicleClient]:
             assert await client.upload(mission(flavour), MissionType.MISSION) == Accepted()
             assert (await client.arm()).accepted
             assert (await client.start_mission()).accepted
-            await client.wait_for(lambda state: (state.relative_altitude_m or 0.0) > 20.0, 10.0)
+            await client.wait_for(lambda state: (state.relative_altitude_m or 0.0) > 20.0, PATIENCE_S)
             yield client
     finally:
         simulator.cancel()

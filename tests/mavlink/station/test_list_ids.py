@@ -18,6 +18,7 @@ from mavlink.wire.messages import Message
 from tests.mavlink.station.aircraft import Aircraft, flying
 from tests.mavlink.station.test_client_transfers import compare
 from tests.mavlink.transfer.vehicle import waypoints
+from tests.patience import PATIENCE_S
 
 pytestmark = pytest.mark.virtual_time
 
@@ -30,7 +31,7 @@ async def report(aircraft: Aircraft, client: VehicleClient, times: int = 1, **id
     told = {"mission_id": aircraft.vehicle.ids[0], "fence_id": aircraft.vehicle.ids[1], **ids}
     for _ in range(times):
         await aircraft.say("MISSION_CURRENT", seq=1, total=4, **told)
-    await client.wait_for(lambda state: state.mission_id == (told["mission_id"] or None), 5)
+    await client.wait_for(lambda state: state.mission_id == (told["mission_id"] or None), PATIENCE_S)
     await asyncio.sleep(0.01)
 
 
@@ -63,10 +64,10 @@ async def test_another_mission_is_noticed_on_return() -> None:
         await client.upload_verified(waypoints(4), MISSION, compare)
         await report(aircraft, client)
         aircraft.vanish()
-        await client.wait_for(lambda state: not state.connected, 5)
+        await client.wait_for(lambda state: not state.connected, PATIENCE_S)
         aircraft.vehicle.held[0], aircraft.vehicle.ids[0] = waypoints(2), OTHER
         aircraft.come_back()
-        await client.wait_for(lambda state: state.connected, 5)
+        await client.wait_for(lambda state: state.connected, PATIENCE_S)
         await report(aircraft, client, times=2)
         assert client.replaced == {MISSION}
         # The sign is true: what it holds is not ours, and a fresh upload cures it.

@@ -30,6 +30,7 @@ from mavlink.sim.settings import SimSettings
 from mavlink.station.client import VehicleClient
 from mavlink.wire.items import MissionItem, MissionType
 from tests.mavlink.plans import make_plan
+from tests.patience import PATIENCE_S
 
 pytestmark = pytest.mark.skipif(find_spec("MAVProxy") is None, reason="MAVProxy is not installed")
 
@@ -51,7 +52,7 @@ class MavProxy:
         """The lines up to the one that matches."""
         assert self._process.stdout is not None
         lines: list[str] = []
-        async with asyncio.timeout(60.0):
+        async with asyncio.timeout(PATIENCE_S):
             while not lines or not re.search(pattern, lines[-1]):
                 line = await self._process.stdout.readline()
                 assert line, f"MAVProxy has ended: {lines}"

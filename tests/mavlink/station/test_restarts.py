@@ -19,6 +19,7 @@ from mavlink.wire.items import MissionType
 from mavlink.wire.messages import Message
 from tests.mavlink.station.aircraft import HASTY, flying
 from tests.mavlink.transfer.vehicle import waypoints
+from tests.patience import PATIENCE_S
 
 pytestmark = pytest.mark.virtual_time
 
@@ -70,7 +71,7 @@ async def test_what_was_read_before_is_read_again() -> None:
             await aircraft.say("ATTITUDE", time_boot_ms=time_ms)
         aircraft.vehicle.held[0] = ()
         asked = sum(number == 511 for number, _ in aircraft.commands)
-        await client.wait_for(lambda state: state.restarts == 1, 5)
+        await client.wait_for(lambda state: state.restarts == 1, PATIENCE_S)
         assert await client.mission_held() == ()
         assert sum(number == 511 for number, _ in aircraft.commands) > asked
 

@@ -23,6 +23,7 @@ from mavlink.wire.signing import Signing, SigningKey
 from tests.mavlink.station.aircraft import HASTY
 from tests.mavlink.station.test_strangers import Stranger
 from tests.mavlink.transfer.vehicle import waypoints
+from tests.patience import PATIENCE_S
 from tests.virtual_time import loop_time_s
 
 pytestmark = pytest.mark.virtual_time
@@ -90,7 +91,7 @@ async def test_with_one_key_all_is_as_ever(flavour: Flavour) -> None:
 async def test_without_the_key_nothing_counts_and_it_is_said(with_key: bytes, words: str) -> None:
     """Another key, or none: the vehicle is not there, and why is told instead of a silence."""
     async with simulated(with_key, SECRET) as client:
-        state = await client.wait_for(lambda state: state.signing in ("wrong_key", "unsigned"), 5)
+        state = await client.wait_for(lambda state: state.signing in ("wrong_key", "unsigned"), PATIENCE_S)
         assert not state.connected
         with pytest.raises(NotConnectedError, match=words):
             await client.arm()
@@ -118,7 +119,7 @@ async def test_a_key_is_handed_over_changed_and_taken_away(flavour: Flavour) -> 
         await client.connect(5)
         assert client.state.doubt is None
         await client.set_up_signing(signing())
-        await client.wait_for(lambda state: state.signing == "verified", 5)
+        await client.wait_for(lambda state: state.signing == "verified", PATIENCE_S)
         assert (await client.upload(waypoints(5), MissionType.MISSION)).kind == "accepted"
         await client.set_up_signing(signing(OTHER))
         assert client.state.signing == "verified"
@@ -132,7 +133,7 @@ async def test_no_key_is_changed_in_flight_or_without_the_old_one(monkeypatch: p
     async with simulated() as client:
         await client.connect(5)
         assert (await client.arm()).accepted
-        await client.wait_for(lambda state: state.armed, 5)
+        await client.wait_for(lambda state: state.armed, PATIENCE_S)
         with pytest.raises(SigningError, match="armed"):
             await client.set_up_signing(signing())
         assert client.state.signing is None
@@ -141,7 +142,7 @@ async def test_no_key_is_changed_in_flight_or_without_the_old_one(monkeypatch: p
         await client.connect(5)
         with pytest.raises(SigningError, match="with another one"):
             await client.set_up_signing(signing())
-        await client.wait_for(lambda state: state.connected and state.signing == "no_key", 5)
+        await client.wait_for(lambda state: state.connected and state.signing == "no_key", PATIENCE_S)
 
 
 @pytest.mark.parametrize(
@@ -161,7 +162,7 @@ async def test_a_key_that_the_vehicle_has_not_is_not_used(
         before = (await client.connect(5)).signing
         with pytest.raises(SigningError, match=words):
             await client.use_key(signing(used or SECRET))
-        await client.wait_for(lambda state: state.connected and state.signing == before, 5)
+        await client.wait_for(lambda state: state.connected and state.signing == before, PATIENCE_S)
         if has:
             await client.use_key(signing(has))
             assert client.state.signing == "verified"
@@ -204,7 +205,7 @@ async def test_forgers_are_no_rivals_and_the_vehicle_may_move() -> None:
                 stranger.beat()
             forger.acknowledge(400)
             vehicle.beat()
-            await client.wait_for(lambda state: len(state.strangers) == 2, 5)
+            await client.wait_for(lambda state: len(state.strangers) == 2, PATIENCE_S)
             assert client.state.doubt is None
             assert client.state.signing == "verified"
             assert forger.overheard() == stranger.overheard() == b""
@@ -221,7 +222,7 @@ async def test_a_vehicle_whose_clock_is_behind_is_told_the_time() -> None:
         connecting = asyncio.create_task(client.connect(10))
         with Keyed(ground.local_port, SECRET, behind_s=7200.0) as vehicle:
             vehicle.beat()
-            state = await client.wait_for(lambda state: state.signing == "replayed", 5)
+            state = await client.wait_for(lambda state: state.signing == "replayed", PATIENCE_S)
             assert not state.connected
             while not connecting.done():
                 vehicle.read()
@@ -229,7 +230,7 @@ async def test_a_vehicle_whose_clock_is_behind_is_told_the_time() -> None:
                 await asyncio.sleep(0.05)
             assert (await connecting).signing == "verified"
         # It starts again, on another port, and does not remember what time it was.
-        await client.wait_for(lambda state: not state.connected, 5)
+        await client.wait_for(lambda state: not state.connected, PATIENCE_S)
         with Keyed(ground.local_port, SECRET, behind_s=7200.0) as vehicle:
             while not client.state.connected:
                 vehicle.read()

@@ -12,6 +12,7 @@ from mavlink.dialects.compare import Difference, differences
 from mavlink.wire.items import Frame, MissionItem, MissionType
 from tests.mavlink.station.aircraft import LOST_AFTER_S, flying
 from tests.mavlink.transfer.vehicle import StubVehicle, waypoints
+from tests.patience import PATIENCE_S
 
 pytestmark = pytest.mark.virtual_time
 
@@ -47,13 +48,13 @@ async def test_the_old_missions_tail_is_found() -> None:
         aircraft.vanish_at_item = 4
         cut = await client.upload_verified(new, MissionType.MISSION, compare)
         assert (cut.status, cut.held) == ("unknown", None)
-        await client.wait_for(lambda state: not state.connected, 5)
+        await client.wait_for(lambda state: not state.connected, PATIENCE_S)
         kept = aircraft.vehicle.held[0]
         assert kept == (*new[:5], *old[5:10])
         aircraft.vehicle = StubVehicle()  # started anew: the upload forgotten, the storage as it was
         aircraft.vehicle.held[0] = kept
         aircraft.come_back()
-        await client.wait_for(lambda state: state.connected, 5)
+        await client.wait_for(lambda state: state.connected, PATIENCE_S)
         resolved = await client.resolve_pending()
         assert resolved is not None
         assert resolved.status == "different"

@@ -20,6 +20,7 @@ from mavlink.transfer.command import CommandResult
 from mavlink.wire.items import Command, MissionType
 from tests.mavlink.station.aircraft import HASTY, Aircraft
 from tests.mavlink.transfer.vehicle import StubVehicle, waypoints
+from tests.patience import PATIENCE_S
 from tests.virtual_time import loop_time_s
 
 pytestmark = pytest.mark.virtual_time
@@ -86,7 +87,7 @@ async def test_a_strangers_acknowledgement_counts_for_nothing() -> None:
             for _ in range(5):
                 stranger.acknowledge(Command.COMPONENT_ARM_DISARM)
                 await asyncio.sleep(0.01)
-            await client.wait_for(lambda state: state.strangers == (stranger.address,), 5)
+            await client.wait_for(lambda state: state.strangers == (stranger.address,), PATIENCE_S)
             await aircraft.say("COMMAND_ACK", command=400, result=CommandResult.DENIED, target_system=255)
             assert (await arming).result == CommandResult.DENIED
             assert stranger.overheard() == b""
@@ -115,7 +116,7 @@ async def test_two_aircraft_with_one_system_id_are_told_and_not_armed() -> None:
     async with listening() as (client, aircraft, port):
         with Stranger(port) as other:
             other.beat()
-            state = await client.wait_for(lambda state: state.doubt is not None, 5)
+            state = await client.wait_for(lambda state: state.doubt is not None, PATIENCE_S)
             assert state.doubt is not None
             assert state.doubt.rule == "two-aircraft"
             assert other.address in state.doubt.message
@@ -144,10 +145,10 @@ async def test_the_other_address_is_acknowledged() -> None:
     async with listening() as (client, aircraft, port):
         with Stranger(port) as other:
             other.beat()
-            await client.wait_for(lambda state: state.doubt is not None, 5)
+            await client.wait_for(lambda state: state.doubt is not None, PATIENCE_S)
             client.acknowledge(other.address)
             other.say(common.MAVLink_mission_current_message(7, 9))
-            await client.wait_for(lambda state: state.mission_current == 7, 5)
+            await client.wait_for(lambda state: state.mission_current == 7, PATIENCE_S)
             before = len(aircraft.heard)
             arming = asyncio.create_task(client.arm())
             while not other.overheard():
@@ -162,13 +163,13 @@ async def test_a_vehicle_that_restarts_comes_back_from_another_port() -> None:
     async with listening() as (client, aircraft, port):
         with Stranger(port) as again:
             again.beat()
-            await client.wait_for(lambda state: state.doubt is not None, 5)
+            await client.wait_for(lambda state: state.doubt is not None, PATIENCE_S)
             assert client.state.address != again.address
             aircraft._tasks[1].cancel()
             while client.state.address != again.address:
                 again.beat()
                 await asyncio.sleep(0.05)
-            await client.wait_for(lambda state: state.connected and state.doubt is None, 5)
+            await client.wait_for(lambda state: state.connected and state.doubt is None, PATIENCE_S)
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="one address of loopback has to do elsewhere")
@@ -177,7 +178,7 @@ async def test_from_another_machine_it_comes_back_by_word_alone() -> None:
     async with listening() as (client, aircraft, port):
         aircraft._tasks[1].cancel()
         with Stranger(port, host="127.0.0.2") as elsewhere:
-            async with asyncio.timeout(10):
+            async with asyncio.timeout(PATIENCE_S):
                 while client.state.connected or client.state.doubt is None:
                     elsewhere.beat()
                     await asyncio.sleep(0.05)
@@ -187,7 +188,7 @@ async def test_from_another_machine_it_comes_back_by_word_alone() -> None:
             assert elsewhere.overheard() == b""
             client.acknowledge(elsewhere.address)
             elsewhere.beat()
-            state = await client.wait_for(lambda state: state.connected, 5)
+            state = await client.wait_for(lambda state: state.connected, PATIENCE_S)
             assert (state.address, state.doubt) == (elsewhere.address, None)
 
 

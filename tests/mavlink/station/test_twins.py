@@ -17,6 +17,7 @@ from mavlink.wire.codec import Codec
 from mavlink.wire.messages import Message
 from tests.mavlink.station.aircraft import HASTY, Aircraft
 from tests.mavlink.transfer.vehicle import StubVehicle
+from tests.patience import PATIENCE_S
 from tests.virtual_time import loop_time_s
 
 pytestmark = pytest.mark.virtual_time
@@ -130,12 +131,12 @@ async def test_the_client_orders_neither() -> None:
             for _ in range(3):
                 air_says = Message("ATTITUDE", {"time_boot_ms": 90_000 + number})
                 await air.send(second.pack(air_says))
-        state = await client.wait_for(lambda state: state.doubt is not None, 5)
+        state = await client.wait_for(lambda state: state.doubt is not None, PATIENCE_S)
         assert state.doubt is not None
         assert "in turns" in state.doubt.message
         with pytest.raises(DoubtError):
             await client.arm()
         assert (await client.return_to_launch()).accepted
         clock["ahead_s"] = 20.0
-        await client.wait_for(lambda state: state.connected and state.doubt is None, 5)
+        await client.wait_for(lambda state: state.connected and state.doubt is None, PATIENCE_S)
         assert (await client.arm()).accepted

@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 
 from app.services.vehicles.connection import connect
+from tests.patience import PATIENCE_S
 
 
 @pytest.mark.parametrize("times", [1, 2, 3])
@@ -19,7 +20,7 @@ async def test_giving_up_while_nothing_is_heard_leaves_nothing_behind(times: int
     before = asyncio.all_tasks()
     opening = asyncio.create_task(connect("udpin:127.0.0.1:0", None, 600.0))
     # The link's driver, who waits for a heartbeat, and who waits for another aircraft's.
-    async with asyncio.timeout(60.0):
+    async with asyncio.timeout(PATIENCE_S):
         while len(asyncio.all_tasks() - before) < 4:
             await asyncio.sleep(0.001)
     for _ in range(times):
@@ -27,7 +28,7 @@ async def test_giving_up_while_nothing_is_heard_leaves_nothing_behind(times: int
         await asyncio.sleep(0)
     with pytest.raises(asyncio.CancelledError):
         await opening
-    async with asyncio.timeout(60.0):
+    async with asyncio.timeout(PATIENCE_S):
         while left := asyncio.all_tasks() - before:
             await asyncio.wait(left)
     del opening

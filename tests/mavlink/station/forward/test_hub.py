@@ -24,6 +24,7 @@ from mavlink.wire.items import MissionType
 from mavlink.wire.messages import Message, Value
 from tests.mavlink.station.aircraft import Aircraft
 from tests.mavlink.transfer.vehicle import StubVehicle, waypoints
+from tests.patience import PATIENCE_S
 
 ARM = 400
 RETURN = 20
@@ -44,7 +45,7 @@ class Station:
 
     async def until(self, name: str) -> Message:
         """The next message of a name that is for this station, or for all."""
-        async with asyncio.timeout(60):
+        async with asyncio.timeout(PATIENCE_S):
             while True:
                 for message in self.codec.feed(await self.link.receive()):
                     target = message.fields.get("target_system", 0)
@@ -54,7 +55,7 @@ class Station:
 
 async def until(condition: Callable[[], bool]) -> None:
     """Wait for something."""
-    async with asyncio.timeout(60):
+    async with asyncio.timeout(PATIENCE_S):
         while not condition():
             await asyncio.sleep(0.002)
 
@@ -116,7 +117,7 @@ async def test_every_valid_frame_reaches_every_station() -> None:
             await aircraft.link.send(frame)
         for link in (caller.link, listener, stream):
             received = b""
-            async with asyncio.timeout(60):
+            async with asyncio.timeout(PATIENCE_S):
                 while good[0] not in received.partition(good[-1])[2]:
                     received += await link.receive()
             position = -1
@@ -219,7 +220,7 @@ async def test_a_stuck_peer_costs_its_own_frames_alone() -> None:
             await until(lambda: stuck.peers == 1)
             before = other.figures.sent
             offered = 0
-            async with asyncio.timeout(30):
+            async with asyncio.timeout(PATIENCE_S):
                 while stuck.figures.dropped < 100:
                     for _ in range(500):
                         forwards.heard(frame, None)
@@ -235,7 +236,7 @@ async def test_a_stuck_peer_costs_its_own_frames_alone() -> None:
             reader.setblocking(False)
             heard: list[str] = []
             loop = asyncio.get_running_loop()
-            async with asyncio.timeout(60):
+            async with asyncio.timeout(PATIENCE_S):
                 while "HEARTBEAT" not in heard:
                     heard += [m.name for m in codec.feed(await loop.sock_recv(reader, 1 << 20))]
             assert codec.bad_frames == 0
@@ -252,7 +253,7 @@ async def test_peers_that_come_and_go() -> None:
             link = await open_link(f"tcp:127.0.0.1:{ports(forwards)[0]}")
             codec = Codec()
             heard: list[Message] = []
-            async with asyncio.timeout(60):
+            async with asyncio.timeout(PATIENCE_S):
                 while not any(message.name == "HEARTBEAT" for message in heard):
                     heard += codec.feed(await link.receive())
             assert "nobody hears this" not in [str(message.fields.get("text")) for message in heard]
@@ -365,7 +366,7 @@ async def test_a_tcp_station_may_come_later(monkeypatch: pytest.MonkeyPatch) -> 
             assert outlet.failure is not None
             late.listen()
             loop = asyncio.get_running_loop()
-            async with asyncio.timeout(60):
+            async with asyncio.timeout(PATIENCE_S):
                 accepted, _ = await loop.sock_accept(late)
                 with accepted:
                     codec = Codec()

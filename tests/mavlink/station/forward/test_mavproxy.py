@@ -14,6 +14,7 @@ from tests.mavlink.station.test_mavproxy import assert_same, mavproxy
 
 pytest.importorskip("mavsdk")
 from tests.mavlink.station.forward.test_mavsdk import forwarded
+from tests.patience import PATIENCE_S
 
 pytestmark = pytest.mark.skipif(find_spec("MAVProxy") is None, reason="MAVProxy is not installed")
 
@@ -29,5 +30,5 @@ async def test_mavproxy_lists_our_mission_and_arms(tmp_path: Path) -> None:
             assert_same(await proxy.order("wp list", r"Saved \D+ to "), uploaded.held)
             await proxy.order("module load cmdlong", "Loaded module cmdlong")
             await proxy.order("long 400 1", "COMPONENT_ARM_DISARM: ACCEPTED")
-            await client.wait_for(lambda state: state.armed, 30)
+            await client.wait_for(lambda state: state.armed, PATIENCE_S)
         assert outlet.stations == [255]

@@ -29,12 +29,14 @@ from mavsdk.asyncio.plugins.telemetry import TelemetryAsync
 from mavsdk.asyncio.system import System
 from mavsdk.plugins.action import ActionError
 
+from tests.patience import PATIENCE_S
+
 pytestmark = pytest.mark.mavsdk
 
 
 async def until(condition: Callable[[], Awaitable[bool]]) -> None:
     """Wait for something MAVSDK or the aircraft says."""
-    async with asyncio.timeout(30):
+    async with asyncio.timeout(PATIENCE_S):
         while not await condition():
             await asyncio.sleep(0.02)
 
@@ -45,7 +47,7 @@ async def second_station(outlet: Outlet) -> AsyncIterator[System]:
     # create_with_component_type is silent until it hears a vehicle, and who is called waits to be called.
     async with Mavsdk(Configuration.create_manual(245, 190, True)) as station:
         await station.add_any_connection(f"udpout://{outlet.url.removeprefix('udpin:')}")
-        system = await station.first_autopilot(timeout_s=30.0)
+        system = await station.first_autopilot(timeout_s=PATIENCE_S)
         assert system is not None
         yield system
 
@@ -98,7 +100,7 @@ async def test_mavsdk_reads_and_flies(flavour: Flavour) -> None:
 
             await until(heard_position)
             await action.arm()
-            await client.wait_for(lambda state: state.armed, 30)
+            await client.wait_for(lambda state: state.armed, PATIENCE_S)
             await raw.start_mission()
 
             async def under_way() -> bool:
@@ -109,9 +111,9 @@ async def test_mavsdk_reads_and_flies(flavour: Flavour) -> None:
             assert client.state.mode in ("AUTO", "AUTO.MISSION")
             assert (await telemetry.flight_mode()).name == "MISSION"
             await action.hold()
-            await client.wait_for(lambda state: state.mode in ("LOITER", "AUTO.LOITER"), 30)
+            await client.wait_for(lambda state: state.mode in ("LOITER", "AUTO.LOITER"), PATIENCE_S)
             await action.return_to_launch()
-            await client.wait_for(lambda state: state.mode in ("RTL", "AUTO.RTL"), 30)
+            await client.wait_for(lambda state: state.mode in ("RTL", "AUTO.RTL"), PATIENCE_S)
             assert outlet.stations == [245]
 
 

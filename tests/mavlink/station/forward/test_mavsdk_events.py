@@ -24,6 +24,7 @@ pytest.importorskip("mavsdk")
 from mavsdk.asyncio.plugins.events import EventsAsync
 
 from tests.mavlink.station.forward.test_mavsdk import second_station
+from tests.patience import PATIENCE_S
 
 pytestmark = pytest.mark.mavsdk
 
@@ -161,7 +162,7 @@ async def test_mavsdk_and_our_reader_tell_the_same_event() -> None:
         fields = {"id": event_id(NAME), "log_levels": 0x33, "arguments": tuple(arguments)}
         await aircraft.say("EVENT", sequence=1, event_time_boot_ms=1000, **fields)
         # MAVSDK keeps it until it has the metadata.
-        words = await asyncio.wait_for(told.get(), 60)
+        words = await asyncio.wait_for(told.get(), PATIENCE_S)
         assert words == "Mission rejected: item 7: unsupported command: 18"
         texts = [text.text for text in client.state.texts]
         assert "mission rejected: item 7 has the unsupported command 18" in texts
