@@ -12,9 +12,9 @@ import time
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from planner.jit import njit
 from planner.search.importance.bound import bounded
 from planner.search.importance.grid import ImportanceGrid
 from planner.search.importance.walk_kernels import distances

@@ -21,12 +21,12 @@ from importlib import import_module
 from typing import Any
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from planner.airspace.zones import Disc, KeepOut
 from planner.dubins.kernels import dubins_lengths
 from planner.errors import InfeasibleError
+from planner.jit import njit
 from planner.route import Anchor
 from planner.transit.tangent import connect, forget_searches
 

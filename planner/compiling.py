@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import contextlib
 import fcntl
-import functools
 import hashlib
 import os
 import time
@@ -20,7 +19,6 @@ from typing import Any, Final
 import llvmlite
 import numba
 from llvmlite.binding import get_host_cpu_features, get_host_cpu_name
-from numba.core.caching import IndexDataCacheFile
 
 from planner.dubins.kernels import dubins_length
 
@@ -42,7 +40,8 @@ class Compiling:
     """
 
     def __init__(self, folder: Path | None = None, patience_s: float = PATIENCE_S) -> None:
-        self._folder = Path(str(dubins_length.stats.cache_path)) if folder is None else folder
+        kernel: Any = dubins_length
+        self._folder = Path(str(kernel.stats.cache_path)) if folder is None else folder
         self._patience_s = patience_s
         self._stamp = self._folder / f"compiled-{_key()}"
         self._lock = self._folder / "compiling.lock"
@@ -60,7 +59,6 @@ class Compiling:
         load
             Loads what is kept and compiles what is not; says whether it has compiled anything.
         """
-        keep_in_turn()
         if self.done and not load():
             return
         with self._turn():
@@ -105,38 +103,6 @@ class Compiling:
             for old in self._folder.glob("compiled-*"):
                 old.unlink(missing_ok=True)
             self._stamp.touch()
-
-
-@functools.cache
-def keep_in_turn() -> None:
-    """Let several processes compile at once, from here on in this one.
-
-    numba numbers the forms of a kernel after those in its index, and writes the index before the form: of two
-    processes that save at the same moment both take the same number, and what is loaded under one signature
-    could be the other's code. Here one process at a time reads or writes what is kept in a folder.
-    """
-    kept: Any = IndexDataCacheFile
-    save, load = kept.save, kept.load
-
-    def save_in_turn(file: IndexDataCacheFile, key: object, data: object) -> None:
-        with _locked(file):
-            save(file, key, data)
-
-    def load_in_turn(file: IndexDataCacheFile, key: object) -> object:
-        with _locked(file):
-            return load(file, key)
-
-    kept.save, kept.load = save_in_turn, load_in_turn
-
-
-@contextlib.contextmanager
-def _locked(file: IndexDataCacheFile) -> Iterator[None]:
-    with contextlib.ExitStack() as held:
-        # What cannot be locked cannot be written either: an image's read-only kernels are loaded as they are.
-        with contextlib.suppress(OSError):
-            lock = held.enter_context(Path(file._index_path).with_name("keeping.lock").open("w"))
-            fcntl.flock(lock, fcntl.LOCK_EX)
-        yield
 
 
 def _key() -> str:

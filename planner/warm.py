@@ -9,7 +9,7 @@ import sys
 
 from numba.core.dispatcher import Dispatcher
 
-from planner.compiling import Compiling, keep_in_turn
+from planner.compiling import Compiling
 from planner.geojson import read_scenario
 from planner.pipeline import make_plan, with_bound
 from planner.warm_cases import SCENARIO, SHARES, usual
@@ -37,7 +37,6 @@ def prepare() -> None:
 
 def share(number: int) -> None:
     """Compile one of the shares of :data:`planner.warm_cases.SHARES`, beside processes with others."""
-    keep_in_turn()
     for case in SHARES[number]:
         case()
 

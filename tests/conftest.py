@@ -13,7 +13,6 @@ from typing import Any
 import pytest
 from hypothesis import HealthCheck, settings
 
-from planner.compiling import keep_in_turn
 from tests import order
 from tests.virtual_time import VirtualLoop
 
@@ -26,8 +25,6 @@ settings.register_profile(
 )
 settings.register_profile("explore", deadline=None, max_examples=1000)
 settings.load_profile("steady")
-# Kernels that an install leaves to their first use are compiled by whichever process is first, or by two.
-keep_in_turn()
 
 
 def pytest_asyncio_loop_factories(

@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from planner.airspace.kernels import length_in_discs
+from planner.jit import njit
 
 Floats = NDArray[np.float64]
 

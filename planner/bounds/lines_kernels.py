@@ -16,7 +16,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from planner.bounds.cells_kernels import (
@@ -43,6 +42,7 @@ from planner.bounds.cells_kernels import (
     E,
     N,
 )
+from planner.jit import njit
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]

@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from planner.bounds.cells_kernels import (
@@ -32,6 +31,7 @@ from planner.bounds.cells_kernels import (
     support,
 )
 from planner.bounds.sets_kernels import LEAST_X, LEAST_Y, MOST_X, MOST_Y
+from planner.jit import njit
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from planner.bounds.cells_kernels import ENTRY, EXIT, HOLDS
 from planner.bounds.lines_kernels import along, between, from_terminal, together
+from planner.jit import njit
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]

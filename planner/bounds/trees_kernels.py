@@ -6,11 +6,11 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from planner.bounds.cells_kernels import ENTRY, EXIT, INNER, INNER_DEV, INNER_GAIN, INNER_JUMP
 from planner.bounds.lines_kernels import between, from_terminal, together
+from planner.jit import njit
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]

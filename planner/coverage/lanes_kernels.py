@@ -7,10 +7,10 @@ north_m, angle_rad; discs float64 (K, 3).
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from planner.coverage.turns_kernels import SLACK, UNKNOWN, ends_of, least_turns, turn_m
+from planner.jit import njit
 from planner.orders_kernels import best_orders
 
 Floats = NDArray[np.float64]

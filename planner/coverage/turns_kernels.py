@@ -10,11 +10,11 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from planner.dubins.estimate_kernels import detour_m
 from planner.dubins.kernels import dubins_length_by_sines
+from planner.jit import njit
 
 Floats = NDArray[np.float64]
 

@@ -14,8 +14,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from planner.jit import njit
 
 FULL_TURN_SNAP = 1e-9
 #: Arcs nearer to a full turn than this, in radians, may be arcs of no length: the angles themselves decide.

@@ -10,7 +10,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
 from planner.fleet.auto.tables import (
     ENERGY,
@@ -26,6 +25,7 @@ from planner.fleet.auto.tables import (
     Jobs,
 )
 from planner.fleet.auto.times_kernels import EPSILON, join
+from planner.jit import njit
 
 #: Columns of a label.
 SPAN, EARLY, LATE, PRICE, LENGTH, USED = range(6)

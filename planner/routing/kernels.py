@@ -7,8 +7,9 @@ the start to a place and from a place to the end; orders are int64 (N,).
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from planner.jit import njit
 
 Floats = NDArray[np.float64]
 Order = NDArray[np.int64]

@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from planner.airspace.terrain_kernels import ground_at
+from planner.jit import njit
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.uint8]

@@ -10,10 +10,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from planner.airspace.terrain_kernels import ground_at, heights_between
+from planner.jit import njit
 from planner.sensors.view_kernels import lead_m
 
 Array = NDArray[np.float64]

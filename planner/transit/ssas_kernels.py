@@ -10,10 +10,10 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from planner.airspace.kernels import CLEAR, OUTSIDE, leg_risk, leg_verdict
+from planner.jit import njit
 from planner.transit.kernels import BUCKETS, forget, nearest, pop, push, remember, wrap
 
 Array = NDArray[np.float64]

@@ -13,10 +13,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from planner.dubins.kernels import dubins_length
+from planner.jit import njit
 from planner.transit.growing_kernels import longer, longer_indices, more
 from planner.transit.kernels import pop, push
 

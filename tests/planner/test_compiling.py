@@ -6,15 +6,12 @@ import os
 import signal
 import subprocess
 import sys
-import threading
 import time
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
-from numba.core.caching import IndexDataCacheFile
 
-from planner.compiling import Compiling, keep_in_turn
+from planner.compiling import Compiling
 from tests.patience import PATIENCE_S
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -90,19 +87,3 @@ def test_without_a_folder_to_write_each_loads_for_itself(tmp_path: Path) -> None
     Compiling(tmp_path / "file" / "below").once(load)
     assert loads == 1
     assert time.monotonic() - began_s < 5.0
-
-
-def test_forms_kept_at_the_same_moment_are_all_kept(tmp_path: Path) -> None:
-    """Each signature loads its own form, whoever saved another one of the kernel meanwhile."""
-    count = 8
-    together = threading.Barrier(count)
-
-    def keep(number: int) -> None:
-        together.wait()
-        IndexDataCacheFile(str(tmp_path), "kernel", "stamp").save(number, f"form {number}")
-
-    keep_in_turn()
-    with ThreadPoolExecutor(count) as keepers:
-        list(keepers.map(keep, range(count)))
-    kept = IndexDataCacheFile(str(tmp_path), "kernel", "stamp")
-    assert [kept.load(number) for number in range(count)] == [f"form {number}" for number in range(count)]

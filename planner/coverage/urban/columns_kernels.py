@@ -10,8 +10,9 @@ float64 (N, 5): where the line flown begins and ends, its ordinate, the first an
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from planner.jit import njit
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]

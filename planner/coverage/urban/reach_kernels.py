@@ -9,10 +9,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from planner.coverage.urban.visibility_kernels import Walls, crosses
+from planner.jit import njit
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]

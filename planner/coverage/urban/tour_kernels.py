@@ -11,8 +11,9 @@ traveling salesman problem", Complex Systems 5, 1991) and kept where it came out
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from planner.jit import njit
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
 from planner.fleet.auto.tables import (
     CAPACITY,
@@ -26,6 +25,7 @@ from planner.fleet.auto.tables import (
     Weights,
 )
 from planner.fleet.auto.times_kernels import EPSILON, join, within
+from planner.jit import njit
 
 #: A place is passed over with this chance, so that recreation does not always end alike.
 BLINK = 0.01

@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
 from planner.fleet.auto.insert_kernels import (
     SLOPE,
@@ -23,6 +22,7 @@ from planner.fleet.auto.insert_kernels import (
 )
 from planner.fleet.auto.tables import Costs, Crew, Floats, Ints, Jobs, Routes, Weights
 from planner.fleet.auto.times_kernels import renew
+from planner.jit import njit
 
 #: Jobs taken out at a time on average, and the longest string.
 MEAN_OUT, LONGEST = 10.0, 10.0

@@ -10,7 +10,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
 from planner.fleet.auto.tables import (
     CAPACITY,
@@ -35,6 +34,7 @@ from planner.fleet.auto.tables import (
     Routes,
     Weights,
 )
+from planner.jit import njit
 
 #: Slack of comparisons, s, m and Wh.
 EPSILON = 1e-7

@@ -14,12 +14,12 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from planner.fleet.prizes.draw_kernels import State, draw
 from planner.fleet.prizes.route_kernels import BLINK, DISLIKE, LIKE, NO_WAY, WHIM
 from planner.fleet.prizes.shorten_kernels import SLACK
+from planner.jit import njit
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]

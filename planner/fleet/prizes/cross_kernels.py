@@ -5,11 +5,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from planner.fleet.prizes.draw_kernels import State, draw
 from planner.fleet.prizes.route_kernels import BLINK, cheapest_place, fill
+from planner.jit import njit
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]

@@ -12,10 +12,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from planner.dubins.kernels import dubins_length
+from planner.jit import njit
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]

@@ -11,10 +11,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from planner.fleet.prizes.lines_kernels import shortest_clear, straight_clear
+from planner.jit import njit
 from planner.transit.kernels import pop, push
 
 Floats = NDArray[np.float64]

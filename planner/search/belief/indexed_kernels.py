@@ -9,9 +9,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from planner.jit import njit
 from planner.search.belief.kernels import home_m
 
 Floats = NDArray[np.float64]

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from planner.jit import njit
 from planner.search.importance.walk_kernels import gain_of
 
 Floats = NDArray[np.float64]
