@@ -25,6 +25,7 @@ from app.services.vehicles.times import LinkTimes
 from app.settings import Settings
 from mavlink.transfer.machine import TransferSettings
 from tests.app import fakes
+from tests.patience import PATIENCE_S
 
 #: Vehicles are looked at often, and links that failed opened anew at once.
 QUICK = LinkTimes(telemetry_s=0.05, look_s=0.1, reopen_s=0.2)
@@ -91,6 +92,7 @@ def settings_in(folder: Path) -> Settings:
         database=folder / "plans.db",
         workers=1,
         request_workers=2,
+        request_time_limit_s=PATIENCE_S,
         static_dir=folder,
         log_level="error",
         serial_ports=(str(folder / "*"), "/dev/none"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import socket
 import subprocess
 import sys
@@ -13,8 +14,6 @@ import httpx
 import pytest
 
 from tests.patience import PATIENCE_S
-
-#: Seconds; a busy machine takes its time to begin several processes.
 
 
 def _ready(address: str) -> bool:
@@ -40,7 +39,10 @@ def service(tmp_path: Path) -> Iterator[str]:
         "--database",
         str(tmp_path / "s.db"),
     ]
-    process = subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    patient = os.environ | {"SWATHPLAN_REQUEST_TIME_LIMIT_S": str(PATIENCE_S)}
+    process = subprocess.Popen(
+        command, cwd=tmp_path, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env=patient
+    )
     address = f"http://127.0.0.1:{port}"
     try:
         end_s = time.monotonic() + PATIENCE_S

@@ -73,7 +73,7 @@ def serving(folder: Path, speedup: int) -> Iterator[Service]:
             stdout=subprocess.PIPE,
             stderr=log,
             text=True,
-            env=os.environ | {"PYTHONPATH": ""},
+            env=os.environ | {"PYTHONPATH": "", "SWATHPLAN_REQUEST_TIME_LIMIT_S": str(PATIENCE_S)},
         )
         try:
             address = json.loads(_first_line(process))["address"]
