@@ -34,6 +34,7 @@ TABLE: tuple[tuple[type[errors.ServiceError], int, str, str], ...] = (
     (errors.ClientGoneError, 499, "client-gone", "Nobody waits for the answer"),
     # no 502: a 5xx means that the service is broken, and it is not; 504 is the vehicle's silence alone
     (errors.LinkError, 409, "vehicle-unreachable", "The vehicle cannot be reached"),
+    (errors.NotHeldError, 409, "not-held", "The vehicle does not hold what was meant"),
     (errors.CommandRefusedError, 409, "command-refused", "The command is refused"),
     (errors.CommandOvertakenError, 409, "command-overtaken", "A newer command has overtaken it"),
     (errors.CommandUnknownError, 504, "command-unknown", "Nobody can tell whether it was carried out"),
@@ -94,7 +95,7 @@ def problem_body(
     title: str,
     detail: str,
     entries: list[dict[str, Any]] | None = None,
-    members: Mapping[str, str] | None = None,
+    members: Mapping[str, Any] | None = None,
 ) -> bytes:
     """A problem document as bytes, with further members where its kind has some."""
     document = {
@@ -117,7 +118,7 @@ def problem_response(
     detail: str,
     entries: list[dict[str, Any]] | None = None,
     headers: Mapping[str, str] | None = None,
-    members: Mapping[str, str] | None = None,
+    members: Mapping[str, Any] | None = None,
 ) -> Response:
     """A problem document as an answer."""
     body = problem_body(request.url.path, status, kind, title, detail, entries, members)
@@ -131,10 +132,10 @@ def service_problem(request: Request, error: Exception) -> Response:
     )
     entries = (
         [finding_json(finding) for finding in error.findings]
-        if isinstance(error, errors.RefusedError | errors.CommandError)
+        if isinstance(error, errors.RefusedError | errors.UndoneError)
         else None
     )
-    members = error.members if isinstance(error, errors.CommandError) else None
+    members = error.members if isinstance(error, errors.UndoneError) else None
     retry_after_s = _RETRY_AFTER_S if isinstance(error, errors.StorageError) else None
     if isinstance(error, errors.OverloadedError):
         retry_after_s = error.retry_after_s

@@ -11,6 +11,7 @@ from fastapi.responses import StreamingResponse
 from sse_starlette import EventSourceResponse, ServerSentEvent
 
 from app.problems import responses
+from app.routers.held import require_held
 from app.routers.streams import event_stream, file_stream
 from app.schemas.forwards import ForwardsIn, ForwardsOut
 from app.schemas.missions import ClearedOut, HeldOut, MissionIn, Part, UploadOut
@@ -142,7 +143,9 @@ async def upload(
     Plans that break a hard constraint, plans whose kept scenario is another by now (`plan-stale`), missions
     for another kind of vehicle and vehicles in flight are refused (409) unless `override` is true and
     `reason` says why. `outcome` tells what the vehicle said: `accepted`, `refused`, or `unknown` when it
-    vanished meanwhile; `held` and `differences` tell what it holds.
+    vanished meanwhile; `held` and `differences` tell what it holds. 200 only where all of it was read back
+    and is what was meant; 409 `not-held`, with the same members, where the vehicle refused part of it or
+    holds something else.
     """
     choice = MissionChoice(
         body.vehicle,
@@ -156,8 +159,10 @@ async def upload(
     report = await transfers.upload(
         fleet.get(vehicle_id), body.plan_id, body.parts, choice, body.reason if body.override else None
     )
-    response.status_code = 202 if report.outcome == "unknown" else 200
-    return UploadOut.of(report)
+    told = UploadOut.of(report)
+    require_held(f"{told.plan_vehicle} does not hold the plan", report.failings, told)
+    response.status_code = 200 if report.verified else 202
+    return told
 
 
 @router.post(
@@ -172,7 +177,7 @@ async def upload_fleet(
     """Each vehicle of the plan is sent its own mission, all at once, and read back; one verdict tells of all.
 
     Nothing is sent unless every vehicle of the plan has a connected one of its own. A vehicle that is refused
-    holds up no other: what became of each is told by name.
+    holds up no other: what became of each is told by name. Statuses as of one upload.
     """
     report = await upload_all(
         fleet,
@@ -185,8 +190,10 @@ async def upload_fleet(
         MissionChoice(None, None, body.payload, body.gimbal),
         body.reason if body.override else None,
     )
-    response.status_code = 202 if report.outcome == "unknown" else 200
-    return FleetUploadOut.of(report)
+    told = FleetUploadOut.of(report)
+    require_held("not every vehicle holds its part of the plan", report.failings, told)
+    response.status_code = 200 if report.verified else 202
+    return told
 
 
 @router.get("/{vehicle_id}/mission", summary="Download", responses=responses(404, 409, 422))

@@ -13,10 +13,12 @@
     ├── StorageError           the database cannot be written or read
     ├── ClientGoneError        nobody waits for the answer any more
     ├── LinkError              the vehicle cannot be reached
-    └── CommandError           a flight command that was not carried out as far as anybody can tell
-        ├── CommandRefusedError    the vehicle said no, or it was not sent for a reason
-        ├── CommandOvertakenError  a newer one was given before it was settled
-        └── CommandUnknownError    no answer, or nothing to show for it
+    └── UndoneError            what a vehicle was told did not come about; tells more than a text
+        ├── NotHeldError           it does not hold the mission that was meant
+        └── CommandError           a flight command was not carried out as far as anybody can tell
+            ├── CommandRefusedError    the vehicle said no, or it was not sent for a reason
+            ├── CommandOvertakenError  a newer one was given before it was settled
+            └── CommandUnknownError    no answer, or nothing to show for it
 """
 
 from __future__ import annotations
@@ -96,19 +98,19 @@ class LinkError(ServiceError):
     """The vehicle cannot be reached."""
 
 
-class CommandError(ServiceError):
-    """A flight command that was not carried out as far as anybody can tell.
+class UndoneError(ServiceError):
+    """What a vehicle was told did not come about.
 
     Parameters
     ----------
     findings
-        The rule that stood against it, with the way out.
+        What stood against it, with the way out.
     members
-        What else the answer tells of it.
+        What else the answer tells of it, as JSON has it.
     """
 
     def __init__(
-        self, detail: str, findings: tuple[Finding, ...] = (), members: Mapping[str, str] | None = None
+        self, detail: str, findings: tuple[Finding, ...] = (), members: Mapping[str, Any] | None = None
     ) -> None:
         self.findings = findings
         self.members = members or {}
@@ -116,6 +118,14 @@ class CommandError(ServiceError):
 
     def __reduce__(self) -> tuple[Any, ...]:
         return type(self), (str(self), self.findings, self.members)
+
+
+class NotHeldError(UndoneError):
+    """A vehicle does not hold what was meant: it refused it, or what was read back is something else."""
+
+
+class CommandError(UndoneError):
+    """A flight command that was not carried out as far as anybody can tell."""
 
 
 class CommandRefusedError(CommandError):

@@ -37,6 +37,7 @@ from mavlink.transfer.items_wire import ITEM_REQUESTS
 from mavlink.transfer.machine import Machine, Progress
 from mavlink.transfer.outcome import Outcome
 from mavlink.wire.codec import Codec
+from mavlink.wire.items import MissionType
 from mavlink.wire.messages import Message
 
 _HEARTBEAT_EVERY_S: Final = 1.0
@@ -166,6 +167,14 @@ class Driver(Watched, Believing):
         if self._forwards is None:
             return contextlib.nullcontext()
         return self._forwards.reserved(changes=changes)
+
+    def list_changed(self, kind: MissionType) -> None:
+        """How many items the mission has is not known until the vehicle says so anew.
+
+        An autopilot that is asked in mid-upload tells how many have arrived by then.
+        """
+        if kind is MissionType.MISSION:
+            self._change(replace(self.state, mission_total=None))
 
     def adopt(self, system_id: int) -> None:
         """Take the system heard in the vehicle's place for the vehicle, of which nothing is known yet.

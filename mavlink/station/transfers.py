@@ -138,7 +138,10 @@ class MissionTransfers(ABC):
         with self.reserved(changes=True):
             self._forget(kind)
             ids.sending(kind, self.state)
-            outcome = await self._driver.transfer(machine, progress)
+            try:
+                outcome = await self._driver.transfer(machine, progress)
+            finally:
+                self._driver.list_changed(kind)
             return ids.sent(kind, outcome, machine.opaque_id, self.state)
 
     def reserved(self, *, changes: bool) -> AbstractContextManager[None]:
@@ -211,7 +214,10 @@ class MissionTransfers(ABC):
         with self.reserved(changes=True):
             self._forget(mission_type)
             self._driver.list_ids.sending(mission_type, self.state)
-            return await self._driver.transfer(machine)
+            try:
+                return await self._driver.transfer(machine)
+            finally:
+                self._driver.list_changed(mission_type)
 
     def _forget(self, mission_type: MissionType) -> None:
         """What was read of a list no longer counts: it is being changed."""

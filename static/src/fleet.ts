@@ -1,5 +1,5 @@
 /** Vehicles: which there are, the one being watched, what is sent to it. */
-import { connection, follow, get, list, post, remove } from "./api";
+import { ApiError, connection, follow, get, list, post, remove } from "./api";
 import { bodyOf, type Encoding } from "./encoding";
 import { hear } from "./hearing";
 import { attempt, report } from "./notices";
@@ -79,7 +79,17 @@ export async function letGo(id: string, inFlight = false): Promise<void> {
 
 export function upload(id: string, planId: string, vehicle: string | null, parts: Part[], how: Encoding, override: Override | null): Promise<Upload> {
   const excuse = override ? { override: true, reason: override.reason } : {};
-  return post<Upload>(path(id, "/mission"), { plan_id: planId, ...(vehicle ? { vehicle } : {}), parts, ...bodyOf(how), ...excuse });
+  return answered(post<Upload>(path(id, "/mission"), { plan_id: planId, ...(vehicle ? { vehicle } : {}), parts, ...bodyOf(how), ...excuse }));
+}
+
+/** What an upload came to; one that the vehicle refused, or holds otherwise, tells it in its problem document. */
+export async function answered<T>(sent: Promise<T>): Promise<T> {
+  try {
+    return await sent;
+  } catch (error) {
+    if (error instanceof ApiError && error.problem.type?.endsWith(":not-held")) return error.problem as unknown as T;
+    throw error;
+  }
 }
 
 /** Ask the vehicle whether it is ready to fly a plan; nothing in it is changed. */

@@ -88,7 +88,9 @@ async def test_one_vehicle_that_is_refused_holds_up_no_other(
     """A multirotor where a wing is meant: it is refused with the reason, the other holds its mission."""
     ids = {"north": await aircraft(client, "north"), "south": await aircraft(client, "south", "multirotor")}
     body = {"plan_id": fleet_plan, "vehicles": ids}
-    verdict = (await client.post(VEHICLES + "/missions", json=body, timeout=PATIENCE_S)).json()
+    answer = await client.post(VEHICLES + "/missions", json=body, timeout=PATIENCE_S)
+    check_problem(answer, 409, "vehicle-type")
+    verdict = answer.json()
     assert (verdict["outcome"], verdict["verified"]) == ("refused", False), verdict
     assert verdict["vehicles"]["north"]["upload"]["verified"]
     assert verdict["vehicles"]["south"]["upload"] is None

@@ -45,6 +45,19 @@ class FleetReport:
         return "accepted"
 
     @property
+    def failings(self) -> tuple[Finding, ...]:
+        """Vehicles that do not hold what was meant, and why, by their names in the plan."""
+        found: list[Finding] = []
+        for name, told in self.vehicles.items():
+            if told.report is not None:
+                found += [replace(each, feature=f"{name}: {each.feature}") for each in told.report.failings]
+            elif isinstance(told.failure, RefusedError):
+                found += [replace(each, feature=f"{name}: {each.feature}") for each in told.failure.findings]
+            else:
+                found.append(Finding(name, "not-sent", str(told.failure), "mend that and upload again"))
+        return tuple(found)
+
+    @property
     def verified(self) -> bool:
         """Whether every vehicle was read back and holds what was meant."""
         return all(told.report is not None and told.report.verified for told in self.vehicles.values())

@@ -34,6 +34,9 @@ STATUSES: tuple[OutcomeName, ...] = ("accepted", "not_attempted", "different", "
 _AGAIN: Final = "change the scenario so that the constraint holds and plan again, or override"
 #: And about one whose scenario is another by now.
 _STALE: Final = "plan the scenario as it is now and upload that plan, or override"
+#: What to do about a vehicle that does not hold what was meant.
+_REFUSED: Final = "see what it says, change the plan or the vehicle's settings, and upload again"
+_DIFFERS: Final = "upload again; do not fly it meanwhile"
 
 
 @dataclass(slots=True)
@@ -63,6 +66,16 @@ class PartResult:
     def verified(self) -> bool:
         """Whether the vehicle holds what was meant."""
         return self.outcome == "accepted" and self.differences == []
+
+    def failing(self, name: str) -> Finding | None:
+        """Why the vehicle does not hold what was meant; None where it does, or nobody can tell."""
+        if self.outcome == "refused":
+            return Finding(name, "upload-refused", f"the vehicle refused it: {self.reason}", _REFUSED)
+        if self.differences or self.outcome == "different":
+            found = self.differences or []
+            told = f": {found[0]['message']}; {len(found)} in all" if found else ""
+            return Finding(name, "upload-differs", f"the vehicle holds something else{told}", _DIFFERS)
+        return None
 
     def take(self, result: VerifiedUpload) -> None:
         """Fill in from an upload."""
@@ -100,6 +113,11 @@ class UploadReport:
     def outcome(self) -> OutcomeName:
         """The worst of the parts attempted."""
         return max((part.outcome for part in self.parts.values()), key=STATUSES.index)
+
+    @property
+    def failings(self) -> tuple[Finding, ...]:
+        """Parts that the vehicle refused, or of which it holds something else."""
+        return tuple(finding for name, part in self.parts.items() if (finding := part.failing(name)))
 
     @property
     def verified(self) -> bool:

@@ -5,7 +5,7 @@ import { coloursOf, crewOf } from "../crew/flights";
 import { ask } from "../dialog";
 import { button, fill, h, section } from "../dom";
 import { encoding, bodyOf } from "../encoding";
-import { vehicles } from "../fleet";
+import { answered, vehicles } from "../fleet";
 import { freshness } from "../freshness";
 import { keepNow } from "../keeping";
 import { findingText, report } from "../notices";
@@ -72,7 +72,7 @@ export function fleetUploadBox(): HTMLElement {
       const of = Object.fromEntries([...chosen].map(([name, select]) => [name, select.value]));
       const { payload, gimbal } = bodyOf(encoding.value) as { payload?: string; gimbal?: string };
       const body = { plan_id: shown.record.id, vehicles: of, parts: ["mission"], ...(payload ? { payload } : {}), ...(gimbal ? { gimbal } : {}), ...(override === null ? {} : { override: true, reason: override }) };
-      fill(result, answer(await post<FleetUpload>("/vehicles/missions", body)));
+      fill(result, answer(await answered(post<FleetUpload>("/vehicles/missions", body))));
     } catch (error) {
       if (error instanceof ApiError && override === null && error.problem.type?.endsWith(":unsafe")) return void (await overrule(error));
       fill(result, h("p", { class: "warning" }, error instanceof ApiError && error.status < 500 ? "Nothing was sent to any of them." : "What they took is not known: Check before flight reads each back."));

@@ -201,3 +201,27 @@ async def test_losing_the_vehicle_ends_what_is_under_way() -> None:
         assert (await asyncio.wait_for(command, PATIENCE_S)).result is None
         with pytest.raises(NotConnectedError, match="no vehicle"):
             await client.clear(MISSION)
+
+
+@pytest.mark.parametrize("how", ["upload", "clear", "broken off"])
+async def test_a_number_of_items_told_while_they_change_counts_no_longer(how: str) -> None:
+    """An autopilot counts those that have arrived by then; afterwards it is unknown until told anew."""
+    async with flying() as (client, aircraft):
+        assert (await client.upload(waypoints(5), MISSION)).kind == "accepted"
+        answer = aircraft._answer
+
+        async def told(message: Message) -> None:
+            await aircraft.say("MISSION_CURRENT", seq=0, total=2)
+            await answer(message)
+
+        aircraft._answer = told  # type: ignore[method-assign]
+        if how == "broken off":
+            aircraft.vanish_at_item = 3
+        outcome = await (client.clear(MISSION) if how == "clear" else client.upload(waypoints(8), MISSION))
+        assert outcome.kind == ("unknown" if how == "broken off" else "accepted")
+        assert client.state.mission_current == 0
+        assert client.state.mission_total is None
+        aircraft._answer = answer  # type: ignore[method-assign]
+        aircraft.come_back()
+        await aircraft.say("MISSION_CURRENT", seq=0, total=7)
+        await client.wait_for(lambda state: state.mission_total == 8, PATIENCE_S)
