@@ -238,10 +238,16 @@ class VehicleClient(MissionTransfers, FlightCommands, SigningSetup):
             self._terrain = TerrainServer(heights, self._driver.say)
             self._driver.record(self._terrain)
 
-    async def command(self, command: int, parameters: Sequence[float] = ()) -> CommandOutcome:
-        """Send a command (COMMAND_LONG) until it is answered. Raises NotConnectedError, CodecError."""
+    async def command(
+        self, command: int, parameters: Sequence[float] = (), unheard: bool = False
+    ) -> CommandOutcome:
+        """Send a command (COMMAND_LONG) until it is answered. Raises NotConnectedError, CodecError.
+
+        ``unheard`` sends it to a vehicle that has fallen silent, too: it may hear what it does not answer.
+        """
+        target = (self.state.system_id, self.state.component_id) if unheard else self._target()
         return await self._driver.command(
-            CommandMachine(command, parameters, *self._target(), self._settings)
+            CommandMachine(command, parameters, *target, self._settings), unheard
         )
 
     async def read_parameters(self, names: Sequence[str]) -> dict[str, Parameter]:
@@ -299,6 +305,10 @@ class VehicleClient(MissionTransfers, FlightCommands, SigningSetup):
             retries=min(self._settings.retries, _PARAMETER_RETRIES),
             timeout_s=min(self._settings.timeout_s, _PARAMETER_TIMEOUT_S),
         )
+
+    def require_reachable(self) -> None:
+        """Raise NotConnectedError unless the vehicle is there, or was and has fallen silent."""
+        self._driver.require_reachable()
 
     def require_certain(self) -> None:
         """Raise DoubtError unless the vehicle meant hears, and it alone; NotConnectedError without one."""

@@ -128,9 +128,15 @@ class Driver(Watched, Believing):
         self.require_free()
         return await self._under_way.transfer(machine, progress)
 
-    async def command(self, machine: CommandMachine) -> CommandOutcome:
-        """Run a command to its end; those of the same number take turns, as their answers look alike."""
-        self.require_connected()
+    async def command(self, machine: CommandMachine, unheard: bool = False) -> CommandOutcome:
+        """Run a command to its end; those of the same number take turns, as their answers look alike.
+
+        ``unheard`` gives it to a vehicle that has fallen silent, too.
+        """
+        if unheard:
+            self.require_reachable()
+        else:
+            self.require_connected()
         return await self._under_way.command(machine)
 
     def post(self, machine: CommandMachine) -> Job[CommandOutcome]:

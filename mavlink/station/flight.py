@@ -28,8 +28,10 @@ class FlightCommands(ABC):
         """All that is known of the vehicle now."""
 
     @abstractmethod
-    async def command(self, command: int, parameters: Sequence[float] = ()) -> CommandOutcome:
-        """Send a command until it is answered."""
+    async def command(
+        self, command: int, parameters: Sequence[float] = (), unheard: bool = False
+    ) -> CommandOutcome:
+        """Send a command until it is answered; ``unheard`` to a vehicle that has fallen silent, too."""
 
     @abstractmethod
     def require_certain(self) -> None:
@@ -48,10 +50,10 @@ class FlightCommands(ABC):
         """Disarm the motors; refused in flight."""
         return await self.command(Command.COMPONENT_ARM_DISARM, (0.0,))
 
-    async def set_mode(self, name: str) -> CommandOutcome:
+    async def set_mode(self, name: str, unheard: bool = False) -> CommandOutcome:
         """Change the flight mode, named as in the state. Raises ValueError for a mode it has not."""
         parameters = mode_parameters(self.state.autopilot, self.state.type, name)
-        return await self.command(Command.DO_SET_MODE, parameters)
+        return await self.command(Command.DO_SET_MODE, parameters, unheard)
 
     async def start_mission(self) -> CommandOutcome:
         """Take off and fly the mission, or in the air go on with it at its current item.
@@ -92,37 +94,41 @@ class FlightCommands(ABC):
         return await self.command(Command.DO_PAUSE_CONTINUE, (1.0,))
 
     async def hold(self) -> CommandOutcome:
-        """Wait where it is; one that is disarmed goes into a mode that keeps it on the ground when armed."""
+        """Wait where it is; one that is disarmed goes into a mode that keeps it on the ground when armed.
+
+        Sent unheard, too.
+        """
         if self.state.autopilot == "px4":
-            return await self.set_mode("AUTO.LOITER")
+            return await self.set_mode("AUTO.LOITER", unheard=True)
         if self.state.autopilot == "ardupilot":
             hovers = self.state.type == "multirotor"
             if self.state.armed:
-                return await self.set_mode("BRAKE" if hovers else "LOITER")
-            return await self.set_mode("GUIDED" if hovers else "MANUAL")
-        return await self.command(Command.DO_PAUSE_CONTINUE, (0.0,))
+                return await self.set_mode("BRAKE" if hovers else "LOITER", unheard=True)
+            return await self.set_mode("GUIDED" if hovers else "MANUAL", unheard=True)
+        return await self.command(Command.DO_PAUSE_CONTINUE, (0.0,), unheard=True)
 
     async def land_here(self) -> CommandOutcome:
-        """Come down where it is: for those that hover. A fixed wing lands by its mission."""
+        """Come down where it is: for those that hover; wings land by their mission. Sent unheard, too."""
         if self.state.autopilot == "px4":
-            return await self.set_mode("AUTO.LAND")
+            return await self.set_mode("AUTO.LAND", unheard=True)
         if self.state.autopilot == "ardupilot":
-            return await self.set_mode("LAND" if self.state.type == "multirotor" else "QLAND")
-        return await self.command(Command.NAV_LAND)
+            hovers = self.state.type == "multirotor"
+            return await self.set_mode("LAND" if hovers else "QLAND", unheard=True)
+        return await self.command(Command.NAV_LAND, unheard=True)
 
-    async def switch_off(self, payload: Payload) -> CommandOutcome:
+    async def switch_off(self, payload: Payload, unheard: bool = False) -> CommandOutcome:
         """Switch a payload off at once, whatever the mode. Raises PayloadError where it has no such."""
         worst: CommandOutcome | None = None
         for off in off_items(switched_by(payload, self.state.autopilot)):
             parameters = (off.param1, off.param2, off.param3, off.param4, float(off.x), float(off.y), off.z)
-            answer = await self.command(off.command, parameters)
+            answer = await self.command(off.command, parameters, unheard)
             worst = answer if worst is None or not answer.accepted else worst
         assert worst is not None
         return worst
 
     async def return_to_launch(self) -> CommandOutcome:
-        """Break off and come back."""
-        return await self.command(Command.NAV_RETURN_TO_LAUNCH)
+        """Break off and come back. Sent unheard, too."""
+        return await self.command(Command.NAV_RETURN_TO_LAUNCH, unheard=True)
 
     async def goto_item(self, seq: int) -> Outcome:
         """Fly to an item of the mission next; unknown when the vehicle does not say that it will."""

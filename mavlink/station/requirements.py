@@ -46,13 +46,24 @@ class Requirements:
         if not self.state.connected:
             raise NotConnectedError(self.absence)
 
+    def require_reachable(self) -> None:
+        """Raise as ``require_connected``, but not of a vehicle that has only fallen silent: it may hear."""
+        silent = self._failure is None and not self.read_only and not self.state.connected
+        if silent and self._why_absent == SILENT and math.isfinite(self.silent_s):
+            return
+        self.require_connected()
+
     @property
     def absence(self) -> str:
         """Why a vehicle that is not connected cannot be talked to."""
-        told = self._failure or self._trust.absence or self._identity.absence(self.state)
+        told = self._why_absent
         if told == SILENT and math.isfinite(self.silent_s):
             return f"{SILENT}: it was last heard {self.silent_s:.0f} s ago, and nothing is sent"
         return told
+
+    @property
+    def _why_absent(self) -> str:
+        return self._failure or self._trust.absence or self._identity.absence(self.state)
 
     def require_certain(self) -> None:
         """Raise DoubtError unless the vehicle meant hears, and it alone; NotConnectedError without one."""

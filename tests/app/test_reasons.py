@@ -126,6 +126,13 @@ async def test_the_loss_of_a_flights_link_is_an_event(impatient: httpx.AsyncClie
         assert event["kind"] == "lost"
         assert abs(datetime.fromisoformat(event["at"]) - silent) < timedelta(seconds=2.4)
         assert event["time_s"] is not None
-        check_problem(refused := await order(impatient, vehicle, "rtl"), 409)
+        check_problem(refused := await order(impatient, vehicle, "resume"), 409)
         assert "last heard" in refused.json()["detail"]
+        assert "nothing is sent" in refused.json()["detail"]
+        # What makes safe is sent all the same: it may hear what it does not answer.
+        for stop in ("rtl", "hold", "sensor_off"):
+            check_problem(unknown := await order(impatient, vehicle, stop), 504)
+            assert unknown.json()["outcome"] == "unknown"
+            assert "sent, but it was last heard" in unknown.json()["reason"]
+        check_problem(await order(impatient, vehicle, "land"), 409, "vehicle-silent")
         await impatient.delete(vehicle, params={"in_flight": "true"})

@@ -80,6 +80,8 @@ async def _settled(
     if outcome.result is not None and not outcome.accepted:
         raise await _refusal(client, outcome, begun_s, order)
     if outcome.result is None:
+        if not client.state.connected:
+            return "unknown", f"sent, but it was last heard {client.silent_s:.0f} s ago: it may hear or not"
         if shows(client.state):
             return "done", "it never answered, and shows it all the same"
         return "unknown", str(outcome)
@@ -271,6 +273,12 @@ async def _land(vehicle: Vehicle, wish: Wish, order: Order) -> Told:
         return await _settled(
             vehicle, order, client.land_here(), lambda state: down(state) or not state.armed
         )
+    if not state.connected:
+        raise OrderRefusedError(
+            "vehicle-silent",
+            "not sent: a fixed wing lands by its mission, which is not set going unheard",
+            "send rtl: it is sent to a silent vehicle, too",
+        )
     first = landing_of(await _mission_of(vehicle, client))
     if first is None:
         raise OrderRefusedError(
@@ -307,7 +315,7 @@ async def _sensor_off(vehicle: Vehicle, wish: Wish, order: Order) -> Told:
         parse_payload(wish.payload) if wish.payload is not None else vehicle.safety.payload or DEFAULT_PAYLOAD
     )
     told, reason = await _settled(
-        vehicle, order, client.switch_off(payload), lambda state: state.sensor_shown is not True
+        vehicle, order, client.switch_off(payload, unheard=True), lambda state: state.sensor_shown is not True
     )
     if told == "done" and client.state.sensor_shown is None:
         return "done", "the vehicle took it; nothing shows whether the sensor is off"

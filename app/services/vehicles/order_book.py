@@ -20,6 +20,8 @@ STOPPING: Final = frozenset({"pause", "rtl", "land", "hold", "disarm"})
 GOING: Final = frozenset({"start", "resume", "goto_item"})
 #: Orders that make safe: nothing of the service's own holds them up.
 SAFE: Final = STOPPING | {"sensor_off"}
+#: Those of them that are given to a vehicle that has fallen silent, too: it may still hear.
+UNHEARD: Final = frozenset({"rtl", "hold", "land", "sensor_off"})
 #: Orders that make a vehicle fly a mission, and so not while one is being changed.
 FLYING: Final = GOING | {"arm"}
 _KEPT: Final = 50

@@ -20,7 +20,7 @@ from app.services.errors import (
 )
 from app.services.vehicles.aboard import ASKED, NotAboardError, require_aboard
 from app.services.vehicles.flight_orders import CARRY_OUT, OrderRefusedError, Wish
-from app.services.vehicles.order_book import FLYING, SAFE, Order
+from app.services.vehicles.order_book import FLYING, SAFE, UNHEARD, Order
 from app.services.vehicles.vehicle import Vehicle
 from mavlink import errors as mavlink_errors
 from mavlink.encoding.payload import PayloadError
@@ -46,7 +46,7 @@ async def give_order(vehicle: Vehicle, wish: Wish, wait_s: float = WAIT_S) -> Or
     CommandRefusedError, CommandOvertakenError, CommandUnknownError
         It has not been carried out, or nobody can tell.
     LinkError
-        The vehicle is not there: nothing was sent.
+        The vehicle is not there: nothing was sent. Stops are sent to one that has only fallen silent.
     BusyError
         What is to be flown is being changed.
     RefusedError
@@ -57,7 +57,7 @@ async def give_order(vehicle: Vehicle, wish: Wish, wait_s: float = WAIT_S) -> Or
     vehicle.turns.require_orders(wish.command)
     _judge(wish)
     if not vehicle.state.connected:
-        raise LinkError(f"{vehicle.name}: {vehicle.client.absence}")
+        _require_reachable(vehicle, wish)
     order = await _begun(vehicle, wish)
     log.info("flight command", vehicle=vehicle.name, command=wish.command, seq=wish.seq, command_id=order.id)
     task = asyncio.create_task(_follow(vehicle, wish, order))
@@ -91,6 +91,17 @@ async def _begun(vehicle: Vehicle, wish: Wish) -> Order:
     order = vehicle.book.begin(wish.command)
     order.entry = entry
     return order
+
+
+def _require_reachable(vehicle: Vehicle, wish: Wish) -> None:
+    """Raise LinkError, but not of a stop for a vehicle that has only fallen silent."""
+    if wish.command in UNHEARD:
+        try:
+            vehicle.client.require_reachable()
+        except mavlink_errors.MavlinkError as error:
+            raise LinkError(f"{vehicle.name}: {error}") from error
+    else:
+        raise LinkError(f"{vehicle.name}: {vehicle.client.absence}")
 
 
 def _judge(wish: Wish) -> None:

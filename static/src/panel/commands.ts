@@ -39,12 +39,13 @@ export async function giveNow(vehicle: Vehicle, order: Order, seq: number | null
   lookSoon();
 }
 
-/** Why no command can be given; empty when one can. */
-function shut(vehicle: Vehicle | null): string {
+/** Why an order cannot be given; empty when it can. What makes safe is sent to one that is silent, too. */
+function shut(vehicle: Vehicle | null, order?: Order): string {
   if (!vehicle) return "No vehicle is chosen.";
   if (vehicle.replay) return "A recording takes no commands.";
-  if (!vehicle.connected) return hearing(vehicle).lost ? "Its link is lost: no command reaches it." : "It is not heard: no command reaches it.";
-  return "";
+  if (vehicle.connected) return "";
+  if (!hearing(vehicle).lost) return "It is not heard: no command reaches it.";
+  return order?.urgent ? "" : "Its link is lost: hold, return, land and sensor off alone are sent to it.";
 }
 
 export function commands(): HTMLElement {
@@ -62,11 +63,12 @@ export function commands(): HTMLElement {
     if (watched.value) void give(watched.value, order, seq);
   });
   watched.watch((vehicle) => {
-    const why = shut(vehicle);
     for (const { order, control } of made) {
+      const why = shut(vehicle, order);
       control.disabled = why !== "";
       control.title = why || order.title;
     }
+    const why = shut(vehicle);
     goTo.disabled = item.disabled = why !== "";
     goTo.title = why || "Goes on with the mission from the item of this number";
   });

@@ -11,7 +11,7 @@ export interface Order {
   name: Command;
   label: string;
   title: string;
-  /** Shown in the first place, and apart from the others, while it flies. */
+  /** It makes safe: shown in the first place, apart from the others, while it flies; sent to one that is silent, too. */
   urgent?: boolean;
 }
 
@@ -110,5 +110,6 @@ export function saying(vehicle: Vehicle, order: Order, seq: number | null): Sayi
     }
   })();
   if (order.name === "start") return startSaying(vehicle);
+  if (hearing(vehicle).lost) lines.push("ITS LINK IS LOST: it is sent all the same, and nobody can tell whether it is heard.");
   return { title: `${order.label}: ${vehicle.name}?`, lines, go: order.label };
 }

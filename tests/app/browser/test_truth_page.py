@@ -199,6 +199,11 @@ def test_a_lost_link_is_seen_in_every_tab(page: Page, planned: str, service: Ser
         age = cell(page, "position", "fading")
         expect(age).not_to_have_text(age.inner_text())
         expect(page).to_have_title("⚠ Link lost – Swathplan")
+        go_to(page, "Fly")
+        page.locator("#vehicles label", has_text="fading").click()
+        # It may hear what it does not answer: what makes safe is offered, nothing else.
+        expect(page.locator("[data-command=rtl]")).to_be_enabled()
+        expect(page.locator("[data-command=start]")).to_be_disabled()
     expect(page.locator("#alarm")).to_be_hidden(timeout=LIMIT_MS)
 
 

@@ -6,9 +6,11 @@ import asyncio
 
 import pytest
 
+from mavlink.errors import NotConnectedError
 from mavlink.transfer.outcome import Accepted
 from mavlink.wire.items import Command
-from tests.mavlink.station.aircraft import flying
+from tests.mavlink.station.aircraft import LOST_AFTER_S, flying
+from tests.patience import PATIENCE_S
 
 pytestmark = pytest.mark.virtual_time
 
@@ -80,3 +82,30 @@ async def test_an_item_becomes_the_current_one() -> None:
     async with flying() as (client, _):
         assert await client.goto_item(7) == Accepted()
         assert client.state.mission_current == 7
+
+
+@pytest.mark.parametrize(("manner", "kind"), [("ardupilot", PLANE), ("ardupilot", COPTER), ("px4", COPTER)])
+async def test_what_makes_safe_is_sent_to_one_that_is_silent(manner: str, kind: int) -> None:
+    """It may hear what it does not answer; nothing else is sent, and nothing once the client is closed."""
+    async with flying(manner, kind, lost_after_s=LOST_AFTER_S) as (client, aircraft):
+        aircraft.vanish()
+        await client.wait_for(lambda state: not state.connected, PATIENCE_S)
+        aircraft.commands.clear()
+        for order in (client.start_mission, client.resume, client.arm, client.disarm, client.pause):
+            with pytest.raises(NotConnectedError, match="nothing is sent"):
+                await order()
+        await asyncio.sleep(1.0)
+        assert not aircraft.commands
+        numbers = []
+        for stop in (client.return_to_launch, client.hold, client.land_here):
+            assert (await stop()).result is None
+            numbers.append({number for number, _ in aircraft.commands})
+            aircraft.commands.clear()
+        assert all(len(number) == 1 for number in numbers)
+        assert numbers[0] == {Command.NAV_RETURN_TO_LAUNCH}
+        assert not client.state.connected
+        aircraft.come_back()
+        await client.wait_for(lambda state: state.connected, PATIENCE_S)
+        assert (await client.return_to_launch()).accepted
+    with pytest.raises(NotConnectedError):
+        await client.return_to_launch()
