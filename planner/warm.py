@@ -6,13 +6,15 @@ import functools
 import os
 import subprocess
 import sys
+import tempfile
+from pathlib import Path
 
 from numba.core.dispatcher import Dispatcher
 
 from planner.compiling import Compiling
 from planner.geojson import read_scenario
 from planner.pipeline import make_plan, with_bound
-from planner.warm_cases import SCENARIO, SHARES, usual
+from planner.warm_cases import CASES, SCENARIO, usual
 
 
 def load() -> None:
@@ -35,10 +37,25 @@ def prepare() -> None:
     Compiling().once(_all)
 
 
-def share(number: int) -> None:
-    """Compile one of the shares of :data:`planner.warm_cases.SHARES`, beside processes with others."""
-    for case in SHARES[number]:
-        case()
+def share(claims: str) -> None:
+    """Compile cases of :data:`planner.warm_cases.CASES` that no other process has claimed.
+
+    Parameters
+    ----------
+    claims
+        A folder; who makes the file of a case's name there has it.
+    """
+    for case in CASES:
+        if _claimed(Path(claims) / case.__name__):
+            case()
+
+
+def _claimed(claim: Path) -> bool:
+    try:
+        claim.touch(exist_ok=False)
+    except FileExistsError:
+        return False
+    return True
 
 
 def _all() -> bool:
@@ -46,17 +63,15 @@ def _all() -> bool:
     if not compiled() or len(os.sched_getaffinity(0)) == 1:
         warm_up()
         return compiled() > 0
-    others = [
-        subprocess.Popen([sys.executable, "-c", f"from planner.warm import share; share({number})"])
-        for number in range(1, len(SHARES))
-    ]
-    try:
-        share(0)
-    finally:
-        codes = [other.wait() for other in others]
-    for other, code in zip(others, codes, strict=True):
-        if code:
-            raise subprocess.CalledProcessError(code, other.args)
+    with tempfile.TemporaryDirectory(prefix="swathplan-compiling-") as claims:
+        program = f"from planner.warm import share; share({claims!r})"
+        other = subprocess.Popen([sys.executable, "-c", program])
+        try:
+            share(claims)
+        finally:
+            code = other.wait()
+    if code:
+        raise subprocess.CalledProcessError(code, other.args)
     return True
 
 
@@ -86,6 +101,5 @@ def compiled() -> int:
 def warm_up() -> None:
     """Plan small scenarios by each method, once in a process."""
     usual()
-    for cases in SHARES:
-        for case in cases:
-            case()
+    for case in CASES:
+        case()

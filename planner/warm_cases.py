@@ -177,11 +177,10 @@ def photos() -> None:
         PhotoGrid.over(box(-9.0, -9.0, 9.0, 9.0), 30.0).lay(shots, camera, ground, 0.0)
 
 
-#: What is compiled side by side, once the kernels of a usual plan are there: about as long each.
-SHARES: Final[tuple[tuple[Callable[[], None], ...], ...]] = (
-    (methods, many, fleets),
-    (bounds, cameras, searches, left_out, terrain, photos),
-)
+#: What is compiled side by side, once the kernels of a usual plan are there; the longest first.
+CASES: Final[tuple[Callable[[], None], ...]] = (
+    fleets, methods, searches, cameras, bounds, many, left_out, terrain, photos,
+)  # fmt: skip
 
 
 def _city(method: str, *, building: bool = True) -> dict[str, Any]:

@@ -122,6 +122,8 @@ class VehicleState:
         The payload's switch as reported: NAMED_VALUE_INT ``SAR_ON``.
     output_on
         What the output shows that the payload in use switches; None where it is not known or not told.
+    sensor_silent
+        Whether that report came again and again and comes no more: whatever it said last, nobody knows.
     sensor_since_s
         Since when ``sensor_shown`` is what it is, in the client's clock.
     relays_on
@@ -177,13 +179,19 @@ class VehicleState:
     rally_points_id: int | None = None
     sensor_on: bool | None = None
     output_on: bool | None = None
+    sensor_silent: bool = False
     sensor_since_s: float | None = None
     relays_on: int | None = None
     texts: tuple[StatusText, ...] = ()
 
     @property
     def sensor_shown(self) -> bool | None:
-        """Whether the sensor is on: by its own report, else by the output; None where nothing tells."""
+        """Whether the sensor is on: by its own report, else by the output; None where nothing tells.
+
+        One whose report has ceased may be dead, whatever its output says; without an output it is off.
+        """
+        if self.sensor_silent:
+            return False if self.output_on is False else None
         return self.output_on if self.sensor_on is None else self.sensor_on
 
 

@@ -16,6 +16,7 @@ from mavlink.state.mount import MOUNT_MESSAGES, MountAttitude, MountWatch
 from mavlink.state.mount import angles_deg as angles_of
 from mavlink.state.outputs import CameraOutput, PhotoOutput, RelayOutput, SensorOutput, ServoOutput
 from mavlink.state.photos import PhotoSource, PhotoTaken, photos_among
+from mavlink.state.sensor import TOLD_SHOWS_S
 from mavlink.state.telemetry import VehicleState, finite, is_sensor_switch
 from mavlink.wire.messages import Message
 
@@ -27,9 +28,6 @@ _MOST_POINTS: Final = 200_000
 _WRAP_S: Final = 2**32 / 1e6
 # An attitude is that of a place when it is no older: it comes several times a second.
 _ATTITUDE_S: Final = 2.0
-# What a relay, a servo or a sensor that repeats itself said so long ago tells no more: unasked, a relay is
-# told every two seconds.
-_OUTPUT_S: Final = 5.0
 # A camera's clock that says less or more than this beside the vehicle's is another clock.
 _SAME_CLOCK_S: Final = 5.0
 
@@ -273,7 +271,7 @@ class TrackRecorder:
         """
         if state.sensor_on is None:
             return self._shown(time_s)
-        if not self._sensor_repeats or self._sensor_s is None or abs(time_s - self._sensor_s) <= _OUTPUT_S:
+        if not self._sensor_repeats or self._sensor_s is None or abs(time_s - self._sensor_s) <= TOLD_SHOWS_S:
             return state.sensor_on
         return False if self._shown(time_s) is False else None
 
@@ -285,7 +283,7 @@ class TrackRecorder:
         if self._output_on is None or not isinstance(self.output, (RelayOutput, ServoOutput)):
             return self._output_on
         self._output_s = time_s if self._output_s is None else self._output_s
-        return self._output_on if abs(time_s - self._output_s) <= _OUTPUT_S else None
+        return self._output_on if abs(time_s - self._output_s) <= TOLD_SHOWS_S else None
 
     def _relays(self, message: Message, state: VehicleState) -> None:
         present, on = message.integer("present"), message.integer("on")

@@ -319,3 +319,33 @@ def test_an_output_that_is_silent_tells_nothing(output: SensorOutput, on: Messag
     assert shown(at(1000), on, at(2000), at(5500), at(6500), at(60_000)) == [None, True, True, None, None]
     assert shown(on, at(1000), at(5500), at(6500), on, at(7000)) == [True, True, None, True]
     assert shown(at(1000), off, at(2000), at(60_000)) == [None, False, None]
+
+
+STEPS = st.one_of(
+    st.tuples(st.just("at"), st.sampled_from([200, 1000, 2500, 4900, 5100, 9000])),
+    st.tuples(st.sampled_from(["output", "report"]), st.booleans()),
+)
+
+
+@given(st.lists(STEPS, max_size=30), st.sampled_from([RelayOutput(0), ServoOutput(0, 9, 1900.0, 1100.0)]))
+def test_what_is_shown_live_is_what_the_record_holds(
+    steps: list[tuple[str, int]], output: RelayOutput | ServoOutput
+) -> None:
+    """Whatever was told and when: at each place, both know as much of the sensor."""
+    now_ms, messages = 0, []
+    for kind, value in steps:
+        if kind == "at":
+            now_ms += value
+            messages.append(at(now_ms))
+        elif kind == "report":
+            messages.append(received("NAMED_VALUE_INT", name="SAR_ON", value=int(value)))
+        elif isinstance(output, RelayOutput):
+            messages.append(received("RELAY_STATUS", on=int(value), present=1))
+        else:
+            messages.append(pulses(now_ms / 1000.0, servo9_raw=1900 if value else 1100))
+    watch, state, live = SensorWatch(output), VehicleState(), []
+    for message in messages:
+        state = watch.watched(updated(state, message, 0.0), message, 0.0)
+        if message.name == "GLOBAL_POSITION_INT":
+            live.append(state.sensor_shown)
+    assert live == [point.sensor_on for point in recorded(output, *messages).points]
