@@ -179,7 +179,7 @@ def photos() -> None:
 
 #: What is compiled side by side, once the kernels of a usual plan are there; the longest first.
 CASES: Final[tuple[Callable[[], None], ...]] = (
-    fleets, methods, searches, cameras, bounds, many, left_out, terrain, photos,
+    methods, cameras, many, fleets, searches, left_out, terrain, photos, bounds,
 )  # fmt: skip
 
 
