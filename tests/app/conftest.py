@@ -143,6 +143,6 @@ async def stored(
         "fake_plan": str(plan_file),
         "members": members,
     }
-    record = (await client.post("/api/v1/plans", json=scenario, params={"wait": 20})).json()
+    record = (await client.post("/api/v1/plans", json=scenario, params={"wait": PATIENCE_S})).json()
     assert record["state"] == "done", record
     return str(record["id"])

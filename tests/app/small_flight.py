@@ -45,7 +45,7 @@ def small_scenario(autopilot: str, kind: str, *, returns: bool = False) -> dict[
 
 async def planned(client: httpx.AsyncClient, scenario: dict[str, Any]) -> str:
     """The id of a plan made of a scenario."""
-    record = (await client.post("/api/v1/plans", json=scenario, params={"wait": 60})).json()
+    record = (await client.post("/api/v1/plans", json=scenario, params={"wait": PATIENCE_S})).json()
     assert record["state"] == "done", record
     return str(record["id"])
 

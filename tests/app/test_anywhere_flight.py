@@ -11,6 +11,7 @@ from shapely.geometry import shape
 
 from tests.app.test_refly_flight import order
 from tests.app.test_vehicles import connected, until
+from tests.patience import PATIENCE_S
 from tests.planner.moved import Place, box, put_at
 from tests.planner.scenarios import feature, small
 
@@ -33,7 +34,7 @@ async def test_whole_journey(client: httpx.AsyncClient, origin: Place, autopilot
         ]
     )
     document["vehicles"][0] |= {"settle_m": 100.0, "autopilot": autopilot}
-    record = (await client.post("/api/v1/plans", json=document, params={"wait": 60})).json()
+    record = (await client.post("/api/v1/plans", json=document, params={"wait": PATIENCE_S})).json()
     assert record["state"] == "done", record
     vehicle = await connected(client, f"sim:?speedup=200&autopilot={autopilot}")
     report = (await client.post(vehicle + "/mission", json={"plan_id": record["id"]})).json()

@@ -17,6 +17,7 @@ import pytest
 from app.routers.bodies import EXAMPLE
 from tests.app.conftest import stored
 from tests.app.test_problems import check_problem
+from tests.patience import PATIENCE_S
 
 
 class Tags(HTMLParser):
@@ -47,7 +48,7 @@ async def test_scenario_and_plan_come_back_as_they_were(
 
 async def test_segments_round_the_targets_are_handed_out(client: httpx.AsyncClient) -> None:
     """All of the example's, or one target's; an unknown one is named, and a search chooses none."""
-    record = (await client.post("/api/v1/plans", json=EXAMPLE, params={"wait": 60})).json()
+    record = (await client.post("/api/v1/plans", json=EXAMPLE, params={"wait": PATIENCE_S})).json()
     link = record["links"]["network.geojson"]
     found = (await client.get(link)).json()["features"]
     regions = {f["id"] for f in EXAMPLE["features"] if f["properties"]["role"] == "roi"}
@@ -61,7 +62,7 @@ async def test_segments_round_the_targets_are_handed_out(client: httpx.AsyncClie
     check_problem(refused, 422)
     assert "nowhere" in refused.text
     search = EXAMPLE | {"task": "search"}
-    record = (await client.post("/api/v1/plans", json=search, params={"wait": 60})).json()
+    record = (await client.post("/api/v1/plans", json=search, params={"wait": PATIENCE_S})).json()
     check_problem(await client.get(record["links"]["network.geojson"]), 409)
 
 
@@ -181,7 +182,7 @@ async def test_map_is_served_or_its_absence_explained(client: httpx.AsyncClient)
 @pytest.mark.parametrize("path", ["/health/live", "/health/ready", "/metrics"])
 async def test_probes(client: httpx.AsyncClient, path: str) -> None:
     """Probes answer; metrics are in the Prometheus format."""
-    await client.post("/api/v1/plans", json={"features": [{}]}, params={"wait": 20})
+    await client.post("/api/v1/plans", json={"features": [{}]}, params={"wait": PATIENCE_S})
     answer = await client.get(path)
     assert answer.status_code == 200
     if path == "/metrics":

@@ -16,6 +16,7 @@ from tests.app.conftest import stored
 from tests.app.test_problems import check_problem
 from tests.app.test_restart import service
 from tests.app.test_vehicles import connected
+from tests.patience import PATIENCE_S
 
 SCENARIOS = "/api/v1/scenarios"
 #: Neither finished nor valid: what somebody has drawn so far.
@@ -88,7 +89,9 @@ async def test_a_plan_is_stale_while_its_scenario_is_another(
     text = {"features": [{}], "name": "x", "fake_plan": str(plan_file), "members": {}}
     answer = await kept(client, text)
     place, scenario_id = answer.headers["location"], answer.json()["id"]
-    posted = await client.post("/api/v1/plans", json=text, params={"wait": 20, "scenario_id": scenario_id})
+    posted = await client.post(
+        "/api/v1/plans", json=text, params={"wait": PATIENCE_S, "scenario_id": scenario_id}
+    )
     plan = posted.headers["location"]
     record = posted.json()
     assert (record["state"], record["scenario_id"], record["stale"]) == ("done", scenario_id, False)
@@ -122,7 +125,7 @@ async def test_a_stale_plan_goes_up_only_with_a_recorded_override(
     """Refused by the service itself; with a reason it goes up, and the log of uploads keeps that."""
     text = {"features": [{}], "name": "x", "fake_plan": str(plan_file), "members": {}}
     answer = await kept(client, text)
-    params = {"wait": 20, "scenario_id": answer.json()["id"]}
+    params = {"wait": PATIENCE_S, "scenario_id": answer.json()["id"]}
     plan_id = (await client.post("/api/v1/plans", json=text, params=params)).json()["id"]
     await save(client, answer.headers["location"], text | {"name": "a zone was moved"}, '"1"')
     vehicle = await connected(client)

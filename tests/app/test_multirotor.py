@@ -11,6 +11,7 @@ import pytest
 from app.routers.bodies import EXAMPLE
 from tests.app.test_problems import check_problem
 from tests.app.test_vehicles import connected, until
+from tests.patience import PATIENCE_S
 
 
 def with_multirotor(autopilot: str) -> dict[str, Any]:
@@ -29,7 +30,7 @@ async def test_it_is_flown_paused_and_resumed(
 ) -> None:
     """A multirotor takes a multirotor's plan: held as meant, paused in its mode, flown to its landing."""
     scenario = with_multirotor(autopilot)
-    record = (await client.post("/api/v1/plans", json=scenario, params={"wait": 60})).json()
+    record = (await client.post("/api/v1/plans", json=scenario, params={"wait": PATIENCE_S})).json()
     vehicle = await connected(client, f"sim:?speedup=100&type=multirotor&airspeed=20&autopilot={autopilot}")
     assert (await client.get(vehicle)).json()["state"]["type"] == "multirotor"
     report = (await client.post(vehicle + "/mission", json={"plan_id": record["id"]})).json()
@@ -56,7 +57,7 @@ async def test_it_is_flown_paused_and_resumed(
 async def test_a_fixed_wing_is_not_given_its_plan(client: httpx.AsyncClient) -> None:
     """The types differ: refused, and the address of a VTOL is refused with the reason."""
     scenario = with_multirotor("ardupilot")
-    record = (await client.post("/api/v1/plans", json=scenario, params={"wait": 60})).json()
+    record = (await client.post("/api/v1/plans", json=scenario, params={"wait": PATIENCE_S})).json()
     vehicle = await connected(client, "sim:")
     answer = await client.post(vehicle + "/mission", json={"plan_id": record["id"]})
     assert 400 <= answer.status_code < 500

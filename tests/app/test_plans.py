@@ -54,7 +54,7 @@ async def state_of(client: httpx.AsyncClient, place: str, *states: str) -> dict[
 
 async def test_post_answers_202_with_location_and_plans(client: httpx.AsyncClient) -> None:
     """A posted scenario is planned and its plan can be read at the place told."""
-    answer = await client.post(PLANS, json=scenario(), params={"wait": 20})
+    answer = await client.post(PLANS, json=scenario(), params={"wait": PATIENCE_S})
     assert answer.status_code == 202
     record = answer.json()
     assert answer.headers["location"] == f"{PLANS}/{record['id']}"
@@ -84,7 +84,7 @@ def events_in(text: str) -> list[tuple[str, dict[str, Any]]]:
 
 async def test_bound_follows_the_plan(client: httpx.AsyncClient) -> None:
     """A plan is done, and can be read, before its bound, which comes as an event and is in the plan then."""
-    answer = await client.post(PLANS, json=scenario(fake_bound="slow"), params={"wait": 20})
+    answer = await client.post(PLANS, json=scenario(fake_bound="slow"), params={"wait": PATIENCE_S})
     place = answer.headers["location"]
     assert (answer.json()["state"], answer.json()["metrics"]) == ("done", {"length_m": 1.0})
     assert (await client.get(place + "/plan.geojson")).json()["metrics"] == {"length_m": 1.0}
@@ -92,7 +92,7 @@ async def test_bound_follows_the_plan(client: httpx.AsyncClient) -> None:
     # Until the watcher is served: it must not come after the bound.
     await asyncio.sleep(1.0)
     # Another plan needs the one worker: the bound ends with what it has.
-    other = (await client.post(PLANS, json=scenario(), params={"wait": 20})).json()
+    other = (await client.post(PLANS, json=scenario(), params={"wait": PATIENCE_S})).json()
     assert other["state"] == "done"
     (first, before), (second, after) = events_in((await watched).text)
     assert (first, second) == ("done", "bound")
@@ -115,7 +115,7 @@ async def test_plan_without_a_bound_stays_good(client: httpx.AsyncClient, fake: 
 async def test_a_bound_that_makes_room_comes_later(client: httpx.AsyncClient, tmp_path: Path) -> None:
     """A search given up for another plan leaves no bound of its own, and is made anew when that is done."""
     begun = tmp_path / "begun"
-    answer = await client.post(PLANS, json=scenario(fake_bound=str(begun)), params={"wait": 20})
+    answer = await client.post(PLANS, json=scenario(fake_bound=str(begun)), params={"wait": PATIENCE_S})
     place = answer.headers["location"]
     watched = asyncio.create_task(client.get(place + "/events"))
     async with asyncio.timeout(PATIENCE_S):
@@ -123,7 +123,7 @@ async def test_a_bound_that_makes_room_comes_later(client: httpx.AsyncClient, tm
             await asyncio.sleep(0.02)
     # Until the watcher is served: it must not come after the bound.
     await asyncio.sleep(1.0)
-    other = (await client.post(PLANS, json=scenario(), params={"wait": 20})).json()
+    other = (await client.post(PLANS, json=scenario(), params={"wait": PATIENCE_S})).json()
     assert other["state"] == "done"
     async with asyncio.timeout(PATIENCE_S):
         (first, before), (second, after) = events_in((await watched).text)
@@ -134,7 +134,7 @@ async def test_a_bound_that_makes_room_comes_later(client: httpx.AsyncClient, tm
 
 async def test_deleted_plan_waits_for_no_bound(client: httpx.AsyncClient) -> None:
     """Who watches a plan deleted before its bound is let go."""
-    place = (await client.post(PLANS, json=scenario(fake_bound="slow"), params={"wait": 20})).headers[
+    place = (await client.post(PLANS, json=scenario(fake_bound="slow"), params={"wait": PATIENCE_S})).headers[
         "location"
     ]
     watched = asyncio.create_task(client.get(place + "/events"))
@@ -142,7 +142,7 @@ async def test_deleted_plan_waits_for_no_bound(client: httpx.AsyncClient) -> Non
     assert (await client.delete(place)).status_code == 204
     async with asyncio.timeout(PATIENCE_S):
         assert [name for name, _ in events_in((await watched).text)] == ["done"]
-    assert (await client.post(PLANS, json=scenario(), params={"wait": 20})).json()["state"] == "done"
+    assert (await client.post(PLANS, json=scenario(), params={"wait": PATIENCE_S})).json()["state"] == "done"
 
 
 async def test_running_plan_reports_progress_and_can_be_cancelled(
@@ -157,7 +157,7 @@ async def test_running_plan_reports_progress_and_can_be_cancelled(
     assert (await client.get(place)).json()["stage"]
     cancelled = await client.delete(place)
     assert (cancelled.status_code, cancelled.json()["state"]) == (200, "cancelled")
-    assert (await client.post(PLANS, json=scenario(), params={"wait": 20})).json()["state"] == "done"
+    assert (await client.post(PLANS, json=scenario(), params={"wait": PATIENCE_S})).json()["state"] == "done"
     assert (await client.get(place)).json()["state"] == "cancelled"
     assert (await client.delete(place)).status_code == 204
     assert (await client.get(place)).status_code == 404
@@ -171,7 +171,7 @@ async def test_queued_plan_can_be_cancelled(client: httpx.AsyncClient) -> None:
     assert (await client.get(waiting)).json()["state"] == "queued"
     assert (await client.delete(waiting)).json()["state"] == "cancelled"
     await client.delete(slow)
-    assert (await client.post(PLANS, json=scenario(), params={"wait": 20})).json()["state"] == "done"
+    assert (await client.post(PLANS, json=scenario(), params={"wait": PATIENCE_S})).json()["state"] == "done"
     assert (await client.get(waiting)).json()["started_at"] is None
 
 
@@ -183,28 +183,30 @@ async def test_failed_plan_tells_why_and_the_next_one_runs(
     client: httpx.AsyncClient, fake: str, kind: str, word: str
 ) -> None:
     """However planning fails, the plan says so, without the inside's words, and the next plan runs."""
-    record = (await client.post(PLANS, json=scenario(fake), params={"wait": 20})).json()
+    record = (await client.post(PLANS, json=scenario(fake), params={"wait": PATIENCE_S})).json()
     assert (record["state"], record["error"]["type"]) == ("failed", kind)
     assert word in record["error"]["detail"]
     assert "secret" not in json.dumps(record)
     missing = await client.get(f"{PLANS}/{record['id']}/plan.geojson")
     assert missing.status_code == 409
-    assert (await client.post(PLANS, json=scenario(), params={"wait": 20})).json()["state"] == "done"
+    assert (await client.post(PLANS, json=scenario(), params={"wait": PATIENCE_S})).json()["state"] == "done"
 
 
 async def test_time_limit_fails_the_plan(settings: Settings) -> None:
     """A plan that takes too long is stopped and says so."""
     limited = settings.model_copy(update={"plan_time_limit_s": 0.5})
     async with serving(create_app(limited, pooled_house)) as client:
-        record = (await client.post(PLANS, json=scenario("slow"), params={"wait": 20})).json()
+        record = (await client.post(PLANS, json=scenario("slow"), params={"wait": PATIENCE_S})).json()
         assert record["error"]["type"] == "time-limit"
-        assert (await client.post(PLANS, json=scenario(), params={"wait": 20})).json()["state"] == "done"
+        assert (await client.post(PLANS, json=scenario(), params={"wait": PATIENCE_S})).json()[
+            "state"
+        ] == "done"
 
 
 async def test_plans_survive_a_restart(settings: Settings) -> None:
     """After a restart done plans are there, and those cut off or waiting are made."""
     async with serving(create_app(settings, pooled_house)) as client:
-        done = (await client.post(PLANS, json=scenario(), params={"wait": 20})).json()
+        done = (await client.post(PLANS, json=scenario(), params={"wait": PATIENCE_S})).json()
         cut = (await client.post(PLANS, json=scenario("slow"))).headers["location"]
         await state_of(client, cut, "running")
         waiting = (await client.post(PLANS, json=scenario())).headers["location"]

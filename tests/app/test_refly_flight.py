@@ -16,6 +16,7 @@ from app.services.flights.as_flown import TRIGGER_M
 from planner.geojson import read_scenario
 from tests.app.test_problems import check_problem
 from tests.app.test_vehicles import connected, until
+from tests.patience import PATIENCE_S
 
 #: The example, with straight flight before each pass: out of a turn its first metres are seen askew.
 DOCUMENT = deepcopy(EXAMPLE)
@@ -44,7 +45,7 @@ async def test_what_a_flight_missed_is_flown_again_before_it_lands(
     client: httpx.AsyncClient, aircraft: str, payload: str | None
 ) -> None:
     """The second pass sees nothing; the gap is told, planned, uploaded in flight by override, flown, seen."""
-    record = (await client.post("/api/v1/plans", json=DOCUMENT, params={"wait": 60})).json()
+    record = (await client.post("/api/v1/plans", json=DOCUMENT, params={"wait": PATIENCE_S})).json()
     plan = (await client.get(record["links"]["plan.geojson"])).json()
     collects = [f["properties"] for f in plan["features"] if f["properties"]["role"] == "collect"]
     vehicle = await connected(client, f"sim:?speedup=50&fault=sensor_skips&{aircraft}")
@@ -72,7 +73,7 @@ async def test_what_a_flight_missed_is_flown_again_before_it_lands(
     assert states.pop(missed["seq"]) == "missed"
     assert set(states.values()) == {"ok"}
     assert coverage["coverage"][missed["roi"]] < 0.5
-    answer = await client.post(flight + "/refly", params={"wait": 60})
+    answer = await client.post(flight + "/refly", params={"wait": PATIENCE_S})
     again = answer.json()
     assert (answer.status_code, again["state"]) == (202, "done"), again
     in_air = {"plan_id": again["id"], "payload": payload}

@@ -11,6 +11,7 @@ import pyproj
 from tests.app.test_problems import check_problem
 from tests.app.test_refly_flight import DOCUMENT, order
 from tests.app.test_vehicles import connected, until
+from tests.patience import PATIENCE_S
 
 GEOD = pyproj.Geod(ellps="WGS84")
 #: The plan is asked for a second behind the pass.
@@ -19,7 +20,7 @@ NEAR_M = 50.0
 
 async def planned(client: httpx.AsyncClient) -> tuple[dict[str, Any], dict[str, Any]]:
     """The record of the example's plan, and the plan."""
-    record = (await client.post("/api/v1/plans", json=deepcopy(DOCUMENT), params={"wait": 60})).json()
+    record = (await client.post("/api/v1/plans", json=deepcopy(DOCUMENT), params={"wait": PATIENCE_S})).json()
     return record, (await client.get(record["links"]["plan.geojson"])).json()
 
 
@@ -40,7 +41,7 @@ async def test_what_the_plan_has_seen_is_left_out_and_the_flight_goes_on_from_th
     new["id"] = "new"
     new["properties"].pop("name", None)
     body = {"at_s": at_s, "remove": [gone], "add": [new], "begins_in_s": 0.0}
-    answer = await client.post(f"/api/v1/plans/{record['id']}/replan", json=body, params={"wait": 60})
+    answer = await client.post(f"/api/v1/plans/{record['id']}/replan", json=body, params={"wait": PATIENCE_S})
     assert (answer.status_code, answer.json().get("state")) == (202, "done"), answer.text
     again = (await client.get(answer.json()["links"]["plan.geojson"])).json()
     assert [v for v in again["violations"] if v["hard"]] == []
@@ -94,7 +95,7 @@ async def test_a_flying_aircraft_takes_up_its_new_plan(client: httpx.AsyncClient
         track,
         lambda b: b["features"][0]["properties"]["times_s"][-1] >= flying["state"]["time_s"],
     )
-    answer = await client.post(f"/api/v1/plans/{record['id']}/replan", json={}, params={"wait": 60})
+    answer = await client.post(f"/api/v1/plans/{record['id']}/replan", json={}, params={"wait": PATIENCE_S})
     assert (answer.status_code, answer.json().get("state")) == (202, "done"), answer.text
     again = (await client.get(answer.json()["links"]["plan.geojson"])).json()
     assert [v for v in again["violations"] if v["hard"]] == []

@@ -28,6 +28,7 @@ from app.services.terrain.rasters import pack, read_raster, stored_terrain, unpa
 from app.settings import Settings
 from tests.app.conftest import fake_house, serving
 from tests.app.rasters import jacksboro, ramp, written
+from tests.patience import PATIENCE_S
 from tests.planner.scenarios import feature, small, square
 
 TERRAIN = "/api/v1/terrain"
@@ -251,7 +252,7 @@ async def test_a_scenario_is_planned_on_real_ground(client: httpx.AsyncClient) -
     sent = await client.post(TERRAIN, content=jacksboro(), params={"vertical_datum": "EGM96"})
     terrain_id = sent.json()["id"]
     document = on_jacksboro(terrain=terrain_id, altitude_m=600.0)
-    answer = await client.post("/api/v1/plans", json=document, params={"wait": 60})
+    answer = await client.post("/api/v1/plans", json=document, params={"wait": PATIENCE_S})
     assert answer.json()["state"] == "done", answer.text
     assert answer.json()["violations"] == []
     assert "terrain-level" in {warning["rule"] for warning in answer.json()["warnings"]}

@@ -79,7 +79,7 @@ async def listening() -> AsyncIterator[tuple[UdpLink, str]]:
 )
 async def test_whole_journey(client: httpx.AsyncClient, aircraft: str, payload: str | None) -> None:
     """Plan, connect, upload, fly, and see as flown what was planned, wherever its sensor shows."""
-    record = (await client.post("/api/v1/plans", json=EXAMPLE, params={"wait": 60})).json()
+    record = (await client.post("/api/v1/plans", json=EXAMPLE, params={"wait": PATIENCE_S})).json()
     assert record["state"] == "done", record
     plan_id = record["id"]
     # Slow enough to be met in flight on a busy machine.

@@ -32,6 +32,7 @@ from tests.flows.px4 import (
     has_module,
     px4,
 )
+from tests.patience import PATIENCE_S
 
 pytestmark = [
     pytest.mark.px4,
@@ -89,7 +90,7 @@ async def test_what_px4_saw_is_known_to_the_service(
     instance = free_instance()
     (tmp_path / "px4").mkdir()
     async with serving(app) as client:
-        record = (await client.post("/api/v1/plans", json=scenario, params={"wait": 60})).json()
+        record = (await client.post("/api/v1/plans", json=scenario, params={"wait": PATIENCE_S})).json()
         assert record["state"] == "done", record
         plan = (await client.get(record["links"]["plan.geojson"])).json()
         home = next(f for f in scenario["features"] if f["properties"]["role"] == "start")

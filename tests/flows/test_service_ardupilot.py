@@ -18,6 +18,7 @@ from tests.app.conftest import fake_house, serving
 from tests.app.test_restart import free_port
 from tests.flows.arduplane import ARMING_TRIES, BINARY, arduplane
 from tests.flows.test_service import until
+from tests.patience import PATIENCE_S
 
 pytestmark = [
     pytest.mark.ardupilot,
@@ -39,7 +40,7 @@ async def test_what_arduplane_saw_is_known_to_the_service(tmp_path: Path) -> Non
     port = free_port()
     (tmp_path / "plane").mkdir()
     async with serving(create_app(settings, fake_house)) as client:
-        record = (await client.post("/api/v1/plans", json=scenario, params={"wait": 60})).json()
+        record = (await client.post("/api/v1/plans", json=scenario, params={"wait": PATIENCE_S})).json()
         assert record["state"] == "done", record
         plan = (await client.get(record["links"]["plan.geojson"])).json()
         start = next(f for f in scenario["features"] if f["properties"]["role"] == "start")

@@ -24,6 +24,7 @@ from tests.flows.arduplane import ARMING_TRIES, BINARY, HOME_ALTITUDE_M, PARAMET
 from tests.flows.test_ardupilot_phases import COPTER, calibrated
 from tests.flows.test_ardupilot_photos import CAMERA
 from tests.flows.test_service import until
+from tests.patience import PATIENCE_S
 from tests.planner.as_flown.test_photos import HEIGHT_M, asked
 
 log = logging.getLogger(__name__)
@@ -70,7 +71,7 @@ async def test_a_survey_is_flown_as_planned(tmp_path: Path, vehicle: Mapping[str
     port = free_port()
     (tmp_path / "vehicle").mkdir()
     async with serving(create_app(settings, fake_house)) as client:
-        record = (await client.post("/api/v1/plans", json=document, params={"wait": 60})).json()
+        record = (await client.post("/api/v1/plans", json=document, params={"wait": PATIENCE_S})).json()
         assert record["state"] == "done", record
         plan = (await client.get(record["links"]["plan.geojson"])).json()
         path = next(f for f in plan["features"] if f["properties"]["role"] == "path")

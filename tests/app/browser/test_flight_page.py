@@ -125,9 +125,9 @@ def test_readiness_is_asked_of_the_vehicle(page: Page, planned: str) -> None:
 def test_what_was_sent_is_told_from_what_is_on_the_map(page: Page, planned: str, service: Service) -> None:
     """With another plan on the map the answer says so, the check is gone, and the start asks once more."""
     record = httpx.post(
-        f"{service.address}/api/v1/plans?wait=60",
+        f"{service.address}/api/v1/plans?wait={PATIENCE_S:.0f}",
         json=CASE_1 | {"name": "elsewhere", "seed": 7},
-        timeout=90.0,
+        timeout=PATIENCE_S,
     ).json()
     assert record["state"] == "done"
     result, checked = page.locator("#upload-result"), page.locator("#preflight-result [data-ready]")
@@ -152,7 +152,9 @@ def test_what_was_sent_is_told_from_what_is_on_the_map(page: Page, planned: str,
 def test_two_plans_are_compared(page: Page, planned: str, service: Service) -> None:
     """Figures of another plan stand beside those of the one on the map, and its path is drawn."""
     other = CASE_1 | {"name": "other", "method": {"routing": "li2018"}}
-    record = httpx.post(f"{service.address}/api/v1/plans?wait=60", json=other, timeout=PATIENCE_S).json()
+    record = httpx.post(
+        f"{service.address}/api/v1/plans?wait={PATIENCE_S:.0f}", json=other, timeout=PATIENCE_S
+    ).json()
     assert record["state"] == "done"
     page.get_by_role("tab", name="Plan").click()
     page.get_by_role("button", name="Refresh").first.click()

@@ -210,7 +210,9 @@ def test_a_lost_link_is_seen_in_every_tab(page: Page, planned: str, service: Ser
 def test_a_cancelled_upload_says_what_is_held(page: Page, planned: str, service: Service) -> None:
     """Stepping back from an override leaves words of what the vehicle still holds."""
     short = CASE_1 | {"name": "short", "vehicles": [CASE_1["vehicles"][0] | {"max_range_m": 20_000.0}]}
-    made = httpx.post(f"{service.address}/api/v1/plans?wait=60", json=short, timeout=PATIENCE_S).json()
+    made = httpx.post(
+        f"{service.address}/api/v1/plans?wait={PATIENCE_S:.0f}", json=short, timeout=PATIENCE_S
+    ).json()
     go_to(page, "Plan")
     page.get_by_role("button", name="Refresh").first.click()
     page.locator("#recent button", has_text="short").first.click()
@@ -229,7 +231,9 @@ def test_plans_of_others_are_listed_unasked(page: Page, planned: str, service: S
     """A plan that another client posts, and one that it deletes, come and go in the list of the page."""
     go_to(page, "Plan")
     other = CASE_1 | {"name": "posted elsewhere"}
-    made = httpx.post(f"{service.address}/api/v1/plans?wait=60", json=other, timeout=PATIENCE_S).json()
+    made = httpx.post(
+        f"{service.address}/api/v1/plans?wait={PATIENCE_S:.0f}", json=other, timeout=PATIENCE_S
+    ).json()
     line = page.locator("#recent button", has_text="posted elsewhere")
     expect(line).to_have_count(1, timeout=LIMIT_MS)
     assert httpx.delete(f"{service.address}/api/v1/plans/{made['id']}", timeout=PATIENCE_S).status_code < 300

@@ -43,7 +43,9 @@ def flying(page: Page, service: Service) -> Iterator[Page]:
 def planned(flying: Page, service: Service) -> str:
     """The id of a plan of that scenario, shown on the page."""
     answer = httpx.post(
-        f"{service.address}/api/v1/plans?wait=60", json=CASE_1 | {"name": "to be held"}, timeout=90.0
+        f"{service.address}/api/v1/plans?wait={PATIENCE_S:.0f}",
+        json=CASE_1 | {"name": "to be held"},
+        timeout=PATIENCE_S,
     )
     record = answer.json()
     assert record["state"] == "done"

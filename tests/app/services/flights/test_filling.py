@@ -21,6 +21,7 @@ from tests.app.services.flights.test_refly import Flown
 from tests.app.services.flights.test_sorties import BEGAN, middle_s, recorded, whole
 from tests.app.test_problems import check_problem
 from tests.mavlink.logs import Row, dataflash, ulog
+from tests.patience import PATIENCE_S
 
 WGS84 = Geod(ellps="WGS84")
 
@@ -30,7 +31,7 @@ async def flown(settings: Settings) -> AsyncIterator[Flown]:
     """A service with the example's plan."""
     app = create_app(settings, fake_house)
     async with serving(app) as client:
-        record = (await client.post("/api/v1/plans", json=EXAMPLE, params={"wait": 60})).json()
+        record = (await client.post("/api/v1/plans", json=EXAMPLE, params={"wait": PATIENCE_S})).json()
         text = (await client.get(f"/api/v1/plans/{record['id']}/plan.geojson")).text
         yield Flown(client, app.state.house, record["id"], plan_of(text))
 

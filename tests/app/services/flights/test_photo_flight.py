@@ -24,6 +24,7 @@ from app.settings import Settings
 from planner.plan import Plan
 from tests.app.conftest import fake_house, serving
 from tests.app.test_problems import check_problem
+from tests.patience import PATIENCE_S
 from tests.planner.as_flown.test_photos import asked, record
 
 LOST = 5
@@ -86,7 +87,7 @@ async def flown(settings: Settings) -> AsyncIterator[Flown]:
     """A service with the plan."""
     app = create_app(settings, fake_house)
     async with serving(app) as client:
-        made = (await client.post("/api/v1/plans", json=asked(), params={"wait": 60})).json()
+        made = (await client.post("/api/v1/plans", json=asked(), params={"wait": PATIENCE_S})).json()
         text = (await client.get(f"/api/v1/plans/{made['id']}/plan.geojson")).text
         yield Flown(client, app.state.house, made["id"], plan_of(text))
 

@@ -22,6 +22,7 @@ from planner.plan import Plan
 from tests.app.conftest import fake_house, serving
 from tests.app.services.flights.test_refly import SCENARIO, Flown, track_of
 from tests.app.test_problems import check_problem
+from tests.patience import PATIENCE_S
 
 FRAME = LocalFrame(-117.75, 33.5)
 SPEED_M_S = 20.0
@@ -127,7 +128,7 @@ async def flown(settings: Settings) -> AsyncIterator[Flown]:
     """A service with the example's plan."""
     app = create_app(settings, fake_house)
     async with serving(app) as client:
-        record = (await client.post("/api/v1/plans", json=EXAMPLE, params={"wait": 60})).json()
+        record = (await client.post("/api/v1/plans", json=EXAMPLE, params={"wait": PATIENCE_S})).json()
         text = (await client.get(f"/api/v1/plans/{record['id']}/plan.geojson")).text
         yield Flown(client, app.state.house, record["id"], plan_of(text))
 

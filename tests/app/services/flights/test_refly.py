@@ -27,6 +27,7 @@ from planner.geojson import read_scenario
 from planner.plan import Plan
 from tests.app.conftest import fake_house, serving
 from tests.app.test_problems import check_problem
+from tests.patience import PATIENCE_S
 
 SCENARIO = read_scenario(EXAMPLE)
 
@@ -74,7 +75,7 @@ async def flown(settings: Settings) -> AsyncIterator[Flown]:
     """A service with the example's plan."""
     app = create_app(settings, fake_house)
     async with serving(app) as client:
-        record = (await client.post("/api/v1/plans", json=EXAMPLE, params={"wait": 60})).json()
+        record = (await client.post("/api/v1/plans", json=EXAMPLE, params={"wait": PATIENCE_S})).json()
         text = (await client.get(f"/api/v1/plans/{record['id']}/plan.geojson")).text
         yield Flown(client, app.state.house, record["id"], plan_of(text))
 
@@ -108,7 +109,7 @@ async def test_a_missed_collect_is_named_and_flown_again(flown: Flown) -> None:
     assert f"{len(unseen)} regions seen to less than 99.5 %".replace("1 regions", "1 region") in page
     assert ">missed<" in page
     assert "<script" not in page
-    answer = await flown.client.post(place + "/refly", params={"wait": 60})
+    answer = await flown.client.post(place + "/refly", params={"wait": PATIENCE_S})
     assert answer.status_code == 202
     record = answer.json()
     assert (record["state"], record["name"]) == ("done", f"{EXAMPLE['name']}-refly"), record

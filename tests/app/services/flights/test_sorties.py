@@ -20,6 +20,7 @@ from tests.app.conftest import fake_house, serving
 from tests.app.services.flights.test_phases import recorded as along
 from tests.app.services.flights.test_refly import Flown, track_of
 from tests.app.test_problems import check_problem
+from tests.patience import PATIENCE_S
 from tests.planner.scenarios import small
 
 BEGAN = datetime(2026, 5, 1, 12, 0, tzinfo=UTC)
@@ -30,7 +31,7 @@ async def flown(settings: Settings) -> AsyncIterator[Flown]:
     """A service with the example's plan."""
     app = create_app(settings, fake_house)
     async with serving(app) as client:
-        record = (await client.post("/api/v1/plans", json=EXAMPLE, params={"wait": 60})).json()
+        record = (await client.post("/api/v1/plans", json=EXAMPLE, params={"wait": PATIENCE_S})).json()
         text = (await client.get(f"/api/v1/plans/{record['id']}/plan.geojson")).text
         yield Flown(client, app.state.house, record["id"], plan_of(text))
 
@@ -83,7 +84,7 @@ async def test_a_gap_is_named_with_its_time_neither_seen_nor_missed(flown: Flown
     assert "Not recorded" in page
     assert gap["start_at"][:19].replace("T", " ") in page
     # What nobody knows is planned again.
-    again = await flown.client.post(place + "/refly", params={"wait": 60})
+    again = await flown.client.post(place + "/refly", params={"wait": PATIENCE_S})
     assert again.status_code == 202
 
 
@@ -138,7 +139,7 @@ async def test_a_pass_lost_between_two_parts_is_unknown_until_it_is_flown(flown:
     (gap,) = told["gaps"]
     assert (gap["flight"], gap["duration_s"]) == (ids[0], pytest.approx(end_s - start_s, abs=1.0))
     assert all(told["unknown_coverage"][name] > 0.1 for name in first.regions)
-    again = await flown.client.post(f"/api/v1/plans/{flown.plan_id}/refly", params={"wait": 60})
+    again = await flown.client.post(f"/api/v1/plans/{flown.plan_id}/refly", params={"wait": PATIENCE_S})
     assert again.json()["state"] == "done"
     await recorded(flown, [s for s in samples if start_s - 10.0 < s.time_s < end_s + 10.0])
     told = (await flown.client.get(f"/api/v1/plans/{flown.plan_id}/coverage")).json()
@@ -188,7 +189,7 @@ async def test_a_later_sortie_is_held_against_its_own_phases(settings: Settings)
     document["vehicles"][0] |= {"max_items": 25, "cruise_power_w": 200.0}
     app = create_app(settings, fake_house)
     async with serving(app) as client:
-        record = (await client.post("/api/v1/plans", json=document, params={"wait": 60})).json()
+        record = (await client.post("/api/v1/plans", json=document, params={"wait": PATIENCE_S})).json()
         assert record["state"] == "done", record
         plan = plan_of((await client.get(f"/api/v1/plans/{record['id']}/plan.geojson")).text)
         assert [path.sortie for path in plan.paths] == [1, 2]
