@@ -13,9 +13,18 @@ const WORDS: Record<Upload["outcome"], string> = {
   not_attempted: "Not attempted",
 };
 
+/** One verdict: an upload is done only when what is held is what was meant. */
+function verdict(result: Upload): { words: string; tone: "good" | "warning" | "error" } {
+  if (result.outcome !== "accepted") return { words: `${WORDS[result.outcome]}.`, tone: result.outcome === "refused" || result.outcome === "different" ? "error" : "warning" };
+  if (result.verified) return { words: `${WORDS.accepted}; read back equal.`, tone: "good" };
+  const differs = Object.values(result.parts).some((part) => (part.differences?.length ?? 0) > 0);
+  if (differs) return { words: "NOT DONE: the vehicle took it, but holds something else than was meant. Upload it again; do not fly it meanwhile.", tone: "error" };
+  return { words: `${WORDS.accepted}, but it could not be read back: what it holds is not known.`, tone: "warning" };
+}
+
 function partLine(name: string, part: Upload["parts"][string]): HTMLElement {
   const differing = part.differences?.length ?? 0;
-  const compared = part.verified ? "read back equal" : part.differences === null ? "not read back" : `${differing} differences`;
+  const compared = part.verified ? "read back equal" : part.differences === null ? "not read back" : `${differing} ${differing === 1 ? "difference" : "differences"}`;
   const lines = (part.differences ?? []).slice(0, DIFFERENCES_SHOWN).map((difference) => h("li", {}, difference.message));
   return h(
     "li",
@@ -27,11 +36,12 @@ function partLine(name: string, part: Upload["parts"][string]): HTMLElement {
 
 /** `plan` is the one on the map, which may be another than was sent. */
 export function uploadAnswer(result: Upload, plan: string | undefined): HTMLElement {
+  const said = verdict(result);
   return h(
     "div",
     { "data-outcome": result.outcome, "data-verified": String(result.verified) },
     plan !== undefined && plan !== result.plan_id ? h("p", { class: "warning" }, "Another plan than the one on the map was sent:") : null,
-    h("p", { class: result.outcome === "accepted" && result.verified ? "good" : "warning" }, `${WORDS[result.outcome]}${result.verified ? "; read back equal" : ""}.`),
+    h("p", { class: said.tone }, said.words),
     h("ul", { class: "findings" }, ...Object.entries(result.parts).map(([name, part]) => partLine(name, part))),
     result.findings.length > 0 ? h("ul", { class: "findings" }, ...result.findings.map((finding) => h("li", { class: finding.severity ?? "warning" }, findingText(finding)))) : null,
     ...result.notes.map((note) => h("p", { class: "quiet" }, note)),
