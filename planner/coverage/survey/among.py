@@ -113,7 +113,7 @@ def _best(
             continue
         pieces = tuple(trial.cut(part.piece(outline)) for outline in outlines)
         try:
-            cost_m = trial.cost_m(pieces)
+            cost_m = trial.cost_m(pieces, math.inf if best is None else best[0])
         except InfeasibleError:
             continue
         if math.isfinite(cost_m) and (best is None or cost_m < best[0]):
