@@ -77,7 +77,7 @@ class Pieces:
     def cost_m(self, pieces: tuple[MergedRegion, ...], most_m: float = math.inf) -> float:
         """What seeing all of some pieces costs, about; inf where some cannot be seen.
 
-        Where that is ``most_m`` at least, inf may be said, too: by the pieces alone, without ways between them.
+        Where that is ``most_m`` at least, inf may be said, too: by the pieces alone, without ways between.
         """
         alone_m = 0.0
         # The smallest are those that no lanes fit into.

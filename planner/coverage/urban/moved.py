@@ -126,7 +126,7 @@ class Moves:
                     cost_m = math.dist(around[0], one) + math.dist(one, other) + math.dist(other, around[1])
                     if best is not None and cost_m >= best[0]:
                         continue
-                    laid = self._pass(Sweep(tuple(one), tuple(other)))
+                    laid = self._pass(Sweep((one[0], one[1]), (other[0], other[1])))
                     if shapely.difference(alone, laid.footprint).area < LEAST_M2 and self._flyable(laid):
                         best = (cost_m, laid)
         return None if best is None else (best[1],)
@@ -231,9 +231,8 @@ class Moves:
             first, last = min(0.0, sign), max(0.0, sign)
             frames.append((along.min() - first, along.max() - last, corners[:, 1].min(), corners[:, 1].max()))
         (back, ahead_m, low, high), (back2, ahead2, low2, high2) = frames
-        return (
-            float(max(back, back2)), float(min(ahead_m, ahead2)), float(max(low, low2)), float(min(high, high2))
-        )  # fmt: skip
+        along_m = (float(max(back, back2)), float(min(ahead_m, ahead2)))
+        return (*along_m, float(max(low, low2)), float(min(high, high2)))
 
     def _fits(self, places: Floats, angle_rad: float) -> NDArray[np.bool_]:
         """Whether a full turn fits beside places, to one side or the other."""
@@ -245,4 +244,3 @@ class Moves:
 def _largest(shape: BaseGeometry) -> BaseGeometry:
     parts = shapely.get_parts(shape)
     return max(parts, key=lambda part: float(part.area)) if len(parts) else shape
-

@@ -39,7 +39,7 @@ def among_blocks(seed: int, min_interval_s: float, airspeed_m_s: float = 8.0, **
             for k, (outline, height_m) in enumerate(buildings(seed))
         ),
     ]
-    camera = {"name": "eye", "type": "camera", "model": "Sony a6000 20 mm", "forward_overlap": 0.7}
+    camera = {"name": "eye", "type": "camera", "model": "Sony a6000 20 mm", "forward_overlap": 0.6}
     vehicle = {"name": "uav", "type": "multirotor", "airspeed_m_s": airspeed_m_s}
     return document | {
         "altitude_m": 40.0, "altitude_reference": "home", "clearance_m": 3.0, "vehicles": [vehicle],
