@@ -232,10 +232,11 @@ def _unseen(asked: Seeing, region: Region, left: BaseGeometry, *, least: bool = 
     rest = "what can be is seen" if least else f"all but {_percent(share)} is seen"
     fixes += [f"cut {which}{ring} out of it", f"set required: false, and {rest}"]
     middle = left.representative_point()
+    most = "at least " if least else ""
     return InfeasibleError(
         "hard-zone",
         region.name,
-        f"{'at least ' if least else ''}{_percent(share)} of it ({left.area:.0f} m²) is seen by no pass that keeps out of hard "
+        f"{most}{_percent(share)} of it ({left.area:.0f} m²) is seen by no pass that keeps out of hard "
         f"{'zone' if len(names) == 1 else 'zones'} {which} with {airspace.clearance_m:g} m of clearance",
         ", or ".join(fixes),
         (middle.x, middle.y),
