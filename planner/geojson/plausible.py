@@ -42,7 +42,9 @@ def check_plausible(scenario: Scenario, findings: Findings) -> None:
 def _bolted(scenario: Scenario, findings: Findings) -> None:
     """Cameras without a gimbal under rotors, which lean by what nobody has stated."""
     for sensor in scenario.sensors:
-        if not isinstance(sensor, CameraSensor) or hangs_level(sensor.model) or sensor.steady_overlap:
+        if not isinstance(sensor, CameraSensor) or hangs_level(sensor.model):
+            continue
+        if sensor.stabilised or sensor.steady_overlap:
             continue
         seen = [region for region in scenario.regions if scenario.sensor_for(region) is sensor]
         rotors = [each.name for each in scenario.aircraft if each.hovers and each.carries(sensor.name)]
@@ -60,8 +62,8 @@ def _bolted(scenario: Scenario, findings: Findings) -> None:
             f"much as that leans into {into}, from {high_m:.0f} m by {high_m * math.tan(LEAN_RAD):.0f} m for "
             f"{math.degrees(LEAN_RAD):g}°, and less sharply at the far edge; it is planned as if it looked "
             "straight down, so that less may be seen as sharply as planned",
-            "Hang it in a gimbal (pointing_margin_deg: 0, or a model that comes in one), or state how far it "
-            "leans as pointing_margin_deg.",
+            "Hang it in a gimbal (stabilised: true, or a model that comes in one), or state how far it leans as "
+            "pointing_margin_deg.",
         )
 
 

@@ -116,7 +116,8 @@ def test_a_camera_bolted_to_rotors_is_told() -> None:
         (rotors, figures, True),
         (rotors, {"model": "Sony RX1R II"}, True),
         (rotors, {"model": "DJI Zenmuse P1 35 mm"}, False),
-        (rotors, figures | {"pointing_margin_deg": 0.0}, False),
+        (rotors, figures | {"pointing_margin_deg": 2.0}, False),
+        (rotors, figures | {"stabilised": True}, False),
         (wing, figures, False),
     ):
         sensor = {"name": "eye", "type": "camera", "min_interval_s": 0.1, "trigger": "distance", **camera}
