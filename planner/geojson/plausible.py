@@ -62,8 +62,8 @@ def _bolted(scenario: Scenario, findings: Findings) -> None:
             f"much as that leans into {into}, from {high_m:.0f} m by {high_m * math.tan(LEAN_RAD):.0f} m for "
             f"{math.degrees(LEAN_RAD):g}°, and less sharply at the far edge; it is planned as if it looked "
             "straight down, so that less may be seen as sharply as planned",
-            "Hang it in a gimbal (stabilised: true, or a model that comes in one), or state how far it leans as "
-            "pointing_margin_deg.",
+            "Hang it in a gimbal (stabilised: true, or a model that comes in one), or state how far it leans "
+            "as pointing_margin_deg.",
         )
 
 
