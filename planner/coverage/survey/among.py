@@ -137,6 +137,5 @@ def _areal(shape: BaseGeometry) -> BaseGeometry:
     """A shape, or what it covers where its outline crosses itself: cells are joined at slivers."""
     if shape.is_valid:
         return shape
-    parts = shapely.get_parts(shapely.make_valid(shape))
-    covered: BaseGeometry = shapely.union_all([part for part in parts if isinstance(part, Polygon)])
+    covered: BaseGeometry = shapely.make_valid(shape, method="structure", keep_collapsed=False)
     return covered
