@@ -199,7 +199,7 @@ def refuse_out_of_sight(asked: Seeing) -> None:
         reach_m = (height_m + sensor.relief_m) * math.hypot(
             math.tan(ahead_rad), math.tan(optics.half_width_rad) / math.cos(ahead_rad)
         )
-        beside = region.area.convex_hull.buffer(reach_m)
+        beside: BaseGeometry = region.area.convex_hull.buffer(reach_m)
         if asked.airspace.area is not None:
             beside = shapely.intersection(beside, asked.airspace.area, grid_size=1e-6)
         room = open_ground(beside, asked.airspace, level, asked.airspace.clearance_m)
