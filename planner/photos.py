@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from planner.plan import LonLatAlt, Metrics, Photos, PlanCamera
+from planner.profile.compose import Composed
 from planner.profile.heights import Heights
 from planner.route import CollectPass
 from planner.sensors.camera import CameraSensor
@@ -17,6 +18,8 @@ from planner.vehicle.model import FlightModel
 
 #: Of a length so little more than whole spacings the last is not divided.
 ROUNDING_M = 1e-6
+#: By less than this part photos may come sooner than a camera is said to take them.
+INTERVAL_SPARE = 0.005
 
 
 def plan_cameras(suite: Suite) -> tuple[PlanCamera, ...]:
@@ -76,6 +79,39 @@ def photos_of(
         interval_s = interval_m / float(model.ground_speed_m_s(collect.angle_rad))
     listed = tuple((float(lon), float(lat), float(alt)) for lon, lat, alt in places)
     return Photos(model.name, seq, collect.sensor, listed, interval_m, interval_s)
+
+
+@dataclass(frozen=True, slots=True)
+class TooSoon:
+    """A pass on which photos come sooner than its camera takes them.
+
+    Parameters
+    ----------
+    number
+        Of the pass, from 0.
+    between_s, least_s
+        From one photo to the next, and what the camera takes.
+    """
+
+    number: int
+    between_s: float
+    least_s: float
+
+
+def too_soon(suite: Suite, composed: Composed, passes: Sequence[CollectPass]) -> tuple[TooSoon, ...]:
+    """The passes of a flight on which photos come too soon, as they are flown: from and to the corners."""
+    found = []
+    for number, (collect, spans_m) in enumerate(zip(passes, composed.passes_m, strict=True)):
+        sensor = suite.named(collect.sensor)
+        if not isinstance(sensor, CameraSensor) or sensor.trigger == "video":
+            continue
+        if collect.photo_spacing_m is None:
+            continue
+        (_, begun_s), (_, ended_s) = (composed.flight.along(at_m) for at_m in spans_m)
+        between_s = (ended_s - begun_s) / intervals(collect)
+        if between_s < sensor.min_interval_s * (1.0 - INTERVAL_SPARE):
+            found.append(TooSoon(number, between_s, sensor.min_interval_s))
+    return tuple(found)
 
 
 def with_photos(metrics: Metrics, photos: Sequence[Photos], suite: Suite) -> Metrics:

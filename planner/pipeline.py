@@ -13,8 +13,10 @@ from shapely.geometry import LineString, MultiLineString
 from planner.bounds.allowance import Allowance
 from planner.check import judge
 from planner.check.edge import near_edge
-from planner.errors import Finding, InfeasibleError
+from planner.errors import Finding, InfeasibleError, OutOfBudgetError
 from planner.metrics import measure
+from planner.pace import LEAST_PART, ROUNDS, slower_for_photos
+from planner.photos import too_soon
 from planner.plan import LeftOut, Plan, Violation
 from planner.profile.items import items_of, too_many
 from planner.progress import Clock, Progress, Stop, Until, never, silent
@@ -88,6 +90,7 @@ def make_plan(
     if scenario.task in ("collect", "search") and scenario.is_fleet:
         return _fleet_plan(scenario, controls, watch)
     answer = _kept(scenario, controls) or task_of(scenario.task).answer(scenario, controls)
+    scenario, answer = _paced(scenario, answer, controls)
     setting = answer.setting
     aircraft = setting.model.aircraft
     count = items_of(answer.composed.flight, len(answer.passes), aircraft)
@@ -104,6 +107,23 @@ def make_plan(
     with watch.stage("publish"):
         draft = _draft(scenario, chart, answer)
     return _judged(scenario, draft, chart, answer.dropped, answer.left_out, controls, watch)
+
+
+def _paced(scenario: Scenario, answer: Answer, controls: Controls) -> tuple[Scenario, Answer]:
+    """Flown so slowly that no photo comes too soon; as it was, where that is not to be had."""
+    tried, found = scenario, answer
+    for _ in range(ROUNDS):
+        slower = slower_for_photos(tried, found)
+        if slower is None or slower.aircraft[0].airspeed_m_s < LEAST_PART * scenario.aircraft[0].airspeed_m_s:
+            break
+        try:
+            found = _kept(slower, controls) or task_of(slower.task).answer(slower, controls)
+        except (InfeasibleError, OutOfBudgetError):
+            break
+        tried = slower
+        if not too_soon(found.setting.suite, found.composed, found.passes):
+            return tried, found
+    return scenario, answer
 
 
 def _kept(scenario: Scenario, controls: Controls) -> Answer | None:

@@ -15,7 +15,7 @@ from planner.geojson import read_scenario
 from planner.scenario import Scenario
 from planner.tasks.search import refuse_unsearchable
 from planner.tasks.setting import Setting, seeing
-from planner.tasks.urban import cut_by_obstacles, lanes_cut, refuse_filled
+from planner.tasks.urban import cut_by_obstacles, lanes_cut, refuse_filled, refuse_out_of_sight
 from planner.vehicle.aircraft import Aircraft
 from planner.vehicle.model import FlightModel
 
@@ -95,6 +95,7 @@ def unseeable(scenario: Scenario) -> tuple[Finding, ...]:
                 and (cut_by_obstacles(asked) or lanes_cut(asked))
             ):
                 refuse_filled(asked)
+                refuse_out_of_sight(asked)
             else:
                 check_visible(asked, asked.surroundings())
         except InfeasibleError as error:

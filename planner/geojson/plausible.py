@@ -10,9 +10,12 @@ from shapely.geometry import Point
 from planner.geojson.fields import Findings
 from planner.scenario import Scenario
 from planner.sensors.camera import CameraSensor
+from planner.sensors.cameras import hangs_level
 
 #: Photos are hardly meant from higher.
 HIGH_M = 1_500.0
+#: A lean of what hovers that its effect is told for.
+LEAN_RAD = math.radians(5.0)
 #: From this part of the airspeed on a wind decides the flight.
 NEAR_AIRSPEED = 0.6
 #: Flight from the start to the nearest region, and of the whole, that is more than most are meant to be.
@@ -33,6 +36,35 @@ def check_plausible(scenario: Scenario, findings: Findings) -> None:
         _times(scenario, math.sqrt(airspeed_m_s**2 - wind_m_s**2), findings)
     _swapped(scenario, findings)
     _high(scenario, findings)
+    _bolted(scenario, findings)
+
+
+def _bolted(scenario: Scenario, findings: Findings) -> None:
+    """Cameras without a gimbal under rotors, which lean by what nobody has stated."""
+    for sensor in scenario.sensors:
+        if not isinstance(sensor, CameraSensor) or hangs_level(sensor.model):
+            continue
+        if sensor.stabilised or sensor.steady_overlap:
+            continue
+        seen = [region for region in scenario.regions if scenario.sensor_for(region) is sensor]
+        rotors = [each.name for each in scenario.aircraft if each.hovers and each.carries(sensor.name)]
+        if not seen or not rotors:
+            continue
+        high_m = max(
+            scenario.level.of(each).height_m if each.over_ground_m is None else each.over_ground_m
+            for each in seen
+        )
+        into = "its way" if scenario.wind.speed_m_s == 0.0 else "its way and the wind"
+        findings.warning(
+            f"sensor {sensor.name}",
+            "leans",
+            f"has no gimbal that is known of: bolted to {rotors[0]} it looks aside of the ground below by as "
+            f"much as that leans into {into}, from {high_m:.0f} m by {high_m * math.tan(LEAN_RAD):.0f} m for "
+            f"{math.degrees(LEAN_RAD):g}°, and less sharply at the far edge; it is planned as if it looked "
+            "straight down, so that less may be seen as sharply as planned",
+            "Hang it in a gimbal (stabilised: true, or a model that comes in one), or state how far it leans "
+            "as pointing_margin_deg.",
+        )
 
 
 def _high(scenario: Scenario, findings: Findings) -> None:

@@ -59,7 +59,8 @@ def _least_left(asked: Seeing, search: Search, enough: Until, *, needed: bool) -
     model = asked.model
     room_m = asked.airspace.clearance_m + TRANSIT_MARGIN_M
     turns_m = [model.turn_radius_m + model.settle_m, *(part * model.turn_radius_m for part in TURN_PARTS)]
-    for turn_m in turns_m:
+    # Without a straight flight before lanes the first two are one.
+    for turn_m in dict.fromkeys(turns_m):
         tour = partial(_in_cells, asked, search, room_m + turn_m)
         first = needed and best is None
         found = tour(search.stop) if first else in_time(tour, search.stop, enough)

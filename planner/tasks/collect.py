@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -15,6 +16,7 @@ from planner.coverage.urban.methods import SEQUENCES
 from planner.coverage.visible import Seeing
 from planner.errors import Finding, InfeasibleError, OutOfBudgetError
 from planner.metrics import used
+from planner.photos import too_soon
 from planner.plan import LeftOut, Plan
 from planner.profile.compose import Composed
 from planner.profile.ends import with_run
@@ -29,6 +31,7 @@ from planner.tasks.cells import by_cells, left_m2
 from planner.tasks.hidden import Sight, hidden_findings, see_hidden
 from planner.tasks.limits import Dropped, short_of_energy, within_limits
 from planner.tasks.methods import chosen_methods
+from planner.tasks.moving import in_time_for_photos, others
 from planner.tasks.prizes import Offer
 from planner.tasks.setting import Setting, seeing
 from planner.tasks.task import NOT_SEEN, Answer, Controls, Task
@@ -47,6 +50,8 @@ from planner.vehicle.limits import Use
 Passes = tuple[CollectPass, ...]
 #: Passes, and what is left out.
 Found = tuple[Passes, tuple[Finding, ...]]
+#: A whole flight, its legs, and what is to be said of them.
+_Flown = tuple[Composed, tuple[Leg, ...], tuple[str, ...]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,19 +92,24 @@ def collect(scenario: Scenario, controls: Controls) -> Answer:
                     raise _out_of_time(error, scenario) from error
                 raise
         told = part_of(progress, 0.5, 0.9)
-        try:
+        now = replace(asked, regions=regions)
+
+        def through(passes: Passes) -> _Flown:
             with controls.stage("transit"):
-                composed, legs, notes = transits.through(found[0], told, controls.stop)
+                return transits.through(passes, told, controls.stop)
+
+        try:
+            flown = through(found[0])
         except InfeasibleError:
             if methods["coverage"] in SEQUENCES or methods["routing"] != "joint":
                 raise
-            with controls.stage("routing"):
-                roomier = _roomier(replace(asked, regions=regions), setting, scenario.seed, controls)
-            if roomier is None:
+            rejoined = _rejoined(now, setting, found, scenario.seed, controls, through)
+            if rejoined is None:
                 raise
-            found = roomier
-            with controls.stage("transit"):
-                composed, legs, notes = transits.through(found[0], told, controls.stop)
+            found, flown = rejoined
+            refuse_unseen(now, *found, sight)
+        found, flown = _in_time(now, setting, found, flown, controls, through)
+        composed, legs, notes = flown
         return _Flight(*found, composed, legs, notes, used(composed.flight, setting.model, setting.level))
 
     def in_haste(names: frozenset[str]) -> _Flight:
@@ -229,20 +239,56 @@ def _among_obstacles(
     return found
 
 
-def _roomier(asked: Seeing, setting: Setting, seed: int, controls: Controls) -> Found | None:
-    """Sweeps that end with room for a turn before obstacles; None where they leave ground, or none cut in.
+def _rejoined(
+    asked: Seeing,
+    setting: Setting,
+    found: Found,
+    seed: int,
+    controls: Controls,
+    through: Callable[[Passes], _Flown],
+) -> tuple[Found, _Flown] | None:
+    """Sweeps that transits join instead of those found, which they do not: those that see most.
 
-    Sweeps are laid without a look at the turns between them: as near to obstacles as lines may be.
+    None where there are none.
     """
-    if not cut_by_obstacles(asked):
-        return None
-    room_m = asked.airspace.clearance_m + setting.model.turn_radius_m
-    wide = replace(asked, airspace=replace(asked.airspace, clearance_m=room_m))
+    with controls.stage("routing"):
+        known = sorted(others(asked, setting, found[0], seed, controls), key=lambda each: each[:2])
+    for *_, passes in known:
+        try:
+            flown = through(passes)
+        except InfeasibleError:
+            continue
+        return _refound(asked, found, passes), flown
+    return None
+
+
+def _in_time(
+    asked: Seeing,
+    setting: Setting,
+    found: Found,
+    flown: _Flown,
+    controls: Controls,
+    through: Callable[[Passes], _Flown],
+) -> tuple[Found, _Flown]:
+    """With passes moved on which photos came too soon, where fewer do then."""
+    moved = in_time_for_photos(asked, setting, found[0], flown[0], controls)
+    if moved is None:
+        return found, flown
     try:
-        passes, _ = swept(wide, setting, "auto", seed, controls.progress, controls.stop)
+        again = through(moved)
     except InfeasibleError:
-        return None
-    return None if left_of(asked, passes) else (passes, ())
+        return found, flown
+    before, after = (
+        too_soon(setting.suite, composed, passes)
+        for composed, passes in ((flown[0], found[0]), (again[0], moved))
+    )
+    return (_refound(asked, found, moved), again) if len(after) < len(before) else (found, flown)
+
+
+def _refound(asked: Seeing, found: Found, passes: Passes) -> Found:
+    """Other passes, with what is to be said of them, and what was said of regions not seen at all."""
+    told = tuple(each for each in found[1] if each.rule.startswith(NOT_SEEN))
+    return passes, told + left_of(asked, passes)
 
 
 def _joint(

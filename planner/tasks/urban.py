@@ -173,12 +173,45 @@ def refuse_unseen(
         if sight is not None and region.over_ground_m is None and region.name not in sight.unseen(passes):
             # Laid for the highest ground, photos see more of the real one.
             continue
-        raise _unseen(asked, region, passes)
+        raise _unseen(asked, region, unseen_of(region, asked.airspace, asked.level.of(region), passes))
 
 
-def _unseen(asked: Seeing, region: Region, passes: tuple[CollectPass, ...]) -> InfeasibleError:
+def refuse_out_of_sight(asked: Seeing) -> None:
+    """Refuse a required region of which ground lies farther from where one may fly than any photo reaches.
+
+    What sweeps leave besides, planning finds.
+
+    Raises
+    ------
+    InfeasibleError
+        As ``refuse_unseen``, of what is unseen at least.
+    """
+    for region in asked.regions:
+        camera = asked.suite.of(region)
+        if not region.required or not isinstance(camera, CameraSensor):
+            continue
+        level = asked.level.of(region)
+        sensor, height_m = asked.suite.over(region.sensor, region.area, asked.airspace, level)
+        assert isinstance(sensor, CameraSensor)
+        optics = sensor.optics
+        ahead_rad = min(optics.half_height_rad + abs(sensor.tilt_rad), math.radians(89.0))
+        # Turned by crab or not: no corner of a photo is farther.
+        reach_m = (height_m + sensor.relief_m) * math.hypot(
+            math.tan(ahead_rad), math.tan(optics.half_width_rad) / math.cos(ahead_rad)
+        )
+        beside: BaseGeometry = region.area.convex_hull.buffer(reach_m)
+        if asked.airspace.area is not None:
+            beside = shapely.intersection(beside, asked.airspace.area, grid_size=1e-6)
+        room = open_ground(beside, asked.airspace, level, asked.airspace.clearance_m)
+        ground = bare_ground(region.area, asked.airspace, level)
+        left: BaseGeometry = shapely.difference(ground, room.buffer(reach_m), grid_size=1e-6)
+        if left.area > max(LEFT_PART * region.area.area, LEAST_M2):
+            raise _unseen(asked, region, left, least=True)
+
+
+def _unseen(asked: Seeing, region: Region, left: BaseGeometry, *, least: bool = False) -> InfeasibleError:
+    """What is said of ground that is left, which is not all of it where it is the ``least``."""
     airspace, level = asked.airspace, asked.level.of(region)
-    left = unseen_of(region, airspace, level, passes)
     solid = {
         banded.shape.name: banded.shape.polygon()
         for banded in banded_shapes(airspace, level.amsl_m - level.height_m)
@@ -196,12 +229,14 @@ def _unseen(asked: Seeing, region: Region, passes: tuple[CollectPass, ...]) -> I
     fixes = [] if higher is None else [higher]
     those = "it" if len(names) == 1 else "them"
     ring = f" with {math.ceil(around_m)} m round {those}" if around_m > LEAST_AROUND_M else ""
-    fixes += [f"cut {which}{ring} out of it", f"set required: false, and all but {_percent(share)} is seen"]
+    rest = "what can be is seen" if least else f"all but {_percent(share)} is seen"
+    fixes += [f"cut {which}{ring} out of it", f"set required: false, and {rest}"]
     middle = left.representative_point()
+    most = "at least " if least else ""
     return InfeasibleError(
         "hard-zone",
         region.name,
-        f"{_percent(share)} of it ({left.area:.0f} m²) is seen by no pass that keeps out of hard "
+        f"{most}{_percent(share)} of it ({left.area:.0f} m²) is seen by no pass that keeps out of hard "
         f"{'zone' if len(names) == 1 else 'zones'} {which} with {airspace.clearance_m:g} m of clearance",
         ", or ".join(fixes),
         (middle.x, middle.y),

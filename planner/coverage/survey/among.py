@@ -113,7 +113,7 @@ def _best(
             continue
         pieces = tuple(trial.cut(part.piece(outline)) for outline in outlines)
         try:
-            cost_m = trial.cost_m(pieces)
+            cost_m = trial.cost_m(pieces, math.inf if best is None else best[0])
         except InfeasibleError:
             continue
         if math.isfinite(cost_m) and (best is None or cost_m < best[0]):
@@ -124,11 +124,18 @@ def _best(
 def _cells(ground: BaseGeometry, angle_rad: float) -> Iterator[Polygon]:
     """Cells that reach a little into each other, so that no rounding leaves a gap between what they see."""
     for cell in cells(ground, angle_rad):
-        wide = shapely.intersection(
-            cell.outline.buffer(OVERLAP_M, join_style="mitre"), ground, grid_size=1e-6
-        )
+        grown = _areal(cell.outline.buffer(OVERLAP_M, join_style="mitre"))
+        wide = shapely.intersection(grown, ground, grid_size=1e-6)
         yield from (
             piece
             for piece in shapely.get_parts(wide)
             if isinstance(piece, Polygon) and piece.area > LEAST_CELL_M2
         )
+
+
+def _areal(shape: BaseGeometry) -> BaseGeometry:
+    """A shape, or what it covers where its outline crosses itself: cells are joined at slivers."""
+    if shape.is_valid:
+        return shape
+    covered: BaseGeometry = shapely.make_valid(shape, method="structure", keep_collapsed=False)
+    return covered

@@ -74,11 +74,22 @@ class Pieces:
             return False
         return True
 
-    def cost_m(self, pieces: tuple[MergedRegion, ...]) -> float:
-        """What seeing all of some pieces costs, about."""
-        options = [self.options(piece) for piece in pieces]
-        found = [_cheapest(each) for each in options if each is not None]
-        return least_tour_m(found, self.around) if len(found) == len(options) else math.inf
+    def cost_m(self, pieces: tuple[MergedRegion, ...], most_m: float = math.inf) -> float:
+        """What seeing all of some pieces costs, about; inf where some cannot be seen.
+
+        Where that is ``most_m`` at least, inf may be said, too: by the pieces alone, without ways between.
+        """
+        alone_m = 0.0
+        # The smallest are those that no lanes fit into.
+        for piece in sorted(pieces, key=lambda each: each.area.area):
+            options = self.options(piece)
+            if options is None:
+                return math.inf
+            alone_m += float(options.inner_m.min())
+            if alone_m >= most_m:
+                return math.inf
+        found = [_cheapest(each) for each in map(self.options, pieces) if each is not None]
+        return least_tour_m(found, self.around)
 
 
 def wanted(piece: MergedRegion) -> BaseGeometry:

@@ -37,7 +37,7 @@ def mended(layout: Layout, urban: UrbanArea, ground: BaseGeometry, edges: Floats
     lost = np.concatenate(missed)
     if len(lost) == 0:
         return Layout(tuple(found), layout.cost_m)
-    left = shapely.intersection(shapely.union_all(lost), ground)
+    left = shapely.intersection(shapely.disjoint_subset_union_all(lost), ground)
     seen = np.concatenate([each.strips(across_m, along_m) for each in found])
     for tries in range(MOST_MENDINGS):
         parts = _left(left, seen)
@@ -63,5 +63,5 @@ def _left(left: BaseGeometry, seen: NDArray[np.object_]) -> list[Polygon]:
     """What of ground is in no strip."""
     shapely.prepare(left)
     near = seen[shapely.intersects(left, seen)]
-    rest = shapely.difference(left, shapely.union_all(near), grid_size=GRID_M)
+    rest = shapely.difference(left, shapely.disjoint_subset_union_all(near), grid_size=GRID_M)
     return [part for part in shapely.get_parts(rest) if isinstance(part, Polygon) and part.area > LEAST_M2]

@@ -63,10 +63,10 @@ def _seen_alone(
     if not short.any():
         return short, []
     shapes = base.strips(urban.width_m, urban.length_m)
-    want = shapely.intersection(shapely.union_all(shapes[short]), ground)
+    want = shapely.intersection(shapely.disjoint_subset_union_all(shapes[short]), ground)
     shapely.prepare(want)
     others = shapes[~short & shapely.intersects(want, _inner(base, urban))]
-    left = shapely.difference(want, shapely.union_all(others)) if len(others) else want
+    left = shapely.difference(want, shapely.disjoint_subset_union_all(others)) if len(others) else want
     return short, [p for p in shapely.get_parts(left) if isinstance(p, Polygon) and p.area > LEAST_M2]
 
 

@@ -105,3 +105,22 @@ def test_a_place_with_its_axes_exchanged_is_told() -> None:
     start["coordinates"] = start["coordinates"][::-1]
     (found,) = told(document, "axes-maybe-swapped")
     assert found.startswith("start: lies ")
+
+
+def test_a_camera_bolted_to_rotors_is_told() -> None:
+    """Nobody has said how far it leans: not of one in a gimbal, with its margin stated, or under wings."""
+    figures = {"focal_length_m": 0.035, "pixel_pitch_m": 4.5e-6, "image_px": [6000, 4000]}
+    rotors = {"name": "r", "type": "multirotor", "airspeed_m_s": 8.0}
+    wing = {"name": "w", "type": "fixed_wing", "airspeed_m_s": 20.0, "min_turn_radius_m": 100.0}
+    for vehicle, camera, is_told in (
+        (rotors, figures, True),
+        (rotors, {"model": "Sony RX1R II"}, True),
+        (rotors, {"model": "DJI Zenmuse P1 35 mm"}, False),
+        (rotors, figures | {"pointing_margin_deg": 2.0}, False),
+        (rotors, figures | {"stabilised": True}, False),
+        (wing, figures, False),
+    ):
+        sensor = {"name": "eye", "type": "camera", "min_interval_s": 0.1, "trigger": "distance", **camera}
+        said = told(open_() | {"sensors": [sensor], "vehicles": [vehicle]}, "leans")
+        assert len(said) == is_told
+        assert all(each.startswith("sensor eye: ") for each in said)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from typing import Any
 
+import numpy as np
 import pytest
 import shapely
 from shapely.geometry import Polygon, box
@@ -13,6 +14,7 @@ from planner.errors import InfeasibleError
 from planner.geojson import read_scenario
 from planner.pipeline import make_plan
 from planner.plan import Plan
+from planner.validate import findings
 from tests.planner.scenarios import feature, small
 
 #: Of a degree on the equator, about.
@@ -112,3 +114,31 @@ def test_a_ceiling_below_what_fills_a_region_is_told_to_be_raised() -> None:
     over = planned(document | {"altitude_m": float(told[1]), "max_height_m": float(told[2])})
     assert isinstance(over, Plan)
     assert over.metrics.coverage["C"] == 1.0
+
+
+@pytest.mark.parametrize("kind", ["corner", "two"])
+def test_validation_tells_of_ground_that_no_photo_reaches(kind: str) -> None:
+    """Region and zone named as planning does, and no more than planning finds unseen."""
+    document = asked(ROTORS, ZONES[kind], "no_fly")
+    (told,) = (each for each in findings(document) if each.severity == "error")
+    assert (told.feature, told.rule) == ("C", "not-seen-hard-zone")
+    share = re.match(r"at least ([0-9.]+) % of it \(", told.message)
+    assert share is not None
+    refused = planned(document)
+    assert isinstance(refused, InfeasibleError)
+    found = re.match(r"([0-9.]+) % of it \(", refused.message)
+    assert found is not None
+    assert 0.0 < float(share[1]) <= float(found[1]) + 0.05
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_validation_refuses_nothing_that_can_be_planned(seed: int) -> None:
+    """Zones of any size and place: what is refused unseen, planning refuses, too."""
+    rng = np.random.default_rng(seed)
+    zones = []
+    for _ in range(3):
+        east, north = rng.uniform(-HALF_M, HALF_M, 2)
+        zones.append(box(east, north, east + rng.uniform(20.0, 160.0), north + rng.uniform(20.0, 160.0)))
+    document = asked(ROTORS, zones, "no_fly" if seed % 2 else "obstacle")
+    if any(each.severity == "error" for each in findings(document)):
+        assert isinstance(planned(document), InfeasibleError)

@@ -9,6 +9,7 @@ import pytest
 import shapely
 from shapely.geometry import LineString, MultiPolygon, box
 
+from planner.coverage.survey.among import _areal
 from planner.coverage.urban.alternatives import CoverageAlternatives, alternatives, merged
 from planner.coverage.urban.bcdh import BoustrophedonCells, circuit, doubled_cells
 from planner.coverage.urban.boustrophedon import cells
@@ -117,3 +118,13 @@ def test_the_baselines_see_everything(method: BoustrophedonCells | CoverageAlter
     assert tuple(flown.line[-1, :2]) == pytest.approx(urban.end)
     within = urban.area.covers(LineString(flown.line[:, :2]))
     assert within
+
+
+def test_a_cell_whose_grown_outline_crosses_itself_is_cut_by_what_it_covers() -> None:
+    """Two squares that share a corner's overlap: no GEOS error, and no ground lost or counted twice."""
+    crossed = MultiPolygon([box(0.0, 0.0, 10.0, 10.0), box(9.0, 9.0, 20.0, 20.0)])
+    assert not crossed.is_valid
+    found = _areal(crossed)
+    assert found.is_valid
+    assert found.area == pytest.approx(100.0 + 121.0 - 1.0)
+    assert _areal(box(0.0, 0.0, 1.0, 1.0)).equals(box(0.0, 0.0, 1.0, 1.0))

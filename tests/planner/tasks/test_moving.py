@@ -1,0 +1,116 @@
+"""Buildings so close that sweeps have no room for turns, or for two photos: they are flown all the same."""
+
+from __future__ import annotations
+
+import itertools
+import math
+
+import pytest
+import shapely
+from shapely.geometry import LineString, box
+
+from planner.airspace.airspace import Airspace
+from planner.coverage.urban.measures import Sweep
+from planner.coverage.urban.moved import Moves
+from planner.coverage.urban.regions import EDGE_M, pass_of
+from planner.errors import InfeasibleError
+from planner.geojson import read_scenario
+from planner.pipeline import make_plan
+from planner.plan import Plan
+from planner.scenario import Scenario
+from planner.sensors.camera import CameraSensor
+from planner.tasks.setting import Setting, seeing
+from tests.planner.tasks.blocks import among_blocks, buildings
+
+INTERVAL_S = 1.4
+
+
+def flown(seed: int) -> tuple[Scenario, Plan]:
+    """The plan among some buildings: nothing hit, no photo sooner than the camera takes it."""
+    scenario = read_scenario(among_blocks(seed, INTERVAL_S, required=False))
+    plan = make_plan(scenario)
+    assert plan.hard_violations == ()
+    assert plan.metrics.coverage["R"] > 0.9
+    frame = scenario.frame
+    collects = {each.seq: each for each in plan.collects}
+    for photos in plan.photos:
+        # At equal distances, each at the speed of the pass as the plan has it.
+        places = frame.to_local([place[:2] for place in photos.places])
+        collect = collects[photos.seq]
+        speed_m_s = math.dist(places[0], places[-1]) / (collect.end_s - collect.start_s)
+        gaps_m = [math.dist(*pair) for pair in itertools.pairwise(places)]
+        assert min(gaps_m) / speed_m_s > 0.99 * INTERVAL_S
+    put = frame.to_local([(8.55, 47.4)])[0]
+    line = LineString(frame.to_local([place[:2] for place in plan.paths[0].line]))
+    for outline, height_m in buildings(seed):
+        if height_m > scenario.altitude_m:
+            there = shapely.transform(outline, lambda places: places + put)
+            assert line.distance(there) > scenario.clearance_m - 0.1
+    return scenario, plan
+
+
+@pytest.mark.parametrize("seed", [0, 9, 18, 22])
+def test_sweeps_without_room_for_a_turn_are_moved(seed: int) -> None:
+    """Flown where they were refused, for want of a turn at their ends or of a way between them."""
+    flown(seed)
+
+
+def test_photos_come_no_sooner_than_the_camera_takes_them() -> None:
+    """A sweep too short for two photos is moved to where it can be longer."""
+    scenario, plan = flown(39)
+    assert plan.vehicles[0].airspeed_m_s == scenario.aircraft[0].airspeed_m_s
+
+
+def test_where_no_sweep_can_be_longer_the_flight_is_slower() -> None:
+    """And the plan says so, and why."""
+    scenario, plan = flown(142)
+    speed_m_s = plan.vehicles[0].airspeed_m_s
+    assert speed_m_s < scenario.aircraft[0].airspeed_m_s
+    assert [each for each in plan.warnings if "speed-lowered" in each and f"{speed_m_s:g} m/s" in each]
+
+
+def test_ground_of_a_required_region_that_only_a_sweep_without_room_sees_is_refused_by_its_share() -> None:
+    """With the zones and what would work, not with the end of a transit."""
+    with pytest.raises(InfeasibleError, match=r"% of it .* is seen by no pass") as refused:
+        make_plan(read_scenario(among_blocks(0, INTERVAL_S)))
+    assert refused.value.feature == "R"
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_moved_sweep_sees_what_the_other_alone_saw(seed: int) -> None:
+    """From a line in the open with a full turn at both ends, as shapely has it, and time between photos."""
+    scenario = read_scenario(among_blocks(seed, INTERVAL_S, required=False))
+    setting = Setting.of(scenario)
+    asked = seeing(scenario, setting)
+    (region,) = asked.regions
+    camera, height_m = asked.suite.over(region.sensor, region.area, asked.airspace, asked.level.of(region))
+    assert isinstance(camera, CameraSensor)
+    moves = Moves.over(region, camera, height_m, asked.airspace, asked.level, asked.model)
+    ground = moves.room.buffer(EDGE_M)
+    inner = shapely.intersection(moves.turns, region.area)
+    place = max(shapely.get_parts(inner), key=lambda part: part.area).representative_point()
+    sweep = Sweep((place.x - 2.0, place.y), (place.x + 2.0, place.y))
+    short = pass_of(region, camera, height_m, sweep, box(place.x, place.y, place.x, place.y))
+    found = moves.moved([short], 0)
+    assert found is not None
+    (laid,) = found
+    alone = shapely.intersection(short.footprint, region.area)
+    wanted = alone.difference(shapely.union_all(_blocked(asked.airspace)))
+    assert wanted.difference(laid.footprint).area < 0.05
+    assert laid.length_m >= camera.least_spacing_m(laid.angle_rad) - 1e-6
+    assert ground.covers(LineString([laid.start, laid.end]))
+    radius_m = asked.model.turn_radius_m
+    for east, north in (laid.start, laid.end):
+        beside = [
+            shapely.Point(
+                east - side * radius_m * math.sin(laid.angle_rad),
+                north + side * radius_m * math.cos(laid.angle_rad),
+            ).buffer(radius_m - 0.01)
+            for side in (1.0, -1.0)
+        ]
+        assert any(ground.covers(circle) for circle in beside)
+
+
+def _blocked(airspace: Airspace) -> list[shapely.Polygon]:
+    """Outlines of all buildings, in the frame's metres."""
+    return [shapely.Polygon(obstacle.area) for obstacle in airspace.obstacles]
