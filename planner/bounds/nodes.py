@@ -108,7 +108,7 @@ class Node:
         return np.stack([family.astype(np.float64), thetas[way], alphas[way], half, half], axis=1)
 
     def _see(self, thetas: Floats) -> Flags:
-        """Whether passes of families, flown these ways, see the strip, (F, H); of several one sees the first."""
+        """Whether passes of families, flown that way, see the strip, (F, H); of several one the first."""
         side, count, index = (self.families[:, k, None] for k in (1, 8, 10))
         northward = np.mod(thetas, 2.0 * math.pi) < math.pi - 1e-9
         from_left = np.where((side > 0.0) == northward, index, count - 1.0 - index)

@@ -52,8 +52,11 @@ MOST_APART, LINES_DIVIDED = 3, 200_000
 #: and then, no more than a part of what is left. More are asked for until so many say less.
 COUNTS = {1: 0.05, 2: 0.1, 3: 0.15, 5: 0.4, 8: 0.5, EXACT_UP_TO: 0.5}
 EFFORTS_SHARED, PART_THEN, FALLS = (300_000, 2_500_000), 0.6, 2
-#: Of what is allowed, the first of two bounds takes no more, and the first of the two for shared passes.
-PART_FIRST, PART_FIRST_SHARED = 0.7, 0.5
+#: Most is wide that takes so many times what the rest is long.
+MUCH = 2.0
+#: Of what is allowed, the first of two bounds takes no more, where most is wide, and the first of the two for
+#: shared passes.
+PART_FIRST, PART_FIRST_WIDE, PART_FIRST_SHARED = 0.7, 0.9, 0.5
 
 
 def plan_bound_m(
@@ -93,16 +96,28 @@ def plan_bound_m(
             best_m = 2.0 * math.pi * seeing.model.turn_radius_m
         linked = near(found, seeing.model.settle_m)
         best_m = max(best_m, _of_ground_m(seeing, ends, found, linked, stop, allowance))
-        # Where nothing is shared the first says most, as a rule, else the second.
-        ways = [_of_shared_m, _of_apart_m] if linked.any() else [_of_apart_m, _of_shared_m]
+        # Where nothing is shared the first says most, as a rule, and where most is seen strip by strip; else
+        # the second.
+        ways, part_first = [_of_apart_m, _of_shared_m], PART_FIRST
+        if _mostly_wide(found):
+            part_first = PART_FIRST_WIDE
+        elif linked.any():
+            ways = [_of_shared_m, _of_apart_m]
         if not linked.any() and all(unit.whole for unit in found):
             # Nothing can be shared.
             ways = [_of_apart_m]
         for k, bound in enumerate(ways, start=1):
             if best_m < length_m * (1.0 - GAPS[0]) and not allowance.over:
-                part = allowance.part(allowance.left * (1.0 if k == len(ways) else PART_FIRST))
+                part = allowance.part(allowance.left * (1.0 if k == len(ways) else part_first))
                 best_m = max(best_m, bound(seeing, ends, found, linked, length_m, stop, part))
     return min(best_m, length_m)
+
+
+def _mostly_wide(found: Sequence[Unit]) -> bool:
+    """Whether seeing wide units takes much more than the others are long."""
+    wide_m = sum(unit.flown_m for unit in found if not unit.whole)
+    others = (unit.region.area for unit in found if unit.whole)
+    return wide_m > MUCH * sum(2.0 * float(shapely.minimum_bounding_radius(area)) for area in others)
 
 
 def _of_ground_m(
