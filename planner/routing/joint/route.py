@@ -135,7 +135,11 @@ def joint_route(search: Search, seen: Visible, divided: Divided, share: Share) -
     for index, division in others:
         if search.enough():
             break
-        trial = divided(kept | {index: division})
+        try:
+            trial = divided(kept | {index: division})
+        except InfeasibleError:
+            # So divided it cannot be seen; otherwise it can.
+            continue
         if (division == "whole" and index in trial.divided) or _alike(trial, seen):
             continue
         trial_m, trial_passes = _tried(trial, search)
@@ -160,10 +164,15 @@ def joint_route(search: Search, seen: Visible, divided: Divided, share: Share) -
 
 
 def _tried(seen: Visible, search: Search) -> tuple[float, tuple[CollectPass, ...]]:
-    """The passes of targets that may be had for less otherwise; none, at any price, where time ends that."""
+    """The passes of targets that may be had for less otherwise; none, at any price, where time ends that, or
+    where one of them has none that may be flown: zones and area are not looked at before.
+    """
 
     def route(stop: Stop) -> tuple[float, tuple[CollectPass, ...]]:
-        return _route(seen, replace(search, progress=silent, stop=stop))
+        try:
+            return _route(seen, replace(search, progress=silent, stop=stop))
+        except InfeasibleError:
+            return math.inf, ()
 
     return in_time(route, search.stop, search.enough) or (math.inf, ())
 
