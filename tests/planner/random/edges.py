@@ -118,7 +118,8 @@ def _seen(
     long_m = float(rng.uniform(0.02, 2.0)) * strip.swath_m
     across_m = (passes - 1.0 + float(rng.uniform(0.2, 0.9))) * wide_m
     spare_m = passes * wide_m - across_m
-    lowest_m = -spare_m * float(rng.uniform(0.0, 1.0))
+    # One pass may lie anywhere; of several the outer ones see as much beyond either edge.
+    lowest_m = -spare_m * (0.5 if passes > 1 else float(rng.uniform(0.0, 1.0)))
     region = Polygon(
         [middle + x * long_m * ahead + y * across_m * left for x, y in _corners(rng, int(rng.integers(4, 8)))]
     )
