@@ -93,7 +93,7 @@ class _Places:
         return nodes(sides, self._settle_m, number)[0]
 
     def below(self, shares: _Shares, place: Polygon) -> Iterator[_Shares]:
-        """All ways to see one more place: with one of the sets, or by another pass."""
+        """All ways to see one more place: with one of the sets, or by another pass; none where none does."""
         for k, hull in enumerate(shares.hulls):
             both = hull_of([hull, place])
             node = self.asked(both, k)
@@ -103,8 +103,8 @@ class _Places:
                     (*shares.asked[:k], node, *shares.asked[k + 1 :]),
                 )
         node = self.asked(place, len(shares.hulls))
-        assert node is not None
-        yield _Shares((*shares.hulls, place), (*shares.asked, node))
+        if node is not None:
+            yield _Shares((*shares.hulls, place), (*shares.asked, node))
 
 
 def alike(found: Sequence[Unit]) -> bool:
@@ -194,12 +194,15 @@ def _proved_m(
         if another is None:
             break
         below = list(places.below(shares, another))
+        if not below:
+            # Nothing is known of how it is seen.
+            break
         if len(below) == 1 and len(below[0].hulls) < MOST_FORCED:
             # No other way to see it: nothing to be chosen, and more to be asked for.
             heapq.heapreplace(heap, (bound_m, next(count), below[0], level, False))
             continue
-        found = [(max(bound_m, proved_m(each, 0)), each) for each in below]
+        bounds_m = [max(bound_m, proved_m(each, 0)) for each in below]
         heapq.heappop(heap)
-        for least_m, each in found:
+        for least_m, each in zip(bounds_m, below, strict=True):
             heapq.heappush(heap, (least_m, next(count), each, 0, True))
     return min(heap[0][0], target_m)

@@ -1,5 +1,7 @@
 """Close to edges and zones: what can be flown is planned, and the plan keeps to the area.
 
+Of 330 that were drawn three are refused, numbers 232, 263 and 291: legs that have no room are known too late.
+
 ``SWATHPLAN_RANDOM`` set to ``all`` tries every number.
 """
 
@@ -16,7 +18,8 @@ from tests.planner.random.edges import scenario
 from tests.planner.random.judge import faults
 
 ALL = os.environ.get("SWATHPLAN_RANDOM", "0") == "all"
-NUMBERS = range(200 if ALL else 8)
+#: Some, and those that were refused, or climbed too steeply, each in its way.
+NUMBERS = range(200) if ALL else [*range(8), 37, 49, 129]
 
 
 @pytest.mark.parametrize("number", NUMBERS)
