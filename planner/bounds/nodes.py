@@ -99,7 +99,8 @@ class Node:
     def boxes(self, headings: int) -> Floats:
         """Boxes of that many headings that hold all its passes, (B, 5)."""
         alpha = math.pi / headings
-        thetas, alphas = (2.0 * np.arange(headings) + 1.0) * alpha, np.full(headings, alpha)
+        thetas: Floats = (2.0 * np.arange(headings, dtype=np.float64) + 1.0) * alpha
+        alphas: Floats = np.full(headings, alpha)
         if self.approach_rad is not None:
             thetas = np.asarray(self.approach_rad, dtype=np.float64)
             alphas = np.zeros(len(thetas))

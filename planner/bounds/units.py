@@ -236,7 +236,7 @@ def pieces(found: Sequence[Unit], in_parts: Collection[int], most: int) -> list[
 def outline(unit: Unit) -> list[Point]:
     """Places along the outline of a unit, all of them in it."""
     ring = unit.region.area.exterior.simplify(unit.reach_m[0] / 10.0)
-    at = shapely.points(shapely.get_coordinates(ring.segmentize(ring.length / PLACES)))
+    at = [Point(place) for place in shapely.get_coordinates(ring.segmentize(ring.length / PLACES))]
     # Where the outline bends inwards its chords lie outside.
     return [point for point in at if unit.region.area.distance(point) <= LEAST_OFF_M]
 

@@ -59,14 +59,14 @@ def scenario(number: int) -> dict[str, Any]:
     look = str(rng.choice(["left", "right", "both"]))
     middle, high, wide = (round(float(rng.uniform(*pair)), 1) for pair in ((38, 52), (14, 30), (2, 10)))
     half_m = height_m * math.radians(wide) / 2.0 / math.cos(math.radians(middle))
-    edges_m = [height_m * math.tan(math.radians(middle + off)) for off in (-high / 2.0, high / 2.0)]
+    near_m, far_m = (height_m * math.tan(math.radians(middle + off)) for off in (-high / 2.0, high / 2.0))
     field = Point(0.0, 0.0).buffer(5.0 * radius_m + 2.0 * height_m + 300.0)
     home = Point(0.0, 0.0).buffer(3.0 * radius_m)
     shapes: list[BaseGeometry] = [field]
     features = [_feature("start", "start", "Point", [*PUT(0.0, 0.0), 0.0])]
     for k in range(int(rng.integers(1, 3))):
         side = {"left": 1.0, "right": -1.0, "both": float(rng.choice([-1.0, 1.0]))}[look]
-        strip = _Strip(radius_m, settle_m, half_m + MORE_M, *edges_m, side)
+        strip = _Strip(radius_m, settle_m, half_m + MORE_M, near_m, far_m, side)
         region, taken = _seen(rng, strip, field.bounds[2], home)
         shapes += taken
         features.append(_feature(f"R{k}", "roi", "Polygon", _rings(region)))
