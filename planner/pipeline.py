@@ -35,8 +35,8 @@ ROUTING_SHARE = 0.6
 
 #: What planning takes at least, in lines between cells of the bound, a third of a microsecond each: by the
 #: paper's stages for a pass or region; by the joint routing for a visit, for one more that shares its pass,
-#: for each leg of a corridor beyond its visits, and for other passes beyond visits, up to so many, each and by
-#: the square of how many they are.
+#: for each leg of a corridor beyond its visits, and for other passes beyond visits, up to so many, each and
+#: by the square of how many they are.
 LINES_BY_PAPER, LINES_VISIT, LINES_SHARED, LINES_LEG = 30_000, 70_000, 50_000, 400_000
 LINES_FURTHER, MOST_FURTHER = (40_000, 15_000), 8
 #: A search that breaks one of these is refused.
