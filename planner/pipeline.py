@@ -35,9 +35,12 @@ if TYPE_CHECKING:
 #: The search for better routes ends after this part of the scenario's time budget.
 ROUTING_SHARE = 0.6
 
-#: What planning takes at least, in lines between cells of the bound, half a microsecond each: for a pass or
-#: region by the paper's stages and by the joint routing; by this for each pass beyond visits, up to so many.
-LINES_BY_PAPER, LINES_EACH, LINES_FURTHER, MOST_FURTHER = 30_000, 80_000, 120_000, 15
+#: What planning takes at least, in lines between cells of the bound, a third of a microsecond each: by the
+#: paper's stages for a pass or region; by the joint routing for a visit, for one more that shares its pass,
+#: for each leg of a corridor beyond its visits, and for other passes beyond visits, up to so many, each and
+#: by the square of how many they are.
+LINES_BY_PAPER, LINES_VISIT, LINES_SHARED, LINES_LEG = 30_000, 70_000, 50_000, 400_000
+LINES_FURTHER, MOST_FURTHER = (40_000, 15_000), 8
 #: A search that breaks one of these is refused.
 BARRING = ("area", "hard-zone", "clearance")
 #: The bound is looked for in this part of the work for plan and bound together at most.
@@ -335,8 +338,13 @@ def lines_for_bound(scenario: Scenario, plan: Plan) -> float:
     passes, visits = len(plan.collects), sum(region.revisits for region in scenario.regions)
     planned = LINES_BY_PAPER * max(passes, visits)
     if chosen_methods(scenario.method)["routing"] == "joint":
-        further = min(max(passes - visits, 0), MOST_FURTHER)
-        planned = LINES_EACH * max(passes, visits) + LINES_FURTHER * further
+        corridors = {region.name: region.revisits for region in scenario.regions if region.axis is not None}
+        legs = sum(corridors.keys() >= set(collect.regions) for collect in plan.collects)
+        further_legs = min(max(legs - sum(corridors.values()), 0), MOST_FURTHER)
+        further = min(max(passes - visits - further_legs, 0), MOST_FURTHER)
+        planned = LINES_VISIT * min(visits, passes) + LINES_SHARED * max(visits - passes, 0)
+        planned += LINES_LEG * further_legs
+        planned += LINES_FURTHER[0] * further + LINES_FURTHER[1] * further**2
     return BOUND_SHARE / (1.0 - BOUND_SHARE) * planned
 
 

@@ -21,6 +21,7 @@ from planner.sensors.strip import Strip, strip_on
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+Flags = NDArray[np.bool_]
 
 #: Where strips that change with the heading are sampled.
 HEADINGS_RAD = np.arange(720) * (2.0 * math.pi / 720)
@@ -98,28 +99,25 @@ class Node:
     def boxes(self, headings: int) -> Floats:
         """Boxes of that many headings that hold all its passes, (B, 5)."""
         alpha = math.pi / headings
-        ways = [((2 * k + 1) * alpha, alpha) for k in range(headings)]
+        thetas: Floats = (2.0 * np.arange(headings, dtype=np.float64) + 1.0) * alpha
+        alphas: Floats = np.full(headings, alpha)
         if self.approach_rad is not None:
-            ways = [(float(angle_rad), 0.0) for angle_rad in self.approach_rad]
-        rows = [
-            (family, theta, alpha, 0.5, 0.5)
-            for family in range(len(self.families))
-            for theta, alpha in ways
-            if self._sees(family, theta)
-        ]
-        return np.array(rows, dtype=np.float64).reshape(-1, 5)
+            thetas = np.asarray(self.approach_rad, dtype=np.float64)
+            alphas = np.zeros(len(thetas))
+        family, way = np.nonzero(self._see(thetas))
+        half = np.full(len(family), 0.5)
+        return np.stack([family.astype(np.float64), thetas[way], alphas[way], half, half], axis=1)
 
-    def _sees(self, family: int, theta: float) -> bool:
-        """Whether a pass of a family, flown that way, sees the strip; of several, one pass sees the first."""
-        kind, side = self.families[family, :2]
-        if kind == kernels.WHOLE:
-            return True
-        strips, _, index = self.families[family, 8:11]
-        northward = theta % (2.0 * math.pi) < math.pi - 1e-9
-        from_left = index if (side > 0.0) == northward else strips - 1.0 - index
-        return bool(from_left == {0: 0.0, 1: 0.0, 2: strips - 1.0}.get(self.strip, self.strip - 2.0)) and (
-            self.strip < 3 or from_left < strips - 1.0
-        )
+    def _see(self, thetas: Floats) -> Flags:
+        """Whether passes of families, flown that way, see the strip, (F, H); of several one the first."""
+        side, count, index = (self.families[:, k, None] for k in (1, 8, 10))
+        northward = np.mod(thetas, 2.0 * math.pi) < math.pi - 1e-9
+        from_left = np.where((side > 0.0) == northward, index, count - 1.0 - index)
+        if self.strip < 3:
+            seen = from_left == (count - 1.0 if self.strip == 2 else 0.0)
+        else:
+            seen = (from_left == self.strip - 2.0) & (from_left < count - 1.0)
+        return np.asarray(seen | (self.families[:, 0, None] == kernels.WHOLE), dtype=np.bool_)
 
 
 def nodes(

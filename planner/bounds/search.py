@@ -40,6 +40,8 @@ WIDE = 16.0
 #: What it takes in lines between cells: a cell; and two cells, as a part, for being there and for each set of
 #: the other nodes that may come before them.
 WORK_EACH, WORK_PAIR, WORK_SET = 10, 1.0 / 10.0, 1.0 / 200.0
+#: No problem is begun that takes more than this many times what is left.
+MOST_OVER = 1.5
 #: Problems to begin with.
 MOST_FIRST = 64
 #: The search ends so close below a tour of the relaxed problem.
@@ -159,6 +161,8 @@ def _prove(
     while heap and heap[0][0] < target_m and spent + _least_work(heap[0][2]) < effort:
         raise_if(stop)
         if _least_work(heap[0][2]) > allowance.left or allowance.over:
+            break
+        if _pairs_of(heap[0][2]) > MOST_OVER * allowance.left:
             break
         bound_m, _, problem = heapq.heappop(heap)
         solved = _solve(nodes, problem, start, end, radius_m, target_m, shared)
@@ -301,6 +305,13 @@ def _flown_m(
 def _least_work(problem: _Problem) -> int:
     """What solving a problem takes besides lines between its cells."""
     return _work_on(sum(len(boxes) for boxes in problem.boxes), len(problem.boxes))
+
+
+def _pairs_of(problem: _Problem) -> float:
+    """Lines between its cells that may be part of short tours, about."""
+    counts = np.array([len(boxes) for boxes in problem.boxes], dtype=np.float64)
+    part = 1.0 if problem.open_pairs is None else float(problem.open_pairs.mean())
+    return part * float(counts.sum() ** 2 - (counts**2).sum())
 
 
 def _work_on(count: int, nodes: int) -> int:

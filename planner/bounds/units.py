@@ -38,8 +38,10 @@ Flags = NDArray[np.bool_]
 STEP_RAD = math.radians(0.25)
 #: Of a leg so much is left out at either end.
 TRIMMED = 0.1
-#: Places along the outline of a wide unit to choose from; places nearer to each other than this are one.
+#: Places along the outline of a unit to choose from; places nearer to each other than this are one.
 PLACES, LEAST_APART_M = 48, 1.0
+#: Places this near to a region are in it, roundings aside.
+LEAST_OFF_M = 1e-6
 
 
 @dataclass(frozen=True, slots=True)
@@ -203,8 +205,7 @@ def pieces(found: Sequence[Unit], in_parts: Collection[int], most: int) -> list[
     for k, unit in enumerate(found):
         own: list[Point | None] = [None]
         if not unit.whole:
-            ring = unit.region.area.exterior.simplify(unit.reach_m[0] / 10.0)
-            own = [Point(at) for at in shapely.get_coordinates(ring.segmentize(ring.length / PLACES))]
+            own = list(outline(unit))
         elif k in in_parts:
             own = [unit.region.area.representative_point()]
         owners += [k] * len(own)
@@ -230,6 +231,14 @@ def pieces(found: Sequence[Unit], in_parts: Collection[int], most: int) -> list[
         place, unit = places[best], found[owners[best]]
         chosen += [(owners[best], unit.sides if place is None else unit.seeing(place))] * unit.visits
     return chosen
+
+
+def outline(unit: Unit) -> list[Point]:
+    """Places along the outline of a unit, all of them in it."""
+    ring = unit.region.area.exterior.simplify(unit.reach_m[0] / 10.0)
+    at = [Point(place) for place in shapely.get_coordinates(ring.segmentize(ring.length / PLACES))]
+    # Where the outline bends inwards its chords lie outside.
+    return [point for point in at if unit.region.area.distance(point) <= LEAST_OFF_M]
 
 
 def apart(found: Sequence[Unit], linked: Flags) -> list[int]:

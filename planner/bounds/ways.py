@@ -28,6 +28,7 @@ from shapely.geometry.base import BaseGeometry
 from planner.bounds.allowance import Allowance
 from planner.bounds.lower import EXACT_UP_TO, GAPS, lower_bound_m
 from planner.bounds.nodes import nodes, terminal
+from planner.bounds.partitions import alike, partitions_bound_m
 from planner.bounds.search import exact_bound_m
 from planner.bounds.sweeps import sweeps_bound_m
 from planner.bounds.units import Sides, Unit, apart, groups, hull_of, near, pieces, seen_at_once, units
@@ -46,13 +47,16 @@ Flags = NDArray[np.bool_]
 Asked = tuple[Sides, BaseGeometry | None]
 
 #: Units taken in several ways that are told apart, and dividing one takes as long as so many lines.
-MOST_APART, LINES_DIVIDED = 3, 100_000
+MOST_APART, LINES_DIVIDED = 3, 200_000
 #: Units and places asked for, where passes are shared, and lines between cells to evaluate of them: at first
 #: and then, no more than a part of what is left. More are asked for until so many say less.
 COUNTS = {1: 0.05, 2: 0.1, 3: 0.15, 5: 0.4, 8: 0.5, EXACT_UP_TO: 0.5}
 EFFORTS_SHARED, PART_THEN, FALLS = (300_000, 2_500_000), 0.6, 2
-#: Of what is allowed, the first of two bounds takes no more.
-PART_FIRST = 0.7
+#: Most is wide that takes so many times what the rest is long.
+MUCH = 2.0
+#: Of what is allowed, the first of two bounds takes no more, where most is wide, and the first of the two for
+#: shared passes.
+PART_FIRST, PART_FIRST_WIDE, PART_FIRST_SHARED = 0.7, 0.9, 0.5
 
 
 def plan_bound_m(
@@ -92,16 +96,28 @@ def plan_bound_m(
             best_m = 2.0 * math.pi * seeing.model.turn_radius_m
         linked = near(found, seeing.model.settle_m)
         best_m = max(best_m, _of_ground_m(seeing, ends, found, linked, stop, allowance))
-        # Where nothing is shared the first says most, as a rule, else the second.
-        ways = [_of_shared_m, _of_apart_m] if linked.any() else [_of_apart_m, _of_shared_m]
+        # Where nothing is shared the first says most, as a rule, and where most is seen strip by strip; else
+        # the second.
+        ways, part_first = [_of_apart_m, _of_shared_m], PART_FIRST
+        if _mostly_wide(found):
+            part_first = PART_FIRST_WIDE
+        elif linked.any():
+            ways = [_of_shared_m, _of_apart_m]
         if not linked.any() and all(unit.whole for unit in found):
             # Nothing can be shared.
             ways = [_of_apart_m]
         for k, bound in enumerate(ways, start=1):
             if best_m < length_m * (1.0 - GAPS[0]) and not allowance.over:
-                part = allowance.part(allowance.left * (1.0 if k == len(ways) else PART_FIRST))
+                part = allowance.part(allowance.left * (1.0 if k == len(ways) else part_first))
                 best_m = max(best_m, bound(seeing, ends, found, linked, length_m, stop, part))
     return min(best_m, length_m)
+
+
+def _mostly_wide(found: Sequence[Unit]) -> bool:
+    """Whether seeing wide units takes much more than the others are long."""
+    wide_m = sum(unit.flown_m for unit in found if not unit.whole)
+    others = (unit.region.area for unit in found if unit.whole)
+    return wide_m > MUCH * sum(2.0 * float(shapely.minimum_bounding_radius(area)) for area in others)
 
 
 def _of_ground_m(
@@ -131,10 +147,42 @@ def _of_shared_m(
     stop: Stop,
     allowance: Allowance,
 ) -> float:
-    """Of all units, or of as many places as the order can be searched for."""
-    asked = pieces(found, _in_parts(found, linked), EXACT_UP_TO)
+    """Of all units, or places of them, whichever passes see them together."""
+    parts, targets_m = _in_parts(found, linked), tuple(length_m * (1.0 - gap) for gap in GAPS)
+    model = seeing.model
+
+    def by_sets_m(within: Allowance) -> float:
+        return partitions_bound_m(found, parts, ends, model, targets_m, stop, within)
+
+    def in_line_m(within: Allowance) -> float:
+        return _in_line_m(seeing, ends, found, parts, targets_m, stop, within)
+
+    ways = [by_sets_m, in_line_m]
+    if not alike(found):
+        ways = [in_line_m]
+    elif any(unit.leg for unit in found):
+        # Of chains of legs few are seen together, and their order says most.
+        ways = [in_line_m, by_sets_m]
+    best_m = 0.0
+    for k, bound in enumerate(ways, start=1):
+        if best_m < targets_m[0] and not allowance.over:
+            part = 1.0 if k == len(ways) else PART_FIRST_SHARED
+            best_m = max(best_m, bound(allowance.part(part * allowance.left)))
+    return best_m
+
+
+def _in_line_m(
+    seeing: Seeing,
+    ends: tuple[Terminal, Terminal],
+    found: Sequence[Unit],
+    in_parts: Collection[int],
+    targets_m: tuple[float, ...],
+    stop: Stop,
+    allowance: Allowance,
+) -> float:
+    """Of as many as the order can be searched for: passes over them may lie on one line."""
+    asked = pieces(found, in_parts, EXACT_UP_TO)
     ends_ = (terminal(ends[0]), terminal(ends[1]))
-    targets_m = tuple(length_m * (1.0 - gap) for gap in GAPS)
 
     def bound_of_m(most: int, effort: int, part: float) -> float:
         if allowance.over:

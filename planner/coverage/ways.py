@@ -26,9 +26,10 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 
-#: How a region is divided: as costs least by an estimate; not, unless it cannot be seen otherwise; or, where
-#: it is a corridor with bends, at each of them.
-Division = Literal["auto", "whole", "legs"]
+#: How a region is divided: as costs least by an estimate; not, unless it cannot be seen otherwise; where it
+#: is a corridor with bends, at each of them; or as the first, and its parts seen by as many passes as have
+#: room to turn, where fewer have none.
+Division = Literal["auto", "whole", "legs", "roomy"]
 #: Items seen together, by their numbers.
 Group = frozenset[int]
 #: The sensor of a name over an area, and the flight height over its ground.

@@ -293,10 +293,12 @@ def _turns_at(low_m: float, leg: Path, at_m: float, terms: Terms) -> Iterator[_C
     slope, turning = math.tan(terms.slope_rad), math.tan(terms.turning_rad)
     in_m = min(terms.top_m, low_m + at_m * slope)
     ahead_m = max(leg.length_m - at_m - terms.level_off_m, 0.0)
+    # What no turn is flown for is climbed behind the turns, where there is so much of the leg.
+    left_m = min(NO_TURN_M, (leg.length_m - at_m) * slope)
     ways = dict.fromkeys(
         way
         for out_m in (max(in_m, terms.top_m - ahead_m * slope), terms.top_m)
-        for way in _circles((out_m - in_m - NO_TURN_M) / turning, terms.radius_m, terms.spare_m)
+        for way in _circles((out_m - in_m - left_m) / turning, terms.radius_m, terms.spare_m)
     )
     for count, radius_m in ways:
         climbing_m = count * math.tau * radius_m - terms.spare_m

@@ -34,8 +34,9 @@ ETAS = np.array([0.0, 0.5, 1.0])
 OPTIONS_COMPARED = 48
 #: Finer options: this many headings and offsets to either side.
 NEAR_ANGLES, NEAR_ETAS = 5, 2
-#: Headings tried where a coarse grid leaves no room for turns, and how many options with room are kept.
-FINE_STEP_RAD = math.radians(2.5)
+#: Headings and offsets tried where a coarse grid leaves no room for turns, and those where the first do not;
+#: how many options with room are kept.
+FINER = ((math.radians(2.5), 9), (math.radians(1.0), 33))
 MOST_ROOMY = 100
 #: Between the headings tried first where only whether there is a way is asked.
 FEW_STEP_RAD = math.radians(15.0)
@@ -79,15 +80,15 @@ class StripTarget:
             raise refusal(self.region, self.around)
         if _with_room(options, self.around).any():
             return options
-        angles_rad = headings(self.region, self.sides, FINE_STEP_RAD, self.around)
-        finer = make_options(self.sides, angles_rad, np.linspace(0.0, 1.0, 9), self.around)
-        kept = (
-            np.empty(0, dtype=np.int64) if finer is None else np.flatnonzero(_with_room(finer, self.around))
-        )
-        if finer is None or len(kept) == 0:
-            return options
-        kept = kept[:: math.ceil(len(kept) / MOST_ROOMY)]
-        return finer.rows(kept)
+        for finer_rad, count in FINER:
+            angles_rad = headings(self.region, self.sides, finer_rad, self.around)
+            finer = make_options(self.sides, angles_rad, np.linspace(0.0, 1.0, count), self.around)
+            kept = np.empty(0, dtype=np.int64)
+            if finer is not None:
+                kept = np.flatnonzero(_with_room(finer, self.around))
+            if finer is not None and len(kept) > 0:
+                return finer.rows(kept[:: math.ceil(len(kept) / MOST_ROOMY)])
+        return options
 
     def key(self, picked: Options) -> tuple[float, ...]:
         """What those near an option are found by."""
@@ -187,9 +188,10 @@ def targets(
     found = []
     for part in parts:
         for visit in visits(part):
-            sides, options = _some(visit, sensor, height_m, around, wide=wide)
+            some = _roomy if division == "roomy" else _some
+            sides, options = some(visit, sensor, height_m, around, wide=wide)
             if options is None and visit.visit is not None:
-                sides, options = _some(part, sensor, height_m, around, wide=wide)
+                sides, options = some(part, sensor, height_m, around, wide=wide)
                 visit = part
             if options is None:
                 raise refusal(region, around)
@@ -257,6 +259,19 @@ def _some(
             if options is not None:
                 return sides, options
     return sides, None
+
+
+def _roomy(
+    region: MergedRegion, sensor: SarSensor, height_m: float, around: Surroundings, *, wide: bool
+) -> tuple[tuple[Side, ...], Options | None]:
+    """The first families with an option that has room to turn at both ends; the first where none has."""
+    for sides in families(region, sensor, height_m, wide=wide):
+        for step_rad, count in FINER:
+            angles_rad = headings(region, sides, step_rad, around)
+            options = make_options(sides, angles_rad, np.linspace(0.0, 1.0, count), around)
+            if options is not None and _with_room(options, around).any():
+                return sides, options
+    return _some(region, sensor, height_m, around, wide=wide)
 
 
 def _with_room(options: Options, around: Surroundings) -> NDArray[np.bool_]:

@@ -52,6 +52,8 @@ LARGE_STEP_RAD = math.radians(15.0)
 LARGE_ETAS = np.array([0.0, 1.0])
 #: Regions, from the first, for which the tour with the region whole, or leg by leg, is found too.
 MOST_WHOLE = 3
+#: How regions are seen where nothing else can be flown.
+ROOMY: Division = "roomy"
 #: Times that passes are shared: at first by as few passes as can be, then in the tour found last.
 SHARED_ROUNDS = 4
 #: Tours with their legs flown in earnest, those of them to which true costs are fed back, and how often.
@@ -130,12 +132,23 @@ def joint_route(search: Search, seen: Visible, divided: Divided, share: Share) -
         fewer = _tried(replace(seen, targets=plain), search)
         cost_m, passes = min((cost_m, passes), fewer, key=lambda found: found[0])
     kept: dict[int, Division] = {}
+    if math.isinf(cost_m):
+        # No leg leads to passes without room for a turn: more passes may have it.
+        roomy = dict.fromkeys(range(len(seen.targets) + len(seen.dropped)), ROOMY)
+        trial = divided(roomy)
+        trial_m, trial_passes = _tried(trial, search)
+        if trial_m < cost_m:
+            cost_m, passes, seen, kept = trial_m, trial_passes, trial, dict(roomy)
     others: list[tuple[int, Division]] = [(index, "whole") for index in seen.divided[:MOST_WHOLE]]
     others += [(index, "legs") for index in seen.bent[:MOST_WHOLE]]
     for index, division in others:
         if search.enough():
             break
-        trial = divided(kept | {index: division})
+        try:
+            trial = divided(kept | {index: division})
+        except InfeasibleError:
+            # So divided it cannot be seen; otherwise it can.
+            continue
         if (division == "whole" and index in trial.divided) or _alike(trial, seen):
             continue
         trial_m, trial_passes = _tried(trial, search)
@@ -160,10 +173,15 @@ def joint_route(search: Search, seen: Visible, divided: Divided, share: Share) -
 
 
 def _tried(seen: Visible, search: Search) -> tuple[float, tuple[CollectPass, ...]]:
-    """The passes of targets that may be had for less otherwise; none, at any price, where time ends that."""
+    """The passes of targets that may be had for less otherwise; none, at any price, where time ends that, or
+    where one of them has none that may be flown: zones and area are not looked at before.
+    """
 
     def route(stop: Stop) -> tuple[float, tuple[CollectPass, ...]]:
-        return _route(seen, replace(search, progress=silent, stop=stop))
+        try:
+            return _route(seen, replace(search, progress=silent, stop=stop))
+        except InfeasibleError:
+            return math.inf, ()
 
     return in_time(route, search.stop, search.enough) or (math.inf, ())
 
