@@ -44,7 +44,9 @@ class Looking:
     sensor: Sensor
     height_m: float
     names: tuple[str, ...]
-    _seen: dict[Look, NDArray[np.float64]] = field(default_factory=dict, init=False, repr=False, compare=False)
+    _seen: dict[Look, NDArray[np.float64]] = field(
+        default_factory=dict, init=False, repr=False, compare=False
+    )
 
     @property
     def looks(self) -> tuple[Look, ...]:

@@ -6,20 +6,24 @@ import math
 from collections.abc import Callable, Sequence
 
 from planner.errors import InfeasibleError
+from planner.route import Look
 from planner.scenario import Scenario
 from planner.search.moving.together import COOL, Flier, Strips, Together
 from planner.search.programme import Programme
-from planner.tasks.budget import MOST, Flight, part_used
+from planner.tasks.budget import MOST, Flight, limits_of, part_used, per_m_of
 from planner.tasks.search import Sought, as_long_as_can_be, flier_of
 from planner.tasks.task import Controls
 from planner.tasks.worth import scores_at
+from planner.vehicle.limits import Use, exceeded
 
-#: What flights truly take is learnt so often; within so much of what they may take they are long enough.
-LEARNT, ENOUGH = 4, 0.985
-#: Steps each time.
-STEPS = 25_000
+#: What flights truly take is learnt so often.
+LEARNT = 6
+#: Steps each time, from so much of the heat of the time before.
+STEPS, COOLER = 20_000, 0.7
 #: So many seconds of a processor are all of the work, about.
 WORK_S = 6.0
+#: At first so much of what would be flown in level flight with all there is; or of what is thought to be left.
+LEVEL, THOUGHT = 0.8, 1.3
 
 
 def moved_together(scenario: Scenario, ones: Sequence[Sought], controls: Controls) -> list[Flight] | None:
@@ -28,88 +32,81 @@ def moved_together(scenario: Scenario, ones: Sequence[Sought], controls: Control
     Returns
     -------
     list
-        In their order; None where one cannot be flown, or finds nothing.
+        In their order; None where none of it can be flown by all.
     """
-    asked = ones[0].asked
-    fliers = [
-        Flier(one.asked.looking, one.asked.looking.looks[0], one.asked.room, one.asked.pricing) for one in ones
-    ]
+    asked, seed = ones[0].asked, scenario.seed
+    looks = [one.asked.looking.looks[0] for one in ones]
+    together = Together(
+        asked.ground,
+        lambda places, cell_m: scores_at(scenario, places, cell_m),
+        asked.detection,
+        [
+            Flier(o.asked.looking, look, o.asked.room, o.asked.pricing)
+            for o, look in zip(ones, looks, strict=True)
+        ],
+    )
+    part = min(1.0, 0.5 * controls.enough.left_s / (WORK_S * max(1.0, len(ones) / 2)))
+    budgets_m = [_first_m(one) for one in ones]
     with controls.stage("search"):
-        together = Together(
-            asked.ground,
-            lambda places, cell_m: scores_at(scenario, places, cell_m),
-            asked.detection,
-            fliers,
-        )
-        left_s = controls.enough.left_s
-        part = min(1.0, 0.5 * left_s / (WORK_S * max(1, len(ones) / 2)))
-        budgets_m = [one.spare.metres for one in ones]
-        seed = scenario.seed
         begun = together.found(budgets_m, part, seed, controls.stop, controls.enough)
     flies = [flier_of(one, controls) for one in ones]
+    best: list[Flight] | None = None
+    most, heat = 0.0, COOL
     with controls.stage("transit"):
-        try:
-            for number in range(LEARNT):
-                programmes = _programmes(ones, begun, fliers)
-                if programmes is None:
-                    return None
-                budgets_m, parts = _learnt(ones, programmes, flies)
-                if all(not math.isfinite(m) or ENOUGH <= p <= MOST for m, p in zip(budgets_m, parts, strict=True)):
-                    break
-                if number and controls.enough():
-                    break
-                _, begun = together.moved(
-                    begun, budgets_m, int(part * STEPS), seed + 200 + number, COOL, controls.stop,
-                    controls.enough,
-                )  # fmt: skip
-            return _flown(ones, begun, fliers, budgets_m, flies)
-        except InfeasibleError:
-            # What can be flown is found otherwise.
-            return None
+        for number in range(LEARNT):
+            flown = _flown(ones, together.lines(begun), looks, budgets_m, flies)
+            if flown is None:
+                break
+            flights, budgets_m = flown
+            worth = asked.found([sweep for flight in flights for sweep in flight.programme.sweeps])
+            if worth > most:
+                best, most = flights, worth
+            if controls.enough():
+                break
+            _, begun = together.moved(
+                begun, budgets_m, int(part * STEPS), seed + 200 + number, heat, controls.stop, controls.enough
+            )
+            heat *= COOLER
+    return best
 
 
-def _programmes(ones: Sequence[Sought], begun: Strips, fliers: Sequence[Flier]) -> list[Programme] | None:
-    """Programmes that fly strips, all of them; None where there are none."""
-    found = []
-    for one, strips, flier in zip(ones, begun, fliers, strict=True):
-        programme = one.asked.over(strips, flier.look, math.inf) if len(strips) else None
-        if programme is None:
-            return None
-        found.append(programme)
-    return found
-
-
-def _learnt(
-    ones: Sequence[Sought], programmes: Sequence[Programme], flies: Sequence[Callable[[Programme], Flight]]
-) -> tuple[list[float], list[float]]:
-    """What each may take by estimates, as its flight tells, and what part of it its flight takes."""
-    budgets_m, parts = [], []
-    for one, programme, fly in zip(ones, programmes, flies, strict=True):
-        part = part_used(one.setting.model.aircraft, fly(programme).use)
-        parts.append(part)
-        budgets_m.append(programme.cost_m * MOST / part if part > 0.0 else math.inf)
-    return budgets_m, parts
+def _first_m(one: Sought) -> float:
+    """What a flight may take by estimates before one has been flown."""
+    aircraft, level = one.setting.model.aircraft, one.setting.level
+    per_m = per_m_of(aircraft, level.amsl_m)
+    limits = limits_of(aircraft, Use(0.0, 0.0, 0.0))
+    whole_m = [limit / per_m[name] for name, (_, limit, _) in limits.items() if per_m[name] > 0.0]
+    return min(LEVEL * min(whole_m, default=math.inf), THOUGHT * one.spare.metres)
 
 
 def _flown(
     ones: Sequence[Sought],
-    begun: Strips,
-    fliers: Sequence[Flier],
+    lines: Strips,
+    looks: Sequence[Look],
     budgets_m: Sequence[float],
     flies: Sequence[Callable[[Programme], Flight]],
-) -> list[Flight] | None:
-    """The flights over strips, cut to what limits allow."""
-    found = []
-    for number, one in enumerate(ones):
-        programme = one.asked.over(begun[number], fliers[number].look, math.inf)
+) -> tuple[list[Flight], list[float]] | None:
+    """The flights over strips, cut to what limits allow, and what each may take by estimates, as they tell.
+
+    None where one cannot be flown.
+    """
+    flights, learnt_m = [], []
+    for one, strips, look, budget_m, fly in zip(ones, lines, looks, budgets_m, flies, strict=True):
+        programme = one.asked.over(strips, look, math.inf) if len(strips) else None
         if programme is None:
             return None
-        budget_m = max(budgets_m[number], programme.cost_m)
-        flight = as_long_as_can_be(
-            programme, one.asked, budget_m, flies[number], one.setting.model.aircraft
-        )
-        if flight is None:
+        aircraft = one.setting.model.aircraft
+        try:
+            flight = fly(programme)
+            part = part_used(aircraft, flight.use)
+            learnt_m.append(programme.cost_m * MOST / part if part > 0.0 else math.inf)
+            if part > MOST or exceeded(aircraft, flight.use):
+                cut = as_long_as_can_be(programme, one.asked, max(budget_m, programme.cost_m), fly, aircraft)
+                if cut is None:
+                    return None
+                flight = cut
+        except InfeasibleError:
+            # What can be flown is found otherwise.
             return None
-        found.append(flight)
-    return found
-
+        flights.append(flight)
+    return flights, learnt_m

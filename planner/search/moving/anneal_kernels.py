@@ -238,7 +238,9 @@ def annealed(
         if better < 0.0 and drawn(state) >= math.exp(better / max(heat * left * left, 1e-300)):
             for t in range(touching):
                 f = touched[t]
-                _changed(looks, scores, pays, corner, new[t], new_counts[t], new_rows[t], strips[f], counts[f], -1)
+                _changed(
+                    looks, scores, pays, corner, new[t], new_counts[t], new_rows[t], strips[f], counts[f], -1
+                )
                 _changed(looks, scores, pays, corner, strips[f], counts[f], rows[f], new[t], new_counts[t], 1)
             continue
         for t in range(touching):

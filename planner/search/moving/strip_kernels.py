@@ -154,7 +154,14 @@ def cost_m(rows: Floats, count: int, flight: Floats, table: Floats) -> float:
 
 @njit(cache=True, nogil=True)
 def look(
-    looks: Ints, scores: Floats, pays: Floats, west_m: float, south_m: float, cell_m: float, row: Floats, by: int
+    looks: Ints,
+    scores: Floats,
+    pays: Floats,
+    west_m: float,
+    south_m: float,
+    cell_m: float,
+    row: Floats,
+    by: int,
 ) -> float:
     """Add a look of a pass to the cells that it sees, or take it away (``by`` -1): the worth that this is.
 

@@ -28,7 +28,7 @@ from planner.vehicle.wind import CIRCLE_RAD
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
-#: Strips (N, 2, 2) of each flier.
+#: Strips (N, 2, 2) of each flier, in the ground's own frame.
 Strips = list[Floats]
 
 #: Swaths are told for so many courses, and between them on lines.
@@ -178,7 +178,7 @@ class Together:
         strips, counts = np.zeros((many, room, 2, 2)), np.zeros(many, dtype=np.int64)
         for place, f in enumerate(self._order.tolist()):
             counts[place] = len(begun[f])
-            strips[place, : len(begun[f])] = self._placed(begun[f].reshape(-1, 2)).reshape(-1, 2, 2)
+            strips[place, : len(begun[f])] = begun[f]
         flights = self._flights.copy()
         flights[:, 7] = BUDGET_M * np.floor(np.asarray(budgets_m)[self._order] / BUDGET_M)
         best, best_counts = strips.copy(), counts.copy()
@@ -196,8 +196,12 @@ class Together:
             )  # fmt: skip
         found = [np.zeros((0, 2, 2))] * many
         for place, f in enumerate(self._order.tolist()):
-            found[f] = best[place, : best_counts[place]] @ self._axes + self._origin
+            found[f] = best[place, : best_counts[place]].copy()
         return float(figures[1]), found
+
+    def lines(self, strips: Strips) -> Strips:
+        """The same where they lie."""
+        return [own @ self._axes + self._origin for own in strips]
 
     def _placed(self, points: Floats) -> Floats:
         return np.asarray((points - self._origin) @ self._axes.T)
