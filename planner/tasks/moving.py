@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 from planner.errors import InfeasibleError
 from planner.route import Look
 from planner.scenario import Scenario
-from planner.search.moving.together import COOL, Flier, Strips, Together
+from planner.search.moving.together import Flier, Strips, Together
 from planner.search.programme import Programme
 from planner.tasks.budget import MOST, Flight, limits_of, part_used, per_m_of
 from planner.tasks.search import Sought, as_long_as_can_be, flier_of
@@ -16,14 +17,23 @@ from planner.tasks.task import Controls
 from planner.tasks.worth import scores_at
 from planner.vehicle.limits import Use, exceeded
 
-#: What flights truly take is learnt so often.
-LEARNT = 6
-#: Steps each time, from so much of the heat of the time before.
-STEPS, COOLER = 20_000, 0.7
+#: What flights truly take is learnt each time that they are flown, then strips are moved anew by so many
+#: steps, from these heats by all worth: of each of the best, and of the best of all.
+STEPS, FEW, MANY = 20_000, (3e-4, 3e-4), (3e-4, 1e-3, 3e-4, 1e-4)
 #: So many seconds of a processor are all of the work, about.
 WORK_S = 6.0
 #: At first so much of what would be flown in level flight with all there is; or of what is thought to be left.
 LEVEL, THOUGHT = 0.8, 1.3
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Tried:
+    """Strips flown: what they find, and what each flight may take by estimates as it has told."""
+
+    worth: float
+    flights: list[Flight]
+    strips: Strips
+    learnt_m: list[float]
 
 
 def moved_together(scenario: Scenario, ones: Sequence[Sought], controls: Controls) -> list[Flight] | None:
@@ -50,24 +60,41 @@ def moved_together(scenario: Scenario, ones: Sequence[Sought], controls: Control
     with controls.stage("search"):
         begun = together.found(budgets_m, part, seed, controls.stop, controls.enough)
     flies = [flier_of(one, controls) for one in ones]
-    best: list[Flight] | None = None
-    most, heat = 0.0, COOL
-    with controls.stage("transit"):
-        for number in range(LEARNT):
-            flown = _flown(ones, together.lines(begun), looks, budgets_m, flies)
-            if flown is None:
-                break
-            flights, budgets_m = flown
-            worth = asked.found([sweep for flight in flights for sweep in flight.programme.sweeps])
-            if worth > most:
-                best, most = flights, worth
+
+    def tried(strips: Strips, budgets_m: Sequence[float]) -> _Tried | None:
+        flown = _flown(ones, together.lines(strips), looks, budgets_m, flies)
+        if flown is None:
+            return None
+        flights, learnt_m = flown
+        worth = asked.found([sweep for flight in flights for sweep in flight.programme.sweeps])
+        return _Tried(worth, flights, strips, learnt_m)
+
+    def better(one: _Tried, heats: Sequence[float]) -> _Tried:
+        nonlocal number
+        for heat in heats:
             if controls.enough():
                 break
-            _, begun = together.moved(
-                begun, budgets_m, int(part * STEPS), seed + 200 + number, heat, controls.stop, controls.enough
-            )
-            heat *= COOLER
-    return best
+            number += 1
+            _, strips = together.moved(
+                one.strips, one.learnt_m, int(part * STEPS), 1_000 * seed + 200 + number, heat, controls.stop,
+                controls.enough,
+            )  # fmt: skip
+            found = tried(strips, one.learnt_m)
+            if found is not None and found.worth > one.worth:
+                one = found
+        return one
+
+    number = 0
+    best: _Tried | None = None
+    with controls.stage("transit"):
+        for strips in begun:
+            found = tried(strips, budgets_m)
+            if found is not None:
+                found = better(found, FEW)
+                best = found if best is None or found.worth > best.worth else best
+        if best is None or not asked.finds(best.worth):
+            return None
+        return better(best, MANY).flights
 
 
 def _first_m(one: Sought) -> float:

@@ -44,7 +44,7 @@ SHORTER = 1e-3
 #: What is worth a step at first, of all worth.
 WARM, COOL = 6e-3, 2e-3
 #: So many beginnings, each annealed by so many steps; the best of them again, cooler, and the best of those.
-BEGUN, FIRST, AGAIN, SECOND = 4, 40_000, 2, 40_000
+BEGUN, FIRST, AGAIN, SECOND = 5, 40_000, 3, 30_000
 #: Whether to end is asked after so many steps.
 ASKED = 2_000
 #: Turns on the spot are lines of this radius at least.
@@ -134,8 +134,10 @@ class Together:
         looks = 1 if detection >= 1.0 else LOOKS
         self._pays = np.array([detection * (1.0 - detection) ** k for k in range(looks)])
 
-    def found(self, budgets_m: Sequence[float], part: float, seed: int, stop: Stop, enough: Stop) -> Strips:
-        """Strips of each flier that find much, from nothing.
+    def found(
+        self, budgets_m: Sequence[float], part: float, seed: int, stop: Stop, enough: Stop
+    ) -> list[Strips]:
+        """Strips of each flier that find much, from nothing, several times, those that find most first.
 
         Parameters
         ----------
@@ -152,7 +154,8 @@ class Together:
         first = [moved(empty, FIRST, k, WARM) for k in range(max(1, round(part * BEGUN)))]
         first.sort(key=lambda each: -each[0])
         again = [moved(each[1], SECOND, 100 + k, COOL) for k, each in enumerate(first[:AGAIN])]
-        return max([*first, *again], key=lambda each: each[0])[1]
+        again.sort(key=lambda each: -each[0])
+        return [strips for _, strips in again]
 
     def moved(
         self,
