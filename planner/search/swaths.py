@@ -21,11 +21,12 @@ from planner.sensors.camera import CameraSensor
 from planner.sensors.sar import SarSensor
 from planner.sensors.strip import strip_on
 
+Floats = NDArray[np.float64]
 Place = tuple[float, float]
 
 #: A camera's pass is no shorter than this.
 LEAST_PASS_M = 2.0
-#: What is seen is told for so many courses, and between them on lines: by passes so many times as long as high.
+#: What is seen is told for so many courses, and between them on lines: by passes so much longer than high.
 COURSES, LONG = 240, 20.0
 
 
@@ -90,7 +91,7 @@ class Looking:
         return Swath(*(table[low] + (at - low) * (table[low + 1] - table[low])).tolist())
 
     def footprint(self, course_rad: float, look: Look) -> tuple[float, float, float, float]:
-        """Edges aside, and the sensor's run before and behind ground on the mean of the swath, of a long pass."""
+        """Edges aside of what a long pass sees, and its run before and behind that on their mean."""
         long_m = LONG * self.height_m
         end = (long_m * math.cos(course_rad), long_m * math.sin(course_rad))
         seen, _ = _SEEN[self.sensor.kind](self.sensor, self.height_m, (0.0, 0.0), end, look)

@@ -22,7 +22,7 @@ from planner.vehicle.limits import Use, exceeded
 STEPS, FEW, MANY = 20_000, (3e-4, 3e-4), (3e-4, 1e-3, 3e-4, 1e-4)
 #: So many seconds of a processor are all of the work, about.
 WORK_S = 6.0
-#: At first so much of what would be flown in level flight with all there is; or of what is thought to be left.
+#: At first so much of what level flight takes all there is for; or of what is thought to be left.
 LEVEL, THOUGHT = 0.8, 1.3
 
 
@@ -61,8 +61,9 @@ def moved_together(scenario: Scenario, ones: Sequence[Sought], controls: Control
         begun = together.found(budgets_m, part, seed, controls.stop, controls.enough)
     flies = [flier_of(one, controls) for one in ones]
 
-    def tried(strips: Strips, budgets_m: Sequence[float]) -> _Tried | None:
-        flown = _flown(ones, together.lines(strips), looks, budgets_m, flies)
+    def tried(strips: Strips) -> _Tried | None:
+        costs_m = together.costs_m(strips)
+        flown = _flown(ones, together.lines(strips), looks, costs_m, flies)
         if flown is None:
             return None
         flights, learnt_m = flown
@@ -79,7 +80,7 @@ def moved_together(scenario: Scenario, ones: Sequence[Sought], controls: Control
                 one.strips, one.learnt_m, int(part * STEPS), 1_000 * seed + 200 + number, heat, controls.stop,
                 controls.enough,
             )  # fmt: skip
-            found = tried(strips, one.learnt_m)
+            found = tried(strips)
             if found is not None and found.worth > one.worth:
                 one = found
         return one
@@ -88,13 +89,19 @@ def moved_together(scenario: Scenario, ones: Sequence[Sought], controls: Control
     best: _Tried | None = None
     with controls.stage("transit"):
         for strips in begun:
-            found = tried(strips, budgets_m)
+            found = tried(strips)
             if found is not None:
                 found = better(found, FEW)
                 best = found if best is None or found.worth > best.worth else best
         if best is None or not asked.finds(best.worth):
             return None
         return better(best, MANY).flights
+
+
+def _flier(one: Sought, look: Look) -> Flier:
+    """What moves strips of one flight, by estimates."""
+    asked = one.asked
+    return Flier(asked.looking, look, asked.room, asked.pricing)
 
 
 def _first_m(one: Sought) -> float:
@@ -110,7 +117,7 @@ def _flown(
     ones: Sequence[Sought],
     lines: Strips,
     looks: Sequence[Look],
-    budgets_m: Sequence[float],
+    costs_m: Sequence[float],
     flies: Sequence[Callable[[Programme], Flight]],
 ) -> tuple[list[Flight], list[float]] | None:
     """The flights over strips, cut to what limits allow, and what each may take by estimates, as they tell.
@@ -118,7 +125,7 @@ def _flown(
     None where one cannot be flown.
     """
     flights, learnt_m = [], []
-    for one, strips, look, budget_m, fly in zip(ones, lines, looks, budgets_m, flies, strict=True):
+    for one, strips, look, cost_m, fly in zip(ones, lines, looks, costs_m, flies, strict=True):
         programme = one.asked.over(strips, look, math.inf) if len(strips) else None
         if programme is None:
             return None
@@ -126,9 +133,9 @@ def _flown(
         try:
             flight = fly(programme)
             part = part_used(aircraft, flight.use)
-            learnt_m.append(programme.cost_m * MOST / part if part > 0.0 else math.inf)
+            learnt_m.append(cost_m * MOST / part if part > 0.0 else math.inf)
             if part > MOST or exceeded(aircraft, flight.use):
-                cut = as_long_as_can_be(programme, one.asked, max(budget_m, programme.cost_m), fly, aircraft)
+                cut = as_long_as_can_be(programme, one.asked, programme.cost_m, fly, aircraft)
                 if cut is None:
                     return None
                 flight = cut

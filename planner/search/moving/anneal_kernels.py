@@ -42,7 +42,7 @@ def _follow(
     free: Floats,
     turning: Floats,
 ) -> bool:
-    """Passes of strips, those of strips that were there before taken over; False where one cannot be flown."""
+    """Passes of strips, of those that were there before as they were; False where one cannot be flown."""
     for k in range(count):
         back = k - count + had
         if k < had and _same(strips[k], old[k]):
@@ -215,8 +215,8 @@ def annealed(
             edges = free[free_ends[f] : free_ends[f + 1]]
             turns = turning[turning_ends[f] : turning_ends[f + 1]]
             flown = flown and _follow(
-                new[t], new_counts[t], new_rows[t], strips[f], counts[f], rows[f], flights[f], tables[f], edges,
-                turns,
+                new[t], new_counts[t], new_rows[t], strips[f], counts[f], rows[f], flights[f], tables[f],
+                edges, turns,
             )  # fmt: skip
             if flown:
                 new_counts[t], new_costs[t] = _within(
@@ -228,12 +228,9 @@ def annealed(
             continue
         for t in range(touching):
             f = touched[t]
-            gained += _changed(
-                looks, scores, pays, corner, strips[f], counts[f], rows[f], new[t], new_counts[t], -1
-            )
-            gained += _changed(
-                looks, scores, pays, corner, new[t], new_counts[t], new_rows[t], strips[f], counts[f], 1
-            )
+            had, has = counts[f], new_counts[t]
+            gained += _changed(looks, scores, pays, corner, strips[f], had, rows[f], new[t], has, -1)
+            gained += _changed(looks, scores, pays, corner, new[t], has, new_rows[t], strips[f], had, 1)
         better = gained - price * more_m
         if better < 0.0 and drawn(state) >= math.exp(better / max(heat * left * left, 1e-300)):
             for t in range(touching):

@@ -178,8 +178,8 @@ def look(
         for side in (row[6], row[7]):
             there = row[1] + far * an + side * ae
             least_n, most_n = min(least_n, there), max(most_n, there)
-    first = max(0, int(math.ceil((least_n - south_m) / cell_m - 0.5)))
-    last = min(rows - 1, int(math.floor((most_n - south_m) / cell_m - 0.5)))
+    first = max(0, math.ceil((least_n - south_m) / cell_m - 0.5))
+    last = min(rows - 1, math.floor((most_n - south_m) / cell_m - 0.5))
     for i in range(first, last + 1):
         n = south_m + (i + 0.5) * cell_m - row[1]
         low, high = -np.inf, np.inf

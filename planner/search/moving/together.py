@@ -1,7 +1,7 @@
 """Strips of one flight, or of several at once, annealed for more of the worth that all find together.
 
-All is done in a frame of the ground's own, by numbers rounded in it, so that the same ground turned, mirrored,
-moved, or drawn a tenth of a millimetre off is searched by the same lines but for chance.
+All is done in a frame of the ground's own, by numbers rounded in it, so that the same ground turned,
+mirrored, moved, or drawn a tenth of a millimetre off is searched by the same lines but for chance.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from shapely.geometry.base import BaseGeometry
 from planner.progress import Stop, raise_if
 from planner.route import Look
 from planner.search.moving.anneal_kernels import annealed
-from planner.search.moving.strip_kernels import FLIGHT, SWATH
+from planner.search.moving.strip_kernels import COLUMNS, FLIGHT, SWATH, cost_m, passed
 from planner.search.programme import Pricing
 from planner.search.room import Room
 from planner.search.swaths import Looking
@@ -87,7 +87,7 @@ class Flier:
         found[4:7] = (
             max(model.turn_radius_m, LEAST_RADIUS_M), model.settle_m, model.air_factor(CIRCLE_RAD).mean(),
         )  # fmt: skip
-        return np.round(found, 6)
+        return np.round(found, 3)
 
 
 class Together:
@@ -201,6 +201,18 @@ class Together:
         for place, f in enumerate(self._order.tolist()):
             found[f] = best[place, : best_counts[place]].copy()
         return float(figures[1]), found
+
+    def costs_m(self, strips: Strips) -> list[float]:
+        """Metres through the air that the flights over strips take, about."""
+        found = [0.0] * len(strips)
+        for place, f in enumerate(self._order.tolist()):
+            rows = np.empty((max(len(strips[f]), 1), COLUMNS))
+            flight, table = self._flights[place], self._tables[place]
+            count = 0
+            for strip in strips[f]:
+                count += int(passed(strip, table, flight[5], rows[count]))
+            found[f] = float(cost_m(rows, count, flight, table))
+        return found
 
     def lines(self, strips: Strips) -> Strips:
         """The same where they lie."""
