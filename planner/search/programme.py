@@ -48,10 +48,15 @@ class Sweep:
 
     @property
     def row(self) -> tuple[float, ...]:
-        """For ``kernels.mark_seen``: what is seen, as the judge has it, with no margin used up."""
-        swath = self.swath.nominal or self.swath
+        """For ``kernels.mark_seen``."""
+        swath = self.swath
         reach_m = (swath.run_in_m, self.length_m - swath.run_out_m)
         return (*self.start, *self.along.tolist(), *reach_m, swath.right_m, swath.left_m)
+
+    @property
+    def nominal(self) -> Sweep:
+        """The same by what it sees where none of its margins are used up, as the judge has it."""
+        return self if self.swath.nominal is None else replace(self, swath=self.swath.nominal)
 
     def shortened(self, length_m: float) -> Sweep:
         """Its beginning."""
@@ -64,7 +69,7 @@ class Sweep:
         off = centres_m - np.asarray(self.start)
         ahead = off @ along
         aside = off @ np.array([-along[1], along[0]])
-        swath = self.swath.nominal or self.swath
+        swath = self.swath
         return np.asarray(
             (ahead >= swath.run_in_m)
             & (ahead <= self.length_m - swath.run_out_m)

@@ -67,7 +67,7 @@ def moved_together(scenario: Scenario, ones: Sequence[Sought], controls: Control
         if flown is None:
             return None
         flights, learnt_m = flown
-        worth = asked.found([sweep for flight in flights for sweep in flight.programme.sweeps])
+        worth = asked.found([sweep.nominal for flight in flights for sweep in flight.programme.sweeps])
         return _Tried(worth, flights, strips, learnt_m)
 
     def better(one: _Tried, heats: Sequence[float]) -> _Tried:
@@ -96,12 +96,6 @@ def moved_together(scenario: Scenario, ones: Sequence[Sought], controls: Control
         if best is None or not asked.finds(best.worth):
             return None
         return better(best, MANY).flights
-
-
-def _flier(one: Sought, look: Look) -> Flier:
-    """What moves strips of one flight, by estimates."""
-    asked = one.asked
-    return Flier(asked.looking, look, asked.room, asked.pricing)
 
 
 def _first_m(one: Sought) -> float:

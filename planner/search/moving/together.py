@@ -49,8 +49,8 @@ BEGUN, FIRST, AGAIN, SECOND = 5, 40_000, 3, 30_000
 ASKED = 2_000
 #: Turns on the spot are lines of this radius at least.
 LEAST_RADIUS_M = 1e-3
-#: Places are rounded to this, budgets to so much.
-ROUND_M, BUDGET_M = 1.0, 5.0
+#: Places are rounded to this, budgets, and the angle of the wind.
+ROUND_M, BUDGET_M, ROUND_RAD = 1.0, 5.0, math.radians(0.5)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -64,7 +64,12 @@ class Flier:
 
     def table(self, axes: Floats) -> Floats:
         """Swaths by course in axes, (COURSES, SWATH)."""
-        angles = 2.0 * math.pi * np.arange(COURSES) / COURSES
+        # All that courses differ in is the wind, which comes from a rounded angle to the axes.
+        toward_rad = self.pricing.model.wind.toward_rad
+        wind = axes @ np.array([math.cos(toward_rad), math.sin(toward_rad)])
+        from_rad = math.atan2(wind[1], wind[0])
+        more_rad = from_rad - ROUND_RAD * round(from_rad / ROUND_RAD)
+        angles = 2.0 * math.pi * np.arange(COURSES) / COURSES + more_rad
         ahead = np.stack([np.cos(angles), np.sin(angles)], axis=1) @ axes
         courses = np.arctan2(ahead[:, 1], ahead[:, 0])
         factors = self.pricing.model.air_factor(courses)
