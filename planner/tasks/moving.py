@@ -104,7 +104,11 @@ def _first_m(one: Sought) -> float:
     per_m = per_m_of(aircraft, level.amsl_m)
     limits = limits_of(aircraft, Use(0.0, 0.0, 0.0))
     whole_m = [limit / per_m[name] for name, (_, limit, _) in limits.items() if per_m[name] > 0.0]
-    return min(LEVEL * min(whole_m, default=math.inf), THOUGHT * one.spare.metres)
+    level_m = LEVEL * min(whole_m, default=math.inf)
+    if not math.isfinite(level_m):
+        return one.spare.metres
+    # What is thought hangs on how the ground is drawn, and what is flown tells better.
+    return level_m if THOUGHT * one.spare.metres > 0.5 * level_m else 0.5 * level_m
 
 
 def _flown(

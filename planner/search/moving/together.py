@@ -122,7 +122,7 @@ class Together:
         self._flights = self._flights[self._order]
         own = [fliers[k] for k in self._order]
         self._tables = np.array([flier.table(self._axes) for flier in own])
-        self._widths_m = np.round([flier.looking.narrowest_m() for flier in own], 2)
+        self._widths_m = np.round((self._tables[..., 7] - self._tables[..., 6]).min(axis=1), 2)
         self._free = _joined([self._edges(flier.room.free) for flier in own])
         self._turning = _joined([self._edges(flier.room.turning) for flier in own])
         corners = self._placed(shapely.get_coordinates(ground))
@@ -235,7 +235,11 @@ class Together:
         for ring in shapely.get_rings(shapely.get_parts(shape.buffer(-0.75 * ROUND_M, join_style="mitre"))):
             corners = self._rounded(shapely.get_coordinates(ring))
             found.append(np.hstack([corners[:-1], corners[1:]]))
-        return np.concatenate(found)
+        edges = np.concatenate(found)
+        turned = (edges[:, 0] > edges[:, 2]) | ((edges[:, 0] == edges[:, 2]) & (edges[:, 1] > edges[:, 3]))
+        edges[turned] = edges[turned][:, [2, 3, 0, 1]]
+        # Wherever rings begin.
+        return edges[np.lexsort(edges.T[::-1])]
 
 
 def _frame(ground: Polygon | MultiPolygon, ends: Floats) -> tuple[Floats, Floats]:
