@@ -21,7 +21,7 @@ from planner.vehicle.limits import Use, exceeded
 #: steps, from these heats by all worth: of each of the best, and of the best of all.
 STEPS, FEW, MANY = 20_000, (3e-4, 3e-4), (3e-4, 1e-3, 3e-4, 1e-4)
 #: So many seconds of a processor are all of the work, about.
-WORK_S = 6.0
+WORK_S = 5.0
 #: At first so much of what level flight takes all there is for; or of what is thought to be left.
 LEVEL, THOUGHT = 0.8, 1.3
 
@@ -55,11 +55,12 @@ def moved_together(scenario: Scenario, ones: Sequence[Sought], controls: Control
             for o, look in zip(ones, looks, strict=True)
         ],
     )
-    part = min(1.0, 0.5 * controls.enough.left_s / (WORK_S * max(1.0, len(ones) / 2)))
+    part = min(1.0, controls.enough.left_s / (WORK_S * max(1.0, len(ones) / 2)))
     budgets_m = [_first_m(one) for one in ones]
     with controls.stage("search"):
         begun = together.found(budgets_m, part, seed, controls.stop, controls.enough)
     flies = [flier_of(one, controls) for one in ones]
+    number = 0
 
     def tried(strips: Strips) -> _Tried | None:
         costs_m = together.costs_m(strips)
@@ -85,7 +86,6 @@ def moved_together(scenario: Scenario, ones: Sequence[Sought], controls: Control
                 one = found
         return one
 
-    number = 0
     best: _Tried | None = None
     with controls.stage("transit"):
         for strips in begun:

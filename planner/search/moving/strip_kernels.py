@@ -39,7 +39,7 @@ def _of_course(table: Floats, course_rad: float, column: int) -> float:
     at = (course_rad / TWO_PI - math.floor(course_rad / TWO_PI)) * rows
     low = min(int(at), rows - 1)
     part = at - low
-    return table[low, column] * (1.0 - part) + table[(low + 1) % rows, column] * part
+    return float(table[low, column] * (1.0 - part) + table[(low + 1) % rows, column] * part)
 
 
 @njit(cache=True, nogil=True)
@@ -117,7 +117,7 @@ def _through_air_m(length_m: float, e: float, n: float, table: Floats, flight: F
     """A way of a length to a place off by so much, through the air."""
     direct_m = math.sqrt(e * e + n * n)
     along = _of_course(table, math.atan2(n, e), 3)
-    return direct_m * along + (length_m - direct_m) * flight[6]
+    return float(direct_m * along + (length_m - direct_m) * flight[6])
 
 
 @njit(cache=True, nogil=True)
