@@ -198,11 +198,6 @@ class Search:
         laid = np.array([strip_of(sweep) for sweep in start.sweeps])
         return shifted(laid, tried, self.looking.narrowest_m(), self.total, self.seed, self.enough) or start
 
-    def over(self, strips: Floats, look: Look, budget_m: float) -> Programme | None:
-        """The programme that flies strips within a budget; None where nothing of them fits."""
-        laid = Laid(REFINED, tuple(self.sweeps_over(strips, look)), strips, look)
-        return next(iter(self._cut(laid, budget_m, thin=False)), None)
-
     def _again(self, way: Programme, budget_m: float) -> Iterator[Programme]:
         """A pattern to and fro for as long as the budget lasts, where looks again find something."""
         if self.detection >= 1.0 or way.cost_m > ROOM_AGAIN * budget_m or not way.whole:

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 from planner.errors import InfeasibleError
 from planner.route import Look
 from planner.scenario import Scenario
-from planner.search.moving.together import Flier, Strips, Together
+from planner.search.choose import REFINED, Search
+from planner.search.moving.together import Flier, Floats, Strips, Together
 from planner.search.programme import Programme
 from planner.tasks.budget import MOST, Flight, limits_of, part_used, per_m_of
 from planner.tasks.search import Sought, as_long_as_can_be, flier_of
@@ -124,7 +125,7 @@ def _flown(
     """
     flights, learnt_m = [], []
     for one, strips, look, cost_m, fly in zip(ones, lines, looks, costs_m, flies, strict=True):
-        programme = one.asked.over(strips, look, math.inf) if len(strips) else None
+        programme = _over(one.asked, strips, look)
         if programme is None:
             return None
         aircraft = one.setting.model.aircraft
@@ -142,3 +143,12 @@ def _flown(
             return None
         flights.append(flight)
     return flights, learnt_m
+
+
+def _over(asked: Search, strips: Floats, look: Look) -> Programme | None:
+    """The programme that flies all of some strips; None where nothing of them can be flown."""
+    sweeps = tuple(asked.sweeps_over(strips, look)) if len(strips) else ()
+    if not sweeps:
+        return None
+    worth, cost_m = asked.found(sweeps), asked.pricing.cost_m(sweeps)
+    return Programme(REFINED, sweeps, worth, cost_m, sweeps, False, strips, look)
