@@ -65,6 +65,13 @@ class Until:
         """Whether there is such a time."""
         return self.clock is not None and math.isfinite(self.end_s)
 
+    @property
+    def left_s(self) -> float:
+        """How long until then; inf without such a time."""
+        if self.clock is None or not self.comes:
+            return math.inf
+        return max(self.end_s - self.clock(), 0.0)
+
     def part(self, share: float) -> Until:
         """The same for a part of the time that is left."""
         if self.clock is None or not self.comes:

@@ -53,6 +53,11 @@ class Sweep:
         reach_m = (swath.run_in_m, self.length_m - swath.run_out_m)
         return (*self.start, *self.along.tolist(), *reach_m, swath.right_m, swath.left_m)
 
+    @property
+    def nominal(self) -> Sweep:
+        """The same by what it sees where none of its margins are used up, as the judge has it."""
+        return self if self.swath.nominal is None else replace(self, swath=self.swath.nominal)
+
     def shortened(self, length_m: float) -> Sweep:
         """Its beginning."""
         end = np.asarray(self.start) + length_m * self.along

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import Any
 
+import numpy as np
+import shapely
+from numpy.typing import NDArray
 from shapely.geometry import Polygon
 
 from planner.errors import InfeasibleError
@@ -18,10 +21,13 @@ from planner.sensors.camera import CameraSensor
 from planner.sensors.sar import SarSensor
 from planner.sensors.strip import strip_on
 
+Floats = NDArray[np.float64]
 Place = tuple[float, float]
 
 #: A camera's pass is no shorter than this.
 LEAST_PASS_M = 2.0
+#: What is seen is told for so many courses, and between them on lines: by passes so much longer than high.
+COURSES, LONG = 240, 20.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,6 +45,9 @@ class Looking:
     sensor: Sensor
     height_m: float
     names: tuple[str, ...]
+    _seen: dict[Look, NDArray[np.float64]] = field(
+        default_factory=dict, init=False, repr=False, compare=False
+    )
 
     @property
     def looks(self) -> tuple[Look, ...]:
@@ -69,7 +78,32 @@ class Looking:
                 f"sees nothing from {self.height_m:.0f} m with its margins taken off",
                 "Fly higher, or lower pointing_margin_deg or position_margin_m.",
             )
-        return found
+        return replace(found, nominal=self._nominal(course_rad, look))
+
+    def _nominal(self, course_rad: float, look: Look) -> Swath:
+        """What it sees beside a course with no margin used up, as the judge has it."""
+        if look not in self._seen:
+            courses = 2.0 * math.pi * np.arange(COURSES + 1) / COURSES
+            self._seen[look] = np.array([self.footprint(course, look) for course in courses.tolist()])
+        at = COURSES * (course_rad / (2.0 * math.pi) % 1.0)
+        low = min(int(at), COURSES - 1)
+        table = self._seen[look]
+        return Swath(*(table[low] + (at - low) * (table[low + 1] - table[low])).tolist())
+
+    def footprint(self, course_rad: float, look: Look) -> tuple[float, float, float, float]:
+        """Edges aside of what a long pass sees, and its run before and behind that on their mean."""
+        long_m = LONG * self.height_m
+        end = (long_m * math.cos(course_rad), long_m * math.sin(course_rad))
+        seen, _ = _SEEN[self.sensor.kind](self.sensor, self.height_m, (0.0, 0.0), end, look)
+        along = np.array([math.cos(course_rad), math.sin(course_rad)])
+        own = shapely.get_coordinates(seen) @ np.stack([along, [-along[1], along[0]]], axis=1)
+        turned = Polygon(own)
+        right_m, left_m = float(own[:, 1].min()), float(own[:, 1].max())
+        middle_m = float(turned.centroid.x)
+        first = turned.intersection(shapely.box(-4.0 * long_m, right_m - 1.0, middle_m, left_m + 1.0))
+        last = turned.intersection(shapely.box(middle_m, right_m - 1.0, 5.0 * long_m, left_m + 1.0))
+        width_m = left_m - right_m
+        return (right_m, left_m, middle_m - first.area / width_m, long_m - middle_m - last.area / width_m)
 
     def narrowest_m(self) -> float:
         """Width of the narrowest strip of any course."""

@@ -53,7 +53,7 @@ def upright(search: DiscSearch) -> Upright:
         long_m = float(np.ptp(corners @ axes.T, axis=0)[0])
         return (-round(long_m, 3), *np.round((ends - origin) @ axes.T, 3).ravel().tolist())
 
-    axes, origin = min(_frames(corners), key=place)
+    axes, origin = min(frames(corners), key=place)
     whole = shapely.transform(search.ground, lambda places: np.round((places - origin) @ axes.T, DIGITS))
     start, end = (tuple(each) for each in np.round((ends - origin) @ axes.T, DIGITS).tolist())
     plain = worth_of_ground(whole, search.worth.cell_m)
@@ -62,7 +62,7 @@ def upright(search: DiscSearch) -> Upright:
     return Upright(replace(search, ground=whole, worth=worth, start=start, end=end), axes, origin)
 
 
-def _frames(corners: Floats) -> Iterator[tuple[Floats, Floats]]:
+def frames(corners: Floats) -> Iterator[tuple[Floats, Floats]]:
     """Axes and origin of the rectangle seen from each corner, either side first."""
     for k in range(4):
         sides = np.stack([corners[(k + 1) % 4], corners[k - 1]]) - corners[k]

@@ -73,12 +73,15 @@ class Swath:
         Edges of the strip, beside the course, to the left positive: −w and w for what looks straight down.
     run_in_m, run_out_m
         How far before ground the sensor is on, and beyond it; negative where it sees ahead, or behind.
+    nominal
+        What is seen where none of the margins are used up; None where that is the same.
     """
 
     right_m: float
     left_m: float
     run_in_m: float
     run_out_m: float
+    nominal: Swath | None = None
 
     @property
     def width_m(self) -> float:

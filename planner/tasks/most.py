@@ -48,9 +48,10 @@ def most(scenario: Scenario) -> tuple[float, float] | None:
         faster = 1.0 if own.hovers else 1.0 + wind_m_s / own.airspeed_m_s
         start, end = (terminal.position for terminal in setting.ends)
         swaths = tuple(
-            asked.looking.swath(math.radians(course), look)
+            swath.nominal or swath
             for course in range(0, 360, 15)
             for look in asked.looking.looks
+            for swath in (asked.looking.swath(math.radians(course), look),)
         )
         flights += own.batteries * [Sweeping(start, end, faster * min(lengths_m, default=math.inf), swaths)]
     return most_found(ground, scenario.importance, flights)

@@ -92,6 +92,21 @@ def sought(scenario: Scenario, controls: Controls, *, as_before: bool = False) -
     InfeasibleError
         Where it can see nothing, or not come to its end.
     """
+    one = unranked(scenario, controls)
+    with controls.stage("search"):
+        controls.progress("search", 0.0)
+        ranked = one.asked.going_on() if as_before else one.asked.ranked(one.spare.metres)
+    return replace(one, ranked=tuple(ranked))
+
+
+def unranked(scenario: Scenario, controls: Controls) -> Sought:
+    """One aircraft's search with nothing of it tried yet.
+
+    Raises
+    ------
+    InfeasibleError
+        As for ``sought``.
+    """
     setting = Setting.of(scenario)
     methods = chosen_methods(scenario.method) | {"search": "patterns", "coverage": "none", "routing": "none"}
     transits = Transits.of(setting, scenario.objective, methods)
@@ -102,10 +117,7 @@ def sought(scenario: Scenario, controls: Controls, *, as_before: bool = False) -
     spare = spare_of(transits, asked, controls.stop)
     if scenario.importance.drift is not None:
         asked = _drifting(asked, scenario, spare)
-    with controls.stage("search"):
-        controls.progress("search", 0.0)
-        ranked = asked.going_on() if as_before else asked.ranked(spare.metres)
-    return Sought(setting, transits, asked, spare, tuple(ranked))
+    return Sought(setting, transits, asked, spare, ())
 
 
 def answer_to(one: Sought, controls: Controls, *, improved: bool = True) -> Answer:
@@ -116,6 +128,17 @@ def answer_to(one: Sought, controls: Controls, *, improved: bool = True) -> Answ
     InfeasibleError
         Where none of it can be flown.
     """
+    asked, fly = one.asked, flier_of(one, controls)
+    with controls.stage("transit"):
+        best = _best(one, fly, controls)
+        if improved and asked.family in (None, REFINED) and best.programme.family not in PUBLISHED:
+            best = _improved(best, asked, fly, one.setting.model.aircraft, controls)
+            best = filled(best, asked, fly, one.setting.model.aircraft, controls.enough)
+    return answer_with(one, best)
+
+
+def flier_of(one: Sought, controls: Controls) -> Callable[[Programme], Flight]:
+    """What flies programmes of a search, take-off and landing included."""
     setting, asked = one.setting, one.asked
 
     def fly(programme: Programme) -> Flight:
@@ -124,14 +147,14 @@ def answer_to(one: Sought, controls: Controls, *, improved: bool = True) -> Answ
         use = used(composed.flight, setting.model, setting.level)
         return Flight(programme, passes, composed, legs, notes, use)
 
-    with controls.stage("transit"):
-        best = _best(one, fly, controls)
-        if improved and asked.family in (None, REFINED) and best.programme.family not in PUBLISHED:
-            best = _improved(best, asked, fly, setting.model.aircraft, controls)
-            best = filled(best, asked, fly, setting.model.aircraft, controls.enough)
+    return fly
+
+
+def answer_with(one: Sought, best: Flight) -> Answer:
+    """The answer that a flight is."""
     methods = one.transits.methods | {"search": best.programme.family}
-    notes = (*best.notes, *cut_off(asked, setting.ends[0].name))
-    return Answer(setting, best.composed, best.legs, best.passes, methods, (), notes)
+    notes = (*best.notes, *cut_off(one.asked, one.setting.ends[0].name))
+    return Answer(one.setting, best.composed, best.legs, best.passes, methods, (), notes)
 
 
 def refuse_unsearchable(scenario: Scenario) -> None:
@@ -217,7 +240,7 @@ def _best(one: Sought, fly: Callable[[Programme], Flight], controls: Controls) -
                 break
             controls.progress("transit", flown / FLOWN)
             try:
-                found = _as_long_as_can_be(programme, one.asked, one.spare.metres, fly, aircraft)
+                found = as_long_as_can_be(programme, one.asked, one.spare.metres, fly, aircraft)
             except InfeasibleError as error:
                 refused, barred = error, barred + 1
                 if barred >= MOST_REFUSED:
@@ -254,7 +277,7 @@ def _improved(
         if better.worth <= best.programme.worth * (1.0 + LEAST_BETTER):
             break
         try:
-            found = _as_long_as_can_be(better, asked, budget_m, fly, aircraft)
+            found = as_long_as_can_be(better, asked, budget_m, fly, aircraft)
         except InfeasibleError:
             break
         if found is None or found.programme.worth <= best.programme.worth:
@@ -263,7 +286,7 @@ def _improved(
     return best
 
 
-def _as_long_as_can_be(
+def as_long_as_can_be(
     programme: Programme,
     asked: Search,
     spare_m: float,

@@ -34,12 +34,20 @@ def ground_of(shape: BaseGeometry) -> Polygon | MultiPolygon:
 def worth_of(scenario: Scenario, ground: Polygon | MultiPolygon, cell_m: float) -> Worth:
     """Scores of the ground by cells, less what looks before the search have taken of them."""
     plain = worth_of_ground(ground, cell_m)
+    return worth_of_ground(ground, cell_m, scores_at(scenario, plain.centres_m, cell_m))
+
+
+def scores_at(scenario: Scenario, places_m: Floats, cell_m: float) -> Floats:
+    """What a square metre is worth at places (N, M, 2), of a raster the mean over cells of so many metres.
+
+    Less what looks before the search have taken of it; of ground and what is beside it alike.
+    """
     importance = scenario.importance
-    left = missed_before(importance, plain.centres_m)
+    left = missed_before(importance, places_m)
     if not importance.given:
-        return worth_of_ground(ground, cell_m, left)
-    east, north = plain.centres_m[..., 0], plain.centres_m[..., 1]
-    scores = np.zeros(plain.scores.shape)
+        return left
+    east, north = places_m[..., 0], places_m[..., 1]
+    scores = np.zeros(east.shape)
     for patch in importance.patches:
         shapely.prepare(patch.area)
         scores += np.where(shapely.contains_xy(patch.area, east, north), patch.score, 0.0)
@@ -53,7 +61,7 @@ def worth_of(scenario: Scenario, ground: Polygon | MultiPolygon, cell_m: float) 
         for north_part, east_part in np.ndindex(within, within):
             off_m = cell_m * ((np.array([east_part, north_part]) + 0.5) / within - 0.5)
             scores += _on_raster(raster, east + off_m[0], north + off_m[1]) / within**2
-    return worth_of_ground(ground, cell_m, scores * left)
+    return np.asarray(scores * left)
 
 
 def _on_raster(raster: ImportanceRaster, east_m: Floats, north_m: Floats) -> Floats:

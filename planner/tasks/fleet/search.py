@@ -17,6 +17,7 @@ from planner.errors import Finding, InfeasibleError
 from planner.fleet.assignment import Trip
 from planner.metrics import used
 from planner.scenario import Scenario
+from planner.search.choose import REFINED
 from planner.search.seen import missed_before
 from planner.search.values import Worth
 from planner.tasks.fleet.aloft import homewards
@@ -24,7 +25,8 @@ from planner.tasks.fleet.answer import FleetAnswer
 from planner.tasks.fleet.crews import Crew, crews_of
 from planner.tasks.fleet.flights import Flown, Order
 from planner.tasks.fleet.placing import Errand, placed
-from planner.tasks.search import answer_to, asked_of, reach, sought
+from planner.tasks.fleet.strips import moved_together
+from planner.tasks.search import answer_to, answer_with, asked_of, reach, sought, unranked
 from planner.tasks.task import Answer, Controls
 from planner.tasks.worth import drifted, ground_of, worth_of
 from planner.wishes import Seen
@@ -83,7 +85,7 @@ def search_together(scenario: Scenario, controls: Controls) -> FleetAnswer:
                 continue
             longest_s = max(longest_s, lasts_s)
             shares += [_Share(index, number, seen_m2) for number in range(crew.aircraft.batteries)]
-    answers: dict[_Share, Answer] = {}
+    answers = _moved(scenario, crews, shares, controls) or {}
     while shares and not answers:
         # What drifts is shared out as it lies in the middle of the longest flight.
         later = replace(scenario, importance=drifted(scenario.importance, 0.5 * longest_s))
@@ -135,6 +137,33 @@ def search_together(scenario: Scenario, controls: Controls) -> FleetAnswer:
     families = dict.fromkeys(answer.methods["search"] for answer in answers.values())
     methods = next(iter(answers.values())).methods | {"search": "+".join(families)}
     return FleetAnswer(crews, sorties, methods, tuple(dict.fromkeys(dropped)), (), separation)
+
+
+def _moved(
+    scenario: Scenario, crews: Sequence[Crew], shares: Sequence[_Share], controls: Controls
+) -> dict[_Share, Answer] | None:
+    """Strips of all flights moved together over all the ground; None where that is not to be done so."""
+    alone = [crews[share.crew].alone for share in shares]
+    names = {tuple(region.name for region in each.regions) for each in alone}
+    if (
+        len(shares) < 2
+        or len(names) > 1
+        or scenario.method.search not in ("auto", REFINED)
+        or scenario.importance.drift is not None
+        or any(crew.aircraft.aloft is not None for crew in crews)
+    ):
+        return None
+    ones = []
+    try:
+        for each in alone:
+            ones.append(unranked(each, controls))
+    except InfeasibleError:
+        # Who stays at home is found by bands.
+        return None
+    flights = moved_together(alone[0], ones, controls)
+    if flights is None:
+        return None
+    return {s: answer_with(one, best) for s, one, best in zip(shares, ones, flights, strict=True)}
 
 
 def _best_first(

@@ -2,6 +2,7 @@
 
 from itertools import pairwise
 
+import numpy as np
 import pytest
 import shapely
 from shapely.geometry import Polygon
@@ -9,7 +10,7 @@ from shapely.geometry import Polygon
 from planner.geojson import read_plan, read_scenario, write_plan
 from planner.pipeline import make_plan
 from planner.validate import findings
-from tests.planner.search.searches import WING, document, lonlat, rectangle
+from tests.planner.search.searches import CAMERA, WING, document, feature, lonlat, rectangle
 
 SMALL = WING | {"energy_wh": 14}
 
@@ -101,3 +102,32 @@ def test_one_that_comes_too_near_wherever_it_searches_flies_home_and_says_so():
     idle = [name for name, seen in prints.items() if seen.is_empty]
     assert idle
     assert all(any(name in warning and "too near" in warning for warning in plan.warnings) for name in idle)
+
+
+def test_what_two_find_does_not_hang_on_how_the_ground_is_drawn():
+    """Mirrored, a tenth of a millimetre off, the other aircraft first, two find as much."""
+    rng = np.random.default_rng(1)
+
+    def found(place, wind_from_deg=300.0, order=1):
+        def ring(west, south, east, north):
+            corners = [place(e, n) for e, n in ((west, south), (east, south), (east, north), (west, north))]
+            return [[*corners, corners[0]]]
+
+        fast = SMALL | {"name": "b", "airspeed_m_s": 20, "energy_wh": 18}
+        asked = {
+            "type": "FeatureCollection", "task": "search", "altitude_m": 100,
+            "vehicles": [SMALL | {"name": "a"}, fast][::order], "sensors": [CAMERA],
+            "wind": {"speed_m_s": 4.0, "from_deg": wind_from_deg},
+            "features": [
+                feature("area", "Polygon", ring(-100.0, -100.0, 1900.0, 1400.0)),
+                feature("importance", "Polygon", ring(0.0, 0.0, 1800.0, 1300.0), score=0.2),
+                feature("importance", "Polygon", ring(900.0, 350.0, 1700.0, 1100.0), score=2.0),
+                feature("start", "Point", place(300.0, 100.0)),
+            ],
+        }  # fmt: skip
+        plan = make_plan(read_scenario(asked))
+        assert plan.violations == ()
+        return plan.metrics.importance_collected
+
+    otherwise = found(lambda e, n: [deg + 1e-9 * rng.normal() for deg in lonlat(-e, n)], 60.0, -1)
+    assert otherwise == pytest.approx(found(lonlat), rel=0.005)
