@@ -145,6 +145,9 @@ def searches() -> None:
     still, drift = {"detection": 0.5}, {"detection": 0.5, "drift": {"speed_m_s": 0.2, "toward_deg": 90.0}}
     for member in (still, drift):
         make_plan(read_scenario(_valued() | {"search": member}))
+    valued = _valued()
+    two = [{**valued["vehicles"][0], "name": name} for name in ("one", "other")]
+    make_plan(read_scenario(valued | {"vehicles": two}))
 
 
 def left_out() -> None:

@@ -62,8 +62,15 @@ print(kept)
 
 def run(folder: Path, *names: str) -> str:
     """What a process says that runs kernels which lie in a folder."""
+    return run_program(folder, PROGRAM, *names)
+
+
+def run_program(folder: Path, program: str, *names: str) -> str:
+    """What a program says that finds modules in a folder."""
     told = os.environ | {"PYTHONPATH": f"{folder}{os.pathsep}{ROOT}", "NUMBA_CACHE_DIR": str(folder / "kept")}
-    command = [sys.executable, "-c", PROGRAM, *names]
+    # A source changed within the second would be taken for the one that Python has compiled.
+    told["PYTHONDONTWRITEBYTECODE"] = "1"
+    command = [sys.executable, "-c", program, *names]
     ended = subprocess.run(command, env=told, capture_output=True, text=True, timeout=PATIENCE_S, check=False)
     assert ended.returncode == 0, ended.stderr
     return ended.stdout.strip()
@@ -76,6 +83,51 @@ def test_what_two_processes_compiled_is_not_mixed_up_by_a_third(tmp_path: Path) 
         assert run(tmp_path, name) == "0"
     for order in permutations(KERNELS):
         assert run(tmp_path, *order) == "2"
+
+
+CALLER = """
+from planner.jit import njit
+from lower import ADDED, step
+
+@njit(cache=True)
+def ascending(x):
+    return later(x) + ADDED
+
+@njit(cache=True)
+def later(x):
+    return step(x)
+"""
+LOWER = """
+from planner.jit import njit
+from lowest import FACTOR
+ADDED = {added}
+
+@njit(cache=True)
+def step(x):
+    return x * FACTOR
+"""
+CALLING = """
+import caller
+print(caller.ascending(1.0), sum(caller.ascending.stats.cache_hits.values()))
+"""
+
+
+def test_a_kernel_is_compiled_anew_when_what_it_takes_from_elsewhere_has_changed(tmp_path: Path) -> None:
+    """Constants and kernels of other files, through kernels between, defined before or after it."""
+
+    def told(added: float, factor: float) -> list[str]:
+        texts = {"caller": CALLER, "lower": LOWER.format(added=added), "lowest": f"FACTOR = {factor}\n"}
+        for name, text in texts.items():
+            file = tmp_path / f"{name}.py"
+            if not file.exists() or file.read_text() != text:
+                file.write_text(text)
+        return run_program(tmp_path, CALLING).split()
+
+    assert told(0.5, 2.0) == ["2.5", "0"]
+    assert told(0.5, 2.0) == ["2.5", "1"]
+    assert told(0.25, 2.0) == ["2.25", "0"]
+    assert told(0.25, 3.0) == ["3.25", "0"]
+    assert told(0.25, 3.0) == ["3.25", "1"]
 
 
 def test_forks_draw_other_names(tmp_path: Path) -> None:
