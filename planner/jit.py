@@ -101,7 +101,8 @@ def _taken_by(function: Any) -> str:
     for name in sorted(_names(function.__code__) & set(function.__globals__)):
         value = function.__globals__[name]
         if isinstance(value, Dispatcher):
-            file = getattr(value._cache, "_cache_file", None)
+            kernel: Any = value
+            file = getattr(kernel._cache, "_cache_file", None)
             if file is not None:
                 _date(file)
             told.append(f"{name} {value.py_func.__code__.co_code!r} {getattr(file, '_source_stamp', None)}")

@@ -8,7 +8,9 @@ from typing import Any, Final
 import numpy as np
 from shapely import box
 
+from planner.airspace.kernels import length_in_discs
 from planner.airspace.terrain import Ground, Terrain
+from planner.airspace.zone_kernels import distances_from
 from planner.as_flown.photo import Shots
 from planner.as_flown.photo_ground import PhotoGrid
 from planner.coverage.urban.methods import SEQUENCES
@@ -157,6 +159,13 @@ def left_out() -> None:
     best_choice(few, 0)
 
 
+def ways_out() -> None:
+    """Ways out of threats, and by which of them lines pass: the cases above need none."""
+    discs = np.array([[500.0, 0.0, 100.0]])
+    length_in_discs(np.zeros((3, 3))[:, :2], discs)
+    distances_from(np.zeros((1, 8)), discs)
+
+
 def terrain() -> None:
     """Over a raster: passes that are level, and lanes that follow the ground."""
     # The scenario lies at 0° N 0° E.
@@ -182,7 +191,7 @@ def photos() -> None:
 
 #: What is compiled side by side, once the kernels of a usual plan are there; the longest first.
 CASES: Final[tuple[Callable[[], None], ...]] = (
-    methods, cameras, many, fleets, searches, left_out, terrain, photos, bounds,
+    methods, cameras, many, fleets, searches, left_out, terrain, photos, bounds, ways_out,
 )  # fmt: skip
 
 
