@@ -160,7 +160,7 @@ async def upload(
         fleet.get(vehicle_id), body.plan_id, body.parts, choice, body.reason if body.override else None
     )
     told = UploadOut.of(report)
-    require_held(f"{told.plan_vehicle} does not hold the plan", report.failings, told)
+    require_held(f"{fleet.get(vehicle_id).name} does not hold the plan", report.failings, told)
     response.status_code = 200 if report.verified else 202
     return told
 

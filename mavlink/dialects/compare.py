@@ -54,7 +54,7 @@ class Difference:
     held: float | None
 
     def __str__(self) -> str:
-        where = "mission" if self.seq is None else f"item {self.seq}"
+        where = "the list" if self.seq is None else f"item {self.seq}"
         return f"{where}: {self.field} should be {self.meant}, is {self.held}"
 
 

@@ -137,7 +137,7 @@ class Driver(Watched, Believing):
             self.require_reachable()
         else:
             self.require_connected()
-        return await self._under_way.command(machine)
+        return await self._under_way.command(machine, unheard)
 
     def post(self, machine: CommandMachine) -> Job[CommandOutcome]:
         """Queue a command without waiting for it."""
@@ -372,7 +372,7 @@ class Driver(Watched, Believing):
         self.quality.forget()
         self._trust.lost()
         self._set_state(self._trust.told(self.sensor.unknown(replace(self.state, connected=False))))
-        self._under_way.abandon()
+        self._under_way.abandon(silent=True)
 
     def show_sensor(self, output: SensorOutput | None) -> None:
         """Read from this output whether the sensor is on; what another one showed no longer counts."""

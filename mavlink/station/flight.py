@@ -102,7 +102,8 @@ class FlightCommands(ABC):
             return await self.set_mode("AUTO.LOITER", unheard=True)
         if self.state.autopilot == "ardupilot":
             hovers = self.state.type == "multirotor"
-            if self.state.armed:
+            # One that has fallen silent may fly, whatever was heard of it last.
+            if self.state.armed or not self.state.connected:
                 return await self.set_mode("BRAKE" if hovers else "LOITER", unheard=True)
             return await self.set_mode("GUIDED" if hovers else "MANUAL", unheard=True)
         return await self.command(Command.DO_PAUSE_CONTINUE, (0.0,), unheard=True)

@@ -13,10 +13,13 @@ End = TypeVar("End")
 
 
 class Job(Generic[End]):
-    """A machine under way and who waits for it."""
+    """A machine under way and who waits for it; ``unheard``: it goes on where the vehicle falls silent."""
 
-    def __init__(self, machine: Machine[End], progress: Callable[[Progress], None] | None) -> None:
+    def __init__(
+        self, machine: Machine[End], progress: Callable[[Progress], None] | None, unheard: bool = False
+    ) -> None:
         self.machine = machine
+        self.unheard = unheard
         self.done: asyncio.Future[End] = asyncio.get_running_loop().create_future()
         self._progress = progress
         self._reported: Progress | None = None

@@ -76,9 +76,9 @@ class UnderWay:
             if self._transfer is job:
                 self._transfer = None
 
-    async def command(self, machine: CommandMachine) -> CommandOutcome:
+    async def command(self, machine: CommandMachine, unheard: bool = False) -> CommandOutcome:
         """Run a command to its end; those of the same number take turns, as their answers look alike."""
-        job = self.post(machine)
+        job = self.post(machine, unheard)
         try:
             return await job.done
         except (asyncio.CancelledError, CodecError):
@@ -88,10 +88,10 @@ class UnderWay:
                 self._next_command(machine.command)
             raise
 
-    def post(self, machine: CommandMachine) -> Job[CommandOutcome]:
+    def post(self, machine: CommandMachine, unheard: bool = False) -> Job[CommandOutcome]:
         """Queue a command without waiting for it."""
         queue = self._commands.setdefault(machine.command, deque())
-        job = Job(machine, None)
+        job = Job(machine, None, unheard)
         queue.append(job)
         if len(queue) == 1:
             self._send(machine.start(self._clock()), job)
@@ -119,17 +119,27 @@ class UnderWay:
             self._queue(answers, job)
         self._settle(job)
 
-    def abandon(self) -> None:
-        """End everything as unknown: the vehicle is not there any more."""
+    def abandon(self, *, silent: bool = False) -> None:
+        """End everything as unknown: the vehicle is not there any more.
+
+        Of one that has only fallen silent, commands that are sent unheard go on.
+        """
         if self._transfer is not None:
             asked = self._transfer.machine.progress.done
             self._transfer.finish(Unknown("link-lost", asked or None))
             self._transfer = None
         self._lingering = None
-        for queue in self._commands.values():
+        left: dict[int, deque[Job[CommandOutcome]]] = {}
+        for number, queue in self._commands.items():
+            staying = deque(job for job in queue if silent and job.unheard)
             for job in queue:
-                job.finish(CommandOutcome(getattr(job.machine, "command", 0), None))
-        self._commands.clear()
+                if job not in staying:
+                    job.finish(CommandOutcome(getattr(job.machine, "command", 0), None))
+            if staying:
+                left[number] = staying
+                if staying[0] is not queue[0]:
+                    self._send(staying[0].machine.start(self._clock()), staying[0])
+        self._commands = left
 
     def _jobs(self) -> Iterator[Job[Any]]:
         if self._transfer is not None:

@@ -116,7 +116,7 @@ class DownloadMachine(Machine[Outcome]):
         return []
 
     def tick(self, now_s: float) -> list[Message]:
-        """Ask again, or give up."""
+        """Ask again, or give up and say so."""
         if now_s < self.deadline_s:
             return []
         if self._tries <= self.settings.retries:
@@ -124,6 +124,8 @@ class DownloadMachine(Machine[Outcome]):
             return self._ask(now_s, first=False)
         if self._move(Event.GIVES_UP):
             self._end(Unknown("timeout", self._wanted()))
+            # PX4 goes on with what nobody wants any more, and refuses another list meanwhile.
+            return [self._acknowledgement(MissionResult.OPERATION_CANCELLED)]
         return []
 
     def cancel(self, now_s: float) -> list[Message]:

@@ -69,7 +69,8 @@ def check_slots(scenario: Scenario, findings: Findings) -> None:
             slot.one,
             "slot-too-narrow",
             f"leaves {slot.width_m:.1f} m to {other}, too narrow for the clearance_m of "
-            f"{scenario.clearance_m:g} m from {slot.kept_from}: nothing is flown there",
+            f"{scenario.clearance_m:g} m from {slot.kept_from} and {TRANSIT_MARGIN_M:g} m that lines keep "
+            "besides: nothing is flown there",
             f"Set clearance_m to {slot.opening_m:g} at most where that is to be flown through.",
         )
     if len(found) > MOST_TOLD:

@@ -229,8 +229,8 @@ def _unseen(asked: Seeing, region: Region, left: BaseGeometry, *, least: bool = 
     fixes = [] if higher is None else [higher]
     those = "it" if len(names) == 1 else "them"
     ring = f" with {math.ceil(around_m)} m round {those}" if around_m > LEAST_AROUND_M else ""
-    rest = "what can be is seen" if least else f"all but {_percent(share)} is seen"
-    fixes += [f"cut {which}{ring} out of it", f"set required: false, and {rest}"]
+    # How much that is the flight decides: some sweeps have no room for the turns between them.
+    fixes += [f"cut {which}{ring} out of it", "set required: false, and what can be flown is seen"]
     middle = left.representative_point()
     most = "at least " if least else ""
     return InfeasibleError(

@@ -6,6 +6,7 @@ import httpx
 import pytest
 
 from mavlink.sim.settings import SimSettings
+from tests.app.small_flight import order
 from tests.app.test_problems import check_problem
 from tests.app.test_vehicles import faulty_vehicle
 from tests.patience import PATIENCE_S
@@ -13,7 +14,7 @@ from tests.patience import PATIENCE_S
 
 @pytest.mark.parametrize(
     ("fault", "outcome", "rule"),
-    [("error_ack_at_0", "refused", "upload-refused"), ("altered_item", "accepted", "upload-differs")],
+    [("error_ack_at_0", "refused", "upload-refused"), ("altered_item", "different", "upload-differs")],
 )
 async def test_what_is_not_held_is_no_success(
     client: httpx.AsyncClient, plan_id: str, fault: str, outcome: str, rule: str
@@ -29,6 +30,10 @@ async def test_what_is_not_held_is_no_success(
         assert [error["feature"] for error in problem["errors"]] == ["mission"]
         assert problem["parts"]["mission"]["meant"] > 0
         assert problem["number"] == (await client.get(vehicle)).json()["upload"]["number"]
+        ordered = (await client.get("/api/v1/audit", params={"kind": "upload"})).json()["entries"][0]
+        assert ordered["outcome"] == outcome
+        if outcome == "different":
+            check_problem(await order(client, vehicle, "arm"), 409, "mission-differs")
 
 
 async def test_what_could_not_be_read_back_is_not_known_to_be_held(

@@ -19,7 +19,7 @@ from mavlink.wire.items import Command
 from tests.app.small_flight import in_flight, order, planned, ready, small_scenario
 from tests.app.test_problems import check_problem
 from tests.app.test_restart import flying
-from tests.app.test_vehicles import connected, listening, until
+from tests.app.test_vehicles import connected, faulty_vehicle, listening, until
 from tests.patience import PATIENCE_S
 
 #: Texts of the firmwares, and the command each has to do with.
@@ -136,3 +136,19 @@ async def test_the_loss_of_a_flights_link_is_an_event(impatient: httpx.AsyncClie
             assert "sent, but it was last heard" in unknown.json()["reason"]
         check_problem(await order(impatient, vehicle, "land"), 409, "vehicle-silent")
         await impatient.delete(vehicle, params={"in_flight": "true"})
+
+
+@pytest.mark.parametrize("command", ["sensor_off", "rtl"])
+async def test_without_an_answer_nothing_is_done_that_nobody_saw(
+    impatient: httpx.AsyncClient, command: str
+) -> None:
+    """A sensor that nothing shows, an aircraft that stood all the time: neither proves that it heard."""
+    settings = SimSettings(faults=("no_command_ack",), sensor_reports=False)
+    async with faulty_vehicle(impatient, settings) as vehicle:
+        answer = await order(impatient, vehicle, command)
+        if command == "rtl" and answer.status_code == 200:
+            # The simulated aircraft hears it, and shows its mode.
+            assert "RTL" in (await impatient.get(vehicle)).json()["state"]["mode"]
+        else:
+            check_problem(answer, 504)
+            assert answer.json()["outcome"] == "unknown"

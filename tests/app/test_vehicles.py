@@ -191,7 +191,7 @@ async def test_vanished_vehicle_leaves_unknown_until_read_back(
     ("fault", "outcome", "verified"),
     [
         ("error_ack_at_1", "refused", False),
-        ("altered_item", "accepted", False),
+        ("altered_item", "different", False),
         ("no_final_ack", "accepted", True),
     ],
 )

@@ -70,9 +70,18 @@ class OrderRefusedError(Exception):
 
 
 async def _settled(
-    vehicle: Vehicle, order: Order, giving: Awaitable[CommandOutcome], shows: Shows, reason: str = ""
+    vehicle: Vehicle,
+    order: Order,
+    giving: Awaitable[CommandOutcome],
+    shows: Shows,
+    reason: str = "",
+    proves: Shows | None = None,
 ) -> Told:
-    """Give an order and wait until the vehicle shows that it is carried out."""
+    """Give an order and wait until the vehicle shows that it is carried out.
+
+    Without an answer it is done only where what was heard since proves it: by ``shows``, where nothing
+    stricter is given.
+    """
     client = vehicle.client
     begun_s = client.now_s
     order.sent = True
@@ -82,7 +91,8 @@ async def _settled(
     if outcome.result is None:
         if not client.state.connected:
             return "unknown", f"sent, but it was last heard {client.silent_s:.0f} s ago: it may hear or not"
-        if shows(client.state):
+        since = client.state.heard_s is not None and client.state.heard_s > begun_s
+        if since and (proves or shows)(client.state):
             return "done", "it never answered, and shows it all the same"
         return "unknown", str(outcome)
     order.reason = f"accepted, not shown yet: mode {client.state.mode}"
@@ -216,7 +226,11 @@ async def _resume(vehicle: Vehicle, wish: Wish, order: Order) -> Told:
 async def _rtl(vehicle: Vehicle, wish: Wish, order: Order) -> Told:
     back = _in(vehicle, RETURN_MODES | LANDING_MODES)
     return await _settled(
-        vehicle, order, vehicle.client.return_to_launch(), lambda state: back(state) or not state.armed
+        vehicle,
+        order,
+        vehicle.client.return_to_launch(),
+        lambda state: back(state) or not state.armed,
+        proves=back,
     )
 
 
@@ -266,12 +280,13 @@ async def _items_held(vehicle: Vehicle, client: VehicleClient) -> int | None:
 async def _land(vehicle: Vehicle, wish: Wish, order: Order) -> Told:
     client = vehicle.client
     state = client.state
-    if not state.armed:
+    # One that has fallen silent may fly, whatever was heard of it last.
+    if not state.armed and state.connected:
         raise OrderRefusedError("not-flying", "the aircraft is not armed: it stands", "send nothing")
     if state.type not in ("fixed_wing", "other"):
         down = _in(vehicle, LANDING_MODES)
         return await _settled(
-            vehicle, order, client.land_here(), lambda state: down(state) or not state.armed
+            vehicle, order, client.land_here(), lambda state: down(state) or not state.armed, proves=down
         )
     if not state.connected:
         raise OrderRefusedError(
@@ -315,7 +330,11 @@ async def _sensor_off(vehicle: Vehicle, wish: Wish, order: Order) -> Told:
         parse_payload(wish.payload) if wish.payload is not None else vehicle.safety.payload or DEFAULT_PAYLOAD
     )
     told, reason = await _settled(
-        vehicle, order, client.switch_off(payload, unheard=True), lambda state: state.sensor_shown is not True
+        vehicle,
+        order,
+        client.switch_off(payload, unheard=True),
+        lambda state: state.sensor_shown is not True,
+        proves=lambda state: state.sensor_shown is False,
     )
     if told == "done" and client.state.sensor_shown is None:
         return "done", "the vehicle took it; nothing shows whether the sensor is off"

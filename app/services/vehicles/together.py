@@ -6,7 +6,7 @@ import asyncio
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from app.services.errors import RefusedError, ServiceError
+from app.services.errors import LinkError, RefusedError, ServiceError
 from app.services.plans.missions import MissionChoice, PartName, plan_of
 from app.services.vehicles.fleet import Fleet
 from app.services.vehicles.transfers import Transfers
@@ -88,11 +88,17 @@ async def upload_all(
     RefusedError
         Where not every vehicle of the plan has one that is its own; nothing is sent then.
     NotFoundError
-        Where one is not connected.
+        Where there is no such vehicle.
+    LinkError
+        Where one is not heard: nothing is sent to any.
     """
     names = [vehicle.name for vehicle in plan_of(plan_text).vehicles]
     _check(names, vehicles, sorties)
     connected = {name: fleet.get(vehicles[name]) for name in names}
+    silent = [vehicle for vehicle in connected.values() if not vehicle.state.connected]
+    if silent:
+        absences = "; ".join(f"{vehicle.name}: {vehicle.client.absence}" for vehicle in silent)
+        raise LinkError(f"nothing is sent to any vehicle of the plan: {absences}")
 
     async def one(name: str) -> Told:
         own = replace(choice, vehicle=name, sortie=sorties.get(name, 1))

@@ -199,9 +199,11 @@ class Transfers:
         mission = report.parts.get("mission")
         held = report.choice.held(report.plan_id, report.plan_vehicle)
         if mission is not None:
-            if mission.verified:
-                meant = report.mission.items_of(PARTS["mission"])
+            meant = report.mission.items_of(PARTS["mission"])
+            if mission.differences is not None:
+                # Read back, and something else: whoever orders a flight is told what differs.
                 vehicle.aboard.meant = Meant(held, tuple(meant), comparing(report.mission.dialect))
+            if mission.verified:
                 await vehicle.hold(held, meant)
             vehicle.found(None if mission.differences is None else not mission.differences)
             vehicle.sent = SentMission(report.plan_id, vehicle.sent_id if mission.verified else None)

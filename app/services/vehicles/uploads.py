@@ -46,8 +46,8 @@ class PartResult:
     Parameters
     ----------
     outcome
-        ``accepted``: the vehicle said so, or what it holds shows it. ``different``: it never said, and it
-        holds something else than was meant.
+        ``accepted``: the vehicle said so, or what it holds shows it. ``different``: what was read back is
+        something else than was meant.
     reason
         In words, from the vehicle's answer or its absence.
     differences
@@ -84,7 +84,7 @@ class PartResult:
         if result.held is not None:
             self.held = [item_json(item) for item in result.held]
             self.differences = [difference_json(difference) for difference in result.differences]
-            if self.outcome == "unknown":
+            if self.outcome == "unknown" or (self.outcome == "accepted" and self.differences):
                 self.outcome = "different"
         if result.objections:
             # PX4 acknowledges and holds what it then will not fly.

@@ -7,7 +7,7 @@ import { readiness } from "./readiness";
 const DIFFERENCES_SHOWN = 8;
 const WORDS: Record<Upload["outcome"], string> = {
   accepted: "The vehicle accepted it",
-  different: "The vehicle never answered, and holds something else than was meant",
+  different: "NOT DONE: the vehicle holds something else than was meant. Upload it again; do not fly it meanwhile",
   refused: "The vehicle refused it",
   unknown: "Outcome unknown: the vehicle did not answer to the end. It is read back as soon as it is heard again",
   not_attempted: "Not attempted",
@@ -17,8 +17,6 @@ const WORDS: Record<Upload["outcome"], string> = {
 function verdict(result: Upload): { words: string; tone: "good" | "warning" | "error" } {
   if (result.outcome !== "accepted") return { words: `${WORDS[result.outcome]}.`, tone: result.outcome === "refused" || result.outcome === "different" ? "error" : "warning" };
   if (result.verified) return { words: `${WORDS.accepted}; read back equal.`, tone: "good" };
-  const differs = Object.values(result.parts).some((part) => (part.differences?.length ?? 0) > 0);
-  if (differs) return { words: "NOT DONE: the vehicle took it, but holds something else than was meant. Upload it again; do not fly it meanwhile.", tone: "error" };
   return { words: `${WORDS.accepted}, but it could not be read back: what it holds is not known.`, tone: "warning" };
 }
 

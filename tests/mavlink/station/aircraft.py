@@ -46,6 +46,7 @@ class Aircraft:
         self.results: dict[int, int | None] = {}
         self.heard: list[Message] = []
         self.vanish_at_item: int | None = None
+        self.armed = True
         self._codec = Codec(system_id, 1)
         self._tasks: list[asyncio.Task[None]] = []
 
@@ -68,8 +69,9 @@ class Aircraft:
     async def _beat(self) -> None:
         mode = 3 if (self.autopilot, self.kind) == (3, 2) else 10  # AUTO of ArduCopter, else of ArduPlane
         while True:
+            armed = 0x80 if self.armed else 0
             await self.say(
-                "HEARTBEAT", autopilot=self.autopilot, type=self.kind, custom_mode=mode, base_mode=0x80
+                "HEARTBEAT", autopilot=self.autopilot, type=self.kind, custom_mode=mode, base_mode=armed
             )
             for answer in self.vehicle.tick(loop_time_s()):
                 await self.say(answer.name, **dict(answer.fields))

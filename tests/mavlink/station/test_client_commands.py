@@ -109,3 +109,37 @@ async def test_what_makes_safe_is_sent_to_one_that_is_silent(manner: str, kind: 
         assert (await client.return_to_launch()).accepted
     with pytest.raises(NotConnectedError):
         await client.return_to_launch()
+
+
+@pytest.mark.parametrize(
+    ("manner", "kind", "mode"), [("ardupilot", PLANE, 12.0), ("ardupilot", COPTER, 17.0)]
+)
+async def test_one_that_was_disarmed_when_it_fell_silent_may_fly(manner: str, kind: int, mode: float) -> None:
+    """Somebody else may have started it: hold is that of the air, never a mode of the ground."""
+    async with flying(manner, kind, lost_after_s=LOST_AFTER_S) as (client, aircraft):
+        aircraft.armed = False
+        await client.wait_for(lambda state: not state.armed, PATIENCE_S)
+        aircraft.vanish()
+        await client.wait_for(lambda state: not state.connected, PATIENCE_S)
+        await client.hold()
+        assert {parameters[1] for number, parameters in aircraft.commands if number == 176} == {mode}
+
+
+async def test_a_stop_goes_on_when_the_vehicle_is_found_to_be_silent() -> None:
+    """Given just before the loss is known it is sent as often as just after; others end with the loss."""
+    async with flying(lost_after_s=LOST_AFTER_S) as (client, aircraft):
+        counts = []
+        for early in (True, False):
+            aircraft.vanish()
+            if not early:
+                await client.wait_for(lambda state: not state.connected, PATIENCE_S)
+            aircraft.commands.clear()
+            other = asyncio.create_task(client.resume()) if early else None
+            assert (await client.return_to_launch()).result is None
+            assert not client.state.connected
+            counts.append([number for number, _ in aircraft.commands].count(Command.NAV_RETURN_TO_LAUNCH))
+            if other is not None:
+                assert (await other).result is None
+            aircraft.come_back()
+            await client.wait_for(lambda state: state.connected, PATIENCE_S)
+        assert counts[0] == counts[1] > 1

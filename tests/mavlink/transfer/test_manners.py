@@ -10,7 +10,7 @@ from mavlink.transfer.clear import SetCurrentMachine, flown_for
 from mavlink.transfer.download import DownloadMachine
 from mavlink.transfer.outcome import Accepted, Unknown
 from mavlink.transfer.upload import UploadMachine
-from mavlink.wire.items import Command, MissionItem, MissionType
+from mavlink.wire.items import Command, MissionItem, MissionResult, MissionType
 from tests.mavlink.transfer.vehicle import from_vehicle, waypoints
 
 
@@ -34,7 +34,9 @@ def test_the_list_is_asked_for_again_and_then_given_up() -> None:
     while machine.outcome is None:
         times.append(machine.deadline_s)
         sent += machine.tick(machine.deadline_s)
-    assert [message.name for message in sent] == ["MISSION_REQUEST_LIST"] * 6
+    assert [message.name for message in sent] == [*["MISSION_REQUEST_LIST"] * 6, "MISSION_ACK"]
+    # Or a vehicle that still serves it would refuse the next list.
+    assert sent[-1].integer("type") == MissionResult.OPERATION_CANCELLED
     assert {message.integer("mission_type") for message in sent} == {2}
     assert times == pytest.approx([1.5, 3.0, 4.5, 6.0, 7.5, 9.0])
     assert machine.outcome == Unknown("timeout", None)
