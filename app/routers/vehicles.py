@@ -156,11 +156,13 @@ async def upload(
         chord_error_m=body.chord_error_m,
         sortie=body.sortie,
     )
+    vehicle = fleet.get(vehicle_id)
     report = await transfers.upload(
-        fleet.get(vehicle_id), body.plan_id, body.parts, choice, body.reason if body.override else None
+        vehicle, body.plan_id, body.parts, choice, body.reason if body.override else None
     )
     told = UploadOut.of(report)
-    require_held(f"{fleet.get(vehicle_id).name} does not hold the plan", report.failings, told)
+    # It may have been let go meanwhile: nothing is asked of the fleet any more.
+    require_held(f"{vehicle.name} does not hold the plan", report.failings, told)
     response.status_code = 200 if report.verified else 202
     return told
 
