@@ -4,13 +4,18 @@ from __future__ import annotations
 
 import asyncio
 from datetime import UTC, datetime, timedelta
+from types import SimpleNamespace
+from typing import cast
 
 import httpx
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from app.services.vehicles.flight_orders import _settled
+from app.services.vehicles.order_book import Order
 from app.services.vehicles.said import refusal, said_of
+from app.services.vehicles.vehicle import Vehicle
 from mavlink.sim.geodesy import Place
 from mavlink.sim.settings import SimSettings
 from mavlink.state.telemetry import StatusText, VehicleState
@@ -138,17 +143,33 @@ async def test_the_loss_of_a_flights_link_is_an_event(impatient: httpx.AsyncClie
         await impatient.delete(vehicle, params={"in_flight": "true"})
 
 
-@pytest.mark.parametrize("command", ["sensor_off", "rtl"])
-async def test_without_an_answer_nothing_is_done_that_nobody_saw(
-    impatient: httpx.AsyncClient, command: str
+@pytest.mark.parametrize("connected", [True, False])
+@pytest.mark.parametrize("heard_s", [None, 4.0, 6.0])
+@pytest.mark.parametrize("mode", ["AUTO", "RTL"])
+async def test_without_an_answer_only_what_was_heard_since_proves_that_it_is_done(
+    connected: bool, heard_s: float | None, mode: str
 ) -> None:
-    """A sensor that nothing shows, an aircraft that stood all the time: neither proves that it heard."""
+    """Neither what was known before, nor what would be so anyhow: an aircraft that stands need not return."""
+    state = VehicleState(connected=connected, heard_s=heard_s, mode=mode, armed=False)
+    client = SimpleNamespace(state=state, now_s=5.0, silent_s=1.0)
+
+    async def unanswered() -> CommandOutcome:
+        return CommandOutcome(Command.NAV_RETURN_TO_LAUNCH, None)
+
+    told, reason = await _settled(
+        cast(Vehicle, SimpleNamespace(client=client)),
+        Order("rtl"),
+        unanswered(),
+        lambda state: state.mode == "RTL" or not state.armed,
+        proves=lambda state: state.mode == "RTL",
+    )
+    assert told == ("done" if connected and heard_s == 6.0 and mode == "RTL" else "unknown")
+    assert ("last heard" in reason) is not connected
+
+
+async def test_a_sensor_that_nothing_shows_is_not_known_to_be_off(impatient: httpx.AsyncClient) -> None:
+    """Its order was never answered, and nothing tells of it: a 504."""
     settings = SimSettings(faults=("no_command_ack",), sensor_reports=False)
     async with faulty_vehicle(impatient, settings) as vehicle:
-        answer = await order(impatient, vehicle, command)
-        if command == "rtl" and answer.status_code == 200:
-            # The simulated aircraft hears it, and shows its mode.
-            assert "RTL" in (await impatient.get(vehicle)).json()["state"]["mode"]
-        else:
-            check_problem(answer, 504)
-            assert answer.json()["outcome"] == "unknown"
+        check_problem(answer := await order(impatient, vehicle, "sensor_off"), 504)
+        assert answer.json()["outcome"] == "unknown"

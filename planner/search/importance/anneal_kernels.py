@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planner.jit import njit
+from planner.search.chance_kernels import drawn
 from planner.search.importance.walk_kernels import gain_of
 
 Floats = NDArray[np.float64]
@@ -13,17 +14,6 @@ Ints = NDArray[np.int64]
 
 #: Steps of a segment that is searched through at most.
 LONGEST = 16
-
-
-@njit(cache=True, nogil=True)
-def _drawn(state: NDArray[np.uint64]) -> float:
-    """A number in [0, 1), xorshift."""
-    x = state[0]
-    x ^= x << np.uint64(13)
-    x ^= x >> np.uint64(7)
-    x ^= x << np.uint64(17)
-    state[0] = x
-    return float(x >> np.uint64(11)) * (1.0 / 9007199254740992.0)
 
 
 @njit(cache=True, nogil=True)
@@ -78,7 +68,7 @@ def _best_between(
     gained = np.zeros(steps + 1)
     path[0] = start
     depth = 0
-    order[0] = int(_drawn(state) * 4.0)
+    order[0] = int(drawn(state) * 4.0)
     best = -np.inf
     visited = 0
     while depth >= 0:
@@ -112,7 +102,7 @@ def _best_between(
         gained[depth] = gained[depth - 1] + value
         looks[there] += 1
         turn[depth] = 0
-        order[depth] = int(_drawn(state) * 4.0)
+        order[depth] = int(drawn(state) * 4.0)
     return best
 
 
@@ -195,7 +185,7 @@ def improve(
     state = np.array([np.uint64(seed) * np.uint64(2685821657736338717) + np.uint64(88172645463325252)])
     if state[0] == 0:
         state[0] = np.uint64(1)
-    _drawn(state)
+    drawn(state)
     ahead = np.zeros((LONGEST + 1, len(beside)))
     path = np.empty(LONGEST + 1, dtype=np.int64)
     other = np.empty(LONGEST + 1, dtype=np.int64)
@@ -214,18 +204,18 @@ def improve(
     before = walk.copy()
     for index in range(rounds):
         warm = heat * (1.0 - index / rounds)
-        bar = now + warm * np.log(max(_drawn(state), 1e-300))
+        bar = now + warm * np.log(max(drawn(state), 1e-300))
         before[: length + 1] = walk[: length + 1]
         old_length, old = length, now
         # A second stretch made shorter first, where there are no moves left to spend.
         changed = now
         spare = moves - length
-        take = _drawn(state)
+        take = drawn(state)
         shortened = False
         if spare < 2 and take < 0.5 and length >= 6:
-            span = 3 + int(_drawn(state) * 8.0)
+            span = 3 + int(drawn(state) * 8.0)
             span = min(span, length)
-            first = int(_drawn(state) * (length - span + 1))
+            first = int(drawn(state) * (length - span + 1))
             lost = _without(walk, looks, worth, again, revisit, first, first + span)
             gain = _best_between(
                 beside,
@@ -250,13 +240,13 @@ def improve(
             length = _put(walk, length, looks, first, first + span, other, span - 2)
             spare = moves - length
             shortened = True
-        longer = 2 if spare >= 2 and (shortened or _drawn(state) < 0.7) else 0
-        span = 1 + int(_drawn(state) * (LONGEST - 2.0))
+        longer = 2 if spare >= 2 and (shortened or drawn(state) < 0.7) else 0
+        span = 1 + int(drawn(state) * (LONGEST - 2.0))
         span = min(span, length)
-        if not shortened and revisit > move and span > 3 and _drawn(state) < 0.1:
+        if not shortened and revisit > move and span > 3 and drawn(state) < 0.1:
             # Where looks again cost more than moves pay, a shorter walk may be better.
             longer = -2
-        first = int(_drawn(state) * (length - span + 1))
+        first = int(drawn(state) * (length - span + 1))
         lost = _without(walk, looks, worth, again, revisit, first, first + span)
         gain = _best_between(
             beside,

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planner.jit import njit
-from planner.search.moving.move_kernels import drawn, moved, put_best, taken_out
+from planner.search.chance_kernels import drawn
+from planner.search.moving.move_kernels import moved, put_best, taken_out
 from planner.search.moving.strip_kernels import COLUMNS, LEAST_PASS_M, clear, cost_m, look, passed
 
 Floats = NDArray[np.float64]

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planner.jit import njit
+from planner.search.chance_kernels import drawn
 from planner.search.moving.strip_kernels import leg_m, passed
 
 Floats = NDArray[np.float64]
@@ -20,17 +21,6 @@ LEAST, MOST = 0.02, 1.5
 SHORT, LONG = 0.5, 12.0
 #: Of so many cells drawn the one with most that is not seen is where a new strip is laid.
 DRAWN = 4
-
-
-@njit(cache=True, nogil=True)
-def drawn(state: State) -> float:
-    """A number in [0, 1), xorshift."""
-    x = state[0]
-    x ^= x << np.uint64(13)
-    x ^= x >> np.uint64(7)
-    x ^= x << np.uint64(17)
-    state[0] = x
-    return float(x >> np.uint64(11)) * (1.0 / 9007199254740992.0)
 
 
 @njit(cache=True, nogil=True)

@@ -204,7 +204,9 @@ async def test_losing_the_vehicle_ends_what_is_under_way() -> None:
 
 
 @pytest.mark.parametrize("how", ["upload", "clear", "broken off"])
-async def test_a_number_of_items_told_while_they_change_counts_no_longer(how: str) -> None:
+async def test_a_number_of_items_told_while_they_change_counts_no_longer(
+    how: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """An autopilot counts those that have arrived by then; afterwards it is unknown until told anew."""
     async with flying() as (client, aircraft):
         assert (await client.upload(waypoints(5), MISSION)).kind == "accepted"
@@ -214,14 +216,14 @@ async def test_a_number_of_items_told_while_they_change_counts_no_longer(how: st
             await aircraft.say("MISSION_CURRENT", seq=0, total=2)
             await answer(message)
 
-        aircraft._answer = told  # type: ignore[method-assign]
+        monkeypatch.setattr(aircraft, "_answer", told)
         if how == "broken off":
             aircraft.vanish_at_item = 3
         outcome = await (client.clear(MISSION) if how == "clear" else client.upload(waypoints(8), MISSION))
         assert outcome.kind == ("unknown" if how == "broken off" else "accepted")
         assert client.state.mission_current == 0
         assert client.state.mission_total is None
-        aircraft._answer = answer  # type: ignore[method-assign]
+        monkeypatch.undo()
         aircraft.come_back()
         await aircraft.say("MISSION_CURRENT", seq=0, total=7)
         await client.wait_for(lambda state: state.mission_total == 8, PATIENCE_S)
