@@ -46,7 +46,16 @@ class NoFlyZone:
 
 @dataclass(frozen=True, slots=True)
 class Obstacle:
-    """Something standing on the ground."""
+    """Something that stands on the ground, or over it.
+
+    Parameters
+    ----------
+    height_m
+        From its base to its top; on terrain, from its base's height over home as if the ground were home's.
+        That the base is added, where a map's ``height`` may have it within, is the safe side.
+    base_m
+        Over the ground it stands on. Nothing passes below it; it says that there is ground to be seen there.
+    """
 
     name: str
     area: Polygon

@@ -264,4 +264,5 @@ def _raised_threat(threat: Threat, ground: Ground, home_amsl_m: float) -> Threat
 def _raised_obstacle(obstacle: Obstacle, ground: Ground, home_amsl_m: float) -> Obstacle:
     top_m = ground.range_over(obstacle.area)[1]
     lift_m = math.inf if math.isnan(top_m) else top_m - home_amsl_m
-    return replace(obstacle, base_m=obstacle.base_m + lift_m)
+    # Its base stays over its own ground: it says whether there is ground to be seen below it.
+    return replace(obstacle, height_m=obstacle.height_m + lift_m)

@@ -12,6 +12,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.interpolate import RegularGridInterpolator
 
+from planner.airspace.airspace import Level
+from planner.airspace.built import bare_ground
+from planner.airspace.shapes import banded_shapes
 from planner.airspace.terrain import Terrain, local_ground
 from planner.check import judge
 from planner.errors import ScenarioError
@@ -165,6 +168,25 @@ def test_heights_over_ground_become_heights_over_home() -> None:
     threat = feature("T", "threat", "Point", [0.03, 0.035], model="missile", radius_m=300.0, height_m=400.0)
     scenario = read_scenario(small(threat, terrain="t"), {"t": terrain})
     assert scenario.threats[0].height_m == pytest.approx(600.0)
+
+
+@pytest.mark.parametrize("ground_m", [300.0, 100.0, 20.0])
+@pytest.mark.parametrize("base_m", [0.0, 150.0])
+def test_what_stands_on_a_hill_or_in_a_hollow_takes_its_ground_as_on_a_plain(
+    ground_m: float, base_m: float
+) -> None:
+    """A mast's top is as much higher as its ground; whether ground is seen below it asks for its own base."""
+    terrain = raster(lambda e, n: np.where(n > 1500.0, ground_m, 100.0), MIDDLE)
+    ring = [[0.028, 0.035], [0.032, 0.035], [0.032, 0.039], [0.028, 0.039], [0.028, 0.035]]
+    mast = feature("M", "obstacle", "Polygon", [ring], height_m=450.0 - base_m, base_m=base_m)
+    scenario = read_scenario(small(mast, terrain="t", clearance_m=10.0), {"t": terrain})
+    shape = next(one for one in banded_shapes(scenario.airspace, 100.0) if one.shape.name == "M")
+    assert shape.high_m == pytest.approx(450.0 + ground_m - 100.0)
+    area = scenario.obstacles[0].area
+    level = Level(350.0, 450.0)
+    round_it = area.buffer(100.0)
+    seen = bare_ground(round_it, scenario.airspace, level)
+    assert seen.equals(round_it) == (base_m > 0.0)
 
 
 def test_a_plan_goes_round_ground_that_is_too_high() -> None:
