@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request, Response
@@ -9,9 +10,12 @@ from fastapi import APIRouter, Query, Request, Response
 from app.deps import TerrainDep
 from app.problems import responses
 from app.routers.answers import PageLimit, PageOffset
-from app.schemas.terrain import TerrainList, TerrainOut
+from app.schemas.terrain import RasterGridOut, TerrainList, TerrainOut
+from app.services.errors import RefusedError
 from app.services.pages import total_of
+from app.services.terrain.picture import Bounds
 from app.services.terrain.rasters import VerticalDatum
+from planner.errors import Finding
 
 router = APIRouter(prefix="/api/v1/terrain", tags=["terrain"])
 
@@ -74,6 +78,43 @@ async def list_terrain(
 async def get_terrain(terrain_id: str, terrain: TerrainDep) -> TerrainOut:
     """Where it lies, how fine it is, what its heights count from."""
     return TerrainOut.of(await terrain.get(terrain_id))
+
+
+@router.get(
+    "/{terrain_id}/grid", summary="Read a raster's values on a coarse grid", responses=responses(404, 422)
+)
+async def get_grid(
+    terrain_id: str,
+    terrain: TerrainDep,
+    bounds: Annotated[
+        str | None,
+        Query(
+            max_length=200,
+            description="West, south, east, north in degrees, with commas between; without it, all there is.",
+            examples=["9.1,47.0,9.2,47.1"],
+        ),
+    ] = None,
+    cells: Annotated[int, Query(ge=1, le=256, description="Of the longer side.")] = 96,
+) -> RasterGridOut:
+    """To be drawn: the mean of each cell, heights in metres over mean sea level, or importance as it is."""
+    grid = await terrain.grid(terrain_id, None if bounds is None else _bounds_deg(bounds), cells)
+    return RasterGridOut(**grid._asdict())
+
+
+def _bounds_deg(text: str) -> Bounds:
+    try:
+        west, south, east, north = (float(word) for word in text.split(","))
+    except ValueError:
+        west = south = east = north = math.nan
+    if not (-540.0 <= west < east <= 540.0 and east - west <= 360.0 and -90.0 <= south < north <= 90.0):
+        finding = Finding(
+            "bounds",
+            "bad-value",
+            "is no west, south, east, north in degrees",
+            "Give four numbers with commas between; west less than east, south less than north.",
+        )
+        raise RefusedError("the bounds are refused", (finding,))
+    return west, south, east, north
 
 
 @router.delete("/{terrain_id}", status_code=204, summary="Delete a raster", responses=responses(404))

@@ -39,3 +39,16 @@ class TerrainList(BaseModel):
 
     terrain: list[TerrainOut]
     total: int
+
+
+class RasterGridOut(BaseModel):
+    """A raster on a coarse grid, to be drawn: means of cells that are even in degrees."""
+
+    bounds_deg: tuple[float, float, float, float] = Field(
+        description="West, south, east, north: the outer edges of the outer cells."
+    )
+    columns: int
+    rows: int
+    values: list[float | None] = Field(
+        description="Row by row from the north-west; null where the raster knows nothing."
+    )

@@ -8,6 +8,8 @@ import { flown } from "./flights";
 import { keeping } from "./keeping";
 import { segments } from "./network";
 import { open, running } from "./plans";
+import { grids, valueAt, type RasterMember } from "./raster/grid";
+import { LAYER_OF } from "./raster/view";
 import { scenarios } from "./scenario";
 import { found } from "./search/looked_for";
 import { looked } from "./search/view";
@@ -43,6 +45,8 @@ export interface Hook {
   crew(): { vehicle: string; at: [number, number] }[];
   /** What part of what is looked for is found by a second of the plan's clock; null of no search. */
   found(at_s: number): number | null;
+  /** The value of the scenario's raster that is drawn at a place. */
+  rastered(member: RasterMember, lon_deg: number, lat_deg: number): number | null;
   /** Segments round targets that are drawn, by state. */
   segments(): Record<string, number>;
   /** The flight whose seen ground is on the map. */
@@ -96,6 +100,10 @@ export function installHook(map: MapLibreMap): void {
         const place = clock_s.value === null ? null : placeAt(flight, clock_s.value);
         return place ? [{ vehicle: flight.vehicle, at: place.at }] : [];
       }),
+    rastered: (member, lon_deg, lat_deg) => {
+      const grid = grids[member].value;
+      return map.getLayer(LAYER_OF[member]) && grid ? valueAt(grid, [lon_deg, lat_deg]) : null;
+    },
     segments: () => segments.value,
     flown: () => flown.value?.flight.id ?? null,
   };

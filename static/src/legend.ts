@@ -7,6 +7,7 @@ import { watched } from "./fleet";
 import { held } from "./held";
 import { phaseFeatures } from "./phases";
 import { compared, open } from "./plans";
+import { grids } from "./raster/grid";
 import { scenarios } from "./scenario";
 import { scenarioFeatures } from "./scenario_view";
 import { debounce, Signal } from "./signal";
@@ -34,6 +35,8 @@ const kindsOf = (features: readonly { properties: Record<string, unknown> | null
 function present(): Set<string> {
   const kinds = kindsOf(scenarioFeatures(scenarios.document.value), "kind");
   const found = new Set([...kinds].map((kind) => (kind === "target" ? "roi" : kind)));
+  if (grids.importance_raster.value) found.add("importance");
+  if (grids.terrain.value) found.add("relief");
   const shown = open.value;
   if (shown) {
     const roles = kindsOf(shown.plan.features, "role");
@@ -94,7 +97,7 @@ export function buildLegend(map: MapLibreMap): void {
   draw();
   onThemeChange(draw);
   const look = debounce(() => [...present()].sort().join() !== shown && draw(), QUIET_MS);
-  for (const signal of [scenarios.document, open, compared, held, flown] as Signal<unknown>[]) signal.watch(look);
+  for (const signal of [scenarios.document, open, compared, held, flown, grids.terrain, grids.importance_raster] as Signal<unknown>[]) signal.watch(look);
   let flight: string | null = null;
   watched.watch((vehicle) => {
     if ((vehicle?.flight_id ?? null) === flight) return;

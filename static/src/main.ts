@@ -32,6 +32,8 @@ import { tabs } from "./panel/tabs";
 import { vehiclePanel } from "./panel/vehicle_panel";
 import { phaseFeatures } from "./phases";
 import { coming, compared, keepOpenFresh, keepToTheScenario, open, openPlan, planFeatures, recent, refresh, rereadItems } from "./plans";
+import { keepGrids } from "./raster/grid";
+import { showRasters } from "./raster/view";
 import { scenarios } from "./scenario";
 import { scenarioFeatures } from "./scenario_view";
 import { showRemains } from "./search/view";
@@ -83,6 +85,7 @@ async function start(): Promise<void> {
   showCursor(map);
   showCrew(map, () => palette().collect);
   showRemains(map, () => isShown("remains"));
+  showRasters(map, isShown);
   keepToTheScenario();
   keepScenarios();
   keepFresh();
@@ -92,6 +95,7 @@ async function start(): Promise<void> {
   showAircraft(map);
   keepFlights();
   keepRasters();
+  keepGrids();
   keepCameras();
   keepAirframes();
   keepVehicles();

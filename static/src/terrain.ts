@@ -1,4 +1,4 @@
-/** Elevation rasters that the service holds: which there are, and sending one more. */
+/** Rasters that the service holds, of heights or of importance: which there are, and sending one more. */
 import { connection, list, sendFile } from "./api";
 import { attempt } from "./notices";
 import { Signal } from "./signal";
@@ -8,7 +8,12 @@ export interface Raster {
   name: string;
   min_m: number;
   max_m: number;
+  datum: string;
 }
+
+/** What a raster's values count from that are no heights. */
+const NO_DATUM = "none";
+export const isOfHeights = ({ datum }: Raster): boolean => datum !== NO_DATUM;
 
 export const rasters = new Signal<Raster[]>([]);
 
@@ -19,13 +24,14 @@ export async function refreshRasters(): Promise<void> {
 /** List them whenever the service comes up. */
 export function keepRasters(): void {
   connection.watch((state) => {
-    if (state === "up") void attempt("The elevation rasters were not listed", refreshRasters);
+    if (state === "up") void attempt("The rasters were not listed", refreshRasters);
   });
 }
 
-/** Send a raster; its record, whose id a scenario names. */
-export async function sendRaster(file: File): Promise<Raster> {
-  const raster = await sendFile<Raster>(`/terrain?filename=${encodeURIComponent(file.name)}&name=${encodeURIComponent(file.name)}`, file);
+/** Send a raster, of heights or of importance; its record, whose id a scenario names. */
+export async function sendRaster(file: File, ofImportance: boolean): Promise<Raster> {
+  const name = encodeURIComponent(file.name);
+  const raster = await sendFile<Raster>(`/terrain?filename=${name}&name=${name}${ofImportance ? `&vertical_datum=${NO_DATUM}` : ""}`, file);
   await refreshRasters();
   return raster;
 }

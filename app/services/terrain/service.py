@@ -15,6 +15,7 @@ from app.services.errors import RefusedError, StorageError
 from app.services.records import TerrainRecord
 from app.services.store.plans import now
 from app.services.store.terrain import TerrainStore
+from app.services.terrain.picture import Bounds, RasterGrid, drawn
 from app.services.terrain.rasters import VerticalDatum, known_fraction, pack, read_raster
 from planner.errors import Finding
 
@@ -82,6 +83,19 @@ class TerrainService:
     async def count(self) -> int:
         """How many there are."""
         return await self._store.count()
+
+    async def grid(self, terrain_id: str, bounds_deg: Bounds | None, cells: int) -> RasterGrid:
+        """A raster, or what of it lies within bounds, as a grid of at most so many cells a side.
+
+        Raises
+        ------
+        NotFoundError
+            There is none of the name.
+        RefusedError
+            Nothing of it lies within the bounds.
+        """
+        await self._store.get(terrain_id)
+        return await self._desk.run("terrain", drawn, self.folder, terrain_id, bounds_deg, cells)
 
     async def remove(self, terrain_id: str) -> None:
         """Forget a raster; plans made on it stay. Raises NotFoundError."""

@@ -6,7 +6,7 @@ import { choiceField, numberField, tickField, type Field } from "./fields";
 import { aircraftKey, aircraftSections } from "./aircraft_form";
 import { nested, top } from "./members";
 import { sensorSections, sensorsKey } from "./sensor_form";
-import { terrainField } from "./terrain_field";
+import { importanceField, terrainField } from "./raster_field";
 
 const METHODS: Record<string, readonly string[]> = {
   coverage: ["auto", "li2018", "majeed2019", "boustrophedon-cells", "coverage-alternatives"],
@@ -115,6 +115,7 @@ function lookedFor(): Field[] {
   const driftField = (property: string, label: string, unit: string, placeholder: string, hint: string, max?: number): Field =>
     numberField({ id: `drift-${property}`, label, unit, min: 0, ...(max === undefined ? {} : { max }), placeholder, hint, get: () => drift()[property] as number | undefined, set: moved(property) });
   return [
+    importanceField(),
     numberField({ id: "search-detection", label: "Found by a look", min: 0, max: 1, placeholder: "1", hint: "Probability that a look finds what it sees", get: () => search()["detection"] as number | undefined, set: (value) => put({ ...search(), detection: value }) }),
     driftField("speed_m_s", "Drift", "m/s", "stays", "How fast what is looked for moves on"),
     driftField("toward_deg", "Drift toward", "°", "0", "Clockwise from north; needs a drift", 360),

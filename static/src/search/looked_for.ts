@@ -7,6 +7,7 @@
 import type { Geometry, Position as GeoPosition } from "geojson";
 import { nearTo, unwrapRings } from "../antimeridian";
 import { boundsOf } from "../geo";
+import type { RasterGrid } from "../raster/grid";
 import type { Member, PlanCollection, Position, Scenario } from "../types";
 
 const RAD = Math.PI / 180;
@@ -100,17 +101,46 @@ function patch(rings: Rings, score: number): Source {
   };
 }
 
+/** Cells of a raster, the more often the more they are worth; what counts lies in the regions. */
+function cells(grid: RasterGrid, regions: Rings[], frame: Frame): Source {
+  const [west, south, east, north] = grid.bounds_deg;
+  const [wide, high] = [(east - west) / grid.columns, (north - south) / grid.rows];
+  const cornerOf = (cell: number, u: number, v: number): XY => toXY(frame, [west + ((cell % grid.columns) + u) * wide, north - (Math.floor(cell / grid.columns) + v) * high]);
+  const cell_m2 = wide * high * METRES_A_DEGREE ** 2 * cosine(frame);
+  const upTo: number[] = [];
+  let worth = 0;
+  grid.values.forEach((value, cell) => {
+    const middle = cornerOf(cell, 0.5, 0.5);
+    if (value !== null && regions.some((rings) => within(middle, rings))) worth += Math.max(0, value) * cell_m2;
+    upTo.push(worth);
+  });
+  return {
+    worth,
+    at: (u, v) => {
+      let [low, high] = [0, upTo.length - 1];
+      while (low < high) {
+        const middle = (low + high) >> 1;
+        if ((upTo[middle] as number) > u * worth) high = middle;
+        else low = middle + 1;
+      }
+      const before = low > 0 ? (upTo[low - 1] as number) : 0;
+      return cornerOf(low, (u * worth - before) / ((upTo[low] as number) - before), v);
+    },
+  };
+}
+
 /** What says where it may be: importance where there is some, else every place of the regions alike. */
-function sourcesOf(scenario: Scenario, frame: Frame): Source[] {
+function sourcesOf(scenario: Scenario, frame: Frame, grid: RasterGrid | null): Source[] {
   const important = scenario.features.filter(({ properties }) => properties.role === "importance");
-  if (important.length === 0) return scenario.features.flatMap(({ properties, geometry }) => (properties.role === "roi" ? polygonsOf(geometry, frame).map((rings) => patch(rings, 1)) : []));
-  return important.flatMap(({ geometry, properties }): Source[] => {
+  const regions = scenario.features.flatMap(({ properties, geometry }) => (properties.role === "roi" ? polygonsOf(geometry, frame) : []));
+  if (important.length === 0 && !grid) return regions.map((rings) => patch(rings, 1));
+  return [...(grid ? [cells(grid, regions, frame)] : []), ...important.flatMap(({ geometry, properties }): Source[] => {
     const score = Number(properties["score"] ?? 0);
     if (geometry.type !== "Point") return polygonsOf(geometry, frame).map((rings) => patch(rings, score));
     const spread_m = Number(properties["spread_m"] ?? 0);
     const [x, y] = toXY(frame, geometry.coordinates);
     return [{ worth: 2 * Math.PI * spread_m ** 2 * score, at: (u, v) => { const [dx, dy] = normal(u, v); return [x + spread_m * dx, y + spread_m * dy]; } }];
-  });
+  })];
 }
 
 interface Look {
@@ -155,14 +185,13 @@ function looksAt(place: Place, looks: Look[], elapsed_s: number): number[] {
   });
 }
 
-/** Of a search's plan; null where it is none, or only a raster says what ground is worth. */
-export function lookedFor(plan: PlanCollection, scenario: Scenario): LookedFor | null {
+/** Of a search's plan; null where it is none, or a raster says what ground is worth and its grid is not here. */
+export function lookedFor(plan: PlanCollection, scenario: Scenario, grid: RasterGrid | null): LookedFor | null {
   if (plan.metrics.area_seen_m2 == null) return null;
   const bounds = boundsOf(scenario.features);
-  const rastered = scenario["importance_raster"] !== undefined;
-  if (!bounds || rastered) return null;
+  if (!bounds || (scenario["importance_raster"] !== undefined && !grid)) return null;
   const frame = { lon_deg: (bounds[0] + bounds[2]) / 2, lat_deg: (bounds[1] + bounds[3]) / 2 };
-  const sources = sourcesOf(scenario, frame).filter(({ worth }) => worth > 0);
+  const sources = sourcesOf(scenario, frame, grid).filter(({ worth }) => worth > 0);
   const whole = sources.reduce((sum, { worth }) => sum + worth, 0);
   if (!(whole > 0)) return null;
   const search = scenario["search"] as Member | undefined;

@@ -2,6 +2,7 @@
 import type { CanvasSource, Map as MapLibreMap } from "maplibre-gl";
 import { clock_s } from "../crew/clock";
 import { open } from "../plans";
+import { gridOf, type RasterGrid } from "../raster/grid";
 import { Signal } from "../signal";
 import { onThemeChange, palette } from "../theme";
 import type { Position, Scenario } from "../types";
@@ -33,7 +34,7 @@ interface Grid {
 }
 
 /** A grid that holds all places from take-off to the end. */
-function gridOf({ places, elapsed_s, end_s }: LookedFor): Grid {
+function evenOver({ places, elapsed_s, end_s }: LookedFor): Grid {
   const corners = places.flatMap((place) => [placeAt_s(place, elapsed_s), placeAt_s(place, elapsed_s + end_s)]);
   const [west, south, east, north] = corners.reduce<[number, number, number, number]>(([w, s, e, n], [x, y]) => [Math.min(w, x), Math.min(s, y), Math.max(e, x), Math.max(n, y)], [Infinity, Infinity, -Infinity, -Infinity]);
   const cell_m = Math.max(1, Math.max(east - west, north - south) / CELLS);
@@ -120,11 +121,19 @@ export function showRemains(map: MapLibreMap, visible: () => boolean): void {
     if (plan?.plan === shown) return;
     shown = plan?.plan ?? null;
     remove();
-    const of = plan ? lookedFor(plan.plan, JSON.parse(plan.madeFrom) as Scenario) : null;
-    grid = of && gridOf(of);
-    most = of && grid ? Math.max(...cellsAt(of, grid, 0)) : 0;
-    looked.set(of);
-    draw();
+    const scenario = plan && (JSON.parse(plan.madeFrom) as Scenario);
+    const show = (raster: RasterGrid | null): void => {
+      const of = plan && scenario ? lookedFor(plan.plan, scenario, raster) : null;
+      grid = of && evenOver(of);
+      most = of && grid ? Math.max(...cellsAt(of, grid, 0)) : 0;
+      looked.set(of);
+      draw();
+    };
+    show(null);
+    if (scenario?.["importance_raster"] === undefined) return;
+    void gridOf(scenario, "importance_raster").then((raster) => {
+      if (raster && open.value?.plan === shown) show(raster);
+    });
   });
   clock_s.watch(draw);
   onThemeChange(draw);

@@ -329,9 +329,11 @@ def _square(west_m: float, east_m: float) -> dict[str, object]:
     return {"type": "Polygon", "coordinates": [[*ring, ring[0]]]}
 
 
-def test_what_is_left_to_be_found_changes_with_the_clock(page: Page) -> None:
+@pytest.mark.parametrize(("west_score", "raster"), [(1.0, False), (3.0, True)])
+def test_what_is_left_to_be_found_changes_with_the_clock(page: Page, west_score: float, raster: bool) -> None:
     """Of a square, its east seen before the search and its west in the plan's pass, each look finding 60 %:
-    half-way along the pass a quarter of the square has been looked at, of what the look before has left."""
+    half-way along the pass half of the west has been looked at, of what the look before has left. Also where
+    a raster says what ground is worth."""
     west, east = _square(-500.0, 0.0), _square(0.0, 500.0)
     line = [WGS84.fwd(8.5, 47.4, heading, 500.0)[:2] for heading in (180.0, 0.0)]
     own = {"vehicle": "uav", "seq": 1, "roi": "all", "sensor": "eye"}
@@ -350,10 +352,16 @@ def test_what_is_left_to_be_found_changes_with_the_clock(page: Page) -> None:
         feature_of(track, role="collect", **own, **times),
         feature_of(west, role="footprint", **own),
     ]
-    square = feature_of(_square(-500.0, 500.0), role="importance", score=1.0, name="all")
+    role, made = ("roi", "of-raster") if raster else ("importance", "of-features")
+    square = feature_of(_square(-500.0, 500.0), role=role, name="all", **({} if raster else {"score": 1.0}))
     scenario = {"type": "FeatureCollection", "name": "square", "features": [square], "task": "search"}
+    scenario |= {"importance_raster": "worth"} if raster else {}
+    ring = [*west["coordinates"][0], *east["coordinates"][0]]
+    bounds = [f(place[i] for place in ring) for f, i in ((min, 0), (min, 1), (max, 0), (max, 1))]
+    grid = {"bounds_deg": bounds, "columns": 64, "rows": 64, "values": ([west_score] * 32 + [1.0] * 32) * 64}
+    page.route(re.compile(r"/api/v1/terrain/worth/grid"), lambda route: route.fulfill(json=grid))
     answers = {
-        "": {"id": "made", "name": "square", "state": "done"},
+        "": {"id": made, "name": "square", "state": "done"},
         "/scenario": scenario | {"search": {"detection": 0.6, "seen": [east]}},
         "/plan.geojson": {
             "type": "FeatureCollection", "features": features, "metrics": metrics, "violations": [],
@@ -364,20 +372,26 @@ def test_what_is_left_to_be_found_changes_with_the_clock(page: Page) -> None:
         re.compile(r"/api/v1/plans(\?.*)?$"), lambda route: route.fulfill(json={"plans": [answers[""]]})
     )
     page.route(
-        re.compile(r"/api/v1/plans/made"),
-        lambda route: route.fulfill(json=answers[route.request.url.partition("/made")[2].partition("?")[0]]),
+        re.compile(rf"/api/v1/plans/{made}"),
+        lambda route: route.fulfill(json=answers[route.request.url.partition(made)[2].partition("?")[0]]),
     )
     page.get_by_role("tab", name="Plan").click()
     page.get_by_role("button", name="Refresh").last.click()
     page.locator("#recent").get_by_role("button", name="square · done").click()
     if page.locator("#dialog-go").count():
         page.click("#dialog-go")
+    await_hook(page, f"plan()?.id === '{made}'")
     await_hook(page, "found(0) === 0")
     # What was opened is looked at, wherever the map was before.
     lon, lat = ask(page, "centre()")
     assert WGS84.inv(lon, lat, 8.5, 47.4)[2] < 1000.0
-    assert ask(page, "found(200)") == pytest.approx(0.3 / 0.7, abs=0.01)
-    assert ask(page, "found(150)") == pytest.approx(0.15 / 0.7, abs=0.01)
+    share = 0.6 * west_score / (west_score + 0.4)
+    assert ask(page, "found(200)") == pytest.approx(share, abs=0.01)
+    assert ask(page, "found(150)") == pytest.approx(share / 2.0, abs=0.01)
     page.locator("#crew input[type=range]").fill("150")
-    expect(page.locator("#clock-found")).to_contain_text("21 %")
+    expect(page.locator("#clock-found")).to_contain_text(" %")
+    said = re.search(r"(\d+) %", page.locator("#clock-found").inner_text())
+    assert said is not None
+    assert float(said[1]) == pytest.approx(50.0 * share, abs=1.0)
     await_hook(page, "rendered()['seen_before-fill'] > 0")
+    page.unroute_all()
