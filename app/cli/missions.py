@@ -11,11 +11,23 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 import typer
 
 from app.cli.keyring import signing_here
-from app.cli.output import CommandError, Exit, Json, Output, emit, emit_bytes, emit_json, read_document, say
+from app.cli.output import (
+    CommandError,
+    Exit,
+    Json,
+    Narrator,
+    Output,
+    emit,
+    emit_bytes,
+    emit_json,
+    read_document,
+    say,
+)
 
 if TYPE_CHECKING:
     from app.services.plans.missions import MissionChoice
     from mavlink.dialects import Autopilot, VehicleType
+    from mavlink.transfer.machine import Progress
 
 PlanFile = Annotated[str, typer.Argument(help="Plan GeoJSON; - is standard input.", metavar="PLAN")]
 VehicleName = Annotated[str | None, typer.Option(help="Vehicle of the plan; its first when left out.")]
@@ -232,7 +244,7 @@ def upload(
             if result["differences"] is None
             else "read back equal"
             if not count
-            else f"read back with {count} differences"
+            else f"read back with {count} difference{'' if count == 1 else 's'}"
         )
         say(f"{name}: {result['meant']} items {result['reason']}, {compared}")
         for difference in (result["differences"] or ())[:20]:
@@ -278,7 +290,22 @@ async def _upload(
         for finding in findings:
             say(f"{'overridden' if finding.severity == 'error' else 'note'}: {finding}")
         report = new_report(0, plan.scenario_hash, mission, parts, override, findings)
-        await send_parts(client, report, lambda *_: None)
+        narrator = Narrator()
+
+        def tell(name: str, made: Progress) -> None:
+            narrator(f"sending the {name}", made.done / (made.total or 1))
+
+        try:
+            await send_parts(client, report, tell)
+        except asyncio.CancelledError:
+            narrator.end()
+            say(
+                "interrupted: the vehicle may hold what it held before, or nothing, or what was sent; "
+                "upload again, or look at what it holds (swathplan download)"
+            )
+            raise
+        finally:
+            narrator.end()
         return report_json(report)
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 import time
 from collections.abc import Sequence
 from dataclasses import replace
@@ -16,6 +15,7 @@ from app.cli.output import (
     CommandError,
     Exit,
     Json,
+    Narrator,
     Output,
     emit,
     emit_json,
@@ -42,27 +42,6 @@ class Bound(StrEnum):
     SHARE = "share"
     FULL = "full"
     NONE = "none"
-
-
-class Narrator:
-    """Tells progress on standard error: a line that renews itself on a terminal, else a line a stage."""
-
-    def __init__(self) -> None:
-        self._terminal = sys.stderr.isatty()
-        self._stage = ""
-
-    def __call__(self, stage: str, fraction: float) -> None:
-        """Take one report."""
-        if self._terminal:
-            typer.echo(f"\r\033[K{fraction:4.0%} {stage}", err=True, nl=False)
-        elif stage != self._stage:
-            say(f"{fraction:4.0%} {stage}")
-        self._stage = stage
-
-    def end(self) -> None:
-        """Leave the line."""
-        if self._terminal and self._stage:
-            typer.echo("\r\033[K", err=True, nl=False)
 
 
 class Deadline:

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import json
+import signal
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -37,7 +40,23 @@ def test_upload_reads_back_and_tells(swathplan: Command, plan_file: Path) -> Non
     assert "read back equal" in ended.err
     altered = swathplan("upload", str(plan_file), "--to", "sim:?fault=altered_item")
     assert altered.code == 1
-    assert "1 differences" in altered.err
+    assert "read back with 1 difference\n" in altered.err
+
+
+def test_an_interrupted_upload_says_what_is_not_known(plan_file: Path) -> None:
+    """Ctrl-C while the vehicle asks for nothing more: told in words, 130, no traceback."""
+    program = [sys.executable, "-c", "from app.cli import main; main()"]
+    command = [*program, "upload", str(plan_file), "--to", "sim:?fault=no_request_1"]
+    with subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True) as running:
+        assert running.stderr is not None
+        told = []
+        for line in running.stderr:
+            told.append(line)
+            if "sending the mission" in line:
+                running.send_signal(signal.SIGINT)
+    assert running.returncode == 130
+    assert told[-1].startswith("interrupted: the vehicle may hold what it held before")
+    assert "Traceback" not in "".join(told)
 
 
 def test_a_mission_over_the_limit_is_refused_with_number_limit_and_fix(
