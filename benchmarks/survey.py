@@ -11,7 +11,8 @@ Parts, each with rows of its own:
     kept up to the edges, and there as such items leave them.
 ``convex``
     Random convex regions: metres from the first lane to the last over area / spacing and the least turns,
-    and what of the rest is longer lanes, and slanted edges that turns go along.
+    and what of the rest is longer lanes, and slanted edges that turns go along; and over what no order of
+    lanes comes below, see ``survey_bound``.
 ``photos``
     Random regions in winds up to 60 % of the speed: how often each place of a grid of 1 m is seen, by how
     many lanes, and what neighbouring photos share at least; by a geometry of the benchmark's own.
@@ -46,6 +47,7 @@ from benchmarks.survey_baselines import (
     qgc_transects,
     with_turnaround,
 )
+from benchmarks.survey_bound import least_order_m
 from benchmarks.survey_overlap import overlap
 from benchmarks.survey_scale import scale
 from benchmarks.survey_shapes import random_convex, random_star
@@ -78,6 +80,7 @@ FIELDS = {
     "L": Polygon([(0, 0), (1130, 0), (1130, 410), (450, 410), (450, 1130), (0, 1130)]),
     "U": Polygon([(0, 0), (1150, 0), (1150, 880), (790, 880), (790, 350), (350, 350), (350, 880), (0, 880)]),
 }
+CONVEX_RADII_M = (10.0, 20.0, 30.0, 60.0)
 FIELD_SPACING_M, FIELD_RADIUS_M, FIELD_TURNED_DEG = 40.0, 30.0, 17.0
 
 
@@ -244,8 +247,8 @@ def _left(angle_rad: float) -> Floats:
 
 def convex(count: int, seed: int) -> Iterator[Row]:
     """See the module."""
-    for edge_overlap, radius_m in itertools.product((True, False), (10.0, 30.0)):
-        over, lanes_over, slants_over = [], [], []
+    for edge_overlap, radius_m in itertools.product((True, False), CONVEX_RADII_M):
+        over, lanes_over, slants_over, order_over, bounds_over = [], [], [], [], []
         camera = replace(camera_for(40.0), edge_overlap=edge_overlap)
         for k in range(count):
             rng = np.random.default_rng([seed, k])
@@ -256,6 +259,9 @@ def convex(count: int, seed: int) -> Iterator[Row]:
             over.append((lanes_m + turns_m) / least_m)
             lanes_over.append((lanes_m - area.area / 40.0) / least_m)
             slants_over.append(slants_m(lines) / least_m)
+            bound_m = least_order_m(area, camera, HEIGHT_M, radius_m)
+            order_over.append((lanes_m + turns_m) / bound_m)
+            bounds_over.append(bound_m / least_m)
         yield {
             "bench": "survey-convex",
             "radius_m": radius_m,
@@ -266,6 +272,9 @@ def convex(count: int, seed: int) -> Iterator[Row]:
             "past_3_percent": sum(each > 1.03 for each in over),
             "of_that_lanes": round(float(np.mean(lanes_over)), 4),
             "of_that_slants": round(float(np.mean(slants_over)), 4),
+            "mean_over_least_order": round(float(np.mean(order_over)), 4),
+            "worst_over_least_order": round(max(order_over), 4),
+            "least_orders_past_3_percent": sum(each > 1.03 for each in bounds_over),
         }
 
 

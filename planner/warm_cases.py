@@ -13,6 +13,9 @@ from planner.airspace.terrain import Ground, Terrain
 from planner.airspace.zone_kernels import distances_from
 from planner.as_flown.photo import Shots
 from planner.as_flown.photo_ground import PhotoGrid
+from planner.coverage.lanes_kernels import turns_between
+from planner.coverage.reorder_kernels import reordered
+from planner.coverage.turns_kernels import END
 from planner.coverage.urban.methods import SEQUENCES
 from planner.fleet.prizes.choice import Choices, best_choice
 from planner.fleet.prizes.exact import exact_route
@@ -135,8 +138,10 @@ def fleets() -> None:
 
 
 def cameras() -> None:
-    """Photos of a block, among buildings and without them."""
+    """Photos of a block, among buildings and without them; more lanes than every order is tried of."""
     make_plan(read_scenario(_city("auto", building=False)))
+    turns_m = turns_between(np.zeros((12, END)), np.ones(12), 2, 5.0, np.empty((0, 9)))
+    reordered(np.arange(0, 12, 2), turns_m, np.ones(12), 1)
     for coverage in SEQUENCES:
         make_plan(read_scenario(_city(coverage)))
 

@@ -13,6 +13,7 @@ from shapely.geometry import LineString, Polygon, box
 from benchmarks import survey
 from benchmarks.photos import photos, places, seen_by
 from benchmarks.survey_baselines import fields2cover, flown_m, qgc_transects, snake, swaths, to_and_fro
+from benchmarks.survey_bound import least_order_m
 from benchmarks.survey_overlap import looked_at, random_survey
 from planner.airspace.values import STILL_AIR
 from planner.dubins.words import shortest
@@ -70,6 +71,28 @@ def test_ours_is_never_longer_on_fields_of_that_kind() -> None:
         of = [row for row in rows if row["field"] == name]
         ours = next(row for row in of if row["planner"] == "ours")
         assert ours["total_m"] <= min(row["total_m"] for row in of)
+
+
+def test_no_order_of_lanes_comes_below_the_bound() -> None:
+    """Of a rectangle whose lanes end side by side it is the flight itself; of slanted ends no less than lanes."""
+    camera, radius_m = survey.camera_for(40.0), 20.0
+    straight = box(0.0, 0.0, 400.0, 154.0)
+    lines = survey.lines_of(survey.surveyed(straight, camera, radius_m))
+    bound_m = least_order_m(straight, camera, survey.HEIGHT_M, radius_m)
+    assert math.fsum(flown_m(lines, radius_m)) == pytest.approx(bound_m, rel=1e-9)
+    slanted = Polygon([(0.0, 0.0), (400.0, 0.0), (520.0, 154.0), (80.0, 154.0)])
+    lines = survey.lines_of(survey.surveyed(slanted, camera, radius_m))
+    bound_m = least_order_m(slanted, camera, survey.HEIGHT_M, radius_m)
+    flown = math.fsum(flown_m(lines, radius_m))
+    assert 0.97 * flown <= bound_m <= 1.001 * flown
+    orders = [lines[list(order)] for order in itertools.permutations(range(len(lines)))]
+    ways = itertools.product((1, -1), repeat=len(lines))
+    every = (
+        math.fsum(flown_m(np.array([line[::way] for line, way in zip(order, each, strict=True)]), radius_m))
+        for each in ways
+        for order in orders
+    )
+    assert min(every) >= bound_m * (1.0 - 1e-3)
 
 
 def test_the_judge_of_photos_misses_nothing() -> None:

@@ -11,12 +11,14 @@ from numpy.typing import NDArray
 from shapely.geometry import Polygon
 
 from planner.airspace.surroundings import Surroundings
-from planner.coverage.lanes_kernels import STRIDES, VARIANTS, lane_orders
+from planner.coverage.lanes_kernels import EXACT_UP_TO, STRIDES, VARIANTS, lane_orders, turns_between
 from planner.coverage.lines import NO_ROOM_M, judge_lines, poses_of, roomy
 from planner.coverage.merge import MergedRegion
+from planner.coverage.reorder_kernels import reordered
 from planner.coverage.strips.headings import anchor_rad
 from planner.coverage.survey.gaps import photographed
 from planner.coverage.survey.lanes import STATES, Lanes, Survey, lanes_at
+from planner.coverage.turns_kernels import ends_of
 from planner.coverage.ways import Between
 from planner.route import CollectPass
 from planner.sensors.camera_view import seen_on_flat
@@ -33,6 +35,9 @@ SAME_RAD = math.radians(0.01)
 #: estimate tells to be the cheapest.
 MOST_LAID = 6_000
 FEWEST_WAYS = 4
+#: More lanes than this keep the order of a pattern. Fewer are put in a shorter one, looked for so often with
+#: so many pairs of lanes in all, and so often at most.
+MOST_REORDERED, PAIRS_LOOKED_AT, MOST_LOOKS = 160, 100_000, 300
 #: A trigger is not stopped for less than so many photos.
 LEAST_PHOTOS = 3.0
 
@@ -109,15 +114,20 @@ def lane_options(
 
 
 def collect_passes(
-    region: MergedRegion, survey: Survey, options: LaneOptions, index: int, settle_m: float
+    region: MergedRegion, survey: Survey, options: LaneOptions, index: int, around: Surroundings
 ) -> tuple[CollectPass, ...]:
-    """The passes of one option: a lane each, or the parts of it over ground that is wanted."""
+    """The passes of one option: a lane each, or the parts of it over ground that is wanted.
+
+    They begin and end as the option does; what lies between may be flown in a shorter order.
+    """
     angle_rad, eta = options.angles_rad[index : index + 1], float(options.etas[index])
     order = options.orders[index]
     order = order[order >= 0]
     lanes = lanes_at(survey, angle_rad, np.array([eta]), len(order))
+    if EXACT_UP_TO < len(order) <= MOST_REORDERED:
+        order = _reordered(region, lanes, order, around)
     photos_m = float(survey.frames(angle_rad).photos_m[0])
-    least_gap_m = max(LEAST_PHOTOS * photos_m, settle_m + photos_m)
+    least_gap_m = max(LEAST_PHOTOS * photos_m, around.settle_m + photos_m)
     if survey.wanted is survey.ground and is_convex(survey.ground):
         flown = [[lanes.lines[0, 0, number // STATES, number % STATES]] for number in order.tolist()]
     else:
@@ -221,6 +231,16 @@ def _of_count(
     room_m = np.maximum(cramped_m[m, k, *begin, 0], cramped_m[m, k, *end, 1])
     inner_m = cheapest_m[m, variant] - before_m[m, k, *begin] - behind_m[m, k, *end] + room_m
     return LaneOptions(angles_rad[m], etas[k], entries[m, k, *begin], exits[m, k, *end], inner_m, order)
+
+
+def _reordered(region: MergedRegion, lanes: Lanes, order: Ints, around: Surroundings) -> Ints:
+    """Lanes at one heading and offset in an order that is no longer, and begins and ends as the given one."""
+    cost_m, entries, exits, cramped_m = _judged(region, lanes, around)
+    own_m = cost_m.reshape(-1)
+    ends = ends_of(entries.reshape(-1, 3), exits.reshape(-1, 3), cramped_m.reshape(-1, 2))
+    turns_m = turns_between(ends, own_m, STATES, around.radius_m, around.discs)
+    looks = min(PAIRS_LOOKED_AT // len(order) ** 2, MOST_LOOKS)
+    return reordered(order, turns_m, own_m, looks)
 
 
 def _judged(

@@ -83,7 +83,7 @@ class LaneTarget:
 
     def passes(self, options: LaneOptions, index: int) -> tuple[CollectPass, ...]:
         """The passes of one option."""
-        return collect_passes(self.region, self.survey, options, index, self.around.settle_m)
+        return collect_passes(self.region, self.survey, options, index, self.around)
 
     def hidden_m(self, passes: Sequence[CollectPass]) -> float:
         """Nothing: what terrain hides from above hardly depends on the choice."""
