@@ -1,8 +1,8 @@
 """What no order of lanes comes below.
 
-Lanes as surveys lay them, at the headings and offsets of a fine grid, and turns of which each joins two ends of
-lanes as cheaply as any does. A tour joins all ends of its lanes but two in pairs: of such pairings the cheapest
-is no longer than its turns, and half of an assignment of an end to each no longer than that.
+Lanes as surveys lay them, at the headings and offsets of a fine grid, and turns of which each joins two ends
+of lanes as cheaply as any does. A tour joins all ends of its lanes but two in pairs: of such pairings the
+cheapest is no longer than its turns, and half of an assignment of an end to each no longer than that.
 """
 
 from __future__ import annotations

@@ -76,7 +76,9 @@ def photos_of(
     interval_m = collect.length_m / count
     interval_s = None
     if sensor.trigger == "time":
-        interval_s = interval_m / float(model.ground_speed_m_s(collect.angle_rad))
+        speed_m_s = float(model.ground_speed_m_s(collect.angle_rad))
+        slow_m_s = math.inf if collect.slow is None else collect.slow.speed_m_s
+        interval_s = interval_m / min(speed_m_s, slow_m_s)
     listed = tuple((float(lon), float(lat), float(alt)) for lon, lat, alt in places)
     return Photos(model.name, seq, collect.sensor, listed, interval_m, interval_s)
 

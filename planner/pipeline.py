@@ -15,7 +15,7 @@ from planner.check import judge
 from planner.check.edge import near_edge
 from planner.errors import Finding, InfeasibleError, OutOfBudgetError
 from planner.metrics import measure
-from planner.pace import LEAST_PART, ROUNDS, slower_for_photos
+from planner.pace import LEAST_PART, ROUNDS, slower_for_photos, slower_passes
 from planner.photos import too_soon
 from planner.plan import LeftOut, Plan, Violation
 from planner.profile.items import items_of, too_many
@@ -114,6 +114,9 @@ def make_plan(
 
 def _paced(scenario: Scenario, answer: Answer, controls: Controls) -> tuple[Scenario, Answer]:
     """Flown so slowly that no photo comes too soon; as it was, where that is not to be had."""
+    passes_alone = slower_passes(answer)
+    if passes_alone is not None:
+        return scenario, passes_alone
     tried, found = scenario, answer
     for _ in range(ROUNDS):
         slower = slower_for_photos(tried, found)

@@ -151,6 +151,7 @@ def collects_and_transits(
                 ((lon0, lat0, altitude_m), (lon1, lat1, last_m)),
                 chart.frame.true_heading_deg(*middle, collect.angle_rad),
                 start_m, end_m, start_s, end_s,
+                speed_m_s=None if collect.slow is None else collect.slow.speed_m_s,
             )
         )  # fmt: skip
         sensor, ground = suite.named(collect.sensor), airspace.terrain

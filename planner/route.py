@@ -30,6 +30,14 @@ class Pose:
 
 
 @dataclass(frozen=True, slots=True)
+class Slow:
+    """A speed over the ground that a pass is flown no faster than, and what braking to it takes before."""
+
+    speed_m_s: float
+    braking_m: float
+
+
+@dataclass(frozen=True, slots=True)
 class CollectPass:
     """One straight pass with the sensor on, run-in and run-out of half an aperture included.
 
@@ -49,6 +57,8 @@ class CollectPass:
         The widest distance between photos that keeps their overlap; None where none are taken.
     goes_on
         Whether it is flown on from the pass before it, in one turn, without settling: round a ring.
+    slow
+        Where it is flown more slowly than the flight.
     """
 
     regions: tuple[str, ...]
@@ -60,6 +70,7 @@ class CollectPass:
     footprint: Polygon
     photo_spacing_m: float | None = None
     goes_on: bool = False
+    slow: Slow | None = None
 
     @property
     def angle_rad(self) -> float:

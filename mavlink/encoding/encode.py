@@ -11,7 +11,7 @@ before the landing.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -24,6 +24,7 @@ from mavlink.encoding.fence import fence_items
 from mavlink.encoding.holds import hold_item, is_hold, unwound
 from mavlink.encoding.options import EncodeError, EncodeOptions
 from mavlink.encoding.pointing import Pointings, pointings_of
+from mavlink.encoding.speeds import speeds_behind
 from mavlink.encoding.stops import MERGE_M, Stop, stops_along
 from mavlink.encoding.switching import Switching, switching_of
 from mavlink.encoding.task import Task, task_of
@@ -129,14 +130,15 @@ def encode(
 
 
 def _flight(
-    task: Task, stops: Iterable[Stop], switching: Switching, pointing: Pointings
+    task: Task, stops: Sequence[Stop], switching: Switching, pointing: Pointings
 ) -> list[MissionItem]:
     """Waypoints along the path, the sensor switched right behind those where a collect starts or ends."""
-    items: list[MissionItem] = [*pointing.before(0)]
+    speeds = speeds_behind(task, stops)
+    items: list[MissionItem] = [*pointing.before(0), *_told(speeds, -1)]
     collecting = begun = pointed = 0
     ended = False
     straight_in = not task.hovers and task.path.phase("return") is None
-    for stop in stops:
+    for number, stop in enumerate(stops):
         past_m = stop.along_m - task.mission_end_m
         # The place that a landing comes from belongs to it; one that ends a collect still to the mission.
         begins = stop.turns is not None or (straight_in and not stop.off)
@@ -144,11 +146,12 @@ def _flight(
             ended = True
             items += _before_the_end(task, switching, pointing)
         if stop.turns is not None and is_hold(task.path, stop.turns):
-            items.append(hold_item(task, stop.turns))
+            items += [hold_item(task, stop.turns), *_told(speeds, number)]
             continue
         if stop.turns is not None:
             if stop.turns is not task.last_turns or task.vehicle.finish != "loiter":
                 items.append(circle_item(task, stop.turns, Command.NAV_LOITER_TO_ALT))
+            items += _told(speeds, number)
             continue
         if stop.arc is not None:
             items.append(turn_item(task, stop.arc, stop.altitude_m))
@@ -163,11 +166,17 @@ def _flight(
             pointed += 1
             items += pointing.before(pointed)
         items += switching.begun(stop.on, ends=stop.off > 0)
+        items += _told(speeds, number)
     if ended:
         return items
     last = [item for item in items if item.command == Command.NAV_WAYPOINT][-1:]
     approach = last if task.is_px4 and not task.hovers else []
     return [*items, *_before_the_end(task, switching, pointing), *approach]
+
+
+def _told(speeds: Mapping[int, MissionItem], number: int) -> tuple[MissionItem, ...]:
+    """The speed ordered behind a stop, if any."""
+    return (speeds[number],) if number in speeds else ()
 
 
 def _before_the_end(task: Task, switching: Switching, pointing: Pointings) -> list[MissionItem]:

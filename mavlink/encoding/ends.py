@@ -9,14 +9,12 @@ from itertools import takewhile
 from mavlink.dialects.mission import placed, unplaced
 from mavlink.encoding.arcs import circle_item
 from mavlink.encoding.options import EncodeError
+from mavlink.encoding.speeds import speed_item
 from mavlink.encoding.task import Task
 from mavlink.wire.geometry import distance_m
 from mavlink.wire.items import Command, Frame, MissionItem
 from planner.plan import LonLat
 
-_AIRSPEED = 0.0
-_GROUND_SPEED = 1.0
-_KEEP_THROTTLE = -1.0
 #: A flight that ends further from home than this ends on ground whose height is not known.
 _ELSEWHERE_M = 200.0
 
@@ -31,9 +29,7 @@ class End:
 
 def beginning(task: Task) -> End:
     """Take-off, and cruise speed; the speed alone where the plan begins in the air."""
-    kind = _GROUND_SPEED if task.hovers else _AIRSPEED
-    speed_m_s = round(task.vehicle.airspeed_m_s, 3)
-    speed = unplaced(Command.DO_CHANGE_SPEED, (kind, speed_m_s, _KEEP_THROTTLE, 0.0))
+    speed = speed_item(task, task.vehicle.airspeed_m_s)
     if task.path.phase("take_off") is None:
         return End((speed,))
     return End((_takeoff(task), speed))

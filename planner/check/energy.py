@@ -22,6 +22,7 @@ def line_wh(
     wind: Wind,
     datum_amsl_m: float,
     whole_s: float | None = None,
+    most_m_s: Floats | None = None,
 ) -> float | None:
     """Energy from the battery for a line; None without a power model.
 
@@ -31,11 +32,13 @@ def line_wh(
         Shapes (N, 2) and (N,): east and north, and altitude over a datum ``datum_amsl_m`` above the sea.
     whole_s
         What the whole takes where that is longer than the line's own reckoning: edges take their share.
+    most_m_s
+        What edges are flown no faster than, where that is told.
     """
     power = aircraft.power
     if power is None:
         return None
-    times_s = edges_s(line_m, altitudes_m, aircraft, wind, datum_amsl_m)
+    times_s = edges_s(line_m, altitudes_m, aircraft, wind, datum_amsl_m, most_m_s)
     if not np.isfinite(times_s).all():
         return float("inf")
     if whole_s is not None and whole_s > times_s.sum() > 0.0:

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planner.check.coverage import TIME_TOLERANCE_S
-from planner.check.times import edges_s
+from planner.check.times import edges_s, speeds_told
 from planner.plan import FlownPath, LonLat, Plan, Violation
 from planner.scenario import Scenario
 from planner.vehicle.aircraft import Aircraft
@@ -79,9 +79,9 @@ def trace_of(scenario: Scenario, plan: Plan, path: FlownPath) -> Trace:
     over_m = np.hypot(*np.diff(line_m, axis=0).T)
     reached_m = np.concatenate([[0.0], np.cumsum(np.hypot(over_m, np.diff(altitudes_m)))])
     datum_amsl_m = scenario.level.amsl_m - scenario.level.altitude_m
-    edges = edges_s(
-        line_m, altitudes_m, aircraft.in_wind(scenario.wind.speed_m_s), scenario.wind, datum_amsl_m
-    )
+    told_m_s = speeds_told(plan.collects, path, line_m, altitudes_m)
+    flown_by = aircraft.in_wind(scenario.wind.speed_m_s)
+    edges = edges_s(line_m, altitudes_m, flown_by, scenario.wind, datum_amsl_m, told_m_s)
     own_s = np.concatenate([[0.0], np.cumsum(edges)])
     own_s *= path.duration_s / max(float(own_s[-1]), 1e-9)
     times_s = path.start_s + own_s

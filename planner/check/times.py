@@ -7,12 +7,14 @@ fast as the wind, the bends of the line and its acceleration allow, at rest wher
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 
 import numpy as np
 from numpy.typing import NDArray
 
 from planner.airspace.values import Wind
 from planner.check.kinematics import MAX_ARC_EDGE_M
+from planner.plan import Collect, FlownPath
 from planner.vehicle.aircraft import Aircraft
 from planner.vehicle.manners import Manners, manners_of
 
@@ -24,13 +26,38 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(12)
 SPOT_M = 0.01
 
 
-def line_s(line_m: Floats, altitudes_m: Floats, aircraft: Aircraft, wind: Wind, datum_amsl_m: float) -> float:
+def line_s(
+    line_m: Floats,
+    altitudes_m: Floats,
+    aircraft: Aircraft,
+    wind: Wind,
+    datum_amsl_m: float,
+    most_m_s: Floats | None = None,
+) -> float:
     """Time to fly a line; see ``edges_s``."""
-    return float(edges_s(line_m, altitudes_m, aircraft, wind, datum_amsl_m).sum())
+    return float(edges_s(line_m, altitudes_m, aircraft, wind, datum_amsl_m, most_m_s).sum())
+
+
+def speeds_told(collects: Iterable[Collect], path: FlownPath, line_m: Floats, altitudes_m: Floats) -> Floats:
+    """What each edge of a flight's line is flown no faster than, for the collects along it that say so."""
+    edges_m = np.hypot(np.hypot(*np.diff(line_m, axis=0).T), np.diff(altitudes_m))
+    middles_m = np.cumsum(edges_m) - 0.5 * edges_m
+    middles_m *= path.length_m / max(float(edges_m.sum()), 1e-9)
+    found = np.full(len(edges_m), np.inf)
+    for collect in collects:
+        if collect.speed_m_s is not None and (collect.vehicle, collect.sortie) == (path.vehicle, path.sortie):
+            of_it = (middles_m > collect.start_m) & (middles_m < collect.end_m)
+            found[of_it] = np.minimum(found[of_it], collect.speed_m_s)
+    return found
 
 
 def edges_s(
-    line_m: Floats, altitudes_m: Floats, aircraft: Aircraft, wind: Wind, datum_amsl_m: float
+    line_m: Floats,
+    altitudes_m: Floats,
+    aircraft: Aircraft,
+    wind: Wind,
+    datum_amsl_m: float,
+    most_m_s: Floats | None = None,
 ) -> Floats:
     """Time to fly each edge of a line, (N - 1,); infinite where the wind is not slower than the aircraft.
 
@@ -38,6 +65,8 @@ def edges_s(
     ----------
     line_m, altitudes_m
         Shapes (N, 2) and (N,): east and north, and altitude over a datum ``datum_amsl_m`` above the sea.
+    most_m_s
+        What hovers flies each edge no faster than, (N - 1,); see ``speeds_told``.
     """
     manners = manners_of(aircraft)
     over_m = np.hypot(*np.diff(line_m, axis=0).T)
@@ -48,8 +77,9 @@ def edges_s(
     found = _spot_s(rises_m, spot, manners)
     flown = ~spot
     if aircraft.hovers:
+        told_m_s = np.full(len(over_m), np.inf) if most_m_s is None else most_m_s
         found[flown] = _rotor_s(
-            line_m[np.concatenate([[True], flown])], rises_m[flown], aircraft, wind, manners
+            line_m[np.concatenate([[True], flown])], rises_m[flown], told_m_s[flown], aircraft, wind, manners
         )
         return found
     starts_m, climbs_m = altitudes_m[:-1][flown], rises_m[flown]
@@ -114,7 +144,9 @@ def _against_m_s(edges: Floats, over_m: Floats, airspeed_m_s: float, wind: Wind,
     return np.asarray(np.minimum(left_m_s, airspeed_m_s), dtype=np.float64)
 
 
-def _rotor_s(line_m: Floats, rises_m: Floats, aircraft: Aircraft, wind: Wind, manners: Manners) -> Floats:
+def _rotor_s(
+    line_m: Floats, rises_m: Floats, told_m_s: Floats, aircraft: Aircraft, wind: Wind, manners: Manners
+) -> Floats:
     """Of edges over the ground, from rest to rest."""
     edges = np.diff(line_m, axis=0)
     over_m = np.hypot(edges[:, 0], edges[:, 1])
@@ -127,6 +159,7 @@ def _rotor_s(line_m: Floats, rises_m: Floats, aircraft: Aircraft, wind: Wind, ma
             _against_m_s(edges, over_m, aircraft.airspeed_m_s, wind, manners.sharing),
             np.where(rises_m == 0.0, np.inf, rate * lengths_m / np.abs(rises_m)),
         )
+        limits = np.minimum(limits, told_m_s)
     turned = np.abs(np.mod(np.diff(np.arctan2(edges[:, 1], edges[:, 0])) + np.pi, 2.0 * np.pi) - np.pi)
     capped_m = np.minimum(over_m, MAX_ARC_EDGE_M)
     with np.errstate(divide="ignore"):

@@ -33,7 +33,7 @@ from planner.check.kinematics import (
 from planner.check.photo_quality import surveyed
 from planner.check.searched import Found, searched
 from planner.check.stretches import Measured
-from planner.check.times import line_s
+from planner.check.times import line_s, speeds_told
 from planner.plan import FlownPath, Plan, Surveyed, Violation
 from planner.scenario import Scenario
 from planner.vehicle.aircraft import Aircraft
@@ -93,7 +93,8 @@ def judge(scenario: Scenario, plan: Plan) -> Verdict:
         radius_m, where = turn_radius_m(line_m)
         tightest_m = min(tightest_m, radius_m)
         datum_amsl_m = scenario.level.amsl_m - scenario.level.altitude_m
-        time_s = line_s(line_m, altitudes_m, aircraft, scenario.wind, datum_amsl_m)
+        told_m_s = speeds_told(plan.collects, path, line_m, altitudes_m)
+        time_s = line_s(line_m, altitudes_m, aircraft, scenario.wind, datum_amsl_m, told_m_s)
         hovers = vehicle.type == "multirotor"
         circling = (vehicle.name,) if vehicle.finish != "land" and not hovers else ()
         returning = (vehicle.name,) if vehicle.finish == "return" and hovers else ()
@@ -111,7 +112,7 @@ def judge(scenario: Scenario, plan: Plan) -> Verdict:
         violations += duration_violations(path, time_s, hovers=hovers)
         # What hovers takes as long as its autopilot's corners make it: no less than its path says.
         whole_s = max(time_s, path.duration_s) if hovers else time_s
-        energy_wh = line_wh(line_m, altitudes_m, aircraft, scenario.wind, datum_amsl_m, whole_s)
+        energy_wh = line_wh(line_m, altitudes_m, aircraft, scenario.wind, datum_amsl_m, whole_s, told_m_s)
         violations += limit_violations(aircraft, path, lengths_m[-1], whole_s, energy_wh)
         over_ground_m = partial(np.interp, xp=reached_m, fp=over_m)
         measured = Measured(line_m)

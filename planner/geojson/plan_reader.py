@@ -171,6 +171,7 @@ def _collect(p: Mapping[str, Any], line: Any) -> Collect:
         p["start_s"],
         p["end_s"],
         p.get("sortie", 1),
+        p.get("speed_m_s"),
     )
 
 

@@ -170,6 +170,7 @@ def _collect(c: Collect, *, fleet: bool) -> dict[str, Any]:
         end_m=_m(c.end_m),
         start_s=round(c.start_s, 3),
         end_s=round(c.end_s, 3),
+        **({} if c.speed_m_s is None else {"speed_m_s": round(c.speed_m_s, 3)}),
         **({"sortie": c.sortie} if fleet else {}),
     )
 

@@ -85,7 +85,10 @@ class FlownPath:
 
 @dataclass(frozen=True, slots=True)
 class Collect:
-    """Sensor on from the first to the last point of a straight line, in flight direction."""
+    """Sensor on from the first to the last point of a straight line, in flight direction.
+
+    ``speed_m_s`` is what it is flown no faster than over the ground; None: as the vehicle flies.
+    """
 
     vehicle: str
     seq: int
@@ -100,6 +103,7 @@ class Collect:
     start_s: float
     end_s: float
     sortie: int = 1
+    speed_m_s: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,6 +13,7 @@ from planner.profile.change import Changed
 from planner.profile.flight import Flight, Times, whole_flight
 from planner.profile.heights import Heights
 from planner.profile.rise import Rise
+from planner.profile.slowed import slowed
 from planner.profile.smoothed import smoothed_times
 from planner.profile.times import rotor_times, wing_times
 from planner.route import CollectPass
@@ -77,7 +78,8 @@ def compose(
     bounds_m = (up.run_m, up.turns_m, whole_m - down.turns_m, whole_m - down.run_m)
     inserted_m = up.inserted_m + math.fsum(leg.inserted_m for leg in between) + down.inserted_m
     flight = whole_flight(join(*pieces), heights, bounds_m, passes_m, inserted_m, times, LIFT_OFF_HEIGHT_M)
-    return Composed(flight, tuple(legs_m), tuple(passes_m), finish)
+    flown = [collect for collect, _ in passes if collect is not None]
+    return Composed(slowed(flight, flown, passes_m, times), tuple(legs_m), tuple(passes_m), finish)
 
 
 def times_of(model: FlightModel, datum_amsl_m: float) -> Times:

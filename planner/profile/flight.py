@@ -30,6 +30,8 @@ class Stretch:
         Over the flight's datum.
     collects
         Whether it is of a pass: missions name both ends of that.
+    most_m_s
+        It is flown no faster than this over the ground, where what flies it can be told so.
     """
 
     phase: PhaseKind
@@ -39,6 +41,7 @@ class Stretch:
     start_altitude_m: float
     end_altitude_m: float
     collects: bool = False
+    most_m_s: float = math.inf
 
     @property
     def ground_m(self) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 from planner.errors import Finding
 from planner.profile.flight import Flight, Stretch
@@ -32,7 +33,9 @@ def items_of(flight: Flight, passes: int, aircraft: Aircraft) -> int:
         How many it flies.
     """
     each_pass = ON_AND_OFF + (LATE_OFF if aircraft.autopilot == "px4" else 0)
-    return EACH_FLIGHT + each_pass * passes + sum(_of(stretch, aircraft) for stretch in flight.stretches)
+    speeds = sum(one.most_m_s != other.most_m_s for one, other in pairwise(flight.stretches))
+    stretches = sum(_of(stretch, aircraft) for stretch in flight.stretches)
+    return EACH_FLIGHT + each_pass * passes + speeds + stretches
 
 
 def too_many(name: str, count: int, most: int) -> Finding:

@@ -132,7 +132,7 @@ def _legs(number: int, stretch: Stretch, airspeed_m_s: float, manners: Manners, 
 
     def leg(length_m: float, angle_rad: float) -> _Leg:
         held_m_s = float(held_speed_m_s(angle_rad, airspeed_m_s, wind, manners.sharing))
-        return _Leg(number, length_m, angle_rad, min(held_m_s, steep_m_s))
+        return _Leg(number, length_m, angle_rad, min(held_m_s, steep_m_s, stretch.most_m_s))
 
     if segment.kind == "straight":
         return [leg(segment.length_m, segment.start.angle_rad)]

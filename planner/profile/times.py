@@ -119,7 +119,7 @@ def rotor_times(
     named = [s.collects for s in stretches]
     beside = [any(pair) for pair in zip([False, *named[:-1]], [*named[1:], False], strict=True)]
     limits = [
-        min(_allowed_m_s(s, airspeed_m_s, manners, wind, short=short), leg_m_s)
+        min(_allowed_m_s(s, airspeed_m_s, manners, wind, short=short), leg_m_s, s.most_m_s)
         for s, short, leg_m_s in zip(stretches, beside, _leg_speeds_m_s(stretches, manners), strict=True)
     ]
     joints = [0.0, *(min(pair) for pair in pairwise(limits)), 0.0]

@@ -153,12 +153,13 @@ def _out_of_time(error: InfeasibleError, scenario: Scenario) -> OutOfBudgetError
     )
 
 
-def _offer(asked: Seeing, setting: Setting, seed: int) -> Offer:
-    """What to leave out, where not all regions can be flown to."""
+def _offer(asked: Seeing, setting: Setting, seed: int) -> Offer | None:
+    """What to leave out, where not all regions can be flown to; None where obstacles bar all of its lanes."""
     around = asked.surroundings()
     ends = with_run(setting.ends, setting.level.height_m, setting.model)
     optional = {region.name: region.priority for region in asked.regions if not region.required}
-    return Offer.of(asked.visible(around).targets, around, ends, optional, seed)
+    targets = asked.visible(around).targets
+    return Offer.of(targets, around, ends, optional, seed) if targets else None
 
 
 def bound_m(scenario: Scenario, plan: Plan, stop: Stop, allowance: Allowance) -> float:

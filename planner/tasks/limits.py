@@ -104,7 +104,7 @@ def within_limits(
     optional: Mapping[str, float],
     aircraft: Aircraft,
     ends: tuple[Point, Point],
-    offer: Callable[[], Offer] | None = None,
+    offer: Callable[[], Offer | None] | None = None,
 ) -> tuple[F, tuple[Dropped, ...]]:
     """The flight with as many of the optional regions as the aircraft can fly to.
 

@@ -74,7 +74,7 @@ def test_ours_is_never_longer_on_fields_of_that_kind() -> None:
 
 
 def test_no_order_of_lanes_comes_below_the_bound() -> None:
-    """Of a rectangle whose lanes end side by side it is the flight itself; of slanted ends no less than lanes."""
+    """Of a rectangle, whose lanes end side by side, it is the flight; of slanted ends no order is less."""
     camera, radius_m = survey.camera_for(40.0), 20.0
     straight = box(0.0, 0.0, 400.0, 154.0)
     lines = survey.lines_of(survey.surveyed(straight, camera, radius_m))

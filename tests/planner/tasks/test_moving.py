@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import itertools
 import math
+from functools import cache
 
 import pytest
 import shapely
 from shapely.geometry import LineString, box
 
+from planner import pipeline
 from planner.airspace.airspace import Airspace
 from planner.coverage.urban.measures import Sweep
 from planner.coverage.urban.moved import Moves
@@ -25,6 +27,7 @@ from tests.planner.tasks.blocks import among_blocks, buildings
 INTERVAL_S = 1.4
 
 
+@cache
 def flown(seed: int) -> tuple[Scenario, Plan]:
     """The plan among some buildings: nothing hit, no photo sooner than the camera takes it."""
     scenario = read_scenario(among_blocks(seed, INTERVAL_S, required=False))
@@ -61,12 +64,44 @@ def test_photos_come_no_sooner_than_the_camera_takes_them() -> None:
     assert plan.vehicles[0].airspeed_m_s == scenario.aircraft[0].airspeed_m_s
 
 
-def test_where_no_sweep_can_be_longer_the_flight_is_slower() -> None:
-    """And the plan says so, and why."""
+def test_where_no_sweep_can_be_longer_it_is_flown_more_slowly() -> None:
+    """It alone, and the plan says so, and why; all else at the speed asked for."""
     scenario, plan = flown(142)
-    speed_m_s = plan.vehicles[0].airspeed_m_s
-    assert speed_m_s < scenario.aircraft[0].airspeed_m_s
-    assert [each for each in plan.warnings if "speed-lowered" in each and f"{speed_m_s:g} m/s" in each]
+    asked_m_s = scenario.aircraft[0].airspeed_m_s
+    assert plan.vehicles[0].airspeed_m_s == asked_m_s
+    slow = [each for each in plan.collects if each.speed_m_s is not None]
+    assert 0 < len(slow) < len(plan.collects) / 2
+    for collect in slow:
+        assert collect.speed_m_s is not None
+        length_m = collect.end_m - collect.start_m
+        assert length_m / (collect.end_s - collect.start_s) <= collect.speed_m_s + 1e-6 < asked_m_s
+    (told,) = [each for each in plan.warnings if "speed-lowered" in each]
+    assert f"{len(slow)} of {len(plan.collects)} passes, over R, at" in told
+    assert f"not {asked_m_s:g}" in told
+
+
+def test_no_pass_is_slowed_beyond_the_flight_time_there_is(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where slow passes alone are over it the plan keeps it, and has none."""
+    document = among_blocks(142, INTERVAL_S, required=False)
+    slowed_s = flown(142)[1].paths[0].duration_s
+    monkeypatch.setattr(pipeline, "_paced", lambda scenario, answer, _: (scenario, answer))
+    hasty_s = make_plan(read_scenario(document)).paths[0].duration_s
+    monkeypatch.undo()
+    assert hasty_s < slowed_s
+    document["vehicles"][0]["max_flight_time_s"] = (hasty_s + slowed_s) / 2.0
+    plan = make_plan(read_scenario(document))
+    assert all(each.speed_m_s is None for each in plan.collects)
+    assert plan.paths[0].duration_s < slowed_s
+    assert not {"flight-time"} & {each.constraint for each in plan.violations}
+
+
+def test_a_region_that_the_flight_time_is_too_short_for_is_left_out() -> None:
+    """Told as any other is, also where obstacles leave no lanes to choose among."""
+    document = among_blocks(142, INTERVAL_S, required=False)
+    document["vehicles"][0]["max_flight_time_s"] = 100.0
+    with pytest.raises(InfeasibleError) as refused:
+        make_plan(read_scenario(document))
+    assert refused.value.constraint == "flight-time"
 
 
 def test_ground_of_a_required_region_that_only_a_sweep_without_room_sees_is_refused_by_its_share() -> None:
