@@ -11,6 +11,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -90,6 +91,23 @@ class InfeasibleError(PlannerError):
     def __reduce__(self) -> tuple[type[InfeasibleError], tuple[object, ...]]:
         """Pickle by arguments: errors cross from worker processes."""
         return type(self), (self.constraint, self.feature, self.message, self.relaxation, self.where_enu_m)
+
+
+def nothing_seen(why: Sequence[Finding | InfeasibleError]) -> InfeasibleError:
+    """What is said where no region is required and none can be seen: of each why, and what would help."""
+    told = [(each.feature, each.message, _fix(each)) for each in dict.fromkeys(why)]
+    message = "; ".join(dict.fromkeys(f"{feature}: {message}" for feature, message, _ in told))
+    fix = " ".join(dict.fromkeys(f"{fix[:1].upper()}{fix[1:].rstrip('.')}." for _, _, fix in told if fix))
+    return InfeasibleError(
+        "swath",
+        "scenario",
+        f"no region can be seen: {message or 'there is none'}",
+        fix or "Add a region that can be seen.",
+    )
+
+
+def _fix(each: Finding | InfeasibleError) -> str:
+    return each.fix if isinstance(each, Finding) else each.relaxation
 
 
 class OutOfBudgetError(PlannerError):

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from shapely.geometry import LineString, MultiLineString
+from shapely.geometry.base import BaseGeometry
 
 from planner.bounds.allowance import Allowance
 from planner.check import judge
@@ -202,6 +203,7 @@ def _judged(
                 metrics=replace(draft.metrics, area_seen_bound_m2=area_m2, importance_bound=importance),
             )
     reasons = {name: f.message for f in dropped for name in f.feature.split("+")}
+    near += tuple(str(finding) for finding in untold(scenario, verdict.unseen, reasons))
     controls.progress("done", 1.0)
     return replace(
         draft,
@@ -220,6 +222,26 @@ def _judged(
         violations=verdict.violations,
         uncovered=uncovered(chart, verdict.unseen, reasons),
     )
+
+
+def untold(
+    scenario: Scenario, unseen: Mapping[str, BaseGeometry], told: Collection[str]
+) -> Iterator[Finding]:
+    """A warning for each region that need not be seen and is not, wholly, where no stage has said why."""
+    if scenario.task != "collect":
+        return
+    for region in scenario.regions:
+        if region.required or region.name in told or region.name not in unseen:
+            continue
+        left_m2 = unseen[region.name].area
+        yield Finding(
+            region.name,
+            "not-all-seen",
+            f"{left_m2:.0f} m² of it are seen by no pass, {100.0 * left_m2 / region.area.area:.2g} % of it: "
+            "it need not be seen (required: false)",
+            "Set required: true, and the plan is refused with what stands in the way.",
+            "warning",
+        )
 
 
 def _refuse_barred(scenario: Scenario, violations: Sequence[Violation]) -> None:

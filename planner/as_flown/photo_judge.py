@@ -227,13 +227,13 @@ class PhotoJudge:
         if not len(frames.time_s):
             return
         sensor = self._suite.named(camera.name)
-        yaw_rad = frames.yaw_rad
-        if isinstance(sensor, CameraSensor) and sensor.stabilised:
+        roll_rad, pitch_rad, yaw_rad = frames.roll_rad, frames.pitch_rad, frames.yaw_rad
+        held = isinstance(sensor, CameraSensor) and sensor.stabilised
+        if held:
             # What keeps it in line with the course is no part of the airframe's own yaw.
             yaw_rad = np.where(frames.of_camera | np.isnan(frames.course_rad), yaw_rad, frames.course_rad)
-        roll_rad, pitch_rad = frames.roll_rad, frames.pitch_rad
-        if hangs_level(camera.model):
-            # Its gimbal takes off what the airframe rolls and pitches.
+        if held or hangs_level(camera.model):
+            # A gimbal takes off what the airframe rolls and pitches.
             roll_rad, pitch_rad = (np.where(frames.of_camera, each, 0.0) for each in (roll_rad, pitch_rad))
         known = ~(np.isnan(roll_rad) | np.isnan(pitch_rad) | np.isnan(yaw_rad))
         high = ~np.isnan(frames.height_m)

@@ -14,7 +14,7 @@ from planner.coverage.strips.located import Located, located
 from planner.coverage.strips.room import Room
 from planner.coverage.urban.methods import SEQUENCES
 from planner.coverage.visible import Seeing
-from planner.errors import Finding, InfeasibleError, OutOfBudgetError
+from planner.errors import Finding, InfeasibleError, OutOfBudgetError, nothing_seen
 from planner.metrics import used
 from planner.photos import too_soon
 from planner.plan import LeftOut, Plan
@@ -352,8 +352,7 @@ def _greedy(
     ends, routing = setting.ends, part_of(progress, 0.8, 1.0)
     route, _ = li2018_route(found.choices, threats, asked.objective, ends, seed, routing, stop)
     if not route.passes:
-        why = "; ".join(error.message for error in found.dropped)
-        raise InfeasibleError("swath", "scenario", f"no region can be seen: {why}", "see the findings")
+        raise nothing_seen(found.dropped)
     return route.passes, tuple(_dropped(error) for error in found.dropped)
 
 

@@ -10,7 +10,7 @@ import pytest
 from planner.errors import CancelledError, InfeasibleError
 from planner.geojson import read_plan, read_scenario, write_plan
 from planner.geojson.equipment import METHODS
-from planner.pipeline import make_plan
+from planner.pipeline import make_plan, untold
 from planner.plan import Photos, PlanCamera, PlanWind
 from tests.planner.scenarios import case, feature, planned_case, small, square
 
@@ -233,5 +233,21 @@ def test_a_plan_of_nothing_is_refused_by_the_paper_s_methods_too() -> None:
     document = small(method={"coverage": "li2018"})
     document["features"] = [f for f in document["features"] if f["id"] != "B"]
     document["features"][0]["properties"] |= {"required": False, "min_resolution_m": 0.1}
-    with pytest.raises(InfeasibleError, match="no region can be seen"):
+    with pytest.raises(InfeasibleError, match=r"no region can be seen: A: .*resol") as refused:
         make_plan(read_scenario(document))
+    assert "findings" not in refused.value.relaxation
+
+
+def test_what_need_not_be_seen_and_is_not_is_told_once() -> None:
+    """Where no stage has said why; nothing of what is required, seen, or told."""
+    document = small()
+    for each in document["features"][:2]:
+        each["properties"]["required"] = False
+    scenario = read_scenario(document)
+    unseen = {"A": scenario.regions[0].area.buffer(-1.0)}
+    (told,) = untold(scenario, unseen, ())
+    assert (told.feature, told.rule, told.severity) == ("A", "not-all-seen", "warning")
+    assert f"{unseen['A'].area:.0f} m²" in told.message
+    assert not list(untold(scenario, unseen, {"A": "in shadow"}))
+    assert not list(untold(scenario, {}, ()))
+    assert not list(untold(read_scenario(small()), unseen, ()))

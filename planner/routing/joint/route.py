@@ -31,7 +31,7 @@ from planner.airspace.surroundings import Surroundings
 from planner.coverage.visible import Visible
 from planner.coverage.ways import Division, Options, Sharing, Target
 from planner.dubins.estimate_kernels import transit_costs
-from planner.errors import InfeasibleError
+from planner.errors import InfeasibleError, nothing_seen
 from planner.orders_kernels import best_orders
 from planner.progress import Progress, Stop, in_time, never, raise_if, silent
 from planner.route import CollectPass, Route, Terminal
@@ -124,7 +124,7 @@ def joint_route(search: Search, seen: Visible, divided: Divided, share: Share) -
         Once ``stop`` says so.
     """
     if not seen.targets:
-        raise InfeasibleError("swath", "scenario", "no region can be seen", "see the findings", None)
+        raise nothing_seen(seen.dropped)
     search.progress("routing", 0.0)
     cost_m, passes = _route(seen, search)
     plain = tuple(target.plain() for target in seen.targets)

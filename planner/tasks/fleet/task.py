@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from planner.errors import Finding, InfeasibleError
+from planner.errors import Finding, InfeasibleError, nothing_seen
 from planner.fleet.assignment import Assignment, Trip
 from planner.fleet.assignment import LeftOut as Unassigned
 from planner.fleet.problem import Problem
@@ -200,9 +200,7 @@ class _Rounds:
         """What is said where no region is required, and none fits."""
         if assigned.left_out:
             return infeasible(jobs, min(assigned.left_out, key=lambda each: each.margin))
-        why = [*self._why.values(), *self._given_up.values()]
-        told = why[0].message if why else "there is nothing to be seen"
-        return InfeasibleError("swath", "scenario", f"no region can be seen: {told}", "see the findings")
+        return nothing_seen([*self._why.values(), *self._given_up.values()])
 
     def _next(self) -> tuple[tuple[Job, ...], Problem, Assignment, list[Errand]]:
         """The next assignment, all flights of which can be flown.

@@ -286,6 +286,16 @@ def test_a_camera_that_comes_in_a_gimbal_is_level_in_it() -> None:
     assert level.fraction == upright.fraction
 
 
+def test_a_stabilised_camera_is_level_unless_its_gimbal_says_otherwise() -> None:
+    """As its scenario says nothing of leaning; what its own gimbal tells, 40° off, counts."""
+    scenario, plan = planned()
+    held = replace(scenario, sensors=tuple(replace(each, stabilised=True) for each in scenario.sensors))
+    leaning = record(roll_deg=25.0)
+    assert sortie_coverage(held, plan, (leaning,)).fraction == judged(record()).fraction
+    aside = tuple(replace(p, roll_deg=0.0, pitch_deg=-50.0, attitude_of="camera") for p in leaning.photos)
+    assert sortie_coverage(held, plan, (replace(leaning, photos=aside),)).fraction["A"] == 0.0
+
+
 def test_a_photo_without_attitude_has_that_of_the_track() -> None:
     """Between two places of the record, like the photo's own."""
     one = record(roll_deg=6.0)
