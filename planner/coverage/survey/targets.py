@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,6 +40,7 @@ class LaneTarget:
     region: MergedRegion
     survey: Survey
     around: Surroundings
+    _laid: dict[bytes, tuple[CollectPass, ...]] = field(default_factory=dict, compare=False, repr=False)
 
     def options(self, angles_rad: Floats, etas: Floats) -> LaneOptions | None:
         """Options at these headings and offsets; None where there are none."""
@@ -82,8 +83,12 @@ class LaneTarget:
         return picked if found is None else found
 
     def passes(self, options: LaneOptions, index: int) -> tuple[CollectPass, ...]:
-        """The passes of one option."""
-        return collect_passes(self.region, self.survey, options, index, self.around)
+        """The passes of one option; true costs ask for the same ones again and again."""
+        row = (options.angles_rad[index], options.etas[index], options.orders[index])
+        key = b"".join(each.tobytes() for each in row)
+        if key not in self._laid:
+            self._laid[key] = collect_passes(self.region, self.survey, options, index, self.around)
+        return self._laid[key]
 
     def hidden_m(self, passes: Sequence[CollectPass]) -> float:
         """Nothing: what terrain hides from above hardly depends on the choice."""
