@@ -26,7 +26,7 @@ LEAST_GAIN_M = 1e-6
 @njit(cache=True)
 def order_m(order: Ints, turns: Floats, own_m: Floats) -> float:
     """What lanes in an order cost."""
-    total = own_m[order[0]]
+    total: float = own_m[order[0]]
     for k in range(1, len(order)):
         total += turns[order[k - 1], order[k]] + own_m[order[k]]
     return total
