@@ -22,6 +22,7 @@ from planner.check.heights import (
     level_violations,
     phase_violations,
     slope_violations,
+    transit_violations,
 )
 from planner.check.kinematics import (
     LENGTH_TOLERANCE,
@@ -104,6 +105,8 @@ def judge(scenario: Scenario, plan: Plan) -> Verdict:
         violations += ground_violations(path, vehicle, altitudes_m, _begins_m(scenario, home_ground_m))
         violations += level_violations(scenario, plan.collects_of(vehicle.name))
         violations += altitude_violations(scenario, plan.collects_of(vehicle.name))
+        own = plan.collects_of(vehicle.name)
+        violations += transit_violations(scenario, path, own, line_m, altitudes_m)
         violations += phase_violations(path)
         violations += terminal_violations(
             scenario, path, line_m, aircraft.ground_turn_radius_m, circling, returning

@@ -17,6 +17,7 @@ from planner.tasks.fleet.answer import FleetAnswer
 from planner.tasks.fleet.barred import BarredError, barred, infeasible
 from planner.tasks.fleet.bettering import Hand, bettered
 from planner.tasks.fleet.crews import Crew, crews_of, left_by, not_seen, ways_of
+from planner.tasks.fleet.crossing import crossed
 from planner.tasks.fleet.deciding import AUTO, decided, decided_by, methods_of
 from planner.tasks.fleet.flights import Flown, Order, in_best_order, in_given_order, in_order, items_in, over
 from planner.tasks.fleet.jobs import Job, jobs_of
@@ -69,12 +70,14 @@ def fleet(scenario: Scenario, controls: Controls, lessons: Lessons | None = None
     """
     rounds = _Rounds(scenario, controls, lessons or Lessons())
     try:
-        return rounds.best()
+        answer = rounds.best()
     except InfeasibleError:
         if rounds.too_long is None:
             raise
         # Too many items are no reason to have no plan.
-        return rounds.too_long
+        answer = rounds.too_long
+    where = (answer.separation, scenario.objective, controls, scenario.seed)
+    return replace(answer, sorties=crossed(answer.crews, answer.sorties, *where))
 
 
 class _Rounds:
