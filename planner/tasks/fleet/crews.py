@@ -105,13 +105,18 @@ class Crew:
 
     def landing(self, end: Terminal) -> Crew:
         """The same that ends at another of its landings."""
-        if end == self.ends[1]:
+        return self.between((self.setting.ends[0], end))
+
+    def between(self, ends: tuple[Terminal, Terminal]) -> Crew:
+        """The same that starts where it once landed, or ends at another of its landings."""
+        if ends == self.setting.ends:
             return self
         plain = replace(self.aircraft, base=None, end_bases=None)
-        start = self.alone.ends_of(self.aircraft)[0]
-        alone = replace(self.alone, start=start, end=end, bases=(), aircraft=(plain,))
-        setting = replace(self.setting, ends=(self.setting.ends[0], end))
-        return replace(self, alone=alone, setting=setting, ends=(self.ends[0], end))
+        alone = replace(self.alone, start=ends[0], end=ends[1], bases=(), aircraft=(plain,))
+        return replace(self, alone=alone, setting=replace(self.setting, ends=ends), ends=self._run(ends))
+
+    def _run(self, ends: tuple[Terminal, Terminal]) -> tuple[Terminal, Terminal]:
+        return with_run(ends, self.setting.level.height_m, self.setting.model)
 
     @property
     def kind(self) -> tuple[object, ...]:
@@ -191,12 +196,14 @@ class Crew:
         lacking_m = wanted_m - legs_m
         return legs_m + circle_m * np.ceil(np.maximum(lacking_m, 0.0) / circle_m)
 
-    def seconds(self, entries: Floats, exits: Floats) -> tuple[Floats, Floats, tuple[Floats, ...]]:
-        """Between ways (N, N), from the start (N,), and to each landing (N,): seconds."""
-        start = self.ends[0]
+    def seconds(
+        self, entries: Floats, exits: Floats
+    ) -> tuple[Floats, tuple[Floats, ...], tuple[Floats, ...]]:
+        """Seconds between ways (N, N), from the start and from each landing (N,), to each landing (N,)."""
+        starts = [self.ends[0], *(self._run((landing, self.ends[1]))[0] for landing in self.landings)]
         discs, speed_m_s = self.around.discs, self.setting.model.airspeed_m_s
         between = estimates(exits, entries, self.around, discs) / speed_m_s
-        out = self.up_m(from_start(start, self.around, entries, discs)) / speed_m_s
+        out = tuple(self.up_m(from_start(start, self.around, entries, discs)) / speed_m_s for start in starts)
         home = tuple(self.down_m(to_end(end, self.around, exits, discs)) / speed_m_s for end in self.landings)
         return between, out, home
 

@@ -42,20 +42,20 @@ class Errand:
         The flight where nothing binds its times; None where its order is given.
     order
         Its passes where its order is given.
-    landing
-        Where it ends; None for its crew's end.
+    ends
+        Where it starts and ends; None for its crew's ends.
     """
 
     trip: Trip
     jobs: tuple[tuple[Job, int], ...]
     flown: Flown | None = None
     order: Order | None = None
-    landing: Terminal | None = None
+    ends: tuple[Terminal, Terminal] | None = None
 
     def crew(self, crews: Sequence[Crew]) -> Crew:
-        """Whose it is, ending where it does."""
+        """Whose it is, starting and ending where it does."""
         own = crews[self.trip.member]
-        return own if self.landing is None else own.landing(self.landing)
+        return own if self.ends is None else own.between(self.ends)
 
 
 @dataclass(frozen=True, slots=True)
