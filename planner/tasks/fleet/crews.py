@@ -28,8 +28,9 @@ from planner.wishes import Region
 
 Floats = NDArray[np.float64]
 
-#: Of a region's options the best of so many sectors of headings are the ways to do it.
-SECTORS = 4
+#: Of a region's options so many are the ways to do it, the cheapest first, none of a heading so near to that
+#: of one before: nothing of that hangs on where east is, or left.
+MOST_WAYS, APART_RAD = 4, math.radians(55.0)
 #: A change of height takes so much more than its slope says, in turn radii: some of the leg is turns.
 LEVEL_OFF = 0.5
 #: No touch-down is thought slower.
@@ -233,13 +234,16 @@ class Crew:
 
 
 def _best(entries: Floats, exits: Floats, inner_m: Floats) -> Ways:
-    """The cheapest of each sector of headings."""
-    sectors = np.floor(np.mod(entries[:, 2], math.tau) / (math.tau / SECTORS)).astype(np.int64) % SECTORS
-    kept = [
-        int(rows[np.argmin(inner_m[rows])])
-        for sector in range(SECTORS)
-        if len(rows := np.flatnonzero((sectors == sector) & np.isfinite(inner_m)))
-    ]
+    """The cheapest, and the cheapest of other headings."""
+    headings_rad = np.asarray(entries)[:, 2]
+    kept: list[int] = []
+    # By the millimetre: options that are as dear come in their order.
+    for row in np.argsort(np.round(inner_m, 3), kind="stable").tolist():
+        if len(kept) == MOST_WAYS or not math.isfinite(inner_m[row]):
+            break
+        off_rad = headings_rad[kept] - headings_rad[row]
+        if np.all(np.abs(np.remainder(off_rad + math.pi, math.tau) - math.pi) >= APART_RAD):
+            kept.append(row)
     return Ways(np.asarray(entries)[kept], np.asarray(exits)[kept], np.asarray(inner_m)[kept])
 
 
