@@ -29,8 +29,8 @@ from planner.wishes import Region
 Floats = NDArray[np.float64]
 
 #: Of a region's options so many are the ways to do it, the cheapest first, none of a heading so near to that
-#: of one before: nothing of that hangs on where east is, or left.
-MOST_WAYS, APART_RAD = 4, math.radians(55.0)
+#: of one before: nothing of that hangs on where east is, or left. No even part of a turn, which grids have.
+MOST_WAYS, APART_RAD = 4, math.radians(73.0)
 #: A change of height takes so much more than its slope says, in turn radii: some of the leg is turns.
 LEVEL_OFF = 0.5
 #: No touch-down is thought slower.

@@ -89,12 +89,18 @@ def test_a_window_is_kept_on_the_way_to_another_base() -> None:
     assert 1200.0 <= late.start_s < late.end_s <= 1500.0
 
 
-def test_one_in_the_air_ends_at_the_nearer_too() -> None:
-    """Planned anew, as it flies near the other base."""
+def test_one_in_the_air_ends_where_its_flight_is_shortest_too() -> None:
+    """Planned anew on its way: as long as the shorter of the flights to either base alone."""
     place = {"lon_deg": 0.02, "lat_deg": 0.005, "height_m": 500.0, "heading_deg": 45.0}
-    document = with_bases(small(), end_bases=["west", "east"], in_flight=place)
-    _, plan = made(document)
-    assert lands(plan, "uav") == pytest.approx(EAST, abs=1e-6)
+    found = {}
+    for ends in (("west", "east"), ("west",), ("east",)):
+        _, plan = made(with_bases(small(), end_bases=list(ends), in_flight=place))
+        found[ends] = (plan.paths[0].length_m, lands(plan, "uav"))
+    free = found.pop(("west", "east"))
+    assert abs(found["west",][0] - found["east",][0]) > 100.0
+    shortest_m, place_deg = min(found.values())
+    assert free[0] == pytest.approx(shortest_m)
+    assert free[1] == pytest.approx(place_deg)
 
 
 def test_of_two_with_their_own_bases_the_one_that_flies_is_at_home_at_its_own() -> None:
