@@ -21,8 +21,11 @@ SENSOR = {
 }  # fmt: skip
 
 
-def fleet_scenario(seed: int) -> Document:
-    """Two to four aircraft, from one base or two; six to twelve regions, in a third of all with windows."""
+def fleet_scenario(seed: int, band: bool = False) -> Document:
+    """Two to four aircraft, from one base or two; six to twelve regions, in a third of all with windows.
+
+    With a band the planner chooses the heights, up to those that are flown without one and down to half.
+    """
     rng = np.random.default_rng(seed)
     aircraft = int(rng.integers(2, 5))
     bases = [f"base {k}" for k in range(1 + int(rng.random() < 0.3))]
@@ -53,6 +56,9 @@ def fleet_scenario(seed: int) -> Document:
         },
         "seed": seed,
     }
+    if band:
+        most_m = document.pop("altitude_m")
+        document |= {"max_height_m": most_m, "min_height_m": most_m / 2.0}
     if rng.random() < 0.4:
         document["wind"] = {
             "speed_m_s": round(float(rng.uniform(1.0, 5.0)), 1),

@@ -283,7 +283,10 @@ def _of_several(scenario: Scenario, found: FleetAnswer, controls: Controls, watc
     """The plan of several flights that were found."""
     from planner.tasks.fleet.flights import answer_of
 
-    whole = Chart(scenario.frame, scenario.level)
+    # What lies above the passes, but not above what is flown between them, belongs to the fence, too.
+    level = scenario.level
+    tops_m = [knot[1] for each in found.sorties for knot in each.flown.composed.flight.heights.knots]
+    whole = Chart(scenario.frame, level.at(max(tops_m)) if max(tops_m) > level.altitude_m else level)
     with watch.stage("publish"):
         parts = []
         for sortie in found.sorties:
@@ -298,7 +301,7 @@ def _of_several(scenario: Scenario, found: FleetAnswer, controls: Controls, watc
         draft = together(
             parts,
             fence(whole, scenario.airspace, flown),
-            scenario.level.altitude_m,
+            level.altitude_m,
             {region.name: region.priority for region in scenario.regions},
         )
         home, end = whole.lonlats([scenario.start.position, scenario.end.position])

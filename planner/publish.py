@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 import shapely
@@ -38,7 +39,7 @@ from planner.plan import (
     ZonePolygon,
 )
 from planner.profile.compose import Composed
-from planner.profile.heights import Heights
+from planner.profile.heights import SAME_M, Heights
 from planner.profile.lines import cut
 from planner.route import CollectPass, Terminal
 from planner.sensors.base import Sensor
@@ -52,6 +53,8 @@ from planner.vehicle.model import FlightModel
 
 Floats = NDArray[np.float64]
 
+#: Altitudes nearer than this are one.
+HEIGHT_SAME_M = 0.01
 #: Vertices of straights of the published line: the chord in longitude and latitude must not leave the
 #: straight by more than a centimetre or so.
 MAX_STRAIGHT_EDGE_M = 1000.0
@@ -126,16 +129,23 @@ def collects_and_transits(
     photos: list[Photos] = []
     level, flight = chart.level, composed.flight
     # Its distance from the things themselves, whatever was to be kept from them.
-    zones = replace(keep_out(replace(airspace, clearance_m=0.0), level, soft=False), area=None)
+    bare = replace(airspace, clearance_m=0.0)
+    zones = replace(keep_out(bare, level, soft=False), area=None)
     for seq, (leg, (from_m, until_m)) in enumerate(zip(legs, composed.legs_m, strict=True), start=1):
         path = cut(flight.path, from_m, until_m)
         missile, radar = risks(flight, from_m, until_m, airspace.threats, level)
         line = line_between(flight, from_m, until_m, chart.lonlats, chart.straight_edge_m)
         length_m = flight.along(until_m)[0] - flight.along(from_m)[0]
+        flown = _levels(flight.heights.within(from_m, until_m), level)
+        near = (
+            zones
+            if flown is None
+            else replace(keep_out(bare, flown[1], soft=False, lowest=flown[0]), area=None)
+        )
         transits.append(
             Transit(
                 model.name, seq, leg.from_name, leg.to_name, line, length_m,
-                missile, radar, leg.method, proven_m(path, zones),
+                missile, radar, leg.method, proven_m(path, near),
             )
         )  # fmt: skip
     for seq, (collect, (from_m, until_m)) in enumerate(zip(passes, composed.passes_m, strict=True), start=1):
@@ -161,6 +171,17 @@ def collects_and_transits(
             taken = photos_of(collect, seq, collects[-1].line, heights, sensor, model)
             photos.extend([] if taken is None else [taken])
     return tuple(collects), tuple(transits), tuple(footprints), tuple(photos)
+
+
+def _levels(heights: Heights, level: Level) -> tuple[Level, Level] | None:
+    """The lowest and the highest level of a leg that is flown at another than what it leads between."""
+    if level.spread_m > 0.0:
+        return None
+    ends_m = (heights.knots[0][1], heights.knots[-1][1])
+    flat_m = [low_m for (_, low_m), (_, high_m) in pairwise(heights.knots) if abs(high_m - low_m) <= SAME_M]
+    if all(min(abs(each - end_m) for end_m in ends_m) <= HEIGHT_SAME_M for each in flat_m):
+        return None
+    return level.at(min(*flat_m, max(ends_m))), level.at(max(*flat_m, max(ends_m)))
 
 
 def _footprints(

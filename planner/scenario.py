@@ -19,7 +19,16 @@ from planner.route import Terminal
 from planner.sensors.base import Sensor
 from planner.sensors.suite import Suite
 from planner.vehicle.aircraft import Aircraft
-from planner.wishes import DEFAULT_SEPARATION, GoingOn, Importance, Method, Objective, Region, Separation
+from planner.wishes import (
+    DEFAULT_SEPARATION,
+    Band,
+    GoingOn,
+    Importance,
+    Method,
+    Objective,
+    Region,
+    Separation,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,7 +39,8 @@ class Scenario:
 
     Where there is terrain ``altitude_reference`` is ``amsl``; see ``planner.geojson.relief``. The flight is
     level, unless ``lowest_amsl_m`` says how far down it may come where it follows the ground.
-    ``max_height_m`` is the greatest height over ground of passes that was asked for. ``bases`` are those that
+    ``max_height_m`` is the greatest height over ground of passes that was asked for, ``band`` what flights
+    may go up and down in between them to keep apart; None where they may not. ``bases`` are those that
     aircraft start from and return to by name; one that names none flies from ``start`` to ``end``. In a
     search the regions are the ground that is searched, and ``importance`` says what it is worth.
     """
@@ -64,6 +74,7 @@ class Scenario:
     lowest_amsl_m: float | None = None
     terrain_following: bool = False
     max_height_m: float | None = None
+    band: Band | None = None
     bases: tuple[Terminal, ...] = ()
     separation: Separation | None = None
     importance: Importance = field(default_factory=Importance)

@@ -106,7 +106,9 @@ def _vehicles(parts: Iterable[Part]) -> tuple[PlanVehicle, ...]:
     found: dict[str, PlanVehicle] = {}
     for part in parts:
         value = replace(part.plan.vehicles[0], home=part.plan.home, end=part.plan.end)
-        found.setdefault(part.vehicle, value)
+        first = found.setdefault(part.vehicle, value)
+        # It starts where its first flight does, and ends where its last does.
+        found[part.vehicle] = replace(first, end=value.end)
     return tuple(found.values())
 
 

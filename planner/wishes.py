@@ -58,6 +58,20 @@ class Separation:
     vertical_m: float
 
 
+@dataclass(frozen=True, slots=True)
+class Band:
+    """Heights over ground that flights may have between their passes, where the planner chooses heights.
+
+    Parameters
+    ----------
+    low_m, high_m
+        None: not lower than the lowest pass, not higher than the highest.
+    """
+
+    low_m: float | None
+    high_m: float | None
+
+
 #: Where a scenario does not say.
 DEFAULT_SEPARATION = Separation(100.0, 30.0)
 

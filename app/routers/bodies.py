@@ -125,7 +125,10 @@ SCENARIO_SCHEMA: dict[str, Any] = {
             "description": "Absent: the planner chooses heights by gsd_m, min_resolution_m or min_niirs of "
             "the regions, or up to max_height_m.",
         },
-        "min_height_m": {**HEIGHT_M, "description": "Over ground, of heights that are chosen."},
+        "min_height_m": {
+            **HEIGHT_M,
+            "description": "Over ground, of heights that are chosen, and of legs on which aircraft cross.",
+        },
         "max_height_m": {**HEIGHT_M, "description": "Over ground: no pass is higher."},
         "altitude_reference": {"enum": ["amsl", "home", "terrain"], "default": "terrain"},
         "terrain": {"type": "string", "description": "Id of an uploaded elevation raster."},

@@ -16,6 +16,8 @@ from planner.scenario import Scenario
 #: Rounding of coordinates makes a short edge look steeper than it is.
 SLOPE_TOLERANCE_DEG = 0.05
 HEIGHT_TOLERANCE_M = 0.05
+#: Heights between collects are looked at so far apart.
+TRANSIT_STEP_M = 20.0
 
 Floats = NDArray[np.float64]
 
@@ -115,6 +117,52 @@ def altitude_violations(scenario: Scenario, collects: tuple[Collect, ...]) -> It
                 "m",
                 collect.line[0][:2],
             )
+
+
+def transit_violations(
+    scenario: Scenario,
+    path: FlownPath,
+    collects: tuple[Collect, ...],
+    line_m: Floats,
+    altitudes_m: Floats,
+) -> Iterator[Violation]:
+    """Between collects nothing is flown lower or higher than they are, but for what the scenario leaves open.
+
+    Before the first and behind the last collect the flight comes from the ground, and goes there.
+    """
+    if not collects or scenario.lowest_amsl_m is not None:
+        return
+    steps_m = np.hypot(np.hypot(*np.diff(line_m, axis=0).T), np.diff(altitudes_m))
+    reached_m = np.concatenate([[0.0], np.cumsum(steps_m)])
+    first_m, last_m = min(c.start_m for c in collects), max(c.end_m for c in collects)
+    marks_m = np.union1d(reached_m, np.arange(first_m, last_m, TRANSIT_STEP_M))
+    marks_m = marks_m[(first_m <= marks_m) & (marks_m <= last_m)]
+    places_m = np.column_stack([np.interp(marks_m, reached_m, line_m[:, k]) for k in (0, 1)])
+    flown_m = np.interp(marks_m, reached_m, altitudes_m)
+    own_m = [scenario.altitude_m if r.altitude_m is None else r.altitude_m for r in scenario.regions]
+    low_m, high_m = np.full(len(marks_m), min(own_m)), np.full(len(marks_m), max(own_m))
+    if scenario.band is not None:
+        datum_amsl_m = scenario.level.amsl_m - scenario.level.altitude_m
+        ground_m = np.full(len(marks_m), scenario.level.altitude_m - scenario.level.height_m)
+        if scenario.terrain is not None:
+            ground_m = scenario.terrain.at(places_m) - datum_amsl_m
+        if scenario.band.low_m is not None:
+            low_m = np.fmin(low_m, ground_m + scenario.band.low_m)
+        if scenario.band.high_m is not None:
+            high_m = np.fmax(high_m, ground_m + scenario.band.high_m)
+    off_m = np.maximum(low_m - flown_m, flown_m - high_m)
+    worst = int(np.argmax(off_m))
+    if off_m[worst] > HEIGHT_TOLERANCE_M:
+        lon, lat = (float(value) for value in scenario.frame.to_wgs84(places_m[worst : worst + 1])[0])
+        yield Violation(
+            "transit-height",
+            path.vehicle,
+            f"is at an altitude of {flown_m[worst]:.1f} m between collects, and {low_m[worst]:.1f} m to "
+            f"{high_m[worst]:.1f} m are left open there",
+            float(off_m[worst]),
+            "m",
+            (lon, lat),
+        )
 
 
 def _followed(scenario: Scenario) -> set[str]:

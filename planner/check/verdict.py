@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -22,6 +22,7 @@ from planner.check.heights import (
     level_violations,
     phase_violations,
     slope_violations,
+    transit_violations,
 )
 from planner.check.kinematics import (
     LENGTH_TOLERANCE,
@@ -35,6 +36,7 @@ from planner.check.searched import Found, searched
 from planner.check.stretches import Measured
 from planner.check.times import line_s, speeds_told
 from planner.plan import FlownPath, Plan, Surveyed, Violation
+from planner.route import Terminal
 from planner.scenario import Scenario
 from planner.vehicle.aircraft import Aircraft
 
@@ -82,7 +84,9 @@ def judge(scenario: Scenario, plan: Plan) -> Verdict:
     asked, published = scenario, plan
     for flown in published.paths:
         aircraft = next(a for a in asked.aircraft if a.name == flown.vehicle)
-        scenario, plan = _asked_of(asked, aircraft, flown), published.of(flown.vehicle, flown.sortie)
+        before = [p for p in published.paths if (p.vehicle, p.sortie) == (flown.vehicle, flown.sortie - 1)]
+        scenario = _asked_of(asked, aircraft, flown, before[0] if before else None)
+        plan = published.of(flown.vehicle, flown.sortie)
         (path,), aircraft = plan.paths, aircraft.in_wind(asked.wind.speed_m_s)
         vehicle = next(v for v in plan.vehicles if v.name == path.vehicle)
         line_m = scenario.frame.to_local([place[:2] for place in path.line])
@@ -105,6 +109,8 @@ def judge(scenario: Scenario, plan: Plan) -> Verdict:
         violations += ground_violations(path, vehicle, altitudes_m, _begins_m(scenario, home_ground_m))
         violations += level_violations(scenario, plan.collects_of(vehicle.name))
         violations += altitude_violations(scenario, plan.collects_of(vehicle.name))
+        own = plan.collects_of(vehicle.name)
+        violations += transit_violations(scenario, path, own, line_m, altitudes_m)
         violations += phase_violations(path)
         violations += terminal_violations(
             scenario, path, line_m, aircraft.ground_turn_radius_m, circling, returning
@@ -159,13 +165,22 @@ def judge(scenario: Scenario, plan: Plan) -> Verdict:
     return Verdict(tuple(violations), length_m, tightest_m, coverage, unseen, surveys, *seen)
 
 
-def _asked_of(asked: Scenario, aircraft: Aircraft, flown: FlownPath) -> Scenario:
-    """What an aircraft was asked, had it been to land at the one of its landings where it came down."""
-    if aircraft.end_bases is None:
+def _asked_of(asked: Scenario, aircraft: Aircraft, flown: FlownPath, before: FlownPath | None) -> Scenario:
+    """What an aircraft was asked, had it been to land at the one of its landings where it came down.
+
+    A further flight starts where the one before has landed.
+    """
+    landings = asked.landings_of(aircraft)
+
+    def landed(path: FlownPath) -> Terminal:
+        place_m = asked.frame.to_local([path.line[-1][:2]])[0]
+        return min(landings, key=lambda end: math.dist(end.position, place_m))
+
+    moved = before is not None and landed(before).position != asked.ends_of(aircraft)[0].position
+    if aircraft.end_bases is None and not moved:
         return asked.of_one(aircraft)
-    lands = asked.frame.to_local([flown.line[-1][:2]])[0]
-    ends = asked.landings_of(aircraft)
-    return asked.landing_at(aircraft, min(ends, key=lambda end: math.dist(end.position, lands)))
+    alone = asked.landing_at(aircraft, landed(flown))
+    return replace(alone, start=landed(before)) if before is not None and moved else alone
 
 
 def _begins_m(scenario: Scenario, home_ground_m: float) -> tuple[float, float]:

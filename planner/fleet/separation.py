@@ -19,13 +19,17 @@ from planner.vehicle.model import FlightModel
 from planner.wishes import Separation
 
 Floats = NDArray[np.float64]
+Places = NDArray[np.int64]
 
-#: Places of a flight that are looked at lie no further apart than this part of what is kept, within bounds.
-STEP_OF_KEPT, LEAST_STEP_M, MOST_STEP_M = 0.25, 5.0, 50.0
+#: Places of a flight that are looked at lie no further apart than this part of what is kept, within bounds:
+#: what lies between two of them is kept besides, and makes flights wait.
+STEP_OF_KEPT, LEAST_STEP_M, MOST_STEP_M = 0.1, 4.0, 20.0
 #: No two of them lie further apart in time, however slowly it is flown.
-MOST_STEP_S = 2.0
+MOST_STEP_S = 1.0
 #: Kept besides what is asked for: how well a place at a time is known.
 MARGIN_M, MARGIN_UP_M, MARGIN_S = 5.0, 1.0, 1.0
+#: Times that differ by less are one.
+SAME_S = 1e-6
 #: Rates that an autopilot is set to by those that its aircraft may need.
 RATES_SPARE = 1.1
 
@@ -143,7 +147,7 @@ class Apart:
     """
 
     def __init__(self, separation: Separation, drift: Drift = NO_DRIFT) -> None:
-        self._separation, self._drift = separation, drift
+        self.separation, self._drift = separation, drift
         self._tracks: list[Track] = []
         self._known: dict[tuple[int, int], Floats] = {}
 
@@ -164,9 +168,39 @@ class Apart:
             first_s = max(first_s, end_s)
         return first_s
 
+    def stopped_by(self, placed: tuple[int, float], moving: tuple[int, float]) -> tuple[Places, Places]:
+        """Places of a flight that stands, and of one behind it, that let the latter begin no sooner.
+
+        Parameters
+        ----------
+        placed, moving
+            The numbers of both, and when they lift off.
+
+        Returns
+        -------
+        tuple
+            Of each the numbers of its places, as many; none where it is not these two that are too near.
+        """
+        (one, begun_s), (other, start_s) = placed, moving
+        least_s = start_s - begun_s
+        spans = self._between(one, other)
+        ends = np.flatnonzero(np.abs(spans[:, 1] - least_s) < SAME_S)
+        if not len(ends):
+            return np.empty(0, np.int64), np.empty(0, np.int64)
+        begin_s, end_s = spans[ends[0]]
+        rows, columns, delays_s, _ = _near(
+            self._tracks[one], self._tracks[other], self.separation, self._drift
+        )
+        among = (begin_s <= delays_s) & (delays_s <= end_s)
+        return rows[among], columns[among]
+
+    def track(self, number: int) -> Track:
+        """One of the flights."""
+        return self._tracks[number]
+
     def _between(self, one: int, other: int) -> Floats:
         if (one, other) not in self._known:
-            found = _barred(self._tracks[one], self._tracks[other], self._separation, self._drift)
+            found = _barred(self._tracks[one], self._tracks[other], self.separation, self._drift)
             self._known[one, other] = found
             self._known[other, one] = -found[::-1, ::-1]
         return self._known[one, other]
@@ -174,25 +208,32 @@ class Apart:
 
 def _barred(track: Track, moving: Track, separation: Separation, drift: Drift) -> Floats:
     """Delays ruled out by one flight, (K, 2): from and until, those that overlap taken together."""
-    if separation.horizontal_m <= 0.0 or separation.vertical_m <= 0.0:
-        return np.empty((0, 2))
-    one, other = track.places, moving.places
-    step = max(_longest_m(one), _longest_m(other))
-    near = cKDTree(one[:, 1:3]).query_ball_tree(
-        cKDTree(other[:, 1:3]), separation.horizontal_m + step + MARGIN_M
-    )
-    counts = [len(found) for found in near]
-    if not sum(counts):
-        return np.empty((0, 2))
-    rows = np.repeat(np.arange(len(one)), counts)
-    columns = np.concatenate([np.array(found, dtype=np.int64) for found in near if found])
-    rise_m = max(_steepest_m(one), _steepest_m(other))
-    beside = np.abs(one[rows, 3] - other[columns, 3]) < separation.vertical_m + rise_m + MARGIN_UP_M
-    delays_s = one[rows[beside], 0] - other[columns[beside], 0]
-    loose_s = np.maximum(track.loose_s(drift)[rows[beside]], moving.loose_s(drift)[columns[beside]])
-    # Between two places looked at the aircraft takes this long at most.
-    apart_s = _slowest_s(one) + _slowest_s(other) + MARGIN_S + loose_s
+    _, _, delays_s, apart_s = _near(track, moving, separation, drift)
     return _together(delays_s - apart_s, delays_s + apart_s)
+
+
+def _near(
+    track: Track, moving: Track, separation: Separation, drift: Drift
+) -> tuple[Places, Places, Floats, Floats]:
+    """Places of both that are nearer than is kept, delays that bring both there, and how exact those are."""
+    if separation.horizontal_m <= 0.0 or separation.vertical_m <= 0.0:
+        return np.empty(0, np.int64), np.empty(0, np.int64), np.empty(0), np.empty(0)
+    one, other = track.places, moving.places
+    one_halves, other_halves = _halves(one), _halves(other)
+    most_m = float(one_halves[:, 1].max() + other_halves[:, 1].max())
+    near = cKDTree(one[:, 1:3]).sparse_distance_matrix(
+        cKDTree(other[:, 1:3]), separation.horizontal_m + most_m + MARGIN_M, output_type="ndarray"
+    )
+    rows, columns = near["i"], near["j"]
+    # A place of a flight is no further than this from one of those that are looked at.
+    off = one_halves[rows] + other_halves[columns]
+    beside = near["v"] < separation.horizontal_m + off[:, 1] + MARGIN_M
+    level = np.abs(one[rows, 3] - other[columns, 3]) < separation.vertical_m + off[:, 2] + MARGIN_UP_M
+    hits = np.flatnonzero(beside & level)
+    rows, columns = rows[hits], columns[hits]
+    delays_s = one[rows, 0] - other[columns, 0]
+    loose_s = np.maximum(track.loose_s(drift)[rows], moving.loose_s(drift)[columns])
+    return rows, columns, delays_s, off[hits, 0] + MARGIN_S + loose_s
 
 
 def _together(firsts_s: Floats, lasts_s: Floats) -> Floats:
@@ -207,13 +248,9 @@ def _together(firsts_s: Floats, lasts_s: Floats) -> Floats:
     return np.column_stack([firsts_s[begins], reached_s[ends]])
 
 
-def _longest_m(places: Floats) -> float:
-    return float(np.hypot(*np.diff(places[:, 1:3], axis=0).T).max(initial=0.0))
-
-
-def _steepest_m(places: Floats) -> float:
-    return float(np.abs(np.diff(places[:, 3])).max(initial=0.0))
-
-
-def _slowest_s(places: Floats) -> float:
-    return float(np.diff(places[:, 0]).max(initial=0.0))
+def _halves(places: Floats) -> Floats:
+    """Of each place half of the longer way to its neighbours: seconds, metres over ground, and of height."""
+    steps = np.abs(np.diff(places, axis=0))
+    ways = np.column_stack([steps[:, 0], np.hypot(steps[:, 1], steps[:, 2]), steps[:, 3]])
+    none = np.zeros((1, 3))
+    return np.asarray(0.5 * np.maximum(np.concatenate([none, ways]), np.concatenate([ways, none])))

@@ -97,12 +97,6 @@ def read_aircraft(raw: Any, index: int, findings: Findings) -> Aircraft | None:
             "Add power, or cruise_power_w for a constant one; or leave energy_wh out.",
             rule="no-power-model",
         )
-    if end_bases is not None and batteries not in (None, 1):
-        fields.wrong(
-            "end_bases",
-            f"names where it lands, and its {batteries} batteries are changed where it starts",
-            "Set batteries to 1, or leave end_bases out.",
-        )
     if aloft is not None and batteries not in (None, 1):
         fields.wrong(
             "batteries",

@@ -16,7 +16,7 @@ from planner.geojson.fields import Fields, Findings
 from planner.scenario import Scenario
 from planner.sensors.sar import SarSensor
 from planner.sensors.wanted import UnknownQualityError, Wanted, wanted_of
-from planner.wishes import HIGHEST_M, Region
+from planner.wishes import HIGHEST_M, Band, Region
 
 #: Chosen heights are not below this where no ``min_height_m`` says so.
 LEAST_M = 10.0
@@ -59,16 +59,23 @@ class Heights:
         return (
             self.altitude_given
             or self.max_m is not None
-            or any(
-                given is not None
-                for region in regions
-                for given in (region.altitude_m, region.gsd_m, region.min_niirs, region.min_resolution_m)
-            )
+            or any(given is not None for region in regions for given in (region.altitude_m, *_wishes(region)))
         )
 
     def choosing(self, region: Region, wanted: tuple[Wanted, ...]) -> bool:
         """Whether the planner is to choose a region's height."""
         return region.altitude_m is None and (bool(wanted) or not self.altitude_given)
+
+    def band(self, regions: Iterable[Region]) -> Band | None:
+        """What flights may go up and down in between passes; None where their heights are given."""
+        if self.min_m is None and self.max_m is None:
+            return None
+        chosen = any(
+            region.altitude_m is None
+            and (not self.altitude_given or any(wish is not None for wish in _wishes(region)))
+            for region in regions
+        )
+        return Band(self.min_m, self.max_m) if chosen else None
 
     def over_top_m(
         self,
@@ -188,6 +195,10 @@ class Heights:
         )
 
 
+def _wishes(region: Region) -> tuple[float | None, ...]:
+    return region.gsd_m, region.min_niirs, region.min_resolution_m
+
+
 def _check_given(
     region: Region, wanted: tuple[Wanted, ...], height_m: float, sensor: str, findings: Findings
 ) -> None:
@@ -244,11 +255,7 @@ def at_highest(scenario: Scenario, heights: Heights) -> Scenario:
 
 def tell_unused(scenario: Scenario, heights: Heights, findings: Findings) -> None:
     """``min_height_m`` is for regions whose height is chosen."""
-    asking = any(
-        wish is not None
-        for region in scenario.regions
-        for wish in (region.gsd_m, region.min_niirs, region.min_resolution_m)
-    )
+    asking = any(wish is not None for region in scenario.regions for wish in _wishes(region))
     if heights.min_m is not None and heights.altitude_given and not asking:
         findings.warning(
             "scenario",

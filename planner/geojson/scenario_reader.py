@@ -223,6 +223,7 @@ def _read(document: Any, findings: Findings, terrains: Terrains | None) -> Scena
         home_amsl_m=None if terrain is not None else home_amsl_m(raws, start.name),
         terrain_following=following,
         max_height_m=heights.max_m,
+        band=heights.band(regions),
         bases=tuple(bases) if len(aircraft) > 1 or any(one.end_bases for one in aircraft if one) else (),
         separation=separation if len(aircraft) > 1 else None,
         going_on=going_on,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 from planner.plan.aboard import STILL_AIR, PlanCamera, PlanVehicle, PlanWind
@@ -10,6 +11,9 @@ from planner.plan.flown import Collect, FlownPath, Transit
 from planner.plan.metrics import Metrics, Violation
 from planner.plan.seen import Footprint, Photos, Uncovered
 from planner.plan.words import AltitudeReference, LonLat
+
+#: A line begins or ends at a known place if it is no further from it; and a degree of latitude in metres.
+ONE_PLACE_M, DEGREE_M = 1.0, 111_000.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,11 +79,17 @@ class Plan:
             replace(each, start_s=each.start_s - path.start_s, end_s=each.end_s - path.start_s)
             for each in path.phases
         )
+        home, end = value.home or self.home, value.end or self.end
+        if sortie > 1:
+            # It starts where the flight before has landed, which may be elsewhere.
+            home = _same_or(home, path.line[0])
+        if value.finish == "land":
+            end = _same_or(end, path.line[-1])
         return replace(
             self,
             vehicles=(value,),
-            home=value.home or self.home,
-            end=value.end or self.end,
+            home=home,
+            end=end,
             paths=(replace(path, start_s=0.0, phases=phases),),
             collects=collects,
             transits=tuple(t for t in self.transits if (t.vehicle, t.sortie) == (vehicle, sortie)),
@@ -103,3 +113,10 @@ class Plan:
     def hard_violations(self) -> tuple[Violation, ...]:
         """Violations that forbid an upload without an explicit override."""
         return tuple(violation for violation in self.violations if violation.hard)
+
+
+def _same_or(known: LonLat, place: tuple[float, float, float]) -> LonLat:
+    """A known place where a line begins or ends there, else that place of the line."""
+    east_deg = math.remainder(place[0] - known[0], 360.0) * math.cos(math.radians(known[1]))
+    off_m = DEGREE_M * math.hypot(east_deg, place[1] - known[1])
+    return known if off_m <= ONE_PLACE_M else (place[0], place[1])

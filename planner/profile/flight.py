@@ -65,8 +65,8 @@ class Flight:
     stretches
         Its pieces in flight order. ``starts_m``, in three dimensions, and ``starts_s`` are where and when
         each begins; last, the whole.
-    mission_m
-        Distances over the ground between which the mission phase lies.
+    bounds_m
+        Distances over the ground at which phases change, as ``whole_flight`` has them.
     inserted_m
         Length over the ground of climbing and descending turns.
     """
@@ -76,8 +76,13 @@ class Flight:
     stretches: tuple[Stretch, ...]
     starts_m: tuple[float, ...]
     starts_s: tuple[float, ...]
-    mission_m: tuple[float, float]
+    bounds_m: tuple[float, float, float, float]
     inserted_m: float
+
+    @property
+    def mission_m(self) -> tuple[float, float]:
+        """Distances over the ground between which the mission phase lies."""
+        return self.bounds_m[1:3]
 
     @property
     def length_m(self) -> float:
@@ -174,9 +179,7 @@ def whole_flight(
     for stretch, time_s in zip(stretches, times(stretches), strict=True):
         starts_m.append(starts_m[-1] + stretch.length_m)
         starts_s.append(starts_s[-1] + time_s)
-    return Flight(
-        path, heights, tuple(stretches), tuple(starts_m), tuple(starts_s), (climbed_m, mission_m), inserted_m
-    )
+    return Flight(path, heights, tuple(stretches), tuple(starts_m), tuple(starts_s), bounds_m, inserted_m)
 
 
 def _jumps(knots: tuple[tuple[float, float], ...], length_m: float) -> list[tuple[float, float, float]]:

@@ -28,8 +28,9 @@ from planner.wishes import Region
 
 Floats = NDArray[np.float64]
 
-#: Of a region's options the best of so many sectors of headings are the ways to do it.
-SECTORS = 4
+#: Of a region's options so many are the ways to do it, the cheapest first, none of a heading so near to that
+#: of one before: nothing of that hangs on where east is, or left. No even part of a turn, which grids have.
+MOST_WAYS, APART_RAD = 4, math.radians(73.0)
 #: A change of height takes so much more than its slope says, in turn radii: some of the leg is turns.
 LEVEL_OFF = 0.5
 #: No touch-down is thought slower.
@@ -105,13 +106,18 @@ class Crew:
 
     def landing(self, end: Terminal) -> Crew:
         """The same that ends at another of its landings."""
-        if end == self.ends[1]:
+        return self.between((self.setting.ends[0], end))
+
+    def between(self, ends: tuple[Terminal, Terminal]) -> Crew:
+        """The same that starts where it once landed, or ends at another of its landings."""
+        if ends == self.setting.ends:
             return self
         plain = replace(self.aircraft, base=None, end_bases=None)
-        start = self.alone.ends_of(self.aircraft)[0]
-        alone = replace(self.alone, start=start, end=end, bases=(), aircraft=(plain,))
-        setting = replace(self.setting, ends=(self.setting.ends[0], end))
-        return replace(self, alone=alone, setting=setting, ends=(self.ends[0], end))
+        alone = replace(self.alone, start=ends[0], end=ends[1], bases=(), aircraft=(plain,))
+        return replace(self, alone=alone, setting=replace(self.setting, ends=ends), ends=self._run(ends))
+
+    def _run(self, ends: tuple[Terminal, Terminal]) -> tuple[Terminal, Terminal]:
+        return with_run(ends, self.setting.level.height_m, self.setting.model)
 
     @property
     def kind(self) -> tuple[object, ...]:
@@ -191,12 +197,14 @@ class Crew:
         lacking_m = wanted_m - legs_m
         return legs_m + circle_m * np.ceil(np.maximum(lacking_m, 0.0) / circle_m)
 
-    def seconds(self, entries: Floats, exits: Floats) -> tuple[Floats, Floats, tuple[Floats, ...]]:
-        """Between ways (N, N), from the start (N,), and to each landing (N,): seconds."""
-        start = self.ends[0]
+    def seconds(
+        self, entries: Floats, exits: Floats
+    ) -> tuple[Floats, tuple[Floats, ...], tuple[Floats, ...]]:
+        """Seconds between ways (N, N), from the start and from each landing (N,), to each landing (N,)."""
+        starts = [self.ends[0], *(self._run((landing, self.ends[1]))[0] for landing in self.landings)]
         discs, speed_m_s = self.around.discs, self.setting.model.airspeed_m_s
         between = estimates(exits, entries, self.around, discs) / speed_m_s
-        out = self.up_m(from_start(start, self.around, entries, discs)) / speed_m_s
+        out = tuple(self.up_m(from_start(start, self.around, entries, discs)) / speed_m_s for start in starts)
         home = tuple(self.down_m(to_end(end, self.around, exits, discs)) / speed_m_s for end in self.landings)
         return between, out, home
 
@@ -226,13 +234,16 @@ class Crew:
 
 
 def _best(entries: Floats, exits: Floats, inner_m: Floats) -> Ways:
-    """The cheapest of each sector of headings."""
-    sectors = np.floor(np.mod(entries[:, 2], math.tau) / (math.tau / SECTORS)).astype(np.int64) % SECTORS
-    kept = [
-        int(rows[np.argmin(inner_m[rows])])
-        for sector in range(SECTORS)
-        if len(rows := np.flatnonzero((sectors == sector) & np.isfinite(inner_m)))
-    ]
+    """The cheapest, and the cheapest of other headings."""
+    headings_rad = np.asarray(entries)[:, 2]
+    kept: list[int] = []
+    # By the millimetre: options that are as dear come in their order.
+    for row in np.argsort(np.round(inner_m, 3), kind="stable").tolist():
+        if len(kept) == MOST_WAYS or not math.isfinite(inner_m[row]):
+            break
+        off_rad = headings_rad[kept] - headings_rad[row]
+        if np.all(np.abs(np.remainder(off_rad + math.pi, math.tau) - math.pi) >= APART_RAD):
+            kept.append(row)
     return Ways(np.asarray(entries)[kept], np.asarray(exits)[kept], np.asarray(inner_m)[kept])
 
 

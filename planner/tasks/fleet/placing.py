@@ -7,8 +7,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 
-import numpy as np
-
 from planner.errors import InfeasibleError
 from planner.fleet.assignment import Trip
 from planner.fleet.separation import DRIFTS, NO_DRIFT, Apart, Track, step_m, track_of
@@ -17,14 +15,13 @@ from planner.tasks.fleet.aloft import held_apart, home_apart
 from planner.tasks.fleet.crews import Crew
 from planner.tasks.fleet.flights import SPARE_S, Flown, Order, with_waits
 from planner.tasks.fleet.jobs import Job
+from planner.tasks.fleet.turns import other_orders
 from planner.tasks.task import Controls
 from planner.vehicle.aircraft import Aircraft
 from planner.wishes import Objective, Separation
 
 #: So often a flight is put off, its waits made shorter, before there is no room for it.
 MOST_DELAYS = 12
-#: Other orders in which flights are put on the clock.
-ORDERS = 60
 #: So often a flight that found no room among the others is put on the clock before them.
 MOST_FIRST = 4
 #: The constraint of a flight that others leave no room for within its windows.
@@ -45,20 +42,20 @@ class Errand:
         The flight where nothing binds its times; None where its order is given.
     order
         Its passes where its order is given.
-    landing
-        Where it ends; None for its crew's end.
+    ends
+        Where it starts and ends; None for its crew's ends.
     """
 
     trip: Trip
     jobs: tuple[tuple[Job, int], ...]
     flown: Flown | None = None
     order: Order | None = None
-    landing: Terminal | None = None
+    ends: tuple[Terminal, Terminal] | None = None
 
     def crew(self, crews: Sequence[Crew]) -> Crew:
-        """Whose it is, ending where it does."""
+        """Whose it is, starting and ending where it does."""
         own = crews[self.trip.member]
-        return own if self.landing is None else own.landing(self.landing)
+        return own if self.ends is None else own.between(self.ends)
 
 
 @dataclass(frozen=True, slots=True)
@@ -168,6 +165,28 @@ def placed(
     raise _too_near(aircraft, separation)
 
 
+def placed_anew(
+    crews: Sequence[Crew],
+    errands: Sequence[Errand],
+    tracks: Mapping[int, int],
+    apart: Apart,
+    controls: Controls,
+    seed: int,
+) -> tuple[Sortie, ...]:
+    """Flights from the ground that may be flown at any time, as ``placed``, in the order of the errands.
+
+    Parameters
+    ----------
+    tracks
+        The number of each among ``apart``, by the errand's id.
+    """
+    clock = _placed(crews, errands, apart.separation, controls, seed, apart, tracks)
+    if clock is None:
+        raise ValueError("what is on the ground can always wait")
+    by_flight = {id(sortie.flown): sortie for sortie in clock.sorties}
+    return tuple(by_flight[id(each.flown)] for each in errands)
+
+
 def _in_the_air_first(crews: Sequence[Crew], errands: Sequence[Errand]) -> list[Errand]:
     return sorted(
         errands,
@@ -186,18 +205,20 @@ def _placed(
     controls: Controls,
     seed: int,
     apart: Apart,
+    tracks: Mapping[int, int] | None = None,
 ) -> _Clock | None:
     """The best of the orders tried; None where some are too near in all of them."""
     first = _in_the_air_first(crews, errands)
-    tracks = {
-        id(each): apart.add(_track(crews[each.trip.member], each.flown, separation))
-        for each in errands
-        if each.flown is not None
-    }
+    if tracks is None:
+        tracks = {
+            id(each): apart.add(flight_track(crews[each.trip.member], each.flown, separation))
+            for each in errands
+            if each.flown is not None
+        }
     orders = [first]
     if len(tracks) == len(errands) > 1:
-        rng = np.random.default_rng(seed)
-        orders += [_shuffled(first, rng) for _ in range(ORDERS)]
+        members = [each.trip.member for each in first]
+        orders += [[first[k] for k in order] for order in other_orders(members, seed)]
     best: _Clock | None = None
     tried: list[list[int]] = []
     while orders:
@@ -263,7 +284,7 @@ def _in_turn(
 
 def _put_aloft(clock: _Clock, crew: Crew, errand: Errand, separation: Separation, controls: Controls) -> bool:
     """Place a flight that has begun; whether it can be kept apart from those placed, in time."""
-    of = partial(_track, crew, separation=separation)
+    of = partial(flight_track, crew, separation=separation)
     if not errand.jobs and errand.flown is not None and errand.flown.order and errand.flown.order.passes:
         # A search has no jobs to wait before, and is not to be given up for its way home.
         track = clock.apart.add(of(errand.flown))
@@ -305,13 +326,6 @@ def _sooner(crews: Sequence[Crew], order: Sequence[Errand], errand: Errand) -> l
     return sorted(own + others, key=lambda each: crews[each.trip.member].aircraft.aloft is None)
 
 
-def _shuffled(order: Sequence[Errand], rng: np.random.Generator) -> list[Errand]:
-    """Another order, in which each aircraft's flights come as they do in this one."""
-    members = [errand.trip.member for errand in order]
-    own = {member: iter([e for e in order if e.trip.member == member]) for member in members}
-    return [next(own[members[k]]) for k in rng.permutation(len(members)).tolist()]
-
-
 def _put_in_order(
     clock: _Clock,
     crew: Crew,
@@ -330,7 +344,7 @@ def _put_in_order(
         if when.worst is not None:
             job = errand.jobs[when.worst][0]
             raise LateError(errand.trip.member, job, when.late_s, crowded=delays > 0 or job.visits > 1)
-        track = clock.apart.add(_track(crew, flown, separation))
+        track = clock.apart.add(flight_track(crew, flown, separation))
         start_s = clock.first_s(track, when.start_s)
         latest_s = min(
             closes_s - end_s for (_, closes_s), (_, end_s) in zip(bounds_s, flown.spans_s, strict=True)
@@ -348,7 +362,8 @@ def _put_in_order(
     )
 
 
-def _track(crew: Crew, flown: Flown, separation: Separation) -> Track:
+def flight_track(crew: Crew, flown: Flown, separation: Separation) -> Track:
+    """The places of a flight from its lift-off."""
     return track_of(flown.composed.flight, crew.setting.model, step_m(separation))
 
 

@@ -146,10 +146,14 @@ def _bases(crews: Sequence[Crew]) -> tuple[tuple[str, ...], list[int], list[tupl
     return tuple(names), starts, ends
 
 
-def landing_of(crews: Sequence[Crew], trip: Trip) -> Terminal:
-    """Where a flight that was assigned ends."""
-    _, _, ends = _bases(crews)
-    return crews[trip.member].landings[ends[trip.member].index(trip.end_base)]
+def ends_of(crews: Sequence[Crew], trip: Trip) -> tuple[Terminal, Terminal]:
+    """Where a flight that was assigned starts, and where it ends."""
+    _, starts, ends = _bases(crews)
+    crew, own = crews[trip.member], ends[trip.member]
+    start = crew.setting.ends[0]
+    if trip.start_base != starts[trip.member]:
+        start = crew.landings[own.index(trip.start_base)]
+    return start, crew.landings[own.index(trip.end_base)]
 
 
 def _targets(
@@ -222,10 +226,12 @@ def _member(
         rows = base_count + np.array(mine)
         seconds[np.ix_(rows, rows)] = between
         half_s = (crew.besides_s + lessons.besides_s.get(number, 0.0)) / 2.0
-        seconds[own[0], rows] = np.maximum(out + half_s, 0.0)
+        # From where it has landed with one battery it starts with the next.
+        for start, out_s in reversed(list(zip((own[0], *own[1]), out, strict=True))):
+            seconds[start, rows] = np.maximum(out_s + half_s, 0.0)
         for end, home_s in zip(own[1], home, strict=True):
             seconds[rows, end] = np.maximum(home_s + half_s, 0.0)
-    seconds[own[0], list(own[1])] = 0.0
+    seconds[np.ix_([own[0], *own[1]], list(own[1]))] = 0.0
     np.fill_diagonal(seconds, 0.0)
     seconds = seconds * lessons.factor(number)
     aircraft, spare = crew.setting.model.aircraft, lessons.spare.get(number, 1.0)

@@ -26,7 +26,8 @@ def in_sorties(scenario: Scenario, answer: Answer, count: int, controls: Control
     """A flight in several, each with no more items than are held; None where there are none.
 
     The passes stay, and their order; about as many go to each flight. What one battery has is for all of them
-    together. Flights are not split that begin in the air, end elsewhere than they begin, or end circling.
+    together. Each flight ends where the whole is to end, and the next one starts there. Flights are not split
+    that begin in the air, or end circling.
 
     Parameters
     ----------
@@ -34,14 +35,18 @@ def in_sorties(scenario: Scenario, answer: Answer, count: int, controls: Control
         Items of the one flight.
     """
     aircraft = scenario.aircraft[0]
-    apart_m = math.dist(scenario.start.position, scenario.end.position)
-    if aircraft.aloft is not None or aircraft.finish not in ("auto", "land") or apart_m > ONE_PLACE_M:
+    if aircraft.aloft is not None or aircraft.finish not in ("auto", "land"):
         return None
     several = replace(aircraft, batteries=len(answer.passes))
     crew = Crew.of(replace(scenario, aircraft=(several,)), several)
+    behind = crew
+    if math.dist(scenario.start.position, scenario.end.position) > ONE_PLACE_M:
+        behind = crew.between((scenario.end, scenario.end))
     for flights in range(math.ceil(count / aircraft.most_items), len(answer.passes) + 1):
         try:
-            flown = [by_passes(crew, 0, some, controls) for some in _dealt(answer.passes, flights)]
+            first, *others = _dealt(answer.passes, flights)
+            flown = [by_passes(crew, 0, first, controls)]
+            flown += [by_passes(behind, 0, some, controls) for some in others]
         except InfeasibleError:
             return None
         if exceeded(aircraft, _together(flown)):

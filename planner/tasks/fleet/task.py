@@ -17,13 +17,14 @@ from planner.tasks.fleet.answer import FleetAnswer
 from planner.tasks.fleet.barred import BarredError, barred, infeasible
 from planner.tasks.fleet.bettering import Hand, bettered
 from planner.tasks.fleet.crews import Crew, crews_of, left_by, not_seen, ways_of
+from planner.tasks.fleet.crossing import crossed
 from planner.tasks.fleet.deciding import AUTO, decided, decided_by, methods_of
 from planner.tasks.fleet.flights import Flown, Order, in_best_order, in_given_order, in_order, items_in, over
 from planner.tasks.fleet.jobs import Job, jobs_of
 from planner.tasks.fleet.keeping import kept_or
 from planner.tasks.fleet.parts import Cutting
 from planner.tasks.fleet.placing import CROWDED, Errand, LateError, Sortie, cost_of, placed, powers_of
-from planner.tasks.fleet.problem import Lessons, landing_of, problem_of, trips_of
+from planner.tasks.fleet.problem import Lessons, ends_of, problem_of, trips_of
 from planner.tasks.fleet.told import told_of, too_late, too_many_items
 from planner.tasks.methods import chosen_methods
 from planner.tasks.task import Controls
@@ -50,8 +51,8 @@ class _Made:
 
 
 Key = tuple[int, tuple[tuple[str, int], ...]]
-#: The same, and the number of the base where it ends.
-Landed = tuple[int, tuple[tuple[str, int], ...], int]
+#: The same, and the numbers of the bases where it starts and ends.
+Landed = tuple[int, tuple[tuple[str, int], ...], int, int]
 
 
 def fleet(scenario: Scenario, controls: Controls, lessons: Lessons | None = None) -> FleetAnswer:
@@ -69,12 +70,14 @@ def fleet(scenario: Scenario, controls: Controls, lessons: Lessons | None = None
     """
     rounds = _Rounds(scenario, controls, lessons or Lessons())
     try:
-        return rounds.best()
+        answer = rounds.best()
     except InfeasibleError:
         if rounds.too_long is None:
             raise
         # Too many items are no reason to have no plan.
-        return rounds.too_long
+        answer = rounds.too_long
+    where = (answer.separation, scenario.objective, controls, scenario.seed)
+    return replace(answer, sorties=crossed(answer.crews, answer.sorties, *where))
 
 
 class _Rounds:
@@ -297,9 +300,9 @@ class _Rounds:
         return long
 
     def _errand(self, jobs: Sequence[Job], trip: Trip) -> Errand:
-        key = (*_key(jobs, trip), trip.end_base)
+        key = (*_key(jobs, trip), trip.start_base, trip.end_base)
         done = tuple((jobs[visit.target], visit.number) for visit in trip.visits)
-        crew = self._crews[trip.member].landing(landing_of(self._crews, trip))
+        crew = self._crews[trip.member].between(ends_of(self._crews, trip))
         try:
             return self._flown_or_ordered(crew, trip, done, key)
         except InfeasibleError as error:
@@ -315,11 +318,11 @@ class _Rounds:
             if key not in self._orders:
                 with self._controls.stage("routing"):
                     self._orders[key] = in_order(crew, done, self._controls)
-            return Errand(trip, done, order=self._orders[key], landing=crew.ends[1])
+            return Errand(trip, done, order=self._orders[key], ends=crew.setting.ends)
         if key not in self._flown:
             fly = in_best_order if self._wants_all(crew, done) else in_given_order
             self._flown[key] = fly(crew, trip.member, done, self._controls)
-        return Errand(trip, done, flown=self._flown[key], landing=crew.ends[1])
+        return Errand(trip, done, flown=self._flown[key], ends=crew.setting.ends)
 
     def _wants_all(self, crew: Crew, done: Sequence[tuple[Job, int]]) -> bool:
         """Whether a flight's regions ask for more than the best pass or sweep over each in turn."""

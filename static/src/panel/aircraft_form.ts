@@ -122,7 +122,7 @@ function endBases(index: number): Field[] {
   if (names.length === 0 && get() === undefined) return [];
   return [
     textField({
-      id: `vehicles-${index}-end_bases`, label: "Lands at one of", placeholder: "where it starts", hint: `Names of bases, separated by commas, of: ${names.join(", ")}; the one that suits the whole flight is taken; for one battery`,
+      id: `vehicles-${index}-end_bases`, label: "Lands at one of", placeholder: "where it starts", hint: `Names of bases, separated by commas, of: ${names.join(", ")}; the one that suits the whole flight is taken; the next battery starts there`,
       get: () => get<string[]>()?.join(", "),
       set: (text) => set(text === undefined ? undefined : listed(text)),
       refuse: (text) => {

@@ -87,7 +87,7 @@ def in_the_air(**members):
 
 def test_aircraft_in_the_air_both_search_and_hardly_anything_twice():
     """Kept apart by little, each sees some of it, and what the other saw is left to it."""
-    plan, prints = in_the_air(separation={"horizontal_m": 5.0, "vertical_m": 2.0})
+    plan, prints = in_the_air(separation={"horizontal_m": 20.0, "vertical_m": 10.0})
     smaller_m2 = min(each.area for each in prints.values())
     assert smaller_m2 > 0.0
     assert prints["a"].intersection(prints["b"]).area < 0.2 * smaller_m2
@@ -96,7 +96,7 @@ def test_aircraft_in_the_air_both_search_and_hardly_anything_twice():
 
 def test_one_that_comes_too_near_wherever_it_searches_flies_home_and_says_so():
     """The other's search is not given up with it."""
-    plan, prints = in_the_air()
+    plan, prints = in_the_air(separation={"horizontal_m": 250.0, "vertical_m": 60.0})
     assert {path.vehicle for path in plan.paths} == {"a", "b"}
     assert plan.metrics.importance_collected > 0.0
     idle = [name for name, seen in prints.items() if seen.is_empty]

@@ -89,12 +89,18 @@ def test_a_window_is_kept_on_the_way_to_another_base() -> None:
     assert 1200.0 <= late.start_s < late.end_s <= 1500.0
 
 
-def test_one_in_the_air_ends_at_the_nearer_too() -> None:
-    """Planned anew, as it flies near the other base."""
+def test_one_in_the_air_ends_where_its_flight_is_shortest_too() -> None:
+    """Planned anew on its way: as long as the shorter of the flights to either base alone."""
     place = {"lon_deg": 0.02, "lat_deg": 0.005, "height_m": 500.0, "heading_deg": 45.0}
-    document = with_bases(small(), end_bases=["west", "east"], in_flight=place)
-    _, plan = made(document)
-    assert lands(plan, "uav") == pytest.approx(EAST, abs=1e-6)
+    found = {}
+    for ends in (("west", "east"), ("west",), ("east",)):
+        _, plan = made(with_bases(small(), end_bases=list(ends), in_flight=place))
+        found[ends] = (plan.paths[0].length_m, lands(plan, "uav"))
+    free = found.pop(("west", "east"))
+    assert abs(found["west",][0] - found["east",][0]) > 100.0
+    shortest_m, place_deg = min(found.values())
+    assert free[0] == pytest.approx(shortest_m)
+    assert free[1] == pytest.approx(place_deg)
 
 
 def test_of_two_with_their_own_bases_the_one_that_flies_is_at_home_at_its_own() -> None:
@@ -123,11 +129,43 @@ def test_the_judge_tells_of_a_landing_that_is_not_allowed() -> None:
     [
         ({"end_bases": ["north"]}, "may land at the base 'north', which is not here"),
         ({"end_bases": []}, "Give a list of names of bases"),
-        ({"end_bases": ["east"], "batteries": 2, "max_range_m": 1e5}, "Set batteries to 1"),
         ({"end_bases": ["east"], "finish": "loiter"}, "finish-not-apart"),
     ],
 )
 def test_what_cannot_be_is_refused(vehicle: dict[str, Any], told: str) -> None:
-    """Unknown bases, none, batteries changed elsewhere, circles that never end."""
+    """Unknown bases, none, circles that never end."""
     with pytest.raises(ScenarioError, match=told):
         read_scenario(with_bases(small(), **vehicle))
+
+
+@pytest.mark.parametrize("ends", [["east"], ["west", "east"]])
+def test_with_several_batteries_the_next_flight_starts_where_the_last_has_landed(ends: list[str]) -> None:
+    """The battery is changed in the east, though a flight of the first region alone is shorter back west.
+
+    Both regions are too much for one flight, and the second for one from the west and back.
+    """
+    battery = {"batteries": 2, "turnaround_s": 60.0, "max_flight_time_s": 600.0}
+    scenario, plan = made(with_bases(small(), end_bases=ends, **battery))
+    assert plan.violations == ()
+    first, second = plan.paths
+    assert second.start_s >= first.end_s + 60.0
+    assert first.line[0][:2] == pytest.approx(WEST)
+    for path in (first, second):
+        assert path.line[-1][:2] == pytest.approx(EAST)
+        assert plan.of(path.vehicle, path.sortie).end == pytest.approx(EAST)
+    assert second.line[0][:2] == pytest.approx(EAST)
+    assert plan.of(second.vehicle, 2).home == pytest.approx(EAST)
+    # Had it started in the west again, the judge would have told of it.
+    moved = replace(second, line=((*WEST, second.line[0][2]), *second.line[1:]))
+    found = judge(scenario, replace(plan, paths=(first, moved))).violations
+    assert {each.constraint for each in found} > {each.constraint for each in plan.violations}
+
+
+def test_batteries_are_changed_at_an_end_that_is_elsewhere() -> None:
+    """From a start to an end, each region on a battery of its own: the second flight begins at the end."""
+    document = small(feature("end", "end", "Point", list(EAST)))
+    document["vehicles"][0] |= {"batteries": 2, "turnaround_s": 60.0, "max_flight_time_s": 560.0}
+    _, plan = made(document)
+    assert plan.violations == ()
+    assert [path.line[-1][:2] for path in plan.paths] == [pytest.approx(EAST)] * 2
+    assert plan.paths[1].line[0][:2] == pytest.approx(EAST)

@@ -140,13 +140,25 @@ def test_one_battery_is_for_all_of_them_together() -> None:
     assert "batteries" in {violation.constraint for violation in found}
 
 
-def test_a_flight_that_ends_elsewhere_stays_one() -> None:
-    """It cannot begin again where it began."""
+@pytest.mark.parametrize("named", [False, True], ids=["end", "end_bases"])
+def test_a_mission_that_ends_elsewhere_goes_on_from_there(named: bool) -> None:
+    """The first flight ends where all is to end, the next one starts there, and so say their missions."""
     document = survey(max_items=MOST)
-    document["features"].append(feature("end", "end", "Point", [-0.01, -0.02]))
-    _, plan = made(document)
-    assert len(plan.paths) == 1
-    assert any("too-many-items" in warning for warning in plan.warnings)
+    end = (-0.01, -0.02)
+    document["features"].append(feature("there", "base" if named else "end", "Point", list(end)))
+    if named:
+        document["vehicles"][0] |= {"end_bases": ["there"]}
+    scenario, plan = made(document)
+    start = scenario.frame.to_wgs84([scenario.start.position])[0]
+    assert plan.violations == ()
+    assert len(plan.paths) > 1
+    assert max(items(plan)) <= MOST
+    starts = [tuple(start), *[end] * (len(plan.paths) - 1)]
+    for path, place in zip(plan.paths, starts, strict=True):
+        flight = plan.of(path.vehicle, path.sortie)
+        assert (flight.home, flight.end) == (pytest.approx(place), pytest.approx(end))
+        assert path.line[0][:2] == pytest.approx(place)
+        assert path.line[-1][:2] == pytest.approx(end)
 
 
 def test_no_more_are_asked_for_than_uploads_take() -> None:
