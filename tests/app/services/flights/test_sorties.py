@@ -208,10 +208,10 @@ async def test_a_later_sortie_is_held_against_its_own_passes(settings: Settings)
     switched = [(collect.vehicle, collect.seq) for collect in plan.collects]
     assert [(t["vehicle"], t["seq"]) for t in together["triggers"]] == switched
     for path, each in zip(plan.paths, told, strict=True):
-        own = [collect.seq for collect in plan.of(path.vehicle, path.sortie).collects]
-        assert 0 < len(own) < len(plan.collects)
-        assert [(t["seq"], t["state"]) for t in each["triggers"]] == [(seq, "ok") for seq in own]
-        assert [collect["seq"] for collect in each["collects"]] == own
+        seqs = [collect.seq for collect in plan.of(path.vehicle, path.sortie).collects]
+        assert 0 < len(seqs) < len(plan.collects)
+        assert [(t["seq"], t["state"]) for t in each["triggers"]] == [(seq, "ok") for seq in seqs]
+        assert [collect["seq"] for collect in each["collects"]] == seqs
         assert [p["kind"] for p in each["phases"]] == [p.kind for p in path.phases]
         for phase, own in zip(each["phases"], path.phases, strict=True):
             assert phase["planned_s"] == pytest.approx(own.end_s - own.start_s)
