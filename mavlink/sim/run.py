@@ -198,7 +198,9 @@ def parser() -> argparse.ArgumentParser:
         help="loiter radius, flown with bank to spare",
     )
     p.add_argument("--max-bank", type=float, default=None, metavar="DEG")
-    p.add_argument("--climb", type=float, default=5.0, metavar="M_S", help="largest climb rate")
+    p.add_argument(
+        "--climb", type=float, default=0.0, metavar="M_S", help="climbs at most; 0: as its autopilot comes"
+    )
     p.add_argument(
         "--l1-period", type=float, default=None, metavar="S", help="lateral guidance; small is tight"
     )

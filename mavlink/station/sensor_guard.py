@@ -20,6 +20,8 @@ ITEM_S: Final = 3.0
 #: An order that shows no effect is given again after this time, so often.
 AGAIN_S: Final = 2.0
 MOST_TRIES: Final = 5
+#: From place to place a mission goes on by no more items than this: orders to sensor and speed lie between.
+NEXT_ITEMS: Final = 6
 
 
 class SensorGuard:
@@ -44,6 +46,10 @@ class SensorGuard:
         self._since_s: float | None = None
         self._tries = 0
         self._next_s = -math.inf
+        self._at: int | None = None
+        self._before: int | None = None
+        self._at_since_s = -math.inf
+        self._left: int | None = None
 
     def hold(self, payload: Payload, passes: Sequence[range], items: int) -> None:
         """The vehicle holds a mission.
@@ -56,6 +62,7 @@ class SensorGuard:
             How many the mission has, home row included.
         """
         self.payload, self._passes, self._items, self._changing = payload, tuple(passes), items, False
+        self._at, self._before, self._at_since_s, self._left = None, None, -math.inf, None
 
     def release(self) -> None:
         """Its mission is being replaced or cleared: no pass is known until the next is held."""
@@ -74,6 +81,26 @@ class SensorGuard:
         """The pass that an item belongs to; None where it is in none."""
         return next((each for each in self._passes if current in each), None)
 
+    def left_out(self, current: int | None) -> tuple[range, ...]:
+        """Passes between where the aircraft left its mission and the item that it would go on with.
+
+        PX4's Return takes up the mission's landing and goes on with that: what lies between is not flown.
+        """
+        if self._left is None or current is None:
+            return ()
+        return tuple(each for each in self._passes if self._left <= each[-1] < current)
+
+    def _follow(self, state: VehicleState, now_s: float) -> None:
+        """Which item was flown to when the mission was left: an item told just before is the return's."""
+        if state.mode in MISSION_MODES and state.armed:
+            self._left = None
+            if state.mission_current != self._at:
+                self._at, self._before, self._at_since_s = state.mission_current, self._at, now_s
+        elif self._left is None and self._at is not None:
+            recent = self._before is not None and now_s < self._at_since_s + ITEM_S
+            jumped = recent and self._at - (self._before or 0) > NEXT_ITEMS
+            self._left = self._before if jumped else self._at
+
     def look(self, state: VehicleState, now_s: float, *, replaced: bool = False) -> str | None:
         """Why the sensor must be switched off now; None while it need not be.
 
@@ -87,6 +114,7 @@ class SensorGuard:
         if not state.connected:
             self._absent = True
             return None
+        self._follow(state, now_s)
         self._flown |= state.armed
         outside, passing = self._outside(state, replaced)
         on = state.sensor_shown

@@ -133,7 +133,7 @@ class _Judge:
         )
         self._ground: dict[str, list[Polygon]] = {}
         self._flown: dict[tuple[str, int], list[tuple[ground.Floats, ground.Floats]]] = {}
-        self._lines: dict[str | None, list[tuple[Line, tuple[Gap, ...]]]] = {}
+        self._lines: list[tuple[Record, Line, tuple[Gap, ...]]] = []
         self._gaps: list[tuple[Gap, ...]] = []
         self._not_counted: list[NotCounted] = []
         self._untold: list[UnknownPart] = []
@@ -162,8 +162,9 @@ class _Judge:
         line = Line.of(record, self._asked.frame, self._speed_m_s(vehicle), self._levelled(vehicle))
         gaps = gaps_of(record.samples, line) + (() if record.gap_after is None else (record.gap_after,))
         self._gaps.append(gaps)
-        self._lines.setdefault(vehicle, []).append((line, gaps))
-        passes = tuple(p for p in self._passes if vehicle is None or p.collect.vehicle == vehicle)
+        known = record if vehicle is not None else replace(record, vehicle=None)
+        self._lines.append((known, line, gaps))
+        passes = tuple(p for p in self._passes if known.flies(p.collect.vehicle, p.collect.sortie))
         in_pass = matched(line, passes)
         self.cameras.take(record, line, in_pass, passes)
         line = turned(line, in_pass, passes, self._asked.suite)
@@ -317,12 +318,13 @@ class _Judge:
         return self.cameras.coverage(self._asked.regions, limits_m)
 
     def _unknown_parts(self) -> Iterable[UnknownPart]:
-        everybody = self._lines.get(None, [])
-        for name in {planned.collect.vehicle for planned in self._passes}:
-            told = [*self._lines.get(name, []), *everybody]
+        flights = dict.fromkeys((p.collect.vehicle, p.collect.sortie) for p in self._passes)
+        for name, sortie in flights:
+            told = [(line, gaps) for record, line, gaps in self._lines if record.flies(name, sortie)]
             gaps = [gap for _, gaps in told for gap in gaps]
             if gaps:
-                passes = [planned for planned in self._passes if planned.collect.vehicle == name]
+                own = (name, sortie)
+                passes = [p for p in self._passes if (p.collect.vehicle, p.collect.sortie) == own]
                 lines = [line for line, _ in told]
                 yield from unknown.unknown_parts(
                     passes, lines, gaps, self._asked.frame, self._speed_m_s(name), self.cameras.by_photos

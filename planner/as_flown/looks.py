@@ -121,6 +121,7 @@ class _Own:
         during = Record(
             tuple(s for s in record.samples if start_s <= s.time_s <= end_s),
             record.vehicle,
+            sortie=record.sortie,
             photos=tuple(p for p in record.photos if start_s <= p.time_s <= end_s),
         )
         judged = flown_coverage(self.asked, self.plan, (during,))

@@ -81,12 +81,19 @@ class Record:
         Where the flight went on when the record had ended.
     photos
         Those that a camera or its autopilot reported as taken, in order of time.
+    sortie
+        Which of the vehicle's flights in the plan, from 1; None for any: its own passes alone count.
     """
 
     samples: tuple[TrackSample, ...]
     vehicle: str | None = None
     gap_after: Gap | None = None
     photos: tuple[Photo, ...] = ()
+    sortie: int | None = None
+
+    def flies(self, vehicle: str, sortie: int) -> bool:
+        """Whether it is flown for the passes of a vehicle's sortie."""
+        return self.vehicle is None or (self.vehicle == vehicle and self.sortie in (None, sortie))
 
 
 @dataclass(frozen=True, slots=True)

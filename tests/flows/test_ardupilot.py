@@ -46,7 +46,9 @@ HOME = (-117.7514038, 33.4860851)
 SPEEDUP = 40.0
 
 
-#: Margins of the sensor, as docs/ardupilot.md records them.
+#: Straight flight before passes, the ten seconds that are planned for ArduPlane where nobody states any, and
+#: margins of the sensor, as docs/ardupilot.md records them.
+SETTLE_M = 200.0
 MARGINS = {"pointing_margin_deg": 1.5, "position_margin_m": 5.0}
 
 
@@ -83,7 +85,7 @@ async def flown(
 @pytest.mark.parametrize(
     ("settle_m", "cross_track_p95_m", "seen"),
     # Its default tuning takes some 130 m to come back to a line after a turn of 100 m radius.
-    [(0.0, 30.0, 0.80), (150.0, 4.0, 0.95), (300.0, 2.0, 0.99)],
+    [(0.0, 30.0, 0.80), (150.0, 4.0, 0.95), (300.0, 2.0, 0.975)],
 )
 async def test_straight_flight_before_each_pass(
     tmp_path: Path, settle_m: float, cross_track_p95_m: float, seen: float
@@ -101,11 +103,11 @@ async def test_every_shared_case_is_stored_flown_and_seen(
     tmp_path: Path, case: int, wind: tuple[float, float] | None
 ) -> None:
     """Read back equal; every pass flown near its line; every region seen; landed at the end."""
-    scenario, plan = planned(case, 150.0, margins=True, wind=wind)
+    scenario, plan = planned(case, SETTLE_M, margins=True, wind=wind)
     flight = await flown(tmp_path, scenario, plan, wind)
     flight.tell(str(case), "ArduPlane", f"{wind[0]:g} m/s" if wind else "none")
     assert max(flight.cross_track_p95_m) < (10.0 if wind else 5.0)
-    assert flight.least_seen > 0.995
+    assert flight.least_seen >= 0.999
     low_m, high_m = flight.heights_m
     assert plan.altitude_m - 2.0 < low_m < high_m < plan.altitude_m + 2.0
 

@@ -57,12 +57,14 @@ VEHICLE = {
     "settle_m": 150.0,
     "cruise_power_w": POWER_W,
 }
+#: A take-off alone is flown so much later.
+TAKE_OFF_S = 6.0
 MARGINS = {"pointing_margin_deg": 2.0, "position_margin_m": 5.0}
 
 
 @pytest.mark.parametrize("case", [1, 3])
 async def test_an_aeroplane_takes_as_long_as_planned(tmp_path: Path, case: int) -> None:
-    """From lift-off to touch-down within 3 %, and each phase but the take-off by itself within 5 %."""
+    """From lift-off to touch-down within 3 %, each phase by itself within 5 %, the take-off within 6 s."""
     plan = make_plan(read_scenario(case_document(case, VEHICLE, MARGINS)))
     mission = encode(plan)
     async with simulated(tmp_path, plan.home, 15.0, {**PARAMETERS, **WING}, AEROPLANE) as client:
@@ -71,8 +73,10 @@ async def test_an_aeroplane_takes_as_long_as_planned(tmp_path: Path, case: int) 
     found = compared(flight, plan.paths[0], f"PX4, wing, case {case}", "none")
     assert found.share == pytest.approx(1.0, abs=WITHIN)
     assert found.share_of("mission") == pytest.approx(1.0, abs=WITHIN)
-    # PX4 climbs out steeper than planned: it is high enough before the place where the take-off ends.
-    assert found.share_of("take_off", "climb") == pytest.approx(1.0, abs=0.05)
+    # PX4 climbs out steeper than planned: it is high enough before the place where the take-off ends. Where
+    # the first leg is long enough to climb on, no climb follows that makes up for it.
+    planned_s = sum(phase.planned_s for phase in found.phases if phase.kind in ("take_off", "climb"))
+    assert found.share_of("take_off", "climb") == pytest.approx(1.0, abs=max(0.05, TAKE_OFF_S / planned_s))
     assert found.share_of("landing") == pytest.approx(1.0, abs=0.05)
 
 

@@ -58,6 +58,7 @@ class Trigger:
         Of the collect, not recorded; ``state`` is ``unknown`` where nothing else is known to be wrong.
     """
 
+    vehicle: str
     seq: int
     roi: str
     state: TriggerState
@@ -85,8 +86,8 @@ class Recorded:
 
     Parameters
     ----------
-    vehicle
-        Its name in the plan; None for any.
+    vehicle, sortie
+        Its name in the plan, and which of its flights; None for any.
     photos
         With a place, as ``photos.photos_of`` gives them.
     spacing
@@ -97,12 +98,27 @@ class Recorded:
     samples: tuple[TrackSample, ...]
     photos: Sequence[FlightEvent] = ()
     spacing: Spacing | None = None
+    sortie: int | None = None
+
+    def flies(self, collect: Collect) -> bool:
+        """Whether it is flown for a collect."""
+        own = self.vehicle == collect.vehicle and self.sortie in (None, collect.sortie)
+        return self.vehicle is None or own
+
+
+def collects_of(plan: Plan, flights: Sequence[Recorded]) -> tuple[Collect, ...]:
+    """The collects that flights were flown for: of their vehicles and sorties; all where unknown."""
+    names = {vehicle.name for vehicle in plan.vehicles}
+    known = [flight for flight in flights if flight.vehicle in names]
+    if not known or any(flight.vehicle is None for flight in flights):
+        return plan.collects
+    return tuple(collect for collect in plan.collects if any(flight.flies(collect) for flight in known))
 
 
 def triggers(
     scenario: Scenario, plan: Plan, flights: Sequence[Recorded], unknown: Sequence[UnknownPart] = ()
 ) -> tuple[Trigger, ...]:
-    """How the sensor was switched, collect by collect of the vehicles that flew, by all flights together.
+    """How the sensor was switched, collect by collect that was flown for, by all flights together.
 
     Parameters
     ----------
@@ -110,13 +126,12 @@ def triggers(
         Parts of collects that may have been flown while nothing was recorded.
     """
     tracks = [_Track.of(scenario, flight) for flight in flights]
-    names = {flight.vehicle for flight in flights}
-    known = names & {vehicle.name for vehicle in plan.vehicles} if None not in names else set()
-    wanted = [collect for collect in plan.collects if not known or collect.vehicle in known]
+    names = {vehicle.name for vehicle in plan.vehicles}
+    known = any(flight.vehicle in names for flight in flights)
     made = []
-    for collect in wanted:
+    for collect in collects_of(plan, flights):
         line = _Line.of(scenario, collect)
-        mine = [t for t in tracks if t.flight.vehicle in (None, collect.vehicle) or not known]
+        mine = [track for track in tracks if track.flight.flies(collect) or not known]
         on = np.concatenate([np.zeros((0, 2, 2)), *(track.on for track in mine)])
         parts = [p for p in unknown if (p.vehicle, p.seq) == (collect.vehicle, collect.seq)]
         trigger = _told(line, collect, on, parts)
@@ -237,7 +252,7 @@ def _trigger(line: _Line, collect: Collect, on: NDArray[np.float64]) -> Trigger:
     along_m = np.clip((on[line.beside(on)] - line.first) @ line.ahead, 0.0, length_m)
     on_m = float((along_m[:, 1] - along_m[:, 0]).sum())
     if on_m < MISSED_PART * length_m:
-        return Trigger(collect.seq, collect.roi, "missed", length_m, on_m, None, None)
+        return Trigger(collect.vehicle, collect.seq, collect.roi, "missed", length_m, on_m, None, None)
     late_m, early_m = float(along_m.min()), length_m - float(along_m.max())
     state: TriggerState = "ok"
     if late_m > TRIGGER_M:
@@ -246,7 +261,7 @@ def _trigger(line: _Line, collect: Collect, on: NDArray[np.float64]) -> Trigger:
         state = "early"
     elif on_m < length_m - late_m - early_m - TRIGGER_M:
         state = "interrupted"
-    return Trigger(collect.seq, collect.roi, state, length_m, on_m, late_m, early_m)
+    return Trigger(collect.vehicle, collect.seq, collect.roi, state, length_m, on_m, late_m, early_m)
 
 
 def _by_photos(trigger: Trigger, along_m: NDArray[np.float64], spacing_m: float) -> Trigger:

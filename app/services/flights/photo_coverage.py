@@ -16,7 +16,7 @@ from planner.as_flown.photo import Photo
 from planner.as_flown.photo_judge import RegionPhotos
 from planner.as_flown.photo_pass import PhotoPass
 from planner.as_flown.unknown import UnknownPart
-from planner.plan import Plan
+from planner.plan import Collect, Plan
 from planner.scenario import Scenario
 
 
@@ -51,11 +51,17 @@ def _height_m(photo: FlightEvent, home_m: float) -> float:
     return math.nan if photo.altitude_amsl_m is None else photo.altitude_amsl_m - home_m
 
 
-def photos_json(scenario: Scenario, result: FlownCoverage) -> dict[str, Any] | None:
-    """Photos taken, counted and lost, and what they saw of each region; None where no camera was planned."""
+def photos_json(
+    scenario: Scenario, result: FlownCoverage, flown_for: Sequence[Collect]
+) -> dict[str, Any] | None:
+    """Photos taken, counted and lost, and what they saw of each region; None where no camera was planned.
+
+    Passes are those that were flown for.
+    """
     photos = result.photos
     if photos is None:
         return None
+    own = {(collect.vehicle, collect.seq) for collect in flown_for}
     return {
         "taken": photos.taken,
         "counted": photos.counted,
@@ -64,6 +70,7 @@ def photos_json(scenario: Scenario, result: FlownCoverage) -> dict[str, Any] | N
         "passes": [
             asdict(each) | {"lost": [list(gap) for gap in each.lost], "missing": each.missing}
             for each in photos.passes
+            if (each.vehicle, each.seq) in own
         ],
         "regions": [
             {"roi": region.name, **_region(photos.regions[region.name], region.area.area)}
@@ -88,16 +95,14 @@ def _region(seen: RegionPhotos, area_m2: float) -> dict[str, Any]:
     }
 
 
-def photo_triggers(plan: Plan, result: FlownCoverage, vehicles: set[str | None]) -> tuple[Trigger, ...]:
-    """How the camera was released over each collect of the vehicles that flew; those of videos aside."""
+def photo_triggers(plan: Plan, result: FlownCoverage, flown_for: Sequence[Collect]) -> tuple[Trigger, ...]:
+    """How the camera was released over each collect that was flown for; those of videos aside."""
     if result.photos is None:
         return ()
-    collects = {(collect.vehicle, collect.seq): collect for collect in plan.collects}
-    names = vehicles & {vehicle.name for vehicle in plan.vehicles}
-    everybody = None in vehicles or not names
+    collects = {(collect.vehicle, collect.seq): collect for collect in flown_for}
     found = []
     for told in result.photos.passes:
-        if not everybody and told.vehicle not in names:
+        if (told.vehicle, told.seq) not in collects:
             continue
         photos = next(p for p in plan.photos if (p.vehicle, p.seq) == (told.vehicle, told.seq))
         length_m = photos.interval_m * max(told.planned - 1, 0)
@@ -105,6 +110,7 @@ def photo_triggers(plan: Plan, result: FlownCoverage, vehicles: set[str | None])
         parts = [p for p in result.unknown_parts if (p.vehicle, p.seq) == (told.vehicle, told.seq)]
         found.append(
             Trigger(
+                told.vehicle,
                 told.seq,
                 collects[told.vehicle, told.seq].roi,
                 _state(told, length_m, _unclear(told, parts, photos.interval_m, result.photos.taken > 0)),

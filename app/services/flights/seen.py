@@ -22,6 +22,7 @@ from app.services.flights.as_flown import (
     SLIVER_M2,
     Recorded,
     Trigger,
+    collects_of,
     gaps,
     regions_json,
     triggers,
@@ -124,7 +125,8 @@ def records_of(sortie: Sortie) -> list[Record]:
         ]
         gap = _gap_after(flight, later[0] if later else None)
         photos = taken_of(flight.photos, flight.samples)
-        records.append(Record(_places(flight.samples), flight.record.plan_vehicle, gap, photos))
+        own = flight.record
+        records.append(Record(_places(flight.samples), own.plan_vehicle, gap, photos, own.plan_sortie))
     return records
 
 
@@ -171,7 +173,9 @@ def coverage_of(sortie: Sortie) -> dict[str, Any]:
     scenario, plan = _asked(sortie, document), plan_of(sortie.plan_text)
     result = judged(sortie, scenario, plan)
     recorded = [
-        Recorded(f.record.plan_vehicle, f.samples, f.photos, spacing_of(f.record.payload))
+        Recorded(
+            f.record.plan_vehicle, f.samples, f.photos, spacing_of(f.record.payload), f.record.plan_sortie
+        )
         for f in sortie.flights
     ]
     by_photos = {} if result.photos is None else result.photos.regions
@@ -199,7 +203,7 @@ def coverage_of(sortie: Sortie) -> dict[str, Any]:
         "planned_coverage": plan.metrics.coverage,
         "collects": [asdict(collect) for collect in result.passes],
         "triggers": [asdict(t) for t in _triggers(scenario, plan, recorded, result)],
-        "photos": photos_json(scenario, result),
+        "photos": photos_json(scenario, result, collects_of(plan, recorded)),
         "regions": regions_json(scenario, plan, result),
         "gaps": _gaps(sortie, result.gaps),
         "not_counted": [one for one, _ in left],
@@ -210,11 +214,12 @@ def coverage_of(sortie: Sortie) -> dict[str, Any]:
 def _triggers(
     scenario: Scenario, plan: Plan, recorded: Sequence[Recorded], result: FlownCoverage
 ) -> list[Trigger]:
-    """Of all collects; those of photos by their photos, whatever of the payload was recorded."""
-    by_photos = photo_triggers(plan, result, {one.vehicle for one in recorded})
-    told = {trigger.seq for trigger in by_photos}
+    """Of all collects flown for; those of photos by their photos, whatever of the payload was recorded."""
+    by_photos = photo_triggers(plan, result, collects_of(plan, recorded))
+    told = {(trigger.vehicle, trigger.seq) for trigger in by_photos}
     switched = triggers(scenario, plan, recorded, result.unknown_parts)
-    return sorted([*by_photos, *(t for t in switched if t.seq not in told)], key=lambda t: t.seq)
+    left = [trigger for trigger in switched if (trigger.vehicle, trigger.seq) not in told]
+    return sorted([*by_photos, *left], key=lambda trigger: trigger.seq)
 
 
 def asked_of(sortie: Sortie) -> tuple[Scenario, Plan]:

@@ -122,14 +122,14 @@ def write_flight_report(
         if feature["properties"]["role"] in _DRAWN_AS
         and feature["geometry"]["type"] in ("Polygon", "MultiPolygon", "LineString")
     ]
-    lines = {collect["seq"]: collect for collect in coverage["collects"]}
+    lines = {(collect["vehicle"], collect["seq"]): collect for collect in coverage["collects"]}
     return _template("flight_report.html.jinja").render(
         record=record,
         name=scenario.get("name") or "Flight",
         map=draw_map(scenario, {"features": features}),
         regions=coverage["regions"],
         seen_percent=f"{100 * coverage['seen_fraction']:g}",
-        triggers=[trigger | {"line": lines.get(trigger["seq"])} for trigger in coverage["triggers"]],
+        triggers=[t | {"line": lines.get((t["vehicle"], t["seq"]))} for t in coverage["triggers"]],
         photos=any(t["photos_taken"] or t["photos_expected"] for t in coverage["triggers"]),
         missed=[trigger for trigger in coverage["triggers"] if trigger["state"] != "ok"],
         camera=_camera(coverage["photos"]),

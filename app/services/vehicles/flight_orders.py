@@ -178,6 +178,8 @@ async def _start(vehicle: Vehicle, wish: Wish, order: Order) -> Told:
     shows: Shows = lambda state: state.armed and _in(vehicle, MISSION_MODES)(state)  # noqa: E731 - typed
     flying = is_flying(client.state)
     reason = "it was in flight: it goes on with the mission at its current item" if flying else ""
+    if flying and (unseen := await _unseen(vehicle, client)):
+        reason = f"it was in flight: {unseen}"
     try:
         return await _settled(vehicle, order, client.start_mission(), shows, reason)
     except OrderRefusedError as error:
@@ -210,17 +212,33 @@ async def _resume(vehicle: Vehicle, wish: Wish, order: Order) -> Told:
         raise OrderRefusedError(
             "not-armed", "the aircraft is not armed: there is nothing to go on with", "send start"
         )
-    cut, reason = vehicle.safety.cut_pass(client.state), ""
-    if cut is not None:
+    reason = await _unseen(vehicle, client)
+    return await _settled(vehicle, order, client.resume(), _in(vehicle, MISSION_MODES), reason)
+
+
+async def _unseen(vehicle: Vehicle, client: VehicleClient) -> str:
+    """What a mission that is gone on with does not see, and which item it is seen from; empty for nothing."""
+    left, cut = vehicle.safety.left_out(client.state), vehicle.safety.cut_pass(client.state)
+    if left:
+        between = ", ".join(f"{run[0]} to {run[-1]}" for run in left)
+        reason = (
+            f"it goes on at item {client.state.mission_current}, where its return led: the passes of items "
+            f"{between} are left out"
+        )
+    elif cut is not None:
         reason = (
             f"the sensor was switched off in the pass of items {cut[0]} to {cut[-1]}: what is left of it is "
             "not seen"
         )
-        with contextlib.suppress(OrderRefusedError):
-            items = await _mission_of(vehicle, client)
-            begin = lead_in(items, cut, vehicle.safety.passes, hovers=client.state.type == "multirotor")
-            reason += f"; {begin}"
-    return await _settled(vehicle, order, client.resume(), _in(vehicle, MISSION_MODES), reason)
+    else:
+        return ""
+    first = left[0] if left else cut
+    assert first is not None
+    with contextlib.suppress(OrderRefusedError):
+        items = await _mission_of(vehicle, client)
+        begin = lead_in(items, first, vehicle.safety.passes, hovers=client.state.type == "multirotor")
+        reason += f"; {begin}"
+    return reason
 
 
 async def _rtl(vehicle: Vehicle, wish: Wish, order: Order) -> Told:

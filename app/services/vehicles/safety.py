@@ -81,6 +81,10 @@ class SensorSafety:
         """The pass whose items are flown with the sensor off, as it was switched off in it; None else."""
         return None if state.sensor_shown else self._guard.pass_at(state.mission_current)
 
+    def left_out(self, state: VehicleState) -> tuple[range, ...]:
+        """Passes that lie between where it left its mission and where it goes on: they are not flown."""
+        return self._guard.left_out(state.mission_current)
+
     @property
     def passes(self) -> tuple[range, ...]:
         """Those of the mission from here, by the numbers of their items."""

@@ -212,3 +212,19 @@ def test_a_link_that_cannot_be_opened_exits_1(capsys: pytest.CaptureFixture[str]
     """A port that is not to be had: exit code 1 and the reason, no traceback."""
     assert main(["--url", "tcp:127.0.0.1:1"]) == 1
     assert "tcp:127.0.0.1:1" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("words", "rates_m_s"),
+    [
+        ([], (5.0, 5.0)),
+        (["--type=multirotor"], (2.5, 1.5)),
+        (["--autopilot=px4"], (3.0, 2.0)),
+        (["--autopilot=px4", "--type=multirotor"], (3.0, 1.5)),
+        (["--type=multirotor", "--climb=4"], (4.0, 1.5)),
+    ],
+)
+def test_it_climbs_as_its_autopilot_comes(words: list[str], rates_m_s: tuple[float, float]) -> None:
+    """TECS_CLMB_MAX, WPNAV_SPEED_UP, FW_T_CLMB_R_SP, MPC_Z_V_AUTO_UP by default, and what is asked for."""
+    settings = settings_of(parser().parse_args(words))
+    assert (settings.climb_m_s, settings.sink_m_s) == rates_m_s

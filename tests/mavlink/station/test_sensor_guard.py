@@ -143,3 +143,34 @@ def test_a_first_photo_told_of_before_its_item_is_left_alone() -> None:
     assert guard.look(IN_PASS, 11.5) is None
     assert guard.look(photo, 12.0) is None
     assert guard.look(photo, 12.1 + ITEM_S) is not None
+
+
+@pytest.mark.parametrize("mode_first", [True, False], ids=["mode first", "item first"])
+def test_what_a_return_to_the_missions_landing_leaves_out_is_known(mode_first: bool) -> None:
+    """PX4's Return takes up the landing, item 40: the pass broken off and those behind it."""
+    guard = SensorGuard()
+    passes = (range(5, 9), range(15, 19), range(25, 29))
+    guard.hold(RelayPayload(), passes, 42)
+    flown = replace(IN_PASS, mission_total=42, output_on=False)
+    told = [replace(flown, mission_current=12), replace(flown, mission_current=16)]
+    returned = replace(flown, mode="AUTO.RTL", mission_current=40)
+    late = replace(flown, mode="AUTO.RTL", mission_current=16)
+    told += [late if mode_first else replace(flown, mission_current=40), returned]
+    for number, state in enumerate(told):
+        guard.look(state, 10.0 * min(number, 1) + 0.5 * number)
+    assert guard.left_out(returned.mission_current) == passes[1:]
+    guard.look(replace(returned, mode="AUTO.MISSION"), 20.0)
+    assert guard.left_out(40) == ()
+
+
+@pytest.mark.parametrize("item", [16, 19])
+def test_a_return_that_keeps_its_item_leaves_nothing_out(item: int) -> None:
+    """ArduPilot goes on at the item it left, also where it had just come to that."""
+    guard = SensorGuard()
+    guard.hold(RelayPayload(), (range(5, 9), range(15, 19)), 42)
+    flown = replace(IN_PASS, mission_total=42, output_on=False)
+    for number, current in enumerate((15, item)):
+        guard.look(replace(flown, mission_current=current), 0.5 * number)
+    back = replace(flown, mode="RTL", mission_current=item)
+    guard.look(back, 1.0)
+    assert guard.left_out(item) == ()

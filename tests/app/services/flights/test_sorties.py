@@ -183,8 +183,8 @@ async def test_plans_that_were_not_flown_have_no_coverage(flown: Flown) -> None:
     check_problem(await flown.client.post(f"/api/v1/plans/{flown.plan_id}/refly"), 409)
 
 
-async def test_a_later_sortie_is_held_against_its_own_phases(settings: Settings) -> None:
-    """Of a mission in several flights the second has its own phases and energy, flown in their times."""
+async def test_a_later_sortie_is_held_against_its_own_passes(settings: Settings) -> None:
+    """Of a mission in several flights each has its own phases, passes and energy, flown in their times."""
     document = small()
     document["vehicles"][0] |= {"max_items": 25, "cruise_power_w": 200.0}
     app = create_app(settings, fake_house)
@@ -199,12 +199,19 @@ async def test_a_later_sortie_is_held_against_its_own_phases(settings: Settings)
             flight_id = await store.begin(
                 "vehicle", "uav", record["id"], path.vehicle, plan_sortie=path.sortie
             )
-            await store.add(flight_id, along(path, 1.0))
+            await store.add(flight_id, [replace(at, sensor_on=True) for at in along(path, 1.0)])
             await store.end(flight_id, "ended")
             place = f"/api/v1/flights/{flight_id}"
             assert (await client.get(place)).json()["plan_sortie"] == path.sortie
             told.append((await client.get(place + "/coverage.geojson")).json())
+        together = (await client.get(f"/api/v1/plans/{record['id']}/coverage")).json()
+    switched = [(collect.vehicle, collect.seq) for collect in plan.collects]
+    assert [(t["vehicle"], t["seq"]) for t in together["triggers"]] == switched
     for path, each in zip(plan.paths, told, strict=True):
+        seqs = [collect.seq for collect in plan.of(path.vehicle, path.sortie).collects]
+        assert 0 < len(seqs) < len(plan.collects)
+        assert [(t["seq"], t["state"]) for t in each["triggers"]] == [(seq, "ok") for seq in seqs]
+        assert [collect["seq"] for collect in each["collects"]] == seqs
         assert [p["kind"] for p in each["phases"]] == [p.kind for p in path.phases]
         for phase, own in zip(each["phases"], path.phases, strict=True):
             assert phase["planned_s"] == pytest.approx(own.end_s - own.start_s)
