@@ -98,7 +98,8 @@ def make_plan(
     setting = answer.setting
     aircraft = setting.model.aircraft
     count = items_of(answer.composed.flight, len(answer.passes), aircraft)
-    if scenario.task == "collect" and count > aircraft.most_items:
+    # A paper's order, asked for by name, stays one flight: it is held against others' for its length.
+    if scenario.task == "collect" and count > aircraft.most_items and answer.methods["routing"] == "joint":
         from planner.tasks.fleet.splitting import in_sorties
 
         several = in_sorties(scenario, answer, count, controls)
