@@ -61,11 +61,13 @@ export function adopt(id: string, tag: string): void {
   settle(subject, { id, tag, state: "kept", pending: null });
 }
 
-/** Put a kept scenario on the page. */
-export async function openKept(id: string): Promise<void> {
+/** Put a kept scenario on the page, unless something else is wanted there by the time it has come; tells whether it was. */
+export async function openKept(id: string, wanted: () => boolean = () => true): Promise<boolean> {
   const record = await get<KeptText>(place(id));
+  if (!wanted()) return false;
   scenarios.load(record.scenario, false);
   adopt(id, tagOf(record));
+  return true;
 }
 
 export async function deleteKept(id: string): Promise<void> {

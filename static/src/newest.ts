@@ -11,7 +11,7 @@ export async function openNewest(): Promise<boolean> {
   const kept = keptScenarios.value?.[0];
   if (!untouched()) return false;
   if (kept && (!plan || kept.changed_at > (plan.created_at ?? ""))) {
-    await openKept(kept.id);
+    if (!(await openKept(kept.id, untouched))) return false;
     await openItsPlan(kept.id);
     return true;
   }

@@ -14,6 +14,7 @@ from app.routers.bodies import EXAMPLE
 from mavlink.formats import qgc_plan, waypoints
 from mavlink.wire import items
 from tests.app.cli.conftest import Command
+from tests.patience import PATIENCE_S
 from tests.planner.as_flown.test_photos import asked
 
 
@@ -47,6 +48,8 @@ def test_an_interrupted_upload_says_what_is_not_known(plan_file: Path) -> None:
     """Ctrl-C while the vehicle asks for nothing more: told in words, 130, no traceback."""
     program = [sys.executable, "-c", "from app.cli import main; main()"]
     command = [*program, "upload", str(plan_file), "--to", "sim:?fault=no_request_1"]
+    # The aircraft, a process of its own, may begin late on a busy machine.
+    command += ["--timeout-s", str(PATIENCE_S)]
     with subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True) as running:
         assert running.stderr is not None
         told = []
@@ -54,7 +57,7 @@ def test_an_interrupted_upload_says_what_is_not_known(plan_file: Path) -> None:
             told.append(line)
             if "sending the mission" in line:
                 running.send_signal(signal.SIGINT)
-    assert running.returncode == 130
+    assert running.returncode == 130, told
     assert told[-1].startswith("interrupted: the vehicle may hold what it held before")
     assert "Traceback" not in "".join(told)
 
