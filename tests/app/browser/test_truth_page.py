@@ -346,6 +346,31 @@ def test_a_page_opened_too_early_takes_the_first_plan(page: Page, planned: str, 
     early.close()
 
 
+def test_a_file_opened_early_stays(page: Page, service: Service) -> None:
+    """What was edited last, and comes from the service late, does not take the place of what was opened."""
+    asked_for: list[Route] = []
+    newest = {"id": "last", "name": "last", "revision": 1, "changed_at": "2999-01-01T00:00:00Z"}
+
+    def listed(route: Route) -> None:
+        if route.request.method == "GET":
+            route.fulfill(json={"scenarios": [newest], "total": 1})
+        else:
+            route.continue_()
+
+    early = page.context.new_page()
+    early.route(re.compile(r"/api/v1/scenarios(\?.*)?$"), listed)
+    early.route(re.compile(r"/api/v1/scenarios/last$"), lambda route: asked_for.append(route))
+    with early.expect_request(re.compile(r"/api/v1/scenarios/last$"), timeout=LIMIT_MS):
+        early.goto(service.address)
+    open_scenario(early, EXAMPLES / "sar-case-2.geojson")
+    opened = ask(early, "scenario()")["name"]
+    with early.expect_response(re.compile(r"/api/v1/scenarios/last$"), timeout=LIMIT_MS):
+        asked_for[0].fulfill(json=newest | {"scenario": CASE_1 | {"name": "last"}})
+    early.wait_for_timeout(500.0)
+    assert ask(early, "scenario()")["name"] == opened
+    early.close()
+
+
 def test_what_failed_is_not_said_once_it_is_done(page: Page) -> None:
     """A notice of a failure goes when the same is done after all."""
     go_to(page, "Scenario")
