@@ -10,7 +10,7 @@ from typing import Any
 import matplotlib.image
 import numpy as np
 import pytest
-from playwright.sync_api import Page, expect
+from playwright.sync_api import FilePayload, Page, expect
 from rasterio.transform import from_bounds
 
 from tests.app.browser.conftest import EXAMPLES
@@ -81,8 +81,8 @@ def test_the_ground_is_shaded(page: Page) -> None:
     lon, _ = np.meshgrid(np.linspace(west, east, 200), np.linspace(north, south, 200))
     ridge = (600.0 - 20_000.0 * np.abs(lon - middle[0])).astype(np.float32)
     content = written(ridge, crs="EPSG:4326", transform=from_bounds(west, south, east, north, 200, 200))
-    file = {"name": "ridge.tif", "mimeType": "image/tiff", "buffer": content}
-    page.set_input_files("#terrain-file", file)  # type: ignore[arg-type]
+    file: FilePayload = {"name": "ridge.tif", "mimeType": "image/tiff", "buffer": content}
+    page.set_input_files("#terrain-file", file)
     await_hook(page, f"rastered('terrain', {middle[0]}, {middle[1]}) > 500")
     sides = [(middle[0] + off, middle[1] + 0.004) for off in (-0.008, 0.008)]
     page.evaluate("([lon, lat]) => window.swathplan.look(lon, lat, 13)", middle)
