@@ -286,8 +286,9 @@ def _of_several(scenario: Scenario, found: FleetAnswer, controls: Controls, watc
 
     # What lies above the passes, but not above what is flown between them, belongs to the fence, too.
     level = scenario.level
-    tops_m = [knot[1] for each in found.sorties for knot in each.flown.composed.flight.heights.knots]
-    whole = Chart(scenario.frame, level.at(max(tops_m)) if max(tops_m) > level.altitude_m else level)
+    ranges_m = [each.flown.composed.flight.heights.range_m for each in found.sorties]
+    low_m, top_m = min(low_m for low_m, _ in ranges_m), max(top_m for _, top_m in ranges_m)
+    whole = Chart(scenario.frame, level.at(top_m) if top_m > level.altitude_m else level)
     with watch.stage("publish"):
         parts = []
         for sortie in found.sorties:
@@ -301,7 +302,7 @@ def _of_several(scenario: Scenario, found: FleetAnswer, controls: Controls, watc
         )
         draft = together(
             parts,
-            fence(whole, scenario.airspace, flown),
+            fence(whole, scenario.airspace, flown, low_m),
             level.altitude_m,
             {region.name: region.priority for region in scenario.regions},
         )

@@ -277,11 +277,16 @@ def uncovered(
     )
 
 
-def fence(chart: Chart, airspace: Airspace, flown: BaseGeometry) -> Fence:
+def fence(chart: Chart, airspace: Airspace, flown: BaseGeometry, lowest_m: float) -> Fence:
     """The operating area and everything hard up to the route's level; with a ceiling what is flown over.
 
     Fences know no holes: those of the area are zones, and zones are cut through holes that something of
     ``flown`` lies in.
+
+    Parameters
+    ----------
+    lowest_m
+        The lowest altitude flown, over the plan's datum: a base may lie lower than home.
     """
     inclusion = () if airspace.area is None else (_zone(chart, "area", airspace.area),)
     holes = () if airspace.area is None else airspace.area.interiors
@@ -290,9 +295,10 @@ def fence(chart: Chart, airspace: Airspace, flown: BaseGeometry) -> Fence:
         [],
     )
     level = chart.level
+    home_m = level.altitude_m - level.height_m
     for banded in banded_shapes(airspace, level.amsl_m - level.height_m):
         shape = banded.shape
-        if not banded.hard or banded.low_m > level.height_m or banded.high_m < 0.0:
+        if not banded.hard or banded.low_m > level.height_m or banded.high_m < min(lowest_m - home_m, 0.0):
             continue
         ceiling_m = None if banded.high_m >= level.height_m else banded.high_m
         if isinstance(shape, DiscShape):
@@ -302,7 +308,7 @@ def fence(chart: Chart, airspace: Airspace, flown: BaseGeometry) -> Fence:
             whole = Polygon(shape.area.exterior)
             parts = without_holes(shape.area) if flown.intersects(whole.difference(shape.area)) else [whole]
             polygons.extend(replace(_zone(chart, shape.name, part), ceiling_m=ceiling_m) for part in parts)
-    return Fence(inclusion, tuple(polygons), tuple(circles))
+    return Fence(inclusion, tuple(polygons), tuple(circles), home_m)
 
 
 def _zone(chart: Chart, name: str, area: Polygon) -> ZonePolygon:
@@ -353,7 +359,7 @@ def assemble(
         transits=transits,
         footprints=footprints,
         uncovered=(),
-        fence=fence(chart, airspace, LineString(flight.path.sample(10.0)[:, :2])),
+        fence=fence(chart, airspace, LineString(flight.path.sample(10.0)[:, :2]), flight.heights.range_m[0]),
         metrics=with_photos(metrics, photos, suite),
         violations=(),
         methods=methods,

@@ -6,6 +6,7 @@ east; altitudes are metres over the datum named by ``altitude_reference``.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field, replace
 
 from shapely.geometry import Polygon
@@ -110,21 +111,41 @@ class Scenario:
         plain = tuple(replace(each, base=None, end_bases=None) for each in alone.aircraft)
         return replace(alone, start=self.ends_of(aircraft)[0], end=end, aircraft=plain, bases=())
 
+    def home_from(self, start: Terminal) -> Scenario:
+        """The same with the home that an autopilot has on board: the ground that a flight takes off from.
+
+        Over terrain that of one base is another height than that of the next. Altitudes count from the sea
+        then, and stay; heights of what stands on the ground are over home, and of another one.
+        """
+        if self.terrain is None or self.home_amsl_m is None:
+            return self
+        home_amsl_m = float(self.terrain.at(start.ground))
+        lower_m = self.home_amsl_m - home_amsl_m
+        if lower_m == 0.0 or math.isnan(lower_m):
+            return self
+        return replace(
+            self,
+            home_amsl_m=home_amsl_m,
+            threats=tuple(replace(each, height_m=each.height_m + lower_m) for each in self.threats),
+            obstacles=tuple(replace(each, height_m=each.height_m + lower_m) for each in self.obstacles),
+        )
+
     def of_one(self, aircraft: Aircraft) -> Scenario:
         """What one of several aircraft may be asked: the regions its sensors see, from its own ends.
 
         Each region names its sensor: another may be the first on board. Ground searched with no sensor named
-        is searched with the first on board.
+        is searched with the first on board. Heights are over its own home.
         """
         start, end = self.ends_of(aircraft)
         if len(self.aircraft) == 1:
-            return self if aircraft.aloft is None else replace(self, start=start, end=end)
+            alone = self if aircraft.aloft is None else replace(self, start=start, end=end)
+            return alone.home_from(start)
         asked = [(region, self._sensor_aboard(region, aircraft)) for region in self.regions]
         regions = tuple(replace(region, sensor=name) for region, name in asked if aircraft.carries(name))
         suite = self.suite.aboard(aircraft, self.level.amsl_m)
         return replace(
             self, aircraft=(aircraft,), sensors=suite.sensors, regions=regions, start=start, end=end, bases=()
-        )
+        ).home_from(start)
 
     def _sensor_aboard(self, region: Region, aircraft: Aircraft) -> str:
         aboard = (sensor.name for sensor in self.sensors if aircraft.carries(sensor.name))

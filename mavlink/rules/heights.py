@@ -48,10 +48,13 @@ def heights_of(plan: Plan, name: str) -> HeightNeeds:
     """Of one vehicle's flight."""
     vehicle = next(vehicle for vehicle in plan.vehicles if vehicle.name == name)
     path = next(path for path in plan.paths if path.vehicle == name)
-    home_m = path.line[0][2]
+    home_m = plan.home_altitude_m(name, path.sortie)
     passes_m = [place[2] for collect in plan.collects_of(name) for place in collect.line]
     returns = vehicle.finish == "return" and vehicle.type != "multirotor"
     zones: list[ZonePolygon | ZoneCircle] = [*plan.fence.exclusion, *plan.fence.exclusion_circles]
+    # Of several bases that at the scenario's start may be higher, or lower, than this vehicle's.
+    zones_m = home_m if plan.fence.home_altitude_m is None else plan.fence.home_altitude_m
+    tops = [(each.ceiling_m + zones_m - home_m, each.name) for each in zones if each.ceiling_m is not None]
     wind = PlanWind() if vehicle.type == "multirotor" else plan.wind  # what hovers gains nothing by it
     rates_m_s = [
         (_sine(s) * fastest_m_s(s, vehicle.airspeed_m_s, wind), is_whole_turn(s))
@@ -68,7 +71,7 @@ def heights_of(plan: Plan, name: str) -> HeightNeeds:
         plan.altitude_reference == "amsl",
         path.line[-1][2] - home_m if returns else None,
         path.segments[-1].radius_m if returns else None,
-        max(((zone.ceiling_m, zone.name) for zone in zones if zone.ceiling_m), default=_NOTHING_BELOW),
+        max(_NOTHING_BELOW, *tops, key=lambda top: top[0]) if tops else _NOTHING_BELOW,
         wind.speed_m_s,
     )
 

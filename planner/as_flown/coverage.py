@@ -150,6 +150,13 @@ class _Judge:
             a.airspeed_m_s for a in self._asked.aircraft if vehicle is None or a.name == vehicle
         )
 
+    def _higher_m(self, vehicle: str | None, sortie: int) -> float:
+        """How much higher than the scenario's home that of a flight lies, which its record counts from."""
+        own = vehicle or (self._plan.vehicles[0].name if len(self._plan.vehicles) == 1 else None)
+        if own is None or self._asked.airspace.terrain is None or sortie not in self._plan.sorties_of(own):
+            return 0.0
+        return self._plan.home_altitude_m(own, sortie) - self._home_m
+
     def _levelled(self, vehicle: str | None) -> bool:
         """Whether it leans into its way, and its antenna does not."""
         flown = [a for a in self._asked.aircraft if vehicle is None or a.name == vehicle]
@@ -159,6 +166,7 @@ class _Judge:
         """One flight."""
         names = {a.name for a in self._asked.aircraft}
         vehicle = record.vehicle if record.vehicle in names else None
+        record = record.higher(self._higher_m(vehicle, record.sortie or 1))
         line = Line.of(record, self._asked.frame, self._speed_m_s(vehicle), self._levelled(vehicle))
         gaps = gaps_of(record.samples, line) + (() if record.gap_after is None else (record.gap_after,))
         self._gaps.append(gaps)

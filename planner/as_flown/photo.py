@@ -25,7 +25,7 @@ class Photo:
     Parameters
     ----------
     lon_deg, lat_deg, height_m
-        Where; the height is over the ground, on terrain over home, NaN where unknown.
+        Where; the height is over the home that the aircraft took off from, NaN where unknown.
     roll_deg, pitch_deg, yaw_deg
         Right wing down, nose up, clockwise from true north; None where not told: then the track's at that
         moment counts.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Self
 
 import numpy as np
@@ -30,8 +30,8 @@ NO_MOUNT = (math.nan, math.nan, math.nan)
 class TrackSample:
     """Where the aircraft was, and whether the sensor was on; None where nothing told of it.
 
-    ``height_m`` is over the ground, on terrain over home; ``roll_deg`` is positive with the right wing down,
-    ``pitch_deg`` with the nose up; ``heading_deg`` is where the nose points, clockwise from true north, None
+    ``height_m`` is over the home that the aircraft took off from; ``roll_deg`` is positive with the right
+    wing down, ``pitch_deg`` with the nose up; ``heading_deg`` is where the nose points, clockwise from true north, None
     where unknown. Without a roll (NaN) nothing is seen; without a pitch it counts as level. ``mount_deg`` are
     roll, pitch up from the horizon and yaw from true north of what a gimbal holds; None where none told.
     """
@@ -94,6 +94,16 @@ class Record:
     def flies(self, vehicle: str, sortie: int) -> bool:
         """Whether it is flown for the passes of a vehicle's sortie."""
         return self.vehicle is None or (self.vehicle == vehicle and self.sortie in (None, sortie))
+
+    def higher(self, more_m: float) -> Self:
+        """The same with heights that count from so much lower."""
+        if more_m == 0.0:
+            return self
+        return replace(
+            self,
+            samples=tuple(replace(each, height_m=each.height_m + more_m) for each in self.samples),
+            photos=tuple(replace(each, height_m=each.height_m + more_m) for each in self.photos),
+        )
 
 
 @dataclass(frozen=True, slots=True)

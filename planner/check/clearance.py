@@ -83,11 +83,14 @@ def begun_violations(scenario: Scenario) -> Iterator[Violation]:
         return
     home_amsl_m = scenario.level.amsl_m - scenario.level.height_m
     hard = [banded for banded in banded_shapes(scenario.airspace, home_amsl_m) if banded.hard]
-    flying = {aircraft.name for aircraft in scenario.aircraft}
+    flying = {aircraft.name: aircraft for aircraft in scenario.aircraft}
     for name, places in going_on.until.items():
         if name not in flying:
             continue
-        line_m, heights_m = np.array(places)[:, :2], np.array(places)[:, 2]
+        # Told over where it took off, and zones count from the scenario's home.
+        took_off = scenario.ends_of(flying[name])[0].ground
+        higher_m = 0.0 if scenario.terrain is None else float(scenario.terrain.at(took_off)) - home_amsl_m
+        line_m, heights_m = np.array(places)[:, :2], np.array(places)[:, 2] + higher_m
         entered = [
             (banded.shape.name, between(line_m, heights_m, banded.low_m, banded.high_m).intersection(shape))
             for banded in hard

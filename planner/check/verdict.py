@@ -79,6 +79,7 @@ def judge(scenario: Scenario, plan: Plan) -> Verdict:
     violations: list[Violation] = []
     lengths_m: list[float] = []
     tightest_m = math.inf
+    # Zones, threats and obstacles count from the scenario's home, whichever an aircraft takes off from.
     home_ground_m = scenario.level.altitude_m - scenario.level.height_m
     # Each flight by itself first, as its own aircraft was asked.
     asked, published = scenario, plan
@@ -103,7 +104,7 @@ def judge(scenario: Scenario, plan: Plan) -> Verdict:
         circling = (vehicle.name,) if vehicle.finish != "land" and not hovers else ()
         returning = (vehicle.name,) if vehicle.finish == "return" and hovers else ()
         violations += turn_violations(scenario, aircraft, path, radius_m, where)
-        violations += place_violations(scenario, path, line_m, altitudes_m - home_ground_m)
+        violations += place_violations(asked, path, line_m, altitudes_m - home_ground_m)
         violations += clearance_violations(scenario, plan, path, line_m)
         violations += slope_violations(path, vehicle, line_m, altitudes_m)
         violations += ground_violations(path, vehicle, altitudes_m, _begins_m(scenario, home_ground_m))
@@ -180,20 +181,26 @@ def _asked_of(asked: Scenario, aircraft: Aircraft, flown: FlownPath, before: Flo
     if aircraft.end_bases is None and not moved:
         return asked.of_one(aircraft)
     alone = asked.landing_at(aircraft, landed(flown))
-    return replace(alone, start=landed(before)) if before is not None and moved else alone
+    if before is None or not moved:
+        return alone
+    start = landed(before)
+    return replace(alone, start=start).home_from(start)
 
 
 def _begins_m(scenario: Scenario, home_ground_m: float) -> tuple[float, float]:
     """Altitudes that the path begins and ends at: of the ground, or of an aircraft that is in the air."""
     first_m, last_m = _grounds_m(scenario, home_ground_m)
-    aloft_m = scenario.start.over_home_m
-    return (first_m if aloft_m is None else home_ground_m + aloft_m, last_m)
+    return first_m + (scenario.start.over_home_m or 0.0), last_m
 
 
 def _grounds_m(scenario: Scenario, home_ground_m: float) -> tuple[float, float]:
-    """Altitude of the ground at start and end over the plan's datum: home's where there is no terrain."""
+    """Altitude of the ground where it took off and where it ends over the plan's datum.
+
+    Home's where there is no terrain.
+    """
     if scenario.terrain is None:
         return home_ground_m, home_ground_m
-    end_m = float(scenario.terrain.at(np.array([scenario.end.position]))[0])
+    ends_m = scenario.terrain.at(np.array([scenario.start.ground, scenario.end.position]))
     datum_amsl_m = scenario.level.amsl_m - scenario.level.altitude_m
-    return home_ground_m, home_ground_m if math.isnan(end_m) else end_m - datum_amsl_m
+    first_m, last_m = np.where(np.isnan(ends_m), home_ground_m, ends_m - datum_amsl_m).tolist()
+    return first_m, last_m

@@ -17,17 +17,49 @@ from planner.scenario import Scenario
 
 RULE = "home-height-unknown"
 FIX = "Give the start a third coordinate, its height above mean sea level in metres."
+#: Without terrain the ground is flat at the height of home: bases may say so much else of it.
+FLAT_M = 5.0
 
 
 def home_amsl_m(raws: Sequence[RawFeature], start: str) -> float | None:
     """The third coordinate of the place where the flight starts, where given."""
-    for raw in raws:
-        coordinates = raw.geometry.get("coordinates")
-        if raw.role not in ("start", "base") or raw.name != start or not isinstance(coordinates, list):
+    own = (_height_m(raw) for raw in raws if raw.role in ("start", "base") and raw.name == start)
+    return next((height_m for height_m in own if height_m is not None), None)
+
+
+def _height_m(raw: RawFeature) -> float | None:
+    """The third coordinate of a place."""
+    coordinates = raw.geometry.get("coordinates")
+    told = isinstance(coordinates, list) and len(coordinates) > 2 and is_finite(coordinates[2])
+    return float(coordinates[2]) if told else None
+
+
+def check_flat(raws: Sequence[RawFeature], scenario: Scenario, findings: Findings) -> None:
+    """Refuse places of one scenario without terrain whose ground is not at one height.
+
+    Heights of such a mission are over the vehicle's own home: flown from a base so much higher, or lower, all
+    of it would be as much higher, or lower, than planned, and a landing elsewhere end in the ground or above
+    it.
+    """
+    used = {terminal.name for terminal in scenario.terminals()} | {scenario.start.name}
+    told = [
+        (raw.name, height_m)
+        for raw in raws
+        if raw.role in ("start", "end", "base")
+        and raw.name in used
+        and (height_m := _height_m(raw)) is not None
+    ]
+    told.sort(key=lambda each: each[0] != scenario.start.name)
+    for name, height_m in told[1:]:
+        if abs(height_m - told[0][1]) <= FLAT_M:
             continue
-        if len(coordinates) > 2 and is_finite(coordinates[2]):
-            return float(coordinates[2])
-    return None
+        findings.error(
+            name,
+            "ground-not-flat",
+            f"lies at {height_m:g} m, and {told[0][0]} at {told[0][1]:g} m: without terrain the ground is "
+            "flat at the height of home, and a vehicle that takes off elsewhere flies as much higher or lower",
+            "Name an elevation raster as terrain: heights are over the ground of each base then.",
+        )
 
 
 def kept_clear(scenario: Scenario, findings: Findings) -> Scenario:

@@ -85,6 +85,7 @@ def read_plan(document: Any) -> Plan:
                     ZoneCircle(**(z | {"centre": _place(z["centre"])}))
                     for z in document["fence"]["exclusion_circles"]
                 ),
+                document["fence"].get("home_altitude_m"),
             ),
             metrics=_metrics(document["metrics"]),
             violations=tuple(

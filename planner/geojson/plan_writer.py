@@ -108,6 +108,7 @@ def write_plan(plan: Plan) -> dict[str, Any]:
             "inclusion": [_zone(z) for z in plan.fence.inclusion],
             "exclusion": [_zone(z) for z in plan.fence.exclusion],
             "exclusion_circles": [_circle(z) for z in plan.fence.exclusion_circles],
+            "home_altitude_m": None if plan.fence.home_altitude_m is None else _m(plan.fence.home_altitude_m),
         },
         "metrics": _metrics(plan.metrics),
         "violations": [

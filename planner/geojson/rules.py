@@ -58,6 +58,24 @@ def _names(scenario: Scenario, findings: Findings) -> None:
                 f"altitude_m {level.altitude_m:g} is not above home, {scenario.home_amsl_m or 0.0:g} m amsl",
                 "Raise altitude_m.",
             )
+    _bases_below(scenario, findings)
+
+
+def _bases_below(scenario: Scenario, findings: Findings) -> None:
+    """Over terrain nobody takes off from, or lands on, ground that is not below all that is flown level."""
+    level = scenario.level
+    lowest_m = level.amsl_m - level.depth_m
+    if scenario.terrain is None or level.height_m <= level.depth_m:
+        return
+    for end in _ends(scenario):
+        ground_m = float(scenario.terrain.at(end.position))
+        if end.role != "in-flight" and ground_m >= lowest_m:
+            findings.error(
+                end.feature,
+                "altitude-below-ground",
+                f"lies at {ground_m:.0f} m amsl, and passes are flown at {lowest_m:.0f} m",
+                f"Raise altitude_m, or {end.move.lower()} to lower ground.",
+            )
 
 
 def _levels(scenario: Scenario) -> list[tuple[str, Level]]:

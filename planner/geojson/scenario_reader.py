@@ -19,7 +19,7 @@ from planner.geojson.fields import Fields, Findings
 from planner.geojson.fleet import check_fleet, read_separation, start_of
 from planner.geojson.going_on import read_going_on
 from planner.geojson.heights import Heights, at_chosen_heights, tell_unused, with_wishes
-from planner.geojson.home import home_amsl_m, kept_clear
+from planner.geojson.home import check_flat, home_amsl_m, kept_clear
 from planner.geojson.plausible import check_plausible
 from planner.geojson.relief import set_on_terrain
 from planner.geojson.rules import check_together
@@ -237,6 +237,7 @@ def _read(document: Any, findings: Findings, terrains: Terrains | None) -> Scena
     if terrain is not None:
         scenario = set_on_terrain(scenario, terrain, heights, "clearance_m" in top, findings)
     else:
+        check_flat(raws, scenario, findings)
         scenario = kept_clear(at_chosen_heights(scenario, heights, findings), findings)
     if findings.errors and not heights.altitude_given:
         return None

@@ -30,8 +30,13 @@ class ZoneCircle:
 
 @dataclass(frozen=True, slots=True)
 class Fence:
-    """Where the vehicles may and may not fly."""
+    """Where the vehicles may and may not fly.
+
+    ``home_altitude_m`` is what floors and ceilings count from, over the plan's datum: where the scenario
+    starts, which of several bases may be another than a vehicle's; None where that is every vehicle's home.
+    """
 
     inclusion: tuple[ZonePolygon, ...] = ()
     exclusion: tuple[ZonePolygon, ...] = ()
     exclusion_circles: tuple[ZoneCircle, ...] = ()
+    home_altitude_m: float | None = None

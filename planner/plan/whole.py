@@ -51,6 +51,15 @@ class Plan:
         """The path of one sortie of a vehicle."""
         return next(path for path in self.paths if (path.vehicle, path.sortie) == (vehicle, sortie))
 
+    def home_altitude_m(self, vehicle: str, sortie: int = 1) -> float:
+        """Altitude over the plan's datum of the home that an autopilot has on one sortie.
+
+        Where that takes off, which over terrain is another height for each base; told besides of one that
+        the plan begins with in the air.
+        """
+        told_m = next(each.home_altitude_m for each in self.vehicles if each.name == vehicle)
+        return self.path_of(vehicle, sortie).line[0][2] if told_m is None else told_m
+
     def sorties_of(self, vehicle: str) -> tuple[int, ...]:
         """The numbers of a vehicle's sorties, in flight order."""
         return tuple(sorted(path.sortie for path in self.paths if path.vehicle == vehicle))

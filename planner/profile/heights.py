@@ -61,8 +61,14 @@ class Heights:
     @property
     def is_level(self) -> bool:
         """Whether it is one altitude all along."""
+        low_m, high_m = self.range_m
+        return high_m - low_m <= SAME_M
+
+    @property
+    def range_m(self) -> tuple[float, float]:
+        """The lowest altitude and the highest."""
         altitudes_m = [altitude_m for _, altitude_m in self.knots]
-        return max(altitudes_m) - min(altitudes_m) <= SAME_M
+        return min(altitudes_m), max(altitudes_m)
 
     def reverse(self) -> Heights:
         """The same heights flown the other way."""

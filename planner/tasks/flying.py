@@ -135,10 +135,9 @@ class FlightLevels:
         besides_m = max(TRANSIT_MARGIN_M, margin_m - self.airspace.clearance_m)
         return keep_out(self.airspace, self.level, besides_m, lowest=lowest, edge_m=margin_m)
 
-    @property
-    def ground(self) -> Level:
-        """That of home's ground."""
-        return Level(0.0, self.level.amsl_m - self.level.height_m)
+    def ground(self, altitude_m: float) -> Level:
+        """That of ground at an altitude."""
+        return Level(altitude_m - self.home_ground_m, altitude_m + self.datum_amsl_m)
 
 
 def fly_whole(
@@ -205,7 +204,8 @@ def fly_whole(
     if start.over_home_m is None:
 
         def risen(connector: Connector) -> Rise:
-            around = layers.around(top, top.ground, connector, lambda path: cut(path, 0.0, climb_m))
+            bottom = top.ground(top.home_ground_m)
+            around = layers.around(top, bottom, connector, lambda path: cut(path, 0.0, climb_m))
             if following is None:
                 return up(start, top.home_ground_m, goal, model, around)
             over = replace(around, raised=following.over_leg)
@@ -242,9 +242,8 @@ def fly_whole(
             leg = replace(leg, heights=following.over_leg(leg.path, leg.heights))
         between.append(leg)
     origin, top = _leaves(stations[-1], arrived), levels.at(stations[-1].altitude_m)
-    sink_m = top.level.height_m / math.tan(sink_slope_rad(model))
     grounds_m = (top.home_ground_m, top.ground_m(end.position))
-    among = (circle_radius_m(model), layers.zones(top, top.ground, TRANSIT_MARGIN_M))
+    among = (circle_radius_m(model), layers.zones(top, top.ground(grounds_m[0]), TRANSIT_MARGIN_M))
     finish = finish_among(model.aircraft, start, end, *among)
     if finish != finish_of(model.aircraft, start, end):
         notes.append(
@@ -252,9 +251,13 @@ def fly_whole(
             "return ends in would leave the area or enter a zone"
         )
 
+    # It may come down on lower ground than it took off from.
+    bottom = top.ground(grounds_m[0 if finish == "return" else 1])
+    sink_m = (top.level.height_m - bottom.height_m) / math.tan(sink_slope_rad(model))
+
     def fallen(connector: Connector) -> Rise:
         low = layers.around(
-            top, top.ground, connector, lambda path: cut(path, path.length_m - sink_m, path.length_m)
+            top, bottom, connector, lambda path: cut(path, path.length_m - sink_m, path.length_m)
         )
         where = (end, start.ground, grounds_m, origin, model)
         if following is None:

@@ -26,7 +26,7 @@ ITEMS_EACH = 2
 
 @dataclass(frozen=True, slots=True)
 class Now:
-    """Where an aircraft is, and what it has used: degrees, metres over home, course from true north.
+    """Where an aircraft is, and what it has used: degrees, metres over its home, course from true north.
 
     ``energy_left_wh`` is what its battery holds; None where that is not known.
     """
@@ -82,7 +82,7 @@ class Course:
         along_m = np.concatenate([[0.0], np.cumsum(np.sqrt((steps**2).sum(axis=1)))])
         # Chords of arcs are a little shorter than what is flown.
         self._along_m = along_m * (path.length_m / along_m[-1])
-        self._home_m = scenario.level.altitude_m - scenario.level.height_m
+        self._home_m = plan.home_altitude_m(vehicle, sortie)
 
     @property
     def duration_s(self) -> float:
@@ -113,7 +113,7 @@ class Course:
         return Now(lon_deg, lat_deg, altitude_m - self._home_m, heading_deg, along_m, since_s, left_wh)
 
     def line(self, from_s: float, until_s: float) -> tuple[tuple[float, float, float], ...]:
-        """Its way between two times: degrees, and metres over home."""
+        """Its way between two times: degrees, and metres over its home."""
         first_m, last_m = self._mark_m(from_s), self._mark_m(until_s)
         between = self._along_m[(self._along_m > first_m) & (self._along_m < last_m)]
         at_m = np.concatenate([[first_m], between, [last_m]])
@@ -202,7 +202,7 @@ class Ahead:
     soon
         What it sees on its way there.
     line
-        That way: degrees, and metres over home.
+        That way: degrees, and metres over its home.
     """
 
     then: Now

@@ -319,9 +319,10 @@ def _datum(plan: Plan, scenario: Mapping[str, Any], mission: Mission, state: Veh
     if home_m is None:
         return Check("altitude", "warning", "the vehicle has not said how high its home is")
     said = f"home is at {home_m:.0f} m above mean sea level (the autopilot's geoid, EGM96)"
-    planned_m = _home_altitude_m(scenario)
+    planned_m = _home_altitude_m(scenario, mission.vehicle)
     if plan.altitude_reference == "amsl":
-        if planned_m is None and scenario.get("terrain") and mission.declared is None:
+        if scenario.get("terrain") and mission.declared is None:
+            # Whatever a third coordinate says: the plan takes off from the raster's ground.
             return _on_raster(mission.home_altitude_m, home_m, said)
         if planned_m is None:
             words = f"{said}; the plan counts from sea level and does not know the height of its start"
@@ -345,13 +346,18 @@ def _on_raster(ground_m: float, home_m: float, said: str) -> Check:
     return Check("altitude", "failed" if off_m > RASTER_M else "warning" if off_m > HEIGHT_M else "ok", words)
 
 
-def _home_altitude_m(scenario: Mapping[str, Any]) -> float | None:
-    """The height of the start, where its position has a third coordinate."""
+def _home_altitude_m(scenario: Mapping[str, Any], vehicle: str) -> float | None:
+    """The height of a vehicle's base, else of the start, where its position has a third coordinate."""
+    base, known = _limits(scenario, vehicle).get("base"), {}
     for feature in scenario.get("features") or ():
-        if (feature.get("properties") or {}).get("role") == "start":
-            place = feature["geometry"]["coordinates"]
-            return float(place[2]) if len(place) > 2 else None
-    return None
+        properties = feature.get("properties") or {}
+        if properties.get("role") in ("start", "base"):
+            name = feature.get("id", properties.get("name"))
+            known.setdefault(properties["role"], feature)
+            known.setdefault(("base", name), feature)
+    own = known.get(("base", base)) or known.get("start") or known.get("base")
+    place = [] if own is None else own["geometry"]["coordinates"]
+    return float(place[2]) if len(place) > 2 else None
 
 
 def _circles(mission: Mission, state: VehicleState) -> Iterator[Check]:

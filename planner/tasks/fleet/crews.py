@@ -20,6 +20,7 @@ from planner.routing.joint.chain import estimates, from_start, to_end
 from planner.scenario import Scenario
 from planner.tasks.fleet.jobs import Job
 from planner.tasks.fleet.looks import Looks
+from planner.tasks.flying import FlightLevels
 from planner.tasks.setting import Setting, seeing
 from planner.vehicle.aircraft import Aircraft
 from planner.vehicle.energy import FlightState
@@ -113,11 +114,19 @@ class Crew:
         if ends == self.setting.ends:
             return self
         plain = replace(self.aircraft, base=None, end_bases=None)
-        alone = replace(self.alone, start=ends[0], end=ends[1], bases=(), aircraft=(plain,))
-        return replace(self, alone=alone, setting=replace(self.setting, ends=ends), ends=self._run(ends))
+        moved = replace(self.alone, start=ends[0], end=ends[1], bases=(), aircraft=(plain,))
+        alone, setting = moved.home_from(ends[0]), replace(self.setting, ends=ends)
+        if alone.home_amsl_m != moved.home_amsl_m:
+            setting = replace(setting, airspace=alone.airspace, level=alone.level)
+        return replace(self, alone=alone, setting=setting, ends=self._run(ends))
 
     def _run(self, ends: tuple[Terminal, Terminal]) -> tuple[Terminal, Terminal]:
-        return with_run(ends, self.setting.level.height_m, self.setting.model)
+        return with_run(ends, self.over_m(ends[0]), self.setting.model)
+
+    def over_m(self, end: Terminal) -> float:
+        """How high over the ground of a start or an end the route is."""
+        levels = FlightLevels(self.setting.airspace, self.setting.level)
+        return levels.altitude_m - levels.ground_m(end.ground)
 
     @property
     def kind(self) -> tuple[object, ...]:
@@ -171,29 +180,29 @@ class Crew:
     @property
     def besides_s(self) -> float:
         """What a flight of one that hovers takes besides its way over the ground: up and down on the spot."""
-        height_m, model = self.setting.level.height_m, self.setting.model
+        model = self.setting.model
         if not model.aircraft.hovers:
             return 0.0
-        manners = manners_of(model.aircraft)
+        manners, (start, end) = manners_of(model.aircraft), self.ends
         landing_s = manners.land_below_m / max(manners.land_m_s, MIN_LAND_M_S)
-        return height_m / manners.climb_m_s + height_m / manners.sink_m_s + landing_s
+        return self.over_m(start) / manners.climb_m_s + self.over_m(end) / manners.sink_m_s + landing_s
 
-    def up_m(self, legs_m: Floats) -> Floats:
-        """Legs from the start with the circles that a climb takes besides where they are short."""
+    def up_m(self, legs_m: Floats, start: Terminal) -> Floats:
+        """Legs from a start with the circles that a climb takes besides where they are short."""
         if self.ends[0].over_home_m is not None:
             return legs_m
-        return self._with_circles(legs_m, climb_slope_rad(self.setting.model))
+        return self._with_circles(legs_m, self.over_m(start), climb_slope_rad(self.setting.model))
 
-    def down_m(self, legs_m: Floats) -> Floats:
-        """Legs to the end with the circles that a descent takes besides."""
-        return self._with_circles(legs_m, sink_slope_rad(self.setting.model))
+    def down_m(self, legs_m: Floats, end: Terminal) -> Floats:
+        """Legs to an end with the circles that a descent takes besides."""
+        return self._with_circles(legs_m, self.over_m(end), sink_slope_rad(self.setting.model))
 
-    def _with_circles(self, legs_m: Floats, slope_rad: float) -> Floats:
+    def _with_circles(self, legs_m: Floats, height_m: float, slope_rad: float) -> Floats:
         model = self.setting.model
         if model.aircraft.hovers:
             return legs_m
         circle_m = math.tau * model.turn_radius_m
-        wanted_m = self.setting.level.height_m / math.tan(slope_rad) + LEVEL_OFF * model.turn_radius_m
+        wanted_m = height_m / math.tan(slope_rad) + LEVEL_OFF * model.turn_radius_m
         lacking_m = wanted_m - legs_m
         return legs_m + circle_m * np.ceil(np.maximum(lacking_m, 0.0) / circle_m)
 
@@ -204,8 +213,12 @@ class Crew:
         starts = [self.ends[0], *(self._run((landing, self.ends[1]))[0] for landing in self.landings)]
         discs, speed_m_s = self.around.discs, self.setting.model.airspeed_m_s
         between = estimates(exits, entries, self.around, discs) / speed_m_s
-        out = tuple(self.up_m(from_start(start, self.around, entries, discs)) / speed_m_s for start in starts)
-        home = tuple(self.down_m(to_end(end, self.around, exits, discs)) / speed_m_s for end in self.landings)
+        out = tuple(
+            self.up_m(from_start(start, self.around, entries, discs), start) / speed_m_s for start in starts
+        )
+        home = tuple(
+            self.down_m(to_end(end, self.around, exits, discs), end) / speed_m_s for end in self.landings
+        )
         return between, out, home
 
     def thought_s(self, numbers: Sequence[int]) -> float:
@@ -221,7 +234,8 @@ class Crew:
             from_start(self.ends[0], self.around, choice.picked[0].entries, self.around.discs),
             to_end(self.ends[1], self.around, choice.picked[-1].exits, self.around.discs),
         )
-        more_m = float((self.up_m(legs_m[0]) - legs_m[0] + self.down_m(legs_m[1]) - legs_m[1])[0])
+        up_m, down_m = self.up_m(legs_m[0], self.ends[0]), self.down_m(legs_m[1], self.ends[1])
+        more_m = float((up_m - legs_m[0] + down_m - legs_m[1])[0])
         return (choice.cost_m + more_m) / self.setting.model.airspeed_m_s
 
     def travel(self, seconds: Floats, power: float) -> Travel:
@@ -370,7 +384,7 @@ def most_s(crew: Crew) -> float:
         limits.append(aircraft.max_range_m / aircraft.airspeed_m_s)
     if aircraft.usable_wh is not None and crew.power_w:
         limits.append(3600.0 * aircraft.usable_wh / crew.power_w)
-    model, height_m = crew.setting.model, crew.setting.level.height_m
-    levels_m = sum(height_m / math.tan(slope) for slope in (climb_slope_rad(model), sink_slope_rad(model)))
+    model, (up_m, down_m) = crew.setting.model, map(crew.over_m, crew.ends)
+    levels_m = up_m / math.tan(climb_slope_rad(model)) + down_m / math.tan(sink_slope_rad(model))
     besides_s = crew.besides_s or levels_m / model.airspeed_m_s / 2.0
     return max(min(limits) - besides_s, 1.0)

@@ -203,6 +203,28 @@ def test_the_rasters_ground_at_the_start_is_held_against_home(ground_m: float, s
     assert (found.status, f"at {ground_m:.0f} m" in found.detail) == (status, True)
 
 
+@pytest.mark.parametrize(
+    ("base_m", "terrain", "status"),
+    [(43.0, {}, "ok"), (120.0, {}, "failed"), (120.0, {"terrain": "an id"}, "ok")],
+)
+def test_home_is_held_against_the_vehicles_own_base(
+    base_m: float, terrain: dict[str, Any], status: str
+) -> None:
+    """Not against a start that others fly from; on terrain the raster's ground counts, whatever is stated."""
+    plan = make_plan(fence=square_fence(5000.0), altitude_reference="amsl", ground_m=45.0)
+    (vehicle,) = SCENARIO["vehicles"]
+    features = [
+        {"id": name, "properties": {"role": role}, "geometry": {"type": "Point", "coordinates": place}}
+        for name, role, place in (
+            ("S", "start", [LON_DEG, LAT_DEG, 300.0]),
+            ("one", "base", [LON_DEG, LAT_DEG, 300.0]),
+            ("own", "base", [LON_DEG, LAT_DEG, base_m]),
+        )
+    ]
+    asked = SCENARIO | terrain | {"features": features, "vehicles": [vehicle | {"base": "own"}]}
+    assert checks(plan, asked)["altitude"].status == status
+
+
 @pytest.mark.parametrize(("speed_m_s", "status"), [(5.0, "ok"), (15.0, "warning")])
 def test_wind(speed_m_s: float, status: str) -> None:
     """Wind is spoken of when it is given, and warned of when it is strong."""
