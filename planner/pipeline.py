@@ -97,16 +97,18 @@ def make_plan(
     scenario, answer = _paced(scenario, answer, controls)
     setting = answer.setting
     aircraft = setting.model.aircraft
-    count = items_of(answer.composed.flight, len(answer.passes), aircraft)
+    count, why = items_of(answer.composed.flight, len(answer.passes), aircraft), ""
     # A paper's order, asked for by name, stays one flight: it is held against others' for its length.
     if scenario.task == "collect" and count > aircraft.most_items and answer.methods["routing"] == "joint":
+        from planner.tasks.fleet.held import why_one
         from planner.tasks.fleet.splitting import in_sorties
 
         several = in_sorties(scenario, answer, count, controls)
         if several is not None:
             return _of_several(scenario, several, controls, watch)
+        why = why_one(scenario.aircraft[0])
     if count > aircraft.most_items:
-        told = too_many(aircraft.name, count, aircraft.most_items)
+        told = too_many(aircraft.name, count, aircraft.most_items, why)
         answer = replace(answer, dropped=(*answer.dropped, told))
     chart = Chart(scenario.frame, setting.level)
     with watch.stage("publish"):

@@ -31,9 +31,10 @@ class TrackSample:
     """Where the aircraft was, and whether the sensor was on; None where nothing told of it.
 
     ``height_m`` is over the home that the aircraft took off from; ``roll_deg`` is positive with the right
-    wing down, ``pitch_deg`` with the nose up; ``heading_deg`` is where the nose points, clockwise from true north, None
-    where unknown. Without a roll (NaN) nothing is seen; without a pitch it counts as level. ``mount_deg`` are
-    roll, pitch up from the horizon and yaw from true north of what a gimbal holds; None where none told.
+    wing down, ``pitch_deg`` with the nose up; ``heading_deg`` is where the nose points, clockwise from true
+    north, None where unknown. Without a roll (NaN) nothing is seen; without a pitch it counts as level.
+    ``mount_deg`` are roll, pitch up from the horizon and yaw from true north of what a gimbal holds; None
+    where none told.
     """
 
     time_s: float

@@ -57,7 +57,7 @@ def check_flat(raws: Sequence[RawFeature], scenario: Scenario, findings: Finding
             name,
             "ground-not-flat",
             f"lies at {height_m:g} m, and {told[0][0]} at {told[0][1]:g} m: without terrain the ground is "
-            "flat at the height of home, and a vehicle that takes off elsewhere flies as much higher or lower",
+            "flat at the height of home; a vehicle that takes off elsewhere flies as much higher or lower",
             "Name an elevation raster as terrain: heights are over the ground of each base then.",
         )
 

@@ -22,6 +22,8 @@ CORNER_M, CORNER_RAD = 2.1, math.radians(91.0)
 #: flight: home, take-off, speed, all off, where a landing begins, its approach and itself, and what a gimbal
 #: is told before and behind.
 ON_AND_OFF, LATE_OFF, EACH_FLIGHT = 2, 1, 10
+#: The rule of a finding of a flight that has more.
+TOO_MANY = "too-many-items"
 
 
 def items_of(flight: Flight, passes: int, aircraft: Aircraft) -> int:
@@ -38,12 +40,19 @@ def items_of(flight: Flight, passes: int, aircraft: Aircraft) -> int:
     return EACH_FLIGHT + each_pass * passes + speeds + stretches
 
 
-def too_many(name: str, count: int, most: int) -> Finding:
-    """What is said of a flight that no upload takes."""
+def too_many(name: str, count: int, most: int, why: str = "") -> Finding:
+    """What is said of a flight that no upload takes.
+
+    Parameters
+    ----------
+    why
+        It is not several; empty where that is not known.
+    """
     return Finding(
         name,
-        "too-many-items",
-        f"one of its flights comes to about {count} items of a mission, and its autopilot holds {most}",
+        TOO_MANY,
+        f"one of its flights comes to about {count} items of a mission, and its autopilot holds {most}"
+        + (f": {why}" if why else ""),
         "Plan a part of the regions at a time, or add batteries or aircraft.",
         "warning",
     )

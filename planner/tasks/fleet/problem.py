@@ -34,7 +34,8 @@ class Lessons:
 
     ``besides_s`` is what each flight takes more, ``power`` the mean power by that at cruise, ``factors`` are
     of all times in the air once one was late, ``spare`` of what one flight may take. ``most_s`` is how long
-    one may last so that its mission has no more items than its autopilot holds. ``closes_s`` is when jobs, by
+    one may last so that its mission has no more items than its autopilot holds, and ``flights`` how many that
+    makes of what was one. ``closes_s`` is when jobs, by
     their names, are to be over by so that others in their way do not make them late.
     """
 
@@ -43,6 +44,7 @@ class Lessons:
     factors: dict[int, float] = field(default_factory=dict)
     spare: dict[int, float] = field(default_factory=dict)
     most_s: dict[int, float] = field(default_factory=dict)
+    flights: dict[int, int] = field(default_factory=dict)
     closes_s: dict[str, float] = field(default_factory=dict)
 
     def learn(self, told_s: Mapping[int, Sequence[float]], crews: Sequence[Crew]) -> None:
@@ -80,6 +82,7 @@ class Lessons:
     def shorten(self, crew: int, flown_s: float, part: float) -> None:
         """A flight of so long had too many items: the next ones last this part of it at most."""
         self.most_s[crew] = min(self.most_s.get(crew, math.inf), part * flown_s)
+        self.flights[crew] = max(self.flights.get(crew, 1) + 1, math.ceil(1.0 / part))
 
     def factor(self, crew: int) -> float:
         """Of times in the air."""
@@ -235,6 +238,15 @@ def _member(
     np.fill_diagonal(seconds, 0.0)
     seconds = seconds * lessons.factor(number)
     aircraft, spare = crew.setting.model.aircraft, lessons.spare.get(number, 1.0)
+    split = number in lessons.flights
+    shift_s = math.inf
+    if split and aircraft.batteries == 1:
+        # One battery is for all of its flights: each has an even share where it may wait for a window to take
+        # off, else all are over by when one flight would be.
+        if any(job.region.time_window_s is not None or job.visits > 1 for job in jobs):
+            spare /= lessons.flights[number]
+        else:
+            shift_s = spare * _lasts_s(crew, lessons.power.get(number, 1.0))
     return Member(
         aircraft.name,
         crew.travel(seconds, lessons.power.get(number, 1.0)),
@@ -244,7 +256,8 @@ def _member(
         range_m=_limit(aircraft.max_range_m, spare),
         energy_wh=_limit(aircraft.usable_wh, spare) if crew.power_w is not None else math.inf,
         waiting_w=crew.power_w or 0.0,
-        trips=trips_of(aircraft) if number in lessons.most_s else aircraft.batteries,
+        shift_s=shift_s,
+        trips=trips_of(aircraft) if split else aircraft.batteries,
         turnaround_s=aircraft.turnaround_s,
     )
 
@@ -252,11 +265,22 @@ def _member(
 def trips_of(aircraft: Aircraft) -> int:
     """How many flights an aircraft may make of what its autopilot does not hold as one mission.
 
-    As many as it has batteries; where nothing says how long one lasts, as many as it takes.
+    As many as it has batteries; of one, as many as it takes: what it has is for all of them together.
     """
-    if aircraft.batteries > 1 or aircraft.limited or aircraft.aloft is not None:
+    if aircraft.batteries > 1 or aircraft.aloft is not None:
         return aircraft.batteries
     return MOST_TRIPS
+
+
+def _lasts_s(crew: Crew, power: float) -> float:
+    """How long one battery lasts for flights without a pause, at a mean power by that at cruise."""
+    aircraft = crew.setting.model.aircraft
+    limits_s = [math.inf if aircraft.max_flight_time_s is None else aircraft.max_flight_time_s]
+    if aircraft.max_range_m is not None:
+        limits_s.append(aircraft.max_range_m / crew.setting.model.airspeed_m_s)
+    if aircraft.usable_wh is not None and crew.power_w:
+        limits_s.append(3600.0 * aircraft.usable_wh / (power * crew.power_w))
+    return min(limits_s)
 
 
 def _limit(value: float | None, spare: float) -> float:

@@ -24,6 +24,7 @@ from planner.tasks.fleet.aloft import homewards
 from planner.tasks.fleet.answer import FleetAnswer
 from planner.tasks.fleet.crews import Crew, crews_of
 from planner.tasks.fleet.flights import Flown, Order
+from planner.tasks.fleet.held import too_many_items
 from planner.tasks.fleet.placing import Errand, placed
 from planner.tasks.fleet.strips import moved_together
 from planner.tasks.search import answer_to, answer_with, asked_of, reach, sought, unranked
@@ -134,6 +135,7 @@ def search_together(scenario: Scenario, controls: Controls) -> FleetAnswer:
                 raise
     idle = [share for share in shares if share not in answers]
     dropped += [_stays(crews[share.crew], _NO_ROOM if share in ways[0] else _NOTHING_LEFT) for share in idle]
+    dropped += [told for sortie in sorties for told in too_many_items(crews, sortie.flown)]
     families = dict.fromkeys(answer.methods["search"] for answer in answers.values())
     methods = next(iter(answers.values())).methods | {"search": "+".join(families)}
     return FleetAnswer(crews, sorties, methods, tuple(dict.fromkeys(dropped)), (), separation)

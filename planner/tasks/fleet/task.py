@@ -19,13 +19,15 @@ from planner.tasks.fleet.bettering import Hand, bettered
 from planner.tasks.fleet.crews import Crew, crews_of, left_by, not_seen, ways_of
 from planner.tasks.fleet.crossing import crossed
 from planner.tasks.fleet.deciding import AUTO, decided, decided_by, methods_of
-from planner.tasks.fleet.flights import Flown, Order, in_best_order, in_given_order, in_order, items_in, over
+from planner.tasks.fleet.flights import Flown, Order, in_best_order, in_given_order, in_order, over
+from planner.tasks.fleet.held import held_part, over_together, too_many_items
 from planner.tasks.fleet.jobs import Job, jobs_of
 from planner.tasks.fleet.keeping import kept_or
 from planner.tasks.fleet.parts import Cutting
 from planner.tasks.fleet.placing import CROWDED, Errand, LateError, Sortie, cost_of, placed, powers_of
 from planner.tasks.fleet.problem import Lessons, ends_of, problem_of, trips_of
-from planner.tasks.fleet.told import told_of, too_late, too_many_items
+from planner.tasks.fleet.splitting import with_more_flights
+from planner.tasks.fleet.told import told_of, too_late
 from planner.tasks.methods import chosen_methods
 from planner.tasks.task import Controls
 from planner.tasks.urban import cut_by_obstacles, lanes_cut
@@ -75,9 +77,10 @@ def fleet(scenario: Scenario, controls: Controls, lessons: Lessons | None = None
         if rounds.too_long is None:
             raise
         # Too many items are no reason to have no plan.
-        answer = rounds.too_long
+        answer = with_more_flights(rounds.too_long, controls, scenario.seed)
     where = (answer.separation, scenario.objective, controls, scenario.seed)
-    return replace(answer, sorties=crossed(answer.crews, answer.sorties, *where))
+    over_others = crossed(answer.crews, answer.sorties, *where)
+    return answer if over_together(answer.crews, over_others) else replace(answer, sorties=over_others)
 
 
 class _Rounds:
@@ -279,6 +282,8 @@ class _Rounds:
                 # Times and powers are learnt; of lengths that is all there is.
                 least = excess[0].limit / excess[0].used if excess[0].constraint == "range" else 1.0
                 tighter[crew] = min(tighter.get(crew, 1.0), TIGHTER * least)
+        for crew, excess in over_together(self._crews, sorties).items():
+            tighter.setdefault(crew, TIGHTER * excess.limit / excess.used)
         for crew, part in tighter.items():
             self._lessons.tighten(crew, part)
         self._lessons.learn(told, self._crews)
@@ -290,7 +295,7 @@ class _Rounds:
         long = False
         for sortie in sorties:
             crew = self._crews[sortie.flown.crew]
-            part = crew.aircraft.most_items / items_in(crew, sortie.flown)
+            part = held_part(crew, sortie.flown)
             if part < 1.0 and trips_of(crew.aircraft) > 1:
                 self._lessons.shorten(sortie.flown.crew, sortie.flown.duration_s, TIGHTER * part)
                 long = True

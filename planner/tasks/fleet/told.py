@@ -3,19 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
 
-from planner.errors import Finding, InfeasibleError
+from planner.errors import InfeasibleError
 from planner.fleet.assignment import Assignment
 from planner.fleet.auto.build import tables
 from planner.fleet.bound import lower_bound
 from planner.fleet.problem import Problem
 from planner.fleet.schedule import worth_of_all
 from planner.plan import Assigned
-from planner.profile.items import too_many
 from planner.progress import Stop, never
-from planner.tasks.fleet.crews import Crew
-from planner.tasks.fleet.flights import Flown, items_in
 from planner.tasks.fleet.placing import LateError
 
 #: Of more targets no bound is looked for: it would take longer than a second.
@@ -57,11 +53,3 @@ def too_late(late: LateError) -> InfeasibleError:
     message = f"is seen up to {late_s} s after its window closes, as far as was found"
     relaxation = f"Let time_window_s close {late_s} s later, or add an aircraft."
     return InfeasibleError("window", late.job.of, message, relaxation)
-
-
-def too_many_items(crews: Sequence[Crew], flown: Flown) -> Iterator[Finding]:
-    """What is said of a flight whose mission its autopilot does not hold."""
-    aircraft = crews[flown.crew].aircraft
-    count = items_in(crews[flown.crew], flown)
-    if count > aircraft.most_items:
-        yield too_many(aircraft.name, count, aircraft.most_items)

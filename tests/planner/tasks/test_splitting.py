@@ -140,6 +140,65 @@ def test_one_battery_is_for_all_of_them_together() -> None:
     assert "batteries" in {violation.constraint for violation in found}
 
 
+def fleet(**vehicle: Any) -> dict[str, Any]:
+    """Two aircraft with a battery each, and a field for each."""
+    document = survey(**vehicle)
+    document["features"][1] = feature("B", "roi", "Polygon", square(-0.012, -0.02, 0.002))
+    (one,) = document["vehicles"]
+    return document | {"vehicles": [one, one | {"name": "second"}]}
+
+
+#: Of either field the mission of one flight has more items, and half the lanes fewer.
+FLEET_MOST = 70
+
+
+def test_aircraft_of_a_fleet_fly_what_is_held_as_well() -> None:
+    """Each several times on its one battery, which lasts for all of its flights; all is seen."""
+    limit = {"max_flight_time_s": 1200.0, "max_range_m": 24_000.0}
+    whole = made(fleet(**limit))[1]
+    assert min(items(whole)) > FLEET_MOST
+    assert len(whole.paths) == 2
+    scenario, plan = made(fleet(**limit, max_items=FLEET_MOST))
+    assert plan.violations == ()
+    assert min(plan.metrics.coverage.values()) == pytest.approx(1.0)
+    assert max(items(plan)) <= FLEET_MOST
+    assert len(plan.paths) > 2
+    for name in ("uav", "second"):
+        own = [path for path in plan.paths if path.vehicle == name]
+        assert sum(path.duration_s for path in own) <= limit["max_flight_time_s"]
+        assert sum(path.length_m for path in own) <= limit["max_range_m"]
+        assert all(b.start_s >= a.end_s for a, b in pairwise(own))
+    assert judge(scenario, plan).violations == ()
+
+
+def test_a_fleets_battery_that_lasts_for_its_passes_alone_is_dealt_out_by_them() -> None:
+    """Where no other assignment keeps within it, each flight is cut between its passes."""
+    _, plan = made(fleet(max_items=75, max_flight_time_s=700.0))
+    assert plan.violations == ()
+    assert max(items(plan)) <= 75
+    assert [path.sortie for path in plan.paths] == [1, 2, 1, 2]
+
+
+def test_a_flight_of_a_fleet_that_cannot_be_several_names_its_limit() -> None:
+    """The one whose battery does not last for two stays whole, and what its plan says of it has the limit."""
+    _, plan = made(fleet(max_items=75, max_flight_time_s=500.0))
+    told = [warning for warning in plan.warnings if "too-many-items" in warning]
+    long = [path.vehicle for path, count in zip(plan.paths, items(plan), strict=True) if count > 75]
+    assert long
+    assert [warning.split(":")[0] for warning in told] == long
+    assert all("max_flight_time_s 500" in warning and "holds 75" in warning for warning in told)
+
+
+def test_of_a_fleet_what_has_a_window_keeps_it_where_another_is_cut() -> None:
+    """Flights dealt out anew go on the clock with those that have their times."""
+    document = fleet(max_items=75, max_flight_time_s=700.0)
+    document["features"][1]["properties"]["time_window_s"] = [300.0, 700.0]
+    _, plan = made(document)
+    assert plan.violations == ()
+    assert len(plan.paths) > 2
+    assert all(300.0 <= c.start_s < c.end_s <= 700.0 for c in plan.collects if c.roi == "B")
+
+
 @pytest.mark.parametrize("named", [False, True], ids=["end", "end_bases"])
 def test_a_mission_that_ends_elsewhere_goes_on_from_there(named: bool) -> None:
     """The first flight ends where all is to end, the next one starts there, and so say their missions."""
