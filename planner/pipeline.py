@@ -284,7 +284,7 @@ def _fleet_plan(scenario: Scenario, controls: Controls, watch: _Stopwatch) -> Pl
 
 def _of_several(scenario: Scenario, found: FleetAnswer, controls: Controls, watch: _Stopwatch) -> Plan:
     """The plan of several flights that were found."""
-    from planner.tasks.fleet.flights import answer_of
+    from planner.tasks.fleet.answer import answer_of
 
     # What lies above the passes, but not above what is flown between them, belongs to the fence, too.
     level = scenario.level

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from planner.errors import Finding
 from planner.plan import Assigned, LeftOut
 from planner.tasks.fleet.crews import Crew
+from planner.tasks.fleet.flights import Flown
 from planner.tasks.fleet.placing import Sortie
+from planner.tasks.task import Answer
 from planner.wishes import Separation
 
 
@@ -32,3 +34,17 @@ class FleetAnswer:
     left_out: tuple[LeftOut, ...]
     separation: Separation
     assigned: Assigned | None = None
+
+
+def answer_of(crew: Crew, flown: Flown, left_out: tuple[LeftOut, ...] = ()) -> Answer:
+    """A flight as the answer of one aircraft."""
+    return Answer(
+        crew.setting if flown.ends is None else replace(crew.setting, ends=flown.ends),
+        flown.composed,
+        flown.legs,
+        flown.passes,
+        flown.methods,
+        (),
+        flown.notes,
+        left_out,
+    )

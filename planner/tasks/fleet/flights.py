@@ -11,7 +11,6 @@ from planner.dubins.path import Path
 from planner.errors import InfeasibleError
 from planner.fleet.waiting import Due, Timing, holds, least_hold_s, timing
 from planner.metrics import used
-from planner.plan import LeftOut
 from planner.profile.compose import Composed
 from planner.profile.items import items_of
 from planner.progress import silent
@@ -22,7 +21,7 @@ from planner.tasks.fleet.crews import Crew
 from planner.tasks.fleet.jobs import Job, as_asked, renamed
 from planner.tasks.flying import Station
 from planner.tasks.methods import chosen_methods
-from planner.tasks.task import Answer, Controls
+from planner.tasks.task import Controls
 from planner.tasks.transits import Transits
 from planner.vehicle.limits import Excess, Use, exceeded
 
@@ -121,7 +120,11 @@ def in_given_order(crew: Crew, number: int, jobs: Sequence[tuple[Job, int]], con
     """
     with controls.stage("routing"):
         order = in_order(crew, jobs, controls)
-    return _through(crew, number, jobs, order, (), controls)
+    try:
+        return _through(crew, number, jobs, order, (), controls)
+    except InfeasibleError:
+        # No line joins what was chosen by estimates, close to an edge or a zone: all that one has may.
+        return in_best_order(crew, number, jobs, controls)
 
 
 def by_passes(crew: Crew, number: int, passes: Sequence[CollectPass], controls: Controls) -> Flown:
@@ -236,7 +239,12 @@ def with_waits(
     InfeasibleError
         Where there is no room to wait in.
     """
-    plain = _through(crew, number, jobs, order, (), controls)
+    try:
+        plain = _through(crew, number, jobs, order, (), controls)
+    except InfeasibleError:
+        # As in ``in_given_order``; the order may not change for the times that are to be kept.
+        order = _each_by_itself(crew, number, jobs, controls)
+        plain = _through(crew, number, jobs, order, (), controls)
     held_s = least_hold_s(crew.setting.model)
     dues: list[Due] = []
     for (job, _), (start_s, end_s), (opens_s, closes_s) in zip(jobs, plain.spans_s, bounds_s, strict=True):
@@ -247,6 +255,13 @@ def with_waits(
     if when.worst is not None or when.waited_s <= 0.0:
         return plain, when
     return _waited(crew, number, jobs, order, plain, dues, when, controls)
+
+
+def _each_by_itself(crew: Crew, number: int, jobs: Sequence[tuple[Job, int]], controls: Controls) -> Order:
+    """Of each job the passes that its aircraft flies for it alone, in the order given."""
+    passes = [in_best_order(crew, number, [each], controls).order.passes for each in jobs]
+    of = [place for place, own in enumerate(passes) for _ in own]
+    return Order(tuple(each for own in passes for each in own), tuple(of))
 
 
 def _waited(
@@ -381,18 +396,4 @@ def _flown(
         methods,
         Order(tuple(passes), tuple(firsts)),
         ends=setting.ends,
-    )
-
-
-def answer_of(crew: Crew, flown: Flown, left_out: tuple[LeftOut, ...] = ()) -> Answer:
-    """A flight as the answer of one aircraft."""
-    return Answer(
-        crew.setting if flown.ends is None else replace(crew.setting, ends=flown.ends),
-        flown.composed,
-        flown.legs,
-        flown.passes,
-        flown.methods,
-        (),
-        flown.notes,
-        left_out,
     )

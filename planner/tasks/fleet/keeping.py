@@ -10,9 +10,10 @@ from planner.fleet.kept import kept
 from planner.fleet.problem import Problem
 from planner.fleet.schedule import worth_of_all
 from planner.scenario import Scenario
+from planner.tasks.fleet.answer import answer_of
 from planner.tasks.fleet.crews import Crew, ways_of
 from planner.tasks.fleet.deciding import decided
-from planner.tasks.fleet.flights import answer_of, in_given_order, over
+from planner.tasks.fleet.flights import in_given_order, over
 from planner.tasks.fleet.jobs import Job, jobs_of
 from planner.tasks.fleet.problem import Lessons, problem_of
 from planner.tasks.methods import chosen_methods
