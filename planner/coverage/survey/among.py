@@ -88,6 +88,8 @@ def left_targets(asked: Seeing, around: Surroundings, left: Iterable[BaseGeometr
         level = asked.level.of(region)
         there = asked.at(level, around)
         for piece in shapely.get_parts(ground):
+            if piece.is_empty:
+                continue
             hull = piece.buffer(LEFT_MARGIN_M, join_style="mitre").convex_hull
             whole = replace(region, area=hull)
             sensor, height_m = asked.suite.over(region.sensor, hull, asked.airspace, level)

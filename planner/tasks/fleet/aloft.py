@@ -12,7 +12,8 @@ from planner.fleet.separation import Apart, Track
 from planner.fleet.waiting import least_hold_s
 from planner.route import Terminal
 from planner.tasks.fleet.crews import Crew
-from planner.tasks.fleet.flights import Flown, Order, straight_home, with_waits
+from planner.tasks.fleet.flights import straight_home, with_waits
+from planner.tasks.fleet.flown import Flown, Order
 from planner.tasks.fleet.jobs import Job
 from planner.tasks.task import Controls
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from planner.errors import Finding
 from planner.plan import Assigned, LeftOut
 from planner.tasks.fleet.crews import Crew
-from planner.tasks.fleet.flights import Flown
+from planner.tasks.fleet.flown import Flown
 from planner.tasks.fleet.placing import Sortie
 from planner.tasks.task import Answer
 from planner.wishes import Separation

@@ -23,7 +23,8 @@ from planner.fleet.problem import Problem
 from planner.fleet.schedule import worth_of
 from planner.tasks.fleet.barred import BarredError
 from planner.tasks.fleet.crews import Crew
-from planner.tasks.fleet.flights import items_in, over, thought_s
+from planner.tasks.fleet.flights import thought_s
+from planner.tasks.fleet.flown import items_in, over
 from planner.tasks.fleet.jobs import Job
 from planner.tasks.fleet.placing import Errand, LateError, Sortie, cost_of
 from planner.tasks.fleet.problem import Lessons, WaysOf, problem_of

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -325,9 +325,11 @@ def left_by(
 
 
 def ways_of(
-    crews: Sequence[Crew], jobs: Iterable[Job]
+    crews: Sequence[Crew], jobs: Iterable[Job], instead: Callable[[Crew, Job], Ways] | None = None
 ) -> tuple[dict[tuple[str, int], Ways], dict[str, Finding]]:
     """The ways of each job by its name and the number of a crew; crews of one kind share them.
+
+    ``instead`` finds those of a job that has none.
 
     Returns
     -------
@@ -344,10 +346,7 @@ def ways_of(
                 continue
             key = (job.region.name, crew.kind)
             if key not in known:
-                try:
-                    known[key] = crew.ways(job)
-                except InfeasibleError as error:
-                    known[key] = error
+                known[key] = _ways_or_why(crew, job, instead)
             ways = known[key]
             if isinstance(ways, InfeasibleError):
                 refused = ways
@@ -358,6 +357,16 @@ def ways_of(
                 raise refused
             why[job.region.name] = not_seen(job, refused)
     return found, why
+
+
+def _ways_or_why(crew: Crew, job: Job, instead: Callable[[Crew, Job], Ways] | None) -> Ways | InfeasibleError:
+    try:
+        return crew.ways(job)
+    except InfeasibleError as error:
+        try:
+            return error if instead is None else instead(crew, job)
+        except InfeasibleError:
+            return error
 
 
 def not_seen(job: Job, refused: InfeasibleError) -> Finding:

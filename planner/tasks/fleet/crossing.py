@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from planner.fleet.assignment import Trip
 from planner.fleet.separation import MARGIN_UP_M, Apart, Places
 from planner.tasks.fleet.crews import Crew
-from planner.tasks.fleet.flights import Flown, items_in, over
+from planner.tasks.fleet.flown import Flown, items_in, over
 from planner.tasks.fleet.heights import at_heights
 from planner.tasks.fleet.placing import Errand, Sortie, cost_of, flight_track, placed_anew
 from planner.tasks.task import Controls
@@ -61,9 +61,7 @@ def crossed(
 
 def _free(crew: Crew, flown: Flown) -> bool:
     """Whether a flight may be begun at any time, and its legs flown at other heights."""
-    bound = any(
-        job.region.time_window_s is not None or job.region.revisit_after_s > 0.0 for job, _ in flown.jobs
-    )
+    bound = any(job.is_timed for job, _ in flown.jobs)
     return crew.alone.band is not None and crew.aircraft.aloft is None and flown.waited_s <= 0.0 and not bound
 
 

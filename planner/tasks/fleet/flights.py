@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from planner.airspace.zones import TRANSIT_MARGIN_M, keep_out
 from planner.dubins.path import Path
@@ -12,18 +12,17 @@ from planner.errors import InfeasibleError
 from planner.fleet.waiting import Due, Timing, holds, least_hold_s, timing
 from planner.metrics import used
 from planner.profile.compose import Composed
-from planner.profile.items import items_of
 from planner.progress import silent
 from planner.publish import Leg
-from planner.route import Anchor, CollectPass, Pose, Terminal
+from planner.route import Anchor, CollectPass, Pose
 from planner.tasks.collect import collect
 from planner.tasks.fleet.crews import Crew
+from planner.tasks.fleet.flown import Flown, Order
 from planner.tasks.fleet.jobs import Job, as_asked, renamed
 from planner.tasks.flying import Station
 from planner.tasks.methods import chosen_methods
 from planner.tasks.task import Controls
 from planner.tasks.transits import Transits
-from planner.vehicle.limits import Excess, Use, exceeded
 
 #: Windows are kept with this to spare, half of which the fitting of circles may use.
 SPARE_S = 0.5
@@ -31,71 +30,27 @@ SPARE_S = 0.5
 FITTINGS, WITHIN_S = 4, 0.1
 
 
-@dataclass(frozen=True, slots=True)
-class Order:
-    """Passes in a given order of jobs, and which job each is of."""
-
-    passes: tuple[CollectPass, ...]
-    of: tuple[int, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Flown:
-    """One flight, times from its lift-off.
-
-    Parameters
-    ----------
-    crew, jobs
-        Number of the crew; its jobs in flight order, with the visit that each is.
-    composed, legs, passes
-        As ``Answer`` has them, by the names that were asked for.
-    order
-        Its passes by the names of the jobs.
-    spans_s
-        Of each job, when it begins and ends.
-    waited_s
-        Of its time in circles.
-    ends
-        Where it starts and ends; None for its crew's.
-    """
-
-    crew: int
-    jobs: tuple[tuple[Job, int], ...]
-    composed: Composed
-    legs: tuple[Leg, ...]
-    passes: tuple[CollectPass, ...]
-    notes: tuple[str, ...]
-    spans_s: tuple[tuple[float, float], ...]
-    use: Use
-    methods: dict[str, str]
-    order: Order
-    waited_s: float = 0.0
-    ends: tuple[Terminal, Terminal] | None = None
-
-    @property
-    def duration_s(self) -> float:
-        """Of all phases."""
-        return self.composed.flight.duration_s
-
-
-def over(crew: Crew, flown: Flown) -> tuple[Excess, ...]:
-    """The limits that a flight is over."""
-    return exceeded(crew.setting.model.aircraft, flown.use)
-
-
-def items_in(crew: Crew, flown: Flown) -> int:
-    """How many items the mission of a flight has at most."""
-    return items_of(flown.composed.flight, len(flown.passes), crew.aircraft)
-
-
 def in_best_order(crew: Crew, number: int, jobs: Sequence[tuple[Job, int]], controls: Controls) -> Flown:
-    """A flight whose jobs may be done at any time.
+    """A flight whose jobs may be done at any time; in the order given where each is seen by itself alone.
 
     Raises
     ------
     InfeasibleError
         Where there is no such flight.
     """
+    try:
+        return _by_all_there_is(crew, number, jobs, controls)
+    except InfeasibleError as error:
+        if len(jobs) == 1:
+            raise
+        try:
+            return _through(crew, number, jobs, _each_by_itself(crew, number, jobs, controls), (), controls)
+        except InfeasibleError:
+            raise error from None
+
+
+def _by_all_there_is(crew: Crew, number: int, jobs: Sequence[tuple[Job, int]], controls: Controls) -> Flown:
+    """As one aircraft that is asked for them alone."""
     regions = tuple(job.asked for job, _ in jobs)
     unlimited = replace(
         crew.alone.aircraft[0],
@@ -118,9 +73,9 @@ def in_given_order(crew: Crew, number: int, jobs: Sequence[tuple[Job, int]], con
     InfeasibleError
         Where there is no such flight.
     """
-    with controls.stage("routing"):
-        order = in_order(crew, jobs, controls)
     try:
+        with controls.stage("routing"):
+            order = _chosen_together(crew, jobs)
         return _through(crew, number, jobs, order, (), controls)
     except InfeasibleError:
         # No line joins what was chosen by estimates, close to an edge or a zone: all that one has may.
@@ -170,13 +125,20 @@ def straight_home(crew: Crew, number: int, controls: Controls, wait_s: float = 0
 
 
 def in_order(crew: Crew, jobs: Sequence[tuple[Job, int]], controls: Controls) -> Order:
-    """The passes of jobs in the order given, chosen together.
+    """The passes of jobs in the order given, chosen together; each by itself where not all are seen so.
 
     Raises
     ------
     InfeasibleError
         Where one cannot be seen.
     """
+    try:
+        return _chosen_together(crew, jobs)
+    except InfeasibleError:
+        return _each_by_itself(crew, 0, jobs, controls)
+
+
+def _chosen_together(crew: Crew, jobs: Sequence[tuple[Job, int]]) -> Order:
     numbers, owners = _numbered(crew, jobs)
     choice = crew.looks.refined(crew.ends, crew.around, numbers)
     if not math.isfinite(choice.cost_m):

@@ -22,7 +22,7 @@ from planner.profile.flight import whole_flight
 from planner.profile.heights import SAME_M, Heights, tidy
 from planner.profile.lines import cut
 from planner.tasks.fleet.crews import Crew
-from planner.tasks.fleet.flights import Flown
+from planner.tasks.fleet.flown import Flown
 from planner.vehicle.manners import LIFT_OFF_HEIGHT_M
 from planner.vehicle.model import FlightModel
 

@@ -8,8 +8,9 @@ from collections.abc import Iterator, Sequence
 from planner.errors import Finding
 from planner.profile.items import EACH_FLIGHT, too_many
 from planner.tasks.fleet.crews import Crew
-from planner.tasks.fleet.flights import Flown, items_in
+from planner.tasks.fleet.flown import Flown, items_in
 from planner.tasks.fleet.placing import Sortie
+from planner.tasks.fleet.problem import Lessons, trips_of
 from planner.vehicle.aircraft import Aircraft
 from planner.vehicle.limits import Excess, Use, exceeded
 
@@ -47,6 +48,24 @@ def held_part(crew: Crew, flown: Flown) -> float:
     work_s = max(end_s for _, end_s in spans_s) - min(begin_s for begin_s, _ in spans_s)
     share = max(most - EACH_FLIGHT, 1) / max(count - EACH_FLIGHT, 1)
     return 1.0 - (1.0 - share) * work_s / flown.duration_s if count > most else 1.0
+
+
+def shorten(crews: Sequence[Crew], sorties: Sequence[Sortie], lessons: Lessons, part: float) -> bool:
+    """Teach that flights are to be shorter which have too many items and can be two; whether any is.
+
+    Parameters
+    ----------
+    part
+        Of what they may last they are to last.
+    """
+    long = False
+    for sortie in sorties:
+        crew = crews[sortie.flown.crew]
+        held = held_part(crew, sortie.flown)
+        if held < 1.0 and trips_of(crew.aircraft) > 1:
+            lessons.shorten(sortie.flown.crew, sortie.flown.duration_s, part * held)
+            long = True
+    return long
 
 
 def too_many_items(crews: Sequence[Crew], flown: Flown) -> Iterator[Finding]:

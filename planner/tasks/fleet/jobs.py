@@ -41,6 +41,11 @@ class Job:
     share: float = 1.0
 
     @property
+    def is_timed(self) -> bool:
+        """Whether something binds when it is done."""
+        return self.region.time_window_s is not None or self.region.revisit_after_s > 0.0
+
+    @property
     def visits(self) -> int:
         """How often it is to be done, by whomever; visits that need not lie apart are done in one go."""
         return self.region.revisits if self.region.revisit_after_s > 0.0 else 1

@@ -13,7 +13,8 @@ from planner.scenario import Scenario
 from planner.tasks.fleet.answer import answer_of
 from planner.tasks.fleet.crews import Crew, ways_of
 from planner.tasks.fleet.deciding import decided
-from planner.tasks.fleet.flights import in_given_order, over
+from planner.tasks.fleet.flights import in_given_order
+from planner.tasks.fleet.flown import over
 from planner.tasks.fleet.jobs import Job, jobs_of
 from planner.tasks.fleet.problem import Lessons, problem_of
 from planner.tasks.methods import chosen_methods

@@ -13,7 +13,8 @@ from planner.fleet.separation import DRIFTS, NO_DRIFT, Apart, Track, step_m, tra
 from planner.route import Terminal
 from planner.tasks.fleet.aloft import held_apart, home_apart
 from planner.tasks.fleet.crews import Crew
-from planner.tasks.fleet.flights import SPARE_S, Flown, Order, with_waits
+from planner.tasks.fleet.flights import SPARE_S, with_waits
+from planner.tasks.fleet.flown import Flown, Order
 from planner.tasks.fleet.jobs import Job
 from planner.tasks.fleet.turns import other_orders
 from planner.tasks.task import Controls

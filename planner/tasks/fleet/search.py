@@ -23,7 +23,7 @@ from planner.search.values import Worth
 from planner.tasks.fleet.aloft import homewards
 from planner.tasks.fleet.answer import FleetAnswer
 from planner.tasks.fleet.crews import Crew, crews_of
-from planner.tasks.fleet.flights import Flown, Order
+from planner.tasks.fleet.flown import Flown, Order
 from planner.tasks.fleet.held import too_many_items
 from planner.tasks.fleet.placing import Errand, placed
 from planner.tasks.fleet.strips import moved_together

@@ -13,7 +13,8 @@ from planner.route import CollectPass
 from planner.scenario import Scenario
 from planner.tasks.fleet.answer import FleetAnswer
 from planner.tasks.fleet.crews import Crew
-from planner.tasks.fleet.flights import Flown, by_passes, items_in
+from planner.tasks.fleet.flights import by_passes
+from planner.tasks.fleet.flown import Flown, items_in
 from planner.tasks.fleet.held import over_together, together, too_many_items
 from planner.tasks.fleet.placing import Errand, LateError, Sortie, placed
 from planner.tasks.task import Answer, Controls
@@ -93,10 +94,7 @@ def with_more_flights(answer: FleetAnswer, controls: Controls, seed: int) -> Fle
 
 def _is_timed(flown: Flown) -> bool:
     """Whether something binds when a flight is flown."""
-    bound = (
-        job.region.time_window_s is not None or job.region.revisit_after_s > 0.0 for job, _ in flown.jobs
-    )
-    return flown.waited_s > 0.0 or any(bound)
+    return flown.waited_s > 0.0 or any(job.is_timed for job, _ in flown.jobs)
 
 
 def _parts(crew: Crew, flown: Flown, controls: Controls) -> tuple[Flown, ...]:

@@ -16,17 +16,19 @@ from planner.tasks.fleet.aloft import homewards
 from planner.tasks.fleet.answer import FleetAnswer
 from planner.tasks.fleet.barred import BarredError, barred, infeasible
 from planner.tasks.fleet.bettering import Hand, bettered
-from planner.tasks.fleet.crews import Crew, crews_of, left_by, not_seen, ways_of
+from planner.tasks.fleet.crews import Crew, crews_of, left_by, not_seen
 from planner.tasks.fleet.crossing import crossed
 from planner.tasks.fleet.deciding import AUTO, decided, decided_by, methods_of
-from planner.tasks.fleet.flights import Flown, Order, in_best_order, in_given_order, in_order, over
-from planner.tasks.fleet.held import held_part, over_together, too_many_items
-from planner.tasks.fleet.jobs import Job, jobs_of
+from planner.tasks.fleet.flights import in_best_order, in_given_order, in_order
+from planner.tasks.fleet.flown import Flown, Order, over
+from planner.tasks.fleet.held import over_together, shorten, too_many_items
+from planner.tasks.fleet.jobs import Job
 from planner.tasks.fleet.keeping import kept_or
 from planner.tasks.fleet.parts import Cutting
 from planner.tasks.fleet.placing import CROWDED, Errand, LateError, Sortie, cost_of, placed, powers_of
-from planner.tasks.fleet.problem import Lessons, ends_of, problem_of, trips_of
+from planner.tasks.fleet.problem import Lessons, ends_of, problem_of
 from planner.tasks.fleet.splitting import with_more_flights
+from planner.tasks.fleet.spreading import spread
 from planner.tasks.fleet.told import told_of, too_late
 from planner.tasks.methods import chosen_methods
 from planner.tasks.task import Controls
@@ -108,9 +110,9 @@ class _Rounds:
     def _spread(self) -> None:
         named = {region.name: region for region in self._scenario.regions}
         shared_m = {name: self._cutting.shared_m(named[name]) for name in self._parts}
-        self._jobs = jobs_of(self._scenario.regions, self._parts, shared_m)
-        ways, self._why = ways_of(self._crews, self._jobs)
-        self._ways = {key: found for key, found in ways.items() if key not in self._barred}
+        found = spread(self._crews, self._scenario.regions, self._parts, shared_m, self._controls)
+        self._jobs, self._why, self._parts = found.jobs, found.why, found.parts
+        self._ways = {key: ways for key, ways in found.ways.items() if key not in self._barred}
 
     def best(self) -> FleetAnswer:
         """Of the plans of a few rounds."""
@@ -181,10 +183,14 @@ class _Rounds:
                 return placed(self._crews, errands, self._separation, controls, seed)
 
         hand = Hand(lambda trip: self._errand(made.jobs, trip), clocked)
-        better = bettered(
-            self._crews, made.jobs, self._ways, made.assigned, made.sorties, self._lessons,
-            self._scenario.objective, hand, controls,
-        )  # fmt: skip
+        try:
+            better = bettered(
+                self._crews, made.jobs, self._ways, made.assigned, made.sorties, self._lessons,
+                self._scenario.objective, hand, controls,
+            )  # fmt: skip
+        except InfeasibleError:
+            # What is seen by itself alone is not to be estimated in an order.
+            return None
         if better is None:
             return None
         return self._answer(made.jobs, better.problem, better.assigned, better.sorties)
@@ -254,6 +260,11 @@ class _Rounds:
             self._ways.pop(key, None)
             if any(other == name for other, _ in self._ways):
                 continue
+            if name != job.of:
+                # None leads to a part of it: it is one, as it was asked for.
+                self._parts[job.of] = 1
+                self._spread()
+                return
             if job.region.required:
                 raise found[name]
             self._given_up[job.of] = not_seen(job, found[name])
@@ -282,8 +293,8 @@ class _Rounds:
                 # Times and powers are learnt; of lengths that is all there is.
                 least = excess[0].limit / excess[0].used if excess[0].constraint == "range" else 1.0
                 tighter[crew] = min(tighter.get(crew, 1.0), TIGHTER * least)
-        for crew, excess in over_together(self._crews, sorties).items():
-            tighter.setdefault(crew, TIGHTER * excess.limit / excess.used)
+        more = over_together(self._crews, sorties)
+        tighter = {crew: TIGHTER * each.limit / each.used for crew, each in more.items()} | tighter
         for crew, part in tighter.items():
             self._lessons.tighten(crew, part)
         self._lessons.learn(told, self._crews)
@@ -292,13 +303,7 @@ class _Rounds:
 
     def _shortened(self, sorties: Sequence[Sortie]) -> bool:
         """Whether a flight has more items than are held and can be two; the next ones are shorter then."""
-        long = False
-        for sortie in sorties:
-            crew = self._crews[sortie.flown.crew]
-            part = held_part(crew, sortie.flown)
-            if part < 1.0 and trips_of(crew.aircraft) > 1:
-                self._lessons.shorten(sortie.flown.crew, sortie.flown.duration_s, TIGHTER * part)
-                long = True
+        long = shorten(self._crews, sorties, self._lessons, TIGHTER)
         if long:
             self._parts = self._cutting.first() | self._parts
             self._spread()
@@ -316,10 +321,7 @@ class _Rounds:
     def _flown_or_ordered(
         self, crew: Crew, trip: Trip, done: tuple[tuple[Job, int], ...], key: Landed
     ) -> Errand:
-        bound = any(
-            job.region.time_window_s is not None or job.region.revisit_after_s > 0.0 for job, _ in done
-        )
-        if bound:
+        if any(job.is_timed for job, _ in done):
             if key not in self._orders:
                 with self._controls.stage("routing"):
                     self._orders[key] = in_order(crew, done, self._controls)
@@ -381,15 +383,12 @@ class _Rounds:
             job = jobs[each.target]
             margin = each.margin if math.isfinite(each.margin) else None
             left.append(LeftOut(job.of, each.limit, margin))
-            dropped = (
-                *dropped,
-                Finding(job.of, f"not-seen-{each.limit}", each.message, each.relaxation, "warning"),
-            )
+            rule = f"not-seen-{each.limit}"
+            dropped += (Finding(job.of, rule, each.message, each.relaxation, "warning"),)
         dropped = (*dropped, *(told for s in sorties for told in too_many_items(self._crews, s.flown)))
         unique = {each.roi: each for each in left}
-        until = (self._controls.stop, self._controls.enough)
-        told = told_of(problem, assigned, decided_by(self._scenario.method), *until)
-        methods = methods_of(self._scenario.method)
+        method, until = self._scenario.method, (self._controls.stop, self._controls.enough)
+        told, methods = told_of(problem, assigned, decided_by(method), *until), methods_of(method)
         return FleetAnswer(
             self._crews, sorties, methods, dropped, tuple(unique.values()), self._separation, told
         )
