@@ -30,8 +30,9 @@ def home_amsl_m(raws: Sequence[RawFeature], start: str) -> float | None:
 def _height_m(raw: RawFeature) -> float | None:
     """The third coordinate of a place."""
     coordinates = raw.geometry.get("coordinates")
-    told = isinstance(coordinates, list) and len(coordinates) > 2 and is_finite(coordinates[2])
-    return float(coordinates[2]) if told else None
+    if not isinstance(coordinates, list) or len(coordinates) < 3 or not is_finite(coordinates[2]):
+        return None
+    return float(coordinates[2])
 
 
 def check_flat(raws: Sequence[RawFeature], scenario: Scenario, findings: Findings) -> None:

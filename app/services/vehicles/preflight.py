@@ -348,7 +348,8 @@ def _on_raster(ground_m: float, home_m: float, said: str) -> Check:
 
 def _home_altitude_m(scenario: Mapping[str, Any], vehicle: str) -> float | None:
     """The height of a vehicle's base, else of the start, where its position has a third coordinate."""
-    base, known = _limits(scenario, vehicle).get("base"), {}
+    base = _limits(scenario, vehicle).get("base")
+    known: dict[Any, Mapping[str, Any]] = {}
     for feature in scenario.get("features") or ():
         properties = feature.get("properties") or {}
         if properties.get("role") in ("start", "base"):

@@ -91,9 +91,8 @@ def test_a_plan_made_in_flight_begins_where_aircraft_are_by_then(
         assert one["in_flight"] == pytest.approx(other["in_flight"], abs=1e-4)
         assert one["max_flight_time_s"] == pytest.approx(other["max_flight_time_s"], abs=0.1)
     assert [f["id"] for f in soon["features"]] == [f["id"] for f in later["features"]]
-    told = Asked(
-        at_s, {"north": Told(lat_deg=document["features"][0]["geometry"]["coordinates"][1])}, None, Changes()
-    )
+    far_deg = document["features"][0]["geometry"]["coordinates"][1] + 0.05
+    told = Asked(at_s, {"north": Told(lat_deg=far_deg)}, None, Changes())
     (north,) = (v for v in left_of(document, scenario, plan, told)["vehicles"] if v["name"] == "north")
     assert north["in_flight"]["lat_deg"] == told.vehicles["north"].lat_deg
 
@@ -104,7 +103,8 @@ def test_a_zone_drawn_across_what_is_flown_until_then_is_told(
     """Ahead of one aircraft, and behind it by then: in it is the old line alone, and that is named."""
     scenario, plan = flown
     at_s, by_s = 300.0, 12.0
-    line = Course(scenario, plan, "north", 1).line(at_s, at_s + by_s)
+    since_s = at_s - plan.path_of("north").start_s
+    line = Course(scenario, plan, "north", 1).line(since_s, since_s + by_s)
     lon_deg, lat_deg, _ = line[len(line) // 2] if len(line) > 2 else np.mean(line, axis=0).tolist()
     zone = {
         "type": "Feature", "id": "new zone",

@@ -74,10 +74,15 @@ def test_one_in_the_air_with_nothing_to_do_flies_home(
 
 @pytest.mark.parametrize(("at_s", "left_one"), [(150.0, "weir"), (300.0, "mill")])
 def test_of_two_that_fly_home_at_once_one_waits_where_it_is(
-    document: dict[str, Any], flown: tuple[Scenario, Plan], at_s: float, left_one: str
+    document: dict[str, Any], at_s: float, left_one: str
 ) -> None:
-    """With nothing to do their ways home come too near: one goes round where it is, and none meet."""
-    scenario, plan = flown
+    """With nothing to do their ways home come too near: one goes round where it is, and none meet.
+
+    With 100 m of straight flight before passes two of them are where that is so.
+    """
+    document = document | {"vehicles": [own | {"settle_m": 100} for own in document["vehicles"]]}
+    scenario = read_scenario(document)
+    plan = make_plan(scenario)
     changes = json.loads((EXAMPLES / "three-aircraft-changes.json").read_text())
     gone = [region.name for region in scenario.regions if region.name != left_one]
     asked = ReplanIn.model_validate({"at_s": at_s, "remove": gone, "add": changes["add"][:1]}).asked()
