@@ -15,6 +15,9 @@ from planner.tasks.task import Controls
 from planner.tasks.urban import cut_by_obstacles
 from planner.wishes import Region
 
+#: Of a region and a kind of crew its way by itself alone, or why there is none.
+Known = dict[tuple[Region, tuple[object, ...]], Ways | InfeasibleError]
+
 
 @dataclass(frozen=True, slots=True)
 class Spread:
@@ -32,8 +35,14 @@ def spread(
     parts: Mapping[str, int],
     shared_m: Mapping[str, float],
     controls: Controls,
+    known: Known,
 ) -> Spread:
     """Regions cut in so many parts, but for those of which a part has no way.
+
+    Parameters
+    ----------
+    known
+        What was found by itself alone, which takes long; added to.
 
     Raises
     ------
@@ -43,7 +52,16 @@ def spread(
     parts = dict(parts)
 
     def instead(crew: Crew, job: Job) -> Ways:
-        return _alone(crew, job, controls)
+        key = (job.asked, crew.kind)
+        if key not in known:
+            try:
+                known[key] = _alone(crew, job, controls)
+            except InfeasibleError as error:
+                known[key] = error
+        found = known[key]
+        if isinstance(found, InfeasibleError):
+            raise found
+        return found
 
     while True:
         jobs = jobs_of(regions, parts, shared_m)

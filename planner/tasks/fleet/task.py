@@ -28,7 +28,7 @@ from planner.tasks.fleet.parts import Cutting
 from planner.tasks.fleet.placing import CROWDED, Errand, LateError, Sortie, cost_of, placed, powers_of
 from planner.tasks.fleet.problem import Lessons, ends_of, problem_of
 from planner.tasks.fleet.splitting import with_more_flights
-from planner.tasks.fleet.spreading import spread
+from planner.tasks.fleet.spreading import Known, spread
 from planner.tasks.fleet.told import told_of, too_late
 from planner.tasks.methods import chosen_methods
 from planner.tasks.task import Controls
@@ -98,6 +98,7 @@ class _Rounds:
         self._orders: dict[Landed, Order] = {}
         self._given_up: dict[str, Finding] = {}
         self._barred: set[tuple[str, int]] = set()
+        self._alone: Known = {}
         with controls.stage("options"):
             self._crews, self._grounded = crews_of(scenario)
             self._given_up |= left_by(self._grounded, self._crews, scenario.regions)
@@ -110,7 +111,8 @@ class _Rounds:
     def _spread(self) -> None:
         named = {region.name: region for region in self._scenario.regions}
         shared_m = {name: self._cutting.shared_m(named[name]) for name in self._parts}
-        found = spread(self._crews, self._scenario.regions, self._parts, shared_m, self._controls)
+        cut = (self._crews, self._scenario.regions, self._parts, shared_m)
+        found = spread(*cut, self._controls, self._alone)
         self._jobs, self._why, self._parts = found.jobs, found.why, found.parts
         self._ways = {key: ways for key, ways in found.ways.items() if key not in self._barred}
 
