@@ -223,6 +223,10 @@ class Together:
         """The same where they lie."""
         return [own @ self._axes + self._origin for own in strips]
 
+    def placed(self, lines: Strips) -> Strips:
+        """Strips that lie there in the ground's own frame."""
+        return [self._placed(each) for each in lines]
+
     def _placed(self, points: Floats) -> Floats:
         return np.asarray((points - self._origin) @ self._axes.T)
 

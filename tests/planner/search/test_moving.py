@@ -16,8 +16,8 @@ from planner.search.moving.strip_kernels import COLUMNS, cost_m, look, passed
 from planner.search.moving.together import Flier, Together
 from planner.search.programme import seen_worth
 from planner.search.values import Worth
-from planner.tasks.search import asked_of
 from planner.tasks.setting import Setting
+from planner.tasks.sought import asked_of
 from tests.planner.search.searches import RADAR, WING, document
 
 
