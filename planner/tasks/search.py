@@ -13,7 +13,7 @@ from planner.tasks.budget import MOST, Flight, part_used
 from planner.tasks.leftover import filled
 from planner.tasks.sought import Sought, as_long_as_can_be, flier_of, unranked
 from planner.tasks.spare import cut_off, out_of_reach, refuse_worthless
-from planner.tasks.strips import found_by, moved_alone
+from planner.tasks.strips import moved_alone
 from planner.tasks.task import Answer, Controls, Task
 from planner.vehicle.aircraft import Aircraft
 
@@ -37,7 +37,7 @@ def search(scenario: Scenario, controls: Controls) -> Answer:
     one = sought(scenario, replace(controls, enough=controls.enough.part(PATTERNS)), refined=False)
     with controls.stage("transit"):
         best = _best(one, flier_of(one, controls), controls)
-    if found_by(one.asked, [best]) < (1.0 - ALL) * one.asked.total:
+    if best.programme.worth < (1.0 - ALL) * one.asked.total:
         best = moved_alone(scenario, one, best, controls)
     return answer_with(one, _filled(one, best, controls))
 

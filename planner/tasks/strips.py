@@ -11,7 +11,7 @@ import numpy as np
 from planner.errors import InfeasibleError
 from planner.route import Look
 from planner.scenario import Scenario
-from planner.search.choose import REFINED, Search
+from planner.search.choose import NOTHING, REFINED, Search
 from planner.search.moving.together import Flier, Floats, Strips, Together
 from planner.search.programme import Programme
 from planner.search.shifted import strip_of
@@ -52,11 +52,12 @@ class _Moving:
         controls: Controls,
         part: float,
     ) -> None:
-        self.ones, self.asked, self._looks = ones, ones[0].asked, looks
+        self.ones, self._looks = ones, looks
+        asked = ones[0].asked
         self._together = Together(
-            self.asked.ground,
+            asked.ground,
             lambda places, cell_m: scores_at(scenario, places, cell_m),
-            self.asked.detection,
+            asked.detection,
             [
                 Flier(one.asked.looking, look, one.asked.room, one.asked.pricing)
                 for one, look in zip(ones, looks, strict=True)
@@ -79,7 +80,7 @@ class _Moving:
             _learnt_m(cost_m, part_used(one.setting.model.aircraft, flight.use))
             for one, cost_m, flight in zip(self.ones, self._together.costs_m(strips), flights, strict=True)
         ]
-        return _Tried(self._worth(flights), self, list(flights), strips, learnt_m)
+        return _Tried(self.worth(flights), self, list(flights), strips, learnt_m)
 
     def tried(self, strips: Strips) -> _Tried | None:
         """Strips flown; None where that cannot be."""
@@ -88,7 +89,7 @@ class _Moving:
         if flown is None:
             return None
         flights, learnt_m = flown
-        return _Tried(self._worth(flights), self, flights, strips, learnt_m)
+        return _Tried(self.worth(flights), self, flights, strips, learnt_m)
 
     def better(self, one: _Tried, heats: Sequence[float]) -> _Tried:
         """The best of strips that were flown moved anew, by what their flights have told, from each heat."""
@@ -105,13 +106,13 @@ class _Moving:
                 one = found
         return one
 
-    def _worth(self, flights: Sequence[Flight]) -> float:
-        return found_by(self.asked, flights)
+    def finds(self, worth: float) -> bool:
+        """Whether that is anything of what is looked for."""
+        return worth > NOTHING * self._together.total
 
-
-def found_by(asked: Search, flights: Sequence[Flight]) -> float:
-    """What flights find together by what the sensor sees with no margin used up, as the judge has it."""
-    return asked.found([sweep.nominal for flight in flights for sweep in flight.programme.sweeps])
+    def worth(self, flights: Sequence[Flight]) -> float:
+        """What flights find together."""
+        return self._together.told([sweep for flight in flights for sweep in flight.programme.sweeps])
 
 
 def moved_together(scenario: Scenario, ones: Sequence[Sought], controls: Controls) -> list[Flight] | None:
@@ -133,7 +134,7 @@ def moved_together(scenario: Scenario, ones: Sequence[Sought], controls: Control
             if found is not None:
                 found = moving.better(found, FEW)
                 best = found if best is None or found.worth > best.worth else best
-        if best is None or not moving.asked.finds(best.worth):
+        if best is None or not moving.finds(best.worth):
             return None
         return moving.better(best, MANY).flights
 
