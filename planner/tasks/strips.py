@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -24,6 +24,10 @@ from planner.vehicle.limits import Use, exceeded
 #: What flights truly take is learnt each time that they are flown, then strips are moved anew by so many
 #: steps, from these heats by all worth: of each of the best, and of the best of all.
 STEPS, FEW, MANY = 20_000, (3e-4, 3e-4), (3e-4, 1e-3, 3e-4, 1e-4)
+#: One flight alone is begun so often, from this heat by so many steps; the best so many of what is flown then
+#: are moved anew from the next heat by so many, and the best so many of those as above.
+BEGUN, FIRST, WARM = 16, 12_000, 4e-3
+AGAIN, SECOND, COOL, LAST = 4, 40_000, 2e-3, 2
 #: So many seconds of a processor are all of the work, about.
 WORK_S = 5.0
 #: At first so much of what level flight takes all there is for; or of what is thought to be left.
@@ -73,6 +77,18 @@ class _Moving:
         stop, enough = self._controls.stop, self._controls.enough
         return self._together.found(budgets_m, self._part, self._seed, stop, enough)
 
+    def begun(self, count: int) -> Iterator[Strips]:
+        """Strips from nothing, so often."""
+        empty = [np.zeros((0, 2, 2)) for _ in self.ones]
+        budgets_m = [_first_m(one) for one in self.ones]
+        for _ in range(count):
+            yield self._moved(empty, budgets_m, FIRST, WARM)
+
+    def _moved(self, strips: Strips, budgets_m: Sequence[float], steps: int, heat: float) -> Strips:
+        self._number += 1
+        seed, stop, enough = self._seed + 200 + self._number, self._controls.stop, self._controls.enough
+        return self._together.moved(strips, budgets_m, int(self._part * steps), seed, heat, stop, enough)[1]
+
     def known(self, flights: Sequence[Flight]) -> _Tried:
         """Flights that were flown otherwise, their passes as strips."""
         strips = self._together.placed([_strips_of(flight.programme) for flight in flights])
@@ -91,17 +107,12 @@ class _Moving:
         flights, learnt_m = flown
         return _Tried(self.worth(flights), self, flights, strips, learnt_m)
 
-    def better(self, one: _Tried, heats: Sequence[float]) -> _Tried:
+    def better(self, one: _Tried, heats: Sequence[float], steps: int = STEPS) -> _Tried:
         """The best of strips that were flown moved anew, by what their flights have told, from each heat."""
         for heat in heats:
             if self._controls.enough():
                 break
-            self._number += 1
-            _, strips = self._together.moved(
-                one.strips, one.learnt_m, int(self._part * STEPS), self._seed + 200 + self._number, heat,
-                self._controls.stop, self._controls.enough,
-            )  # fmt: skip
-            found = self.tried(strips)
+            found = self.tried(self._moved(one.strips, one.learnt_m, steps, heat))
             if found is not None and found.worth > one.worth:
                 one = found
         return one
@@ -145,23 +156,26 @@ def moved_alone(scenario: Scenario, one: Sought, flown: Flight, controls: Contro
     Of a sensor that looks to either side each is tried. The flight that was flown where nothing finds more.
     """
     looks = one.asked.looking.looks
-    part = min(1.0, controls.enough.left_s / WORK_S) / len(looks)
+    part = min(1.0, controls.enough.left_s / WORK_S)
+    every = {look: _Moving(scenario, [one], [look], controls, part) for look in looks}
     tried: list[_Tried] = []
     with controls.stage("search"):
-        begun = [
-            (moving, strips)
-            for moving in (_Moving(scenario, [one], [look], controls, part) for look in looks)
-            for strips in moving.found()
-        ]
+        for moving in every.values():
+            for strips in moving.begun(max(1, BEGUN // len(looks))):
+                if controls.enough() and tried:
+                    break
+                found = moving.tried(strips)
+                tried += [] if found is None else [found]
     with controls.stage("transit"):
-        for moving, strips in begun:
-            found = moving.tried(strips)
-            if found is not None:
-                tried.append(moving.better(found, FEW))
-        first = _Moving(scenario, [one], [flown.programme.look], controls, part)
-        tried.append(first.better(first.known([flown]), FEW))
-        best = max(tried, key=lambda each: each.worth)
-        return best.moving.better(best, MANY).flights[0]
+        best = [*_best_of(tried, AGAIN), every[flown.programme.look].known([flown])]
+        best = _best_of([each.moving.better(each, (COOL,), SECOND) for each in best], LAST)
+        (last,) = _best_of([each.moving.better(each, FEW) for each in best], 1)
+        return last.moving.better(last, MANY).flights[0]
+
+
+def _best_of(tried: Sequence[_Tried], count: int) -> list[_Tried]:
+    """Those that find most."""
+    return sorted(tried, key=lambda each: -each.worth)[:count]
 
 
 def _strips_of(programme: Programme) -> Floats:
