@@ -53,8 +53,10 @@ BEGUN, FIRST, AGAIN, SECOND = 5, 40_000, 3, 30_000
 ASKED = 2_000
 #: Turns on the spot are lines of this radius at least.
 LEAST_RADIUS_M = 1e-3
-#: Places are rounded to this, budgets, and the angle of the wind.
-ROUND_M, BUDGET_M, ROUND_RAD = 1.0, 5.0, math.radians(0.5)
+#: Places are rounded to this, and the angle of the wind; what is nearer to an edge than this is on it.
+ROUND_M, ROUND_RAD, STRAIGHT_M = 1.0, math.radians(0.5), 0.1
+#: Budgets are rounded down by a part of this at most: flights of the same lines tell of them within less.
+BUDGET = 1e-3
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -186,7 +188,7 @@ class Together:
             counts[place] = len(begun[f])
             strips[place, : len(begun[f])] = begun[f]
         flights = self._flights.copy()
-        flights[:, 7] = BUDGET_M * np.floor(np.asarray(budgets_m)[self._order] / BUDGET_M)
+        flights[:, 7] = [_rounded_down(budgets_m[f]) for f in self._order]
         best, best_counts = strips.copy(), counts.copy()
         figures = np.array([-np.inf, 0.0])
         state = np.random.default_rng(seed).integers(1, 2**63, 1, dtype=np.uint64)
@@ -265,8 +267,8 @@ class Together:
     def _edges(self, shape: BaseGeometry) -> Floats:
         """Edges (N, 4) of the rings of polygons, rounded inwards about."""
         found = [np.zeros((0, 4))]
-        for ring in shapely.get_rings(shapely.get_parts(shape.buffer(-0.75 * ROUND_M, join_style="mitre"))):
-            corners = self._rounded(shapely.get_coordinates(ring))
+        for ring in shapely.get_rings(shapely.get_parts(shape.buffer(-0.85 * ROUND_M, join_style="mitre"))):
+            corners = self._rounded(_cornered(shapely.get_coordinates(ring)))
             found.append(np.hstack([corners[:-1], corners[1:]]))
         edges = np.concatenate(found)
         turned = (edges[:, 0] > edges[:, 2]) | ((edges[:, 0] == edges[:, 2]) & (edges[:, 1] > edges[:, 3]))
@@ -290,6 +292,25 @@ def _frame(ground: Polygon | MultiPolygon, ends: Floats) -> tuple[Floats, Floats
     )
     cos, sin = math.cos(ASKEW_RAD), math.sin(ASKEW_RAD)
     return np.array([[cos, sin], [-sin, cos]]) @ along, origin
+
+
+def _cornered(ring: Floats) -> Floats:
+    """A closed ring (N, 2) from its sharpest corner on, without vertices on its edges: it may have any."""
+    open_ = ring[:-1]
+    before, after = np.roll(open_, 1, axis=0), np.roll(open_, -1, axis=0)
+    chord, off = after - before, open_ - before
+    highs_m = np.abs(chord[:, 0] * off[:, 1] - chord[:, 1] * off[:, 0]) / np.maximum(np.hypot(*chord.T), 1e-9)
+    first = np.roll(open_, -int(np.argmax(np.round(highs_m))), axis=0)
+    closed = shapely.linestrings(np.concatenate([first, first[:1]]))
+    return np.asarray(shapely.get_coordinates(shapely.simplify(closed, STRAIGHT_M)))
+
+
+def _rounded_down(budget_m: float) -> float:
+    """A budget, but for little."""
+    if not 0.0 < budget_m < math.inf:
+        return budget_m
+    step_m = BUDGET * 2.0 ** math.floor(math.log2(budget_m))
+    return step_m * math.floor(budget_m / step_m)
 
 
 def _joined(edges: Sequence[Floats]) -> tuple[Floats, Ints]:
