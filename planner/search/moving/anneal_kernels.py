@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +24,7 @@ from planner.search.moving.strip_kernels import (
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+Looks = NDArray[np.signedinteger[Any]]
 State = NDArray[np.uint64]
 
 #: A flight over its budget is made shorter in so many steps at most, each by so much more than it lacks.
@@ -82,10 +84,10 @@ def _follow(
 @njit(cache=True, nogil=True)
 def _cost_m(rows: Floats, count: int, legs: Floats) -> float:
     """Metres through the air of a flight whose legs are known: before each pass, and to the end."""
-    total_m = legs[count]
+    total_m = float(legs[count])
     for k in range(count):
         total_m += rows[k, 11] + legs[k]
-    return total_m
+    return float(total_m)
 
 
 @njit(cache=True, nogil=True)
@@ -143,7 +145,7 @@ def _within(
 
 @njit(cache=True, nogil=True)
 def _changed(
-    looks: Ints,
+    looks: Looks,
     scores: Floats,
     pays: Floats,
     corner: Floats,
@@ -170,7 +172,7 @@ def _changed(
 
 
 @njit(cache=True, nogil=True)
-def _copy(source: Ints, target: Ints, reach: Ints) -> None:
+def _copy(source: Looks, target: Looks, reach: Ints) -> None:
     """The cells of a range as they are elsewhere."""
     for i in range(reach[0], reach[1]):
         target[i, reach[2] : reach[3]] = source[i, reach[2] : reach[3]]
@@ -285,7 +287,7 @@ def annealed(
                 more_m += new_costs[t] - costs_m[f]
         if not flown:
             continue
-        reach[0], reach[1], reach[2], reach[3] = looks.shape[0], 0, looks.shape[1], 0
+        reach[0], reach[1], reach[2], reach[3] = len(scores), 0, len(scores[0]), 0
         for t in range(touching):
             f = touched[t]
             had, has = counts[f], new_counts[t]

@@ -7,6 +7,7 @@ The plain twins are ``choose.Search.sweeps_over``, ``room.Room.flyable``, ``prog
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +17,7 @@ from planner.jit import njit
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+Looks = NDArray[np.signedinteger[Any]]
 
 #: Columns of a pass: east, north, unit vector along, ahead from and to, aside from and to that it sees (as
 #: ``kernels.mark_seen`` has them), its end, its course, and metres through the air that it takes.
@@ -154,7 +156,7 @@ def cost_m(rows: Floats, count: int, flight: Floats, table: Floats) -> float:
 
 @njit(cache=True, nogil=True)
 def look(
-    looks: Ints,
+    looks: Looks,
     scores: Floats,
     pays: Floats,
     west_m: float,
