@@ -13,8 +13,8 @@ from planner.coverage.seen import check_visible
 from planner.errors import Finding, InfeasibleError, ScenarioError
 from planner.geojson import read_scenario
 from planner.scenario import Scenario
-from planner.tasks.search import refuse_unsearchable
 from planner.tasks.setting import Setting, seeing
+from planner.tasks.sought import refuse_unsearchable
 from planner.tasks.urban import cut_by_obstacles, lanes_cut, refuse_filled, refuse_out_of_sight
 from planner.vehicle.aircraft import Aircraft
 from planner.vehicle.model import FlightModel

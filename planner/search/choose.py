@@ -105,8 +105,8 @@ class Search:
             return self.drifting.found(sweeps, self.pricing)
         return seen_worth(sweeps, self.worth, self.detection)
 
-    def ranked(self, budget_m: float) -> list[Programme]:
-        """Programmes within a budget, metres through the air: those worth most, refined and as laid."""
+    def ranked(self, budget_m: float, *, refined: bool = True) -> list[Programme]:
+        """Programmes within a budget, metres through the air: those worth most, refined if asked, as laid."""
         found: list[Programme] = []
         width_m = self.looking.narrowest_m()
         of_grounds = (each for part in self._grounds(budget_m, width_m) for each in self._laid(part, width_m))
@@ -128,16 +128,16 @@ class Search:
             for way in self._cut(each, budget_m, thin=True)
         ]
         ways = sorted(found + thinned, key=lambda each: (-each.worth, each.cost_m))
-        best = ways[:MOST_REFINED]
-        refined = [
+        best = ways[:MOST_REFINED] if refined else []
+        improved = [
             self._refined(way, budget_m, width_m)
             for way in best
             if way.family not in WALKS and way.family not in VARIANTS and not self._over(found)
         ]
-        refined.sort(key=lambda each: (-each.worth, each.cost_m))
+        improved.sort(key=lambda each: (-each.worth, each.cost_m))
         # What is estimated to be better may take more when it is flown: both are offered in turn.
-        pairs = [each for pair in zip(refined, ways, strict=False) for each in pair]
-        return [*self.going_on(), *pairs, *ways[len(refined) :]]
+        pairs = [each for pair in zip(improved, ways, strict=False) for each in pair]
+        return [*self.going_on(), *pairs, *ways[len(improved) :]]
 
     def going_on(self) -> tuple[Programme, ...]:
         """What was still to be flown by a plan that is being flown, where it may be flown now: all of it."""

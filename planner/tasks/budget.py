@@ -13,8 +13,8 @@ from planner.vehicle.energy import FlightState
 from planner.vehicle.limits import Use
 
 #: A flight that uses more than this part of what it may is not flown: the judge reckons by the vertices of
-#: the published line, by a thousandth or so another way.
-MOST = 0.997
+#: the published line, mostly by a thousandth another way, of tight turns side by side by up to four.
+MOST = 0.9955
 
 
 @dataclass(frozen=True, slots=True)

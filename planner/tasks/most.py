@@ -10,8 +10,8 @@ from planner.errors import InfeasibleError
 from planner.scenario import Scenario
 from planner.search.most import Sweeping, most_found
 from planner.tasks.budget import limits_of, per_m_of
-from planner.tasks.search import asked_of
 from planner.tasks.setting import Setting
+from planner.tasks.sought import asked_of
 from planner.tasks.worth import ground_of
 from planner.vehicle.limits import Use
 

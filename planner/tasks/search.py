@@ -2,90 +2,57 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
-
-import shapely
-from shapely.geometry import MultiPolygon, Polygon
+from dataclasses import replace
 
 from planner.errors import InfeasibleError
-from planner.metrics import used
-from planner.progress import never, silent
 from planner.scenario import Scenario
-from planner.search.belief.drifting import Drifting, believed
 from planner.search.choose import PUBLISHED, REFINED, Search
-from planner.search.programme import Pricing, Programme
-from planner.search.reached import ALL_OF_IT, reached
-from planner.search.room import Room
-from planner.search.swaths import Looking
+from planner.search.programme import Programme
 from planner.tasks.budget import MOST, Flight, part_used
 from planner.tasks.leftover import filled
-from planner.tasks.methods import chosen_methods
-from planner.tasks.setting import Setting
-from planner.tasks.spare import Spare, cut_off, out_of_reach, refuse_blocked, refuse_worthless, spare_of
+from planner.tasks.sought import Sought, as_long_as_can_be, flier_of, unranked
+from planner.tasks.spare import cut_off, out_of_reach, refuse_worthless
+from planner.tasks.strips import moved_alone
 from planner.tasks.task import Answer, Controls, Task
-from planner.tasks.transits import Transits
-from planner.tasks.unflown import unflown_of
-from planner.tasks.worth import drifted, ground_of, worth_of
 from planner.vehicle.aircraft import Aircraft
-from planner.vehicle.limits import exceeded
 
-#: Cells of the worth of ground: so many to the swath's width, no more to a side, no finer.
-CELLS_ACROSS, MOST_CELLS, LEAST_CELL_M = 8.0, 160, 0.5
-#: So many of the best programmes are flown, each in so many lengths.
-FLOWN, LENGTHS = 6, 6
-#: A flight that uses this part of what it may is long enough.
-ENOUGH = 0.99
+#: So many of the best programmes are flown.
+FLOWN = 6
 #: The best flight is improved so often, for so much more at least.
 MOST_IMPROVED, LEAST_BETTER = 3, 1e-3
 #: So many flights that cannot be flown are tried before the search is refused for them.
 MOST_REFUSED = 24
-#: An aircraft so near to a level is flying at it.
-LEVEL_M = 1.0
-#: A flight that nothing limits looks for what drifts for so many times what sees all ground once.
-UNLIMITED = 1.5
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Sought:
-    """One aircraft's search, ranked and not yet flown.
-
-    ``spare`` is what its limits allow.
-    """
-
-    setting: Setting
-    transits: Transits
-    asked: Search
-    spare: Spare
-    ranked: tuple[Programme, ...]
+#: Where strips are moved then, patterns are laid in this part of the time that there is.
+PATTERNS = 0.3
+#: All that there is to be found, but for this.
+ALL = 1e-6
 
 
 def search(scenario: Scenario, controls: Controls) -> Answer:
     """The flight that sees most, and ends at the end with its reserve."""
-    return answer_to(sought(scenario, controls), controls)
+    moved = scenario.method.search in ("auto", REFINED) and scenario.importance.drift is None
+    if not moved:
+        return answer_to(sought(scenario, controls), controls)
+    one = sought(scenario, replace(controls, enough=controls.enough.part(PATTERNS)), refined=False)
+    with controls.stage("transit"):
+        best = _best(one, flier_of(one, controls), controls)
+    if best.programme.worth < (1.0 - ALL) * one.asked.total:
+        best = moved_alone(scenario, one, best, controls)
+    return answer_with(one, _filled(one, best, controls))
 
 
-def reach(scenario: Scenario, controls: Controls) -> tuple[float, float]:
-    """Ground that an aircraft sees at most, flying straight as long as limits allow, and how long that is.
-
-    Raises
-    ------
-    InfeasibleError
-        Where it cannot come to its end, or sees nothing.
-    """
-    setting = Setting.of(scenario)
-    asked = asked_of(scenario, setting)
-    refuse_blocked(asked, *(terminal.name for terminal in setting.ends))
-    transits = Transits.of(setting, scenario.objective, chosen_methods(scenario.method))
-    spare = spare_of(transits, asked, controls.stop)
-    return spare.metres * asked.looking.narrowest_m(), _lasting_s(asked, spare)
-
-
-def sought(scenario: Scenario, controls: Controls, *, as_before: bool = False) -> Sought:
+def sought(
+    scenario: Scenario, controls: Controls, *, as_before: bool = False, refined: bool = True
+) -> Sought:
     """What one aircraft may fly, that which sees most first.
 
-    ``as_before`` leaves it what it was still to fly alone.
+    Parameters
+    ----------
+    as_before
+        Leaves it what it was still to fly alone.
+    refined
+        Whether the best of it are refined, too.
 
     Raises
     ------
@@ -95,29 +62,8 @@ def sought(scenario: Scenario, controls: Controls, *, as_before: bool = False) -
     one = unranked(scenario, controls)
     with controls.stage("search"):
         controls.progress("search", 0.0)
-        ranked = one.asked.going_on() if as_before else one.asked.ranked(one.spare.metres)
+        ranked = one.asked.going_on() if as_before else one.asked.ranked(one.spare.metres, refined=refined)
     return replace(one, ranked=tuple(ranked))
-
-
-def unranked(scenario: Scenario, controls: Controls) -> Sought:
-    """One aircraft's search with nothing of it tried yet.
-
-    Raises
-    ------
-    InfeasibleError
-        As for ``sought``.
-    """
-    setting = Setting.of(scenario)
-    methods = chosen_methods(scenario.method) | {"search": "patterns", "coverage": "none", "routing": "none"}
-    transits = Transits.of(setting, scenario.objective, methods)
-    asked = replace(
-        asked_of(scenario, setting), stop=controls.stop, enough=controls.enough, seed=scenario.seed
-    )
-    refuse_blocked(asked, *(terminal.name for terminal in setting.ends))
-    spare = spare_of(transits, asked, controls.stop)
-    if scenario.importance.drift is not None:
-        asked = _drifting(asked, scenario, spare)
-    return Sought(setting, transits, asked, spare, ())
 
 
 def answer_to(one: Sought, controls: Controls, *, improved: bool = True) -> Answer:
@@ -133,21 +79,13 @@ def answer_to(one: Sought, controls: Controls, *, improved: bool = True) -> Answ
         best = _best(one, fly, controls)
         if improved and asked.family in (None, REFINED) and best.programme.family not in PUBLISHED:
             best = _improved(best, asked, fly, one.setting.model.aircraft, controls)
-            best = filled(best, asked, fly, one.setting.model.aircraft, controls.enough)
+            best = _filled(one, best, controls)
     return answer_with(one, best)
 
 
-def flier_of(one: Sought, controls: Controls) -> Callable[[Programme], Flight]:
-    """What flies programmes of a search, take-off and landing included."""
-    setting, asked = one.setting, one.asked
-
-    def fly(programme: Programme) -> Flight:
-        passes = tuple(asked.looking.collect(s.start, s.end, s.look) for s in programme.sweeps)
-        composed, legs, notes = one.transits.through(passes, silent, controls.stop)
-        use = used(composed.flight, setting.model, setting.level)
-        return Flight(programme, passes, composed, legs, notes, use)
-
-    return fly
+def _filled(one: Sought, best: Flight, controls: Controls) -> Flight:
+    """With passes over what is left unseen."""
+    return filled(best, one.asked, flier_of(one, controls), one.setting.model.aircraft, controls.enough)
 
 
 def answer_with(one: Sought, best: Flight) -> Answer:
@@ -155,76 +93,6 @@ def answer_with(one: Sought, best: Flight) -> Answer:
     methods = one.transits.methods | {"search": best.programme.family}
     notes = (*best.notes, *cut_off(one.asked, one.setting.ends[0].name))
     return Answer(one.setting, best.composed, best.legs, best.passes, methods, (), notes)
-
-
-def refuse_unsearchable(scenario: Scenario) -> None:
-    """Refuse a search that sees nothing, or cannot come to its end.
-
-    Raises
-    ------
-    InfeasibleError
-        With the constraint, and of limits with the shortfall.
-    """
-    setting = Setting.of(scenario)
-    transits = Transits.of(setting, scenario.objective, chosen_methods(scenario.method))
-    asked = asked_of(scenario, setting)
-    refuse_blocked(asked, *(terminal.name for terminal in setting.ends))
-    spare_of(transits, asked, never)
-
-
-def asked_of(scenario: Scenario, setting: Setting) -> Search:
-    """What one aircraft is asked to search, nothing of it tried yet."""
-    regions = scenario.regions
-    ground = ground_of(shapely.union_all([region.area for region in regions]))
-    level = setting.level.of(regions[0])
-    whole = ground if isinstance(ground, Polygon) else ground.convex_hull
-    sensor, height_m = setting.suite.over(regions[0].sensor, ground_of(whole), setting.airspace, level)
-    looking = Looking(sensor, height_m, tuple(region.name for region in regions))
-    width_m = looking.narrowest_m()
-    start, end = (terminal.position for terminal in setting.ends)
-    # One that is in the air elsewhere than at the height of the search comes to that on its way.
-    aloft_m = setting.ends[0].over_home_m
-    level_with = aloft_m is None or abs(aloft_m - level.height_m) < LEVEL_M
-    where = reached(setting.airspace, level, (start, end), ground) if level_with else ALL_OF_IT
-    room = Room.of(setting.airspace, level, setting.model, scenario.objective, ground, where)
-    worth = worth_of(scenario, ground, _cell_m(ground, width_m))
-    family = None if scenario.method.search == "auto" else scenario.method.search
-    detection = scenario.importance.detection
-    pricing = Pricing(setting.model, start, end)
-    kept = unflown_of(scenario, setting, looking)
-    return Search(ground, worth, looking, room, pricing, family=family, detection=detection, kept=kept)
-
-
-def _lasting_s(asked: Search, spare: Spare) -> float:
-    """How long the flight lasts at most."""
-    once_m = asked.ground.area / asked.looking.narrowest_m()
-    return spare.lead_s + min(spare.metres, UNLIMITED * once_m) / asked.pricing.model.aircraft.airspeed_m_s
-
-
-def _drifting(asked: Search, scenario: Scenario, spare: Spare) -> Search:
-    """The search for what drifts: by places that move on, and by what ground is worth in the middle of it."""
-    importance = scenario.importance
-    if importance.drift is None:
-        return asked
-    until_s = _lasting_s(asked, spare)
-    belief = believed(importance, importance.drift, seed=scenario.seed)
-    if not belief.weights.any():
-        raise InfeasibleError(
-            "nothing-left",
-            "search",
-            "has looked already (seen) wherever what drifts may be, and a look finds all there is",
-            "Lower detection, widen the importance, or leave out of seen what is to be looked at again.",
-        )
-    drifting = Drifting(belief, importance.detection, spare.lead_s, until_s).within(asked.ground)
-    later = drifted(importance, 0.5 * until_s)
-    worth = worth_of(replace(scenario, importance=later), asked.ground, asked.worth.cell_m)
-    return replace(asked, worth=worth, drifting=drifting)
-
-
-def _cell_m(ground: Polygon | MultiPolygon, width_m: float) -> float:
-    west_m, south_m, east_m, north_m = ground.bounds
-    side_m = max(east_m - west_m, north_m - south_m)
-    return max(LEAST_CELL_M, side_m / MOST_CELLS, min(width_m / CELLS_ACROSS, side_m / 40.0))
 
 
 def _best(one: Sought, fly: Callable[[Programme], Flight], controls: Controls) -> Flight:
@@ -283,38 +151,6 @@ def _improved(
         if found is None or found.programme.worth <= best.programme.worth:
             break
         best = found
-    return best
-
-
-def as_long_as_can_be(
-    programme: Programme,
-    asked: Search,
-    spare_m: float,
-    fly: Callable[[Programme], Flight],
-    aircraft: Aircraft,
-) -> Flight | None:
-    """A programme cut to what limits allow of the flight itself, halving between too long and too short."""
-    best: Flight | None = None
-    short_m, long_m, budget_m = 0.0, math.inf, spare_m
-    for _ in range(LENGTHS):
-        flight = fly(programme)
-        part = part_used(aircraft, flight.use)
-        if part <= MOST and not exceeded(aircraft, flight.use):
-            if best is None or flight.programme.worth >= best.programme.worth:
-                best = flight
-            short_m = budget_m
-            if part >= ENOUGH or programme.sweeps == programme.whole:
-                break
-        else:
-            # What it was thought to take, where that is less than it might: the same is cut again otherwise.
-            long_m = budget_m = min(budget_m, programme.cost_m)
-        wanted_m = budget_m * (0.5 * (MOST + ENOUGH)) / part if part > 0.0 else budget_m
-        inside = short_m < wanted_m < long_m
-        budget_m = wanted_m if inside else 0.5 * (short_m + min(long_m, 2.0 * budget_m))
-        cut = asked.recut(programme, budget_m)
-        if cut is None:
-            break
-        programme = cut
     return best
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +14,7 @@ from planner.search.moving.strip_kernels import leg_m, passed
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+Looks = NDArray[np.signedinteger[Any]]
 State = NDArray[np.uint64]
 
 #: Steps by the width of the swath, as often small as large.
@@ -82,7 +84,7 @@ def _laid(
     count: int,
     width_m: float,
     scores: Floats,
-    looks: Ints,
+    looks: Looks,
     corner: Floats,
     state: State,
 ) -> Floats:
@@ -176,7 +178,7 @@ def moved(
     count: int,
     width_m: float,
     scores: Floats,
-    looks: Ints,
+    looks: Looks,
     corner: Floats,
     flight: Floats,
     table: Floats,

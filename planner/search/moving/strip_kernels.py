@@ -7,6 +7,7 @@ The plain twins are ``choose.Search.sweeps_over``, ``room.Room.flyable``, ``prog
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +17,7 @@ from planner.jit import njit
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+Looks = NDArray[np.signedinteger[Any]]
 
 #: Columns of a pass: east, north, unit vector along, ahead from and to, aside from and to that it sees (as
 #: ``kernels.mark_seen`` has them), its end, its course, and metres through the air that it takes.
@@ -154,7 +156,7 @@ def cost_m(rows: Floats, count: int, flight: Floats, table: Floats) -> float:
 
 @njit(cache=True, nogil=True)
 def look(
-    looks: Ints,
+    looks: Looks,
     scores: Floats,
     pays: Floats,
     west_m: float,
@@ -173,6 +175,8 @@ def look(
     rows, columns = scores.shape
     ae, an = row[2], row[3]
     gained = 0.0
+    # Where later looks find nothing those at nothing seen yet are counted alone: most searches are such.
+    single, before = len(pays) == 1, 0 if by > 0 else 1
     least_n, most_n = np.inf, -np.inf
     for far in (row[4], row[5]):
         for side in (row[6], row[7]):
@@ -195,10 +199,36 @@ def look(
             continue
         left = max(0.0, math.ceil((low + row[0] - west_m) / cell_m - 0.5))
         right = min(columns - 1.0, math.floor((high + row[0] - west_m) / cell_m - 0.5))
-        for j in range(int(left), int(right) + 1):
-            had = looks[i, j]
-            looks[i, j] = had + by
+        if right < left:
+            continue
+        there, worth = looks[i, int(left) : int(right) + 1], scores[i, int(left) : int(right) + 1]
+        if single:
+            for j in range(len(there)):
+                had = there[j]
+                there[j] = had + by
+                gained += worth[j] if had == before else 0.0
+            continue
+        for j in range(len(there)):
+            had = there[j]
+            there[j] = had + by
             k = had if by > 0 else had - 1
             if k < len(pays):
-                gained += by * pays[k] * scores[i, j]
+                gained += by * pays[k] * worth[j]
+    if single:
+        gained *= by * pays[0]
     return gained * cell_m * cell_m
+
+
+@njit(cache=True, nogil=True)
+def reach_of(row: Floats, corner: Floats, rows: int, columns: int, reach: Ints) -> None:
+    """Widen a range of cells (4,), first and behind the last of rows and columns, to what a pass sees."""
+    least_e, most_e, least_n, most_n = np.inf, -np.inf, np.inf, -np.inf
+    for far in (row[4], row[5]):
+        for side in (row[6], row[7]):
+            e, n = row[0] + far * row[2] - side * row[3], row[1] + far * row[3] + side * row[2]
+            least_e, most_e = min(least_e, e), max(most_e, e)
+            least_n, most_n = min(least_n, n), max(most_n, n)
+    reach[0] = min(reach[0], max(0, math.floor((least_n - corner[1]) / corner[2]) - 1))
+    reach[1] = max(reach[1], min(rows, math.ceil((most_n - corner[1]) / corner[2]) + 1))
+    reach[2] = min(reach[2], max(0, math.floor((least_e - corner[0]) / corner[2]) - 1))
+    reach[3] = max(reach[3], min(columns, math.ceil((most_e - corner[0]) / corner[2]) + 1))

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
@@ -20,10 +20,11 @@ from planner.progress import Stop, raise_if
 from planner.route import Look
 from planner.search.moving.anneal_kernels import annealed
 from planner.search.moving.strip_kernels import COLUMNS, FLIGHT, SWATH, cost_m, passed
-from planner.search.programme import Pricing
+from planner.search.programme import Pricing, Sweep, seen_worth
 from planner.search.room import Room
 from planner.search.swaths import Looking
 from planner.search.upright import frames
+from planner.search.values import Worth
 from planner.vehicle.wind import CIRCLE_RAD
 
 Floats = NDArray[np.float64]
@@ -37,8 +38,11 @@ COURSES = 120
 LOOKS = 8
 #: A flight has room for so many strips, and for so many times as many as it begins with.
 ROOM, TIMES = 16, 2
-#: Cells of worth to the longer side of the ground.
-CELLS = 160
+#: Cells of worth to the longer side of what is round the ground; as many again tell flights apart that were
+#: flown.
+CELLS, TOLD = 160, 2
+#: Cells do not lie along the ground, as lanes do: gaps between these would fall between their middles.
+ASKEW_RAD = math.atan(0.5 * (math.sqrt(5.0) - 1.0))
 #: Of two that find as much, which is shorter: a thousand kilometres count as this part of all worth.
 SHORTER = 1e-3
 #: What is worth a step at first, of all worth.
@@ -49,8 +53,10 @@ BEGUN, FIRST, AGAIN, SECOND = 5, 40_000, 3, 30_000
 ASKED = 2_000
 #: Turns on the spot are lines of this radius at least.
 LEAST_RADIUS_M = 1e-3
-#: Places are rounded to this, budgets, and the angle of the wind.
-ROUND_M, BUDGET_M, ROUND_RAD = 1.0, 5.0, math.radians(0.5)
+#: Places are rounded to this, and the angle of the wind; what is nearer to an edge than this is on it.
+ROUND_M, ROUND_RAD, STRAIGHT_M = 1.0, math.radians(0.5), 0.1
+#: Budgets are rounded down by a part of this at most: flights of the same lines tell of them within less.
+BUDGET = 1e-3
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -125,17 +131,11 @@ class Together:
         self._widths_m = np.round((self._tables[..., 7] - self._tables[..., 6]).min(axis=1), 2)
         self._free = _joined([self._edges(flier.room.free) for flier in own])
         self._turning = _joined([self._edges(flier.room.turning) for flier in own])
-        corners = self._placed(shapely.get_coordinates(ground))
-        west_m, south_m = np.floor(corners.min(axis=0) + 0.5 * ROUND_M)
-        wide_m, high_m = corners.max(axis=0) - (west_m, south_m)
-        cell_m = max(math.ceil(10.0 * max(wide_m, high_m) / CELLS - 1e-3) / 10.0, 0.1)
-        east = west_m + cell_m * (np.arange(max(1, round(wide_m / cell_m + 0.49))) + 0.5)
-        north = south_m + cell_m * (np.arange(max(1, round(high_m / cell_m + 0.49))) + 0.5)
-        places = np.stack(np.meshgrid(east, north), axis=-1) @ self._axes + self._origin
-        shapely.prepare(ground)
-        inside = shapely.contains_xy(ground, places[..., 0], places[..., 1])
-        self._scores = np.where(inside, scores_at(places, cell_m), 0.0)
-        self._corner = np.array([west_m, south_m, cell_m])
+        self._detection = detection
+        worth = self._worth_of(ground, scores_at, CELLS)
+        self._told = self._worth_of(ground, scores_at, TOLD * CELLS)
+        self._scores = worth.scores
+        self._corner = np.array([worth.west_m, worth.south_m, worth.cell_m])
         looks = 1 if detection >= 1.0 else LOOKS
         self._pays = np.array([detection * (1.0 - detection) ** k for k in range(looks)])
 
@@ -188,7 +188,7 @@ class Together:
             counts[place] = len(begun[f])
             strips[place, : len(begun[f])] = begun[f]
         flights = self._flights.copy()
-        flights[:, 7] = BUDGET_M * np.floor(np.asarray(budgets_m)[self._order] / BUDGET_M)
+        flights[:, 7] = [_rounded_down(budgets_m[f]) for f in self._order]
         best, best_counts = strips.copy(), counts.copy()
         figures = np.array([-np.inf, 0.0])
         state = np.random.default_rng(seed).integers(1, 2**63, 1, dtype=np.uint64)
@@ -223,6 +223,41 @@ class Together:
         """The same where they lie."""
         return [own @ self._axes + self._origin for own in strips]
 
+    def told(self, sweeps: Sequence[Sweep]) -> float:
+        """What passes of flights find by what the sensor sees with no margin used up, as the judge has it."""
+        own = []
+        for sweep in (each.nominal for each in sweeps):
+            swath = sweep.swath
+            if np.linalg.det(self._axes) < 0.0:
+                swath = replace(swath, right_m=-swath.left_m, left_m=-swath.right_m)
+            start, end = self._placed(np.array([sweep.start, sweep.end])).tolist()
+            own.append(replace(sweep, start=tuple(start), end=tuple(end), swath=swath))
+        return seen_worth(own, self._told, self._detection)
+
+    @property
+    def total(self) -> float:
+        """All that there is to be found, as it is told."""
+        return self._told.total
+
+    def placed(self, lines: Strips) -> Strips:
+        """Strips that lie there in the ground's own frame."""
+        return [self._placed(each) for each in lines]
+
+    def _worth_of(
+        self, ground: Polygon | MultiPolygon, scores_at: Callable[[Floats, float], Floats], cells: int
+    ) -> Worth:
+        """Of the ground by so many cells to a side, in the frame."""
+        corners = self._placed(shapely.get_coordinates(ground))
+        west_m, south_m = np.floor(corners.min(axis=0) + 0.5 * ROUND_M).tolist()
+        wide_m, high_m = (corners.max(axis=0) - (west_m, south_m)).tolist()
+        cell_m = max(math.ceil(10.0 * max(wide_m, high_m) / cells - 1e-3) / 10.0, 0.1)
+        shape = (max(1, round(high_m / cell_m + 0.49)), max(1, round(wide_m / cell_m + 0.49)))
+        plain = Worth(np.zeros(shape), west_m, south_m, cell_m)
+        places = plain.centres_m @ self._axes + self._origin
+        shapely.prepare(ground)
+        inside = shapely.contains_xy(ground, places[..., 0], places[..., 1])
+        return replace(plain, scores=np.where(inside, scores_at(places, cell_m), 0.0))
+
     def _placed(self, points: Floats) -> Floats:
         return np.asarray((points - self._origin) @ self._axes.T)
 
@@ -232,8 +267,8 @@ class Together:
     def _edges(self, shape: BaseGeometry) -> Floats:
         """Edges (N, 4) of the rings of polygons, rounded inwards about."""
         found = [np.zeros((0, 4))]
-        for ring in shapely.get_rings(shapely.get_parts(shape.buffer(-0.75 * ROUND_M, join_style="mitre"))):
-            corners = self._rounded(shapely.get_coordinates(ring))
+        for ring in shapely.get_rings(shapely.get_parts(shape.buffer(-0.85 * ROUND_M, join_style="mitre"))):
+            corners = self._rounded(_cornered(shapely.get_coordinates(ring)))
             found.append(np.hstack([corners[:-1], corners[1:]]))
         edges = np.concatenate(found)
         turned = (edges[:, 0] > edges[:, 2]) | ((edges[:, 0] == edges[:, 2]) & (edges[:, 1] > edges[:, 3]))
@@ -243,7 +278,7 @@ class Together:
 
 
 def _frame(ground: Polygon | MultiPolygon, ends: Floats) -> tuple[Floats, Floats]:
-    """Axes and origin along the ground, as long as can be along the first, ends (F, 2, 2) near the origin."""
+    """Axes askew to the ground, as long as can be along the first, and origin near the ends (F, 2, 2)."""
     corners = shapely.get_coordinates(shapely.minimum_rotated_rectangle(ground))[:4]
 
     def place(frame: tuple[Floats, Floats]) -> tuple[object, ...]:
@@ -252,7 +287,30 @@ def _frame(ground: Polygon | MultiPolygon, ends: Floats) -> tuple[Floats, Floats
         where = np.round((ends - origin) @ axes.T).reshape(-1, 4)
         return (-round(long_m), where.sum(axis=0).tolist(), sorted(where.tolist()))
 
-    return min(frames(corners), key=place, default=(np.eye(2), np.asarray(ground.centroid.coords[0])))
+    along, origin = min(
+        frames(corners), key=place, default=(np.eye(2), np.asarray(ground.centroid.coords[0]))
+    )
+    cos, sin = math.cos(ASKEW_RAD), math.sin(ASKEW_RAD)
+    return np.array([[cos, sin], [-sin, cos]]) @ along, origin
+
+
+def _cornered(ring: Floats) -> Floats:
+    """A closed ring (N, 2) from its sharpest corner on, without vertices on its edges: it may have any."""
+    open_ = ring[:-1]
+    before, after = np.roll(open_, 1, axis=0), np.roll(open_, -1, axis=0)
+    chord, off = after - before, open_ - before
+    highs_m = np.abs(chord[:, 0] * off[:, 1] - chord[:, 1] * off[:, 0]) / np.maximum(np.hypot(*chord.T), 1e-9)
+    first = np.roll(open_, -int(np.argmax(np.round(highs_m))), axis=0)
+    closed = shapely.linestrings(np.concatenate([first, first[:1]]))
+    return np.asarray(shapely.get_coordinates(shapely.simplify(closed, STRAIGHT_M)))
+
+
+def _rounded_down(budget_m: float) -> float:
+    """A budget, but for little."""
+    if not 0.0 < budget_m < math.inf:
+        return budget_m
+    step_m = BUDGET * 2.0 ** math.floor(math.log2(budget_m))
+    return step_m * math.floor(budget_m / step_m)
 
 
 def _joined(edges: Sequence[Floats]) -> tuple[Floats, Ints]:

@@ -26,8 +26,9 @@ from planner.tasks.fleet.crews import Crew, crews_of
 from planner.tasks.fleet.flown import Flown, Order
 from planner.tasks.fleet.held import too_many_items
 from planner.tasks.fleet.placing import Errand, placed
-from planner.tasks.fleet.strips import moved_together
-from planner.tasks.search import answer_to, answer_with, asked_of, reach, sought, unranked
+from planner.tasks.search import answer_to, answer_with, sought
+from planner.tasks.sought import asked_of, reach, unranked
+from planner.tasks.strips import moved_together
 from planner.tasks.task import Answer, Controls
 from planner.tasks.worth import drifted, ground_of, worth_of
 from planner.wishes import Seen

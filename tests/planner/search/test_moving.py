@@ -16,8 +16,8 @@ from planner.search.moving.strip_kernels import COLUMNS, cost_m, look, passed
 from planner.search.moving.together import Flier, Together
 from planner.search.programme import seen_worth
 from planner.search.values import Worth
-from planner.tasks.search import asked_of
 from planner.tasks.setting import Setting
+from planner.tasks.sought import asked_of
 from tests.planner.search.searches import RADAR, WING, document
 
 
@@ -74,6 +74,59 @@ def test_what_a_pass_sees_is_its_footprint():
         assert asked.looking.collect((0.0, 0.0), end, "down").footprint.area == pytest.approx(
             seen_m2, rel=0.01
         )
+
+
+def test_gaps_between_lanes_are_told():
+    """Lanes along the ground, some metres apart, find what polygons of their footprints say, and no more."""
+    asked, wide = asked_by(), box(-9000.0, -9000.0, 9000.0, 9000.0)
+    asked = replace(asked, room=replace(asked.room, free=wide, turning=wide))
+    flier = Flier(asked.looking, "down", asked.room, asked.pricing)
+    together = Together(asked.ground, lambda places, _: np.ones(places.shape[:2]), 1.0, [flier])
+    west, south, east, north = asked.ground.bounds
+    nominal = asked.looking.swath(0.0, "down").nominal
+    assert nominal is not None
+    told, known = [], []
+    for gap_m in (0.0, 3.0, 6.0):
+        rows = np.arange(south + 0.5 * nominal.width_m, north, nominal.width_m + gap_m)
+        lanes = np.array([[[west - 300.0, row], [east + 300.0, row]] for row in rows])
+        sweeps = list(asked.sweeps_over(lanes, "down"))
+        prints = [asked.looking.collect(s.start, s.end, s.look).footprint for s in sweeps]
+        told.append(together.told(sweeps))
+        known.append(shapely.union_all(prints).intersection(asked.ground).area)
+    assert told == pytest.approx(known, rel=0.003)
+    assert known[2] < 0.99 * known[0]
+
+
+@pytest.mark.parametrize("mirrored", [False, True])
+def test_ground_and_room_drawn_otherwise_are_the_same_numbers(mirrored):
+    """Turned or mirrored, begun at another corner, with vertices on its edges: what strips are moved over."""
+    asked = asked_by()
+    zone = shapely.Polygon([(300.0, 200.0), (420.0, 230.0), (380.0, 330.0)])
+    free = box(-400.0, -300.0, 1900.0, 1500.0).difference(zone)
+    axes = np.array([[math.cos(0.7), math.sin(0.7)], [-math.sin(0.7), math.cos(0.7)]])
+    axes = axes * [[-1.0, 1.0]] if mirrored else axes
+
+    def put(places):
+        return places @ axes + (40.0, -70.0)
+
+    def numbers(ground, free, start, moved):
+        (e, n) = moved(np.array([start]))[0].tolist()
+        model = asked.pricing.model
+        calm = replace(model, wind=replace(model.wind, speed_m_s=0.0))
+        pricing = replace(asked.pricing, model=calm, start=(e, n), end=(e, n))
+        room = replace(asked.room, free=free, turning=free.buffer(-60.0, join_style="mitre"))
+        flier = Flier(asked.looking, "down", room, pricing)
+        return Together(ground, lambda places, _: np.ones(places.shape[:2]), 1.0, [flier])
+
+    plain = numbers(asked.ground, free, (100.0, 30.0), lambda places: places)
+    whole, other = (
+        shapely.transform(shapely.segmentize(shape, 170.0).reverse(), put) for shape in (asked.ground, free)
+    )
+    turned = numbers(whole, other, (100.0, 30.0), put)
+    for name in ("_flights", "_scores", "_corner", "_widths_m"):
+        assert getattr(turned, name) == pytest.approx(getattr(plain, name)), name
+    for name in ("_free", "_turning"):
+        assert getattr(turned, name)[0] == pytest.approx(getattr(plain, name)[0]), name
 
 
 def test_strips_keep_to_the_budget_and_the_room():

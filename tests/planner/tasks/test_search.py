@@ -122,6 +122,31 @@ def test_the_published_horizon_is_flown_by_name(name, vehicle):
     assert plan.metrics.area_seen_m2 > 0.1 * scenario.area.area
 
 
+def test_moved_strips_find_more_than_patterns_and_as_much_mirrored():
+    """Where energy sees part of the ground: by a twentieth at the least, and mirrored all but as much."""
+
+    def found(sign, wind_from_deg, **members):
+        def drawn(role, west, south, east, north, **properties):
+            low, high = sorted((sign * west, sign * east))
+            return rectangle(role, low, south, high, north, **properties)
+
+        asked = document(vehicle=WING | {"energy_wh": 16}, **members)
+        asked["wind"] = {"speed_m_s": 4.0, "from_deg": wind_from_deg}
+        asked["features"] = [
+            drawn("area", -100.0, -100.0, 1900.0, 1400.0),
+            drawn("importance", 0.0, 0.0, 1800.0, 1300.0, score=0.2),
+            drawn("importance", 900.0, 350.0, 1700.0, 1100.0, score=2.0),
+            feature("start", "Point", lonlat(sign * 300.0, 100.0)),
+        ]
+        plan = make_plan(read_scenario(asked))
+        assert plan.violations == ()
+        return plan.metrics.importance_collected
+
+    moved = found(1.0, 300.0)
+    assert moved > 1.05 * found(1.0, 300.0, method={"search": "parallel"})
+    assert found(-1.0, 60.0) == pytest.approx(moved, rel=0.02)
+
+
 def test_refined_sees_no_less_than_patterns():
     """Strips moved each by itself, flown whole, find as much as the patterns that they began as."""
     patch = rectangle("importance", 700.0, 100.0, 1000.0, 800.0, score=2.5)
