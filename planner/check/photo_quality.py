@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from planner.airspace.built import bare_ground
 from planner.airspace.shapes import hard_shapes
 from planner.check.camera_print import nose_off_rad, photo_corners
-from planner.check.coverage import counts
-from planner.check.photo_grid import Lane, Seen, grid_over, look
+from planner.check.coverage import UNSEEN_FRACTION, counts
+from planner.check.photo_grid import Lane, Seen, grid_over, look, subdivided
 from planner.check.places import lonlat
 from planner.plan import Collect, Photos, Plan, Surveyed, Violation
 from planner.scenario import Scenario
@@ -27,6 +27,8 @@ Floats = NDArray[np.float64]
 OVERLAP_TOLERANCE, QUALITY_TOLERANCE = 0.002, 1e-4
 #: Ways to see a region whose photos are no lanes beside each other: overlaps are not asked of them.
 FIGURES = ("orbit", "spiral", "look")
+#: More unseen places than this are no slivers of ground.
+MOST_SLIVERS = 50
 #: Photos may come this much sooner than the camera takes them: times are rounded.
 INTERVAL_TOLERANCE = 0.01
 
@@ -51,6 +53,8 @@ def surveyed(scenario: Scenario, plan: Plan) -> tuple[dict[str, Surveyed], list[
         ground_m, flown_over_m = _ground(scenario, places_m)
         lanes = [replace(lane, altitudes_m=lane.altitudes_m + flown_over_m) for lane in lanes]
         seen = look(places_m, ground_m, lanes, sensor)
+        slivers = _slivers(scenario, region, sensor, places_m, seen, lanes)
+        places_m, seen = places_m[~slivers], seen.only(~slivers)
         found[region.name] = _measured(seen, sensor)
         violations += _violations(scenario, region, sensor, places_m, seen)
     violations += _too_soon(scenario, plan)
@@ -80,6 +84,30 @@ def _ground(scenario: Scenario, places_m: Floats) -> tuple[Floats, float]:
         return np.full(len(places_m), scenario.level.altitude_m - scenario.level.height_m), 0.0
     ground_m = scenario.terrain.at(places_m)
     return np.where(np.isnan(ground_m), np.inf, ground_m), scenario.level.amsl_m - scenario.level.altitude_m
+
+
+def _slivers(
+    scenario: Scenario,
+    region: Region,
+    sensor: CameraSensor,
+    places_m: Floats,
+    seen: Seen,
+    lanes: list[Lane],
+) -> NDArray[np.bool_]:
+    """Places of the grid that no photo sees, if they lie in less ground than a region may leave unseen.
+
+    A place stands for a square of the grid, which can be nearly all of it in view.
+    """
+    unseen = seen.photos == 0
+    area = bare_ground(region.area, scenario.airspace, scenario.level.of(region))
+    if not 0 < unseen.sum() <= MOST_SLIVERS:
+        return np.zeros(len(places_m), dtype=np.bool_)
+    fine_m, each_m2 = subdivided(area, places_m[unseen])
+    if len(fine_m):
+        finer = look(fine_m, _ground(scenario, fine_m)[0], lanes, sensor)
+        if each_m2 * float((finer.photos == 0).sum()) > UNSEEN_FRACTION * area.area:
+            return np.zeros(len(places_m), dtype=np.bool_)
+    return np.asarray(unseen, dtype=np.bool_)
 
 
 def _measured(seen: Seen, sensor: CameraSensor) -> Surveyed:

@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from shapely import contains_xy
-from shapely.geometry import Polygon
+from shapely import contains_xy, union_all
+from shapely.geometry import Point, Polygon
 
 from planner.check import judge
 from planner.check.camera_print import photo_corners
-from planner.check.photo_grid import Lane, Seen, grid_over, look
+from planner.check.photo_grid import Lane, Seen, grid_over, look, subdivided
 from planner.geojson import read_scenario
 from planner.pipeline import make_plan
 from planner.plan import LonLatAlt, Plan
@@ -150,6 +150,18 @@ def test_the_grid_holds_the_outline_and_no_place_outside() -> None:
     places_m = grid_over(area)
     assert contains_xy(area.buffer(1e-9), places_m).all()
     assert len(places_m) == pytest.approx(area.area + area.length, rel=0.1)
+
+
+def test_squares_of_places_are_looked_at_by_parts_inside_the_area() -> None:
+    """As much ground as shapely has of the squares round places, each part once where squares share it."""
+    area = Polygon([(0.0, 0.0), (30.0, 5.0), (22.0, 28.0), (3.0, 14.0)])
+    places_m = np.array([[0.5, 0.4], [10.5, 9.5], [11.0, 9.5], [22.0, 27.9]])
+    fine_m, each_m2 = subdivided(area, places_m)
+    squares = union_all([Point(place).buffer(0.5, cap_style="square") for place in places_m])
+    assert contains_xy(area, fine_m).all()
+    assert len(np.unique(fine_m, axis=0)) == len(fine_m)
+    assert len(fine_m) * each_m2 == pytest.approx(squares.intersection(area).area, rel=0.2)
+    assert contains_xy(squares.buffer(0.11), fine_m).all()
 
 
 def planned(eye: dict[str, Any] | None = None, **wishes: Any) -> tuple[Scenario, Plan]:
