@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
@@ -25,14 +26,16 @@ from planner.publish import Leg
 from planner.route import CollectPass
 from planner.routing.greedy.route import li2018_route
 from planner.routing.joint.route import Search, joint_route
-from planner.routing.legs import Legs
+from planner.routing.legs import Legs, anchor
 from planner.scenario import Scenario
 from planner.tasks.cells import by_cells, left_m2
 from planner.tasks.hidden import Sight, hidden_findings, see_hidden
 from planner.tasks.limits import Dropped, short_of_energy, within_limits
+from planner.tasks.mended import mended
 from planner.tasks.methods import chosen_methods
-from planner.tasks.moving import in_time_for_photos, others
+from planner.tasks.moving import Moving, in_time_for_photos
 from planner.tasks.prizes import Offer
+from planner.tasks.rejoined import others
 from planner.tasks.setting import Setting, seeing
 from planner.tasks.task import NOT_SEEN, Answer, Controls, Task
 from planner.tasks.transits import Transits
@@ -217,13 +220,27 @@ def _among_obstacles(
         known = found is not None or cells is not None
         return _joint(asked, setting, seed, sight, replace(controls, stop=stop), told=not known)
 
+    moving = Moving(asked, search.legs, (anchor(search.ends[0]), anchor(search.ends[1])))
+
+    def whole(passes: Passes) -> Found:
+        """With passes for what they leave, where some see it: of those that transits join."""
+        if not left_of(asked, passes):
+            return passes, ()
+        if math.isinf(search.legs.tour_m(passes)):
+            passes = moving.joined(passes) or passes
+        passes = mended(moving, passes, controls.stop)
+        return passes, left_of(asked, passes)
+
+    if found is not None and found[0] and leaves_ground(found[1]):
+        passes, left = whole(found[0])
+        found = passes, _unseen_regions(found[1]) + left
     # What sweeps see is an answer: anything else is to be better in time.
-    cells = by_cells(asked, search, controls.enough, needed=found is None)
-    whole = cells is not None and not left_of(asked, cells)
-    if cells and whole:
-        shorter = found is not None and search.legs.tour_m(cells) <= search.legs.tour_m(found[0])
+    laid = by_cells(asked, search, controls.enough, needed=found is None)
+    cells = whole(laid) if laid else None
+    if cells is not None and not cells[1]:
+        shorter = found is not None and search.legs.tour_m(cells[0]) <= search.legs.tour_m(found[0])
         if found is None or leaves_ground(found[1]) or shorter:
-            return cells, ()
+            return cells
     if found is not None and not leaves_ground(found[1]):
         return found
     try:
@@ -234,10 +251,15 @@ def _among_obstacles(
         lanes = None
     if lanes is not None and (found is None or not lanes[1]):
         return lanes
-    if cells and (found is None or left_m2(asked, cells) < left_m2(asked, found[0])):
-        return cells, left_of(asked, cells)
+    if cells is not None and (found is None or left_m2(asked, cells[0]) < left_m2(asked, found[0])):
+        return cells
     assert found is not None
     return found
+
+
+def _unseen_regions(findings: tuple[Finding, ...]) -> tuple[Finding, ...]:
+    """Of what is said of passes what is of regions that none sees."""
+    return tuple(each for each in findings if each.rule.startswith(NOT_SEEN))
 
 
 def _rejoined(
@@ -288,8 +310,7 @@ def _in_time(
 
 def _refound(asked: Seeing, found: Found, passes: Passes) -> Found:
     """Other passes, with what is to be said of them, and what was said of regions not seen at all."""
-    told = tuple(each for each in found[1] if each.rule.startswith(NOT_SEEN))
-    return passes, told + left_of(asked, passes)
+    return passes, _unseen_regions(found[1]) + left_of(asked, passes)
 
 
 def _joint(

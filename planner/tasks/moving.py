@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterator
-from dataclasses import dataclass, field, replace
+from collections.abc import Collection
+from dataclasses import dataclass, field
 
 from planner.coverage.urban.moved import Moves
 from planner.coverage.visible import Seeing
@@ -18,7 +18,7 @@ from planner.sensors.camera import CameraSensor
 from planner.tasks.cells import left_m2
 from planner.tasks.setting import Setting
 from planner.tasks.task import Controls
-from planner.tasks.urban import cut_by_obstacles, swept
+from planner.tasks.urban import cut_by_obstacles
 
 Passes = tuple[CollectPass, ...]
 
@@ -49,55 +49,60 @@ class Moving:
         return cls(asked, legs, (anchor(ends[0]), anchor(ends[1])))
 
     def joined(self, passes: Passes) -> Passes | None:
-        """The passes with those moved that no transit leads to, or from; None where some cannot be.
+        """The passes with those moved that no transit leads to, or from; None where nothing is left.
 
-        Passes without room for a turn, of which nothing else sees the ground, are left out.
+        Passes without room for a turn, of which nothing else sees the ground, are left out, and those with
+        room that no way leads to all the same.
         """
         for _ in range(ROUNDS):
-            bad = self._apart(passes)
-            if not bad:
+            cramped, barred = self._apart(passes)
+            if not cramped and not barred:
                 return passes
-            if None in bad:
-                return None
-            passes = self.without(passes, {k for k in bad if k is not None})
+            passes = self.without(passes, cramped, barred)
             if not passes:
                 return None
         return None
 
-    def without(self, passes: Passes, numbers: Collection[int], *, kept: bool = False) -> Passes:
-        """The passes with some of them moved; those that cannot be are left out, or ``kept``."""
+    def without(
+        self, passes: Passes, numbers: Collection[int], barred: Collection[int] = (), *, kept: bool = False
+    ) -> Passes:
+        """The passes with some moved; those that cannot be, or are barred, are left out, or ``kept``."""
         found = list(passes)
-        for number in sorted(numbers, reverse=True):
-            moves = self._of(found[number])
+        for number in sorted({*numbers, *barred}, reverse=True):
+            moves = None if number in barred else self.moves_over(found[number].regions[0])
             instead = None if moves is None else moves.moved(found, number)
             found[number : number + 1] = (found[number],) if instead is None and kept else instead or ()
         return tuple(found)
 
-    def _apart(self, passes: Passes) -> set[int | None]:
-        """Passes that want room where no transit leads to or from them; None where none wants it."""
+    def _apart(self, passes: Passes) -> tuple[set[int], set[int]]:
+        """Passes that want room where no transit leads to or from them, and others that none leads to."""
         begins = [self.legs.arrives(each) for each in passes]
-        found: set[int | None] = set()
+        cramped: set[int] = set()
+        barred: set[int] = set()
         last = len(passes) - 1
         for number in range(len(passes) + 1):
             here = self.ends[0] if number == 0 else leaves(passes[number - 1])
             there = self.ends[1] if number > last else begins[number]
             if math.isfinite(self.legs.cost_m(here, there)):
                 continue
-            cramped: set[int | None] = set()
-            if number > 0 and not self._roomy(passes[number - 1], behind=True):
-                cramped.add(number - 1)
-            if number <= last and not self._roomy(passes[number], behind=False):
-                cramped.add(number)
-            found |= cramped or {None}
-        return found
+            beside = [k for k in (number - 1, number) if 0 <= k <= last]
+            wanting = {k for k in beside if not self._roomy(passes[k], behind=k < number)}
+            cramped |= wanting
+            if not wanting:
+                barred |= {k for k in beside if self.barred(passes[k])} or set(beside[-1:])
+        return cramped, barred - cramped
+
+    def barred(self, collect: CollectPass) -> bool:
+        """Whether no way leads from the start to a pass, or none from it to the end."""
+        ways = ((self.ends[0], self.legs.arrives(collect)), (leaves(collect), self.ends[1]))
+        return any(math.isinf(self.legs.cost_m(*way)) for way in ways)
 
     def _roomy(self, collect: CollectPass, *, behind: bool) -> bool:
-        moves = self._of(collect)
+        moves = self.moves_over(collect.regions[0])
         return moves is None or (moves.leaves(collect) if behind else moves.enters(collect))
 
-    def _of(self, collect: CollectPass) -> Moves | None:
-        """What passes over its region are moved among; None of what is no sweep."""
-        name = collect.regions[0]
+    def moves_over(self, name: str) -> Moves | None:
+        """What passes over a region are moved among; None of what no camera sees."""
         if name not in self._moves:
             (region,) = (each for each in self.asked.regions if each.name == name)
             level = self.asked.level.of(region)
@@ -112,34 +117,6 @@ class Moving:
                 moves = Moves.over(region, sensor, height_m, self.asked.airspace, level, self.asked.model)
             self._moves[name] = moves
         return self._moves[name]
-
-
-def others(
-    asked: Seeing, setting: Setting, passes: Passes, seed: int, controls: Controls
-) -> Iterator[tuple[float, float, Passes]]:
-    """Passes that may be flown instead of sweeps that no transits join: ground that they leave, way, passes.
-
-    First these, with those moved that have no room for a turn; then sweeps that all end with room for one
-    before obstacles. Sweeps are laid without a look at the turns between them: as near to obstacles as lines
-    may be.
-    """
-    if not cut_by_obstacles(asked):
-        return
-    moves = Moving.of(asked, setting, controls)
-    room_m = asked.airspace.clearance_m + setting.model.turn_radius_m
-    wide = replace(asked, airspace=replace(asked.airspace, clearance_m=room_m))
-
-    def roomier() -> Passes | None:
-        try:
-            return swept(wide, setting, "auto", seed, controls.progress, controls.stop)[0]
-        except InfeasibleError:
-            return None
-
-    for laid in (lambda: passes, roomier):
-        found = laid()
-        joined = None if found is None else moves.joined(found)
-        if joined is not None:
-            yield left_m2(asked, joined), moves.legs.tour_m(joined), joined
 
 
 def in_time_for_photos(

@@ -8,7 +8,7 @@ have room for a full turn at both ends, and are long enough for their photos.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -90,6 +90,12 @@ class Moves:
         wanted = bare_ground(region.area, airspace, level)
         return cls(region, camera, height_m, room, turns, wanted, model.turn_radius_m, model.settle_m)
 
+    @property
+    def overlap_m(self) -> float:
+        """How far inside the frame's edge what is to overlap as asked lies."""
+        wide_m = self.height_m * math.tan(self.camera.optics.half_width_rad)
+        return max(self.camera.side_overlap, self.camera.forward_overlap) * wide_m
+
     def turns_at(self, place: Sequence[float], angle_rad: float) -> bool:
         """Whether a full turn fits beside a place, to one side or the other of a heading."""
         return bool(self._fits(np.array([place]), angle_rad)[0])
@@ -131,18 +137,53 @@ class Moves:
                         best = (cost_m, laid)
         return None if best is None else (best[1],)
 
+    def seeing(
+        self, ground: BaseGeometry, ends: Floats, starts: Floats, *, roomy: bool = True
+    ) -> Iterator[tuple[list[int], CollectPass]]:
+        """Passes that see all of some ground, the nearest first, each with where it is put in, as near first.
+
+        Parameters
+        ----------
+        ends, starts
+            What a pass may be put in between: the end of one and the start of the next, (N, 2) each.
+        roomy
+            Whether they have room for full turns; without, transits tell whether they can be flown.
+        """
+        lines: list[Floats] = []
+        for angle_rad in np.arange(0.0, math.pi, STEP_RAD).tolist():
+            found = np.array(self._lines(ground, angle_rad, roomy=roomy))
+            lines += [found, found[:, ::-1]] if len(found) else []
+        if not lines:
+            return
+        laid_m = np.concatenate(lines)
+        gaps_m = np.hypot(*(starts - ends).T)
+        costs_m = np.hypot(*(laid_m[:, 1] - laid_m[:, 0]).T)[:, None] - gaps_m
+        costs_m += np.hypot(*np.moveaxis(laid_m[:, None, 0] - ends, -1, 0))
+        costs_m += np.hypot(*np.moveaxis(starts - laid_m[:, None, 1], -1, 0))
+        # By the millimetre: lines that cost as much come in their order.
+        for k in np.argsort(np.round(costs_m.min(axis=1), 3), kind="stable").tolist():
+            one, other = laid_m[k].tolist()
+            laid = self._pass(Sweep((one[0], one[1]), (other[0], other[1])))
+            seen = shapely.difference(ground, laid.footprint).area < LEAST_M2
+            if seen and (self._flyable(laid) if roomy else self._free(laid)):
+                yield np.argsort(np.round(costs_m[k], 3), kind="stable").tolist(), laid
+
     def _pass(self, sweep: Sweep) -> CollectPass:
         """Its pass, no longer than it is."""
         return pass_of(self.region, self.camera, self.height_m, sweep, Point(sweep.start))
 
     def _flyable(self, laid: CollectPass) -> bool:
         """Whether it begins and ends with room, flown this way."""
-        begun = laid.settling(self.settle_m).position
-        return self.room.covers(shapely.linestrings([begun, laid.end])) and (
-            self.enters(laid) and self.leaves(laid)
-        )
+        return self._free(laid) and self.enters(laid) and self.leaves(laid)
 
-    def _lines(self, ground: BaseGeometry, angle_rad: float) -> list[list[list[float]]]:
+    def _free(self, laid: CollectPass) -> bool:
+        """Whether it and its settling are clear."""
+        begun = laid.settling(self.settle_m).position
+        return bool(self.room.covers(shapely.linestrings([begun, laid.end])))
+
+    def _lines(
+        self, ground: BaseGeometry, angle_rad: float, *, roomy: bool = True
+    ) -> list[list[list[float]]]:
         """Lines at a heading from which ground is seen about, each from end to end."""
         frame_m = self._frame(angle_rad)
         corners = turned(shapely.get_coordinates(ground.convex_hull), -angle_rad)
@@ -166,11 +207,18 @@ class Moves:
                     (west - back_m, east - ahead_m),
                     across_m,
                     angle_rad,
+                    roomy=roomy,
                 )
         return found
 
     def _placed(
-        self, free_m: tuple[float, float], needed_m: tuple[float, float], across_m: float, angle_rad: float
+        self,
+        free_m: tuple[float, float],
+        needed_m: tuple[float, float],
+        across_m: float,
+        angle_rad: float,
+        *,
+        roomy: bool,
     ) -> list[list[list[float]]]:
         """Parts of a line's free stretch that reach over what is needed and have room for turns.
 
@@ -201,7 +249,8 @@ class Moves:
             turned(np.column_stack([along, np.full(len(along), across_m)]), angle_rad)
             for along in (begin, end)
         ]
-        good = self._fits(places[0], angle_rad) & self._fits(places[1], angle_rad)
+        good = np.full(len(begin), not roomy)
+        good |= self._fits(places[0], angle_rad) & self._fits(places[1], angle_rad)
         lines: list[list[list[float]]] = np.stack([each[good] for each in places], axis=1).tolist()
         return lines
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from unittest import mock
 
 import numpy as np
 import pytest
@@ -18,6 +19,7 @@ from planner.geojson import read_plan, read_scenario, write_plan
 from planner.pipeline import make_plan
 from planner.plan import Plan
 from planner.scenario import Scenario
+from planner.tasks import collect
 from tests.mavlink.sim.helpers import Station
 from tests.planner.tasks.blocks import among_blocks
 
@@ -26,12 +28,13 @@ CRUISE_M_S = 8.0
 
 
 def slow_plan(autopilot: Autopilot) -> tuple[Scenario, Plan]:
-    """Sweeps among buildings one of which is too short for two photos at full speed."""
-    document = among_blocks(142, INTERVAL_S, CRUISE_M_S, required=False)
+    """Sweeps among buildings one of which is too short for two photos at full speed, none moved for it."""
+    document = among_blocks(36, INTERVAL_S, CRUISE_M_S, required=False)
     document["vehicles"][0] |= {"autopilot": autopilot, "settle_m": 0.0}
     document["sensors"][0] |= {"pointing_margin_deg": 0.0, "position_margin_m": 0.0}
     scenario = read_scenario(document)
-    return scenario, make_plan(scenario)
+    with mock.patch.object(collect, "in_time_for_photos", return_value=None):
+        return scenario, make_plan(scenario)
 
 
 def test_a_slow_collect_is_told_before_it_begins_and_flown_so() -> None:
@@ -41,19 +44,19 @@ def test_a_slow_collect_is_told_before_it_begins_and_flown_so() -> None:
     assert slow.speed_m_s is not None
     assert slow.speed_m_s < CRUISE_M_S
     mission = encode(plan)
-    speed_m_s, collect, orders = math.nan, 0, 0
+    speed_m_s, begun, orders = math.nan, 0, 0
     behind: list[float] = []
     for item in mission.mission:
         if item.command == Command.DO_CHANGE_SPEED:
             assert item.param1 == 1.0
             speed_m_s, orders = item.param2, orders + 1
         if item.command == Command.DO_SET_CAM_TRIGG_DIST and item.param1 > 0.0:
-            collect += 1
-            assert speed_m_s == pytest.approx(slow.speed_m_s if collect == slow.seq else CRUISE_M_S)
-        elif item.command == Command.NAV_WAYPOINT and collect == slow.seq:
+            begun += 1
+            assert speed_m_s == pytest.approx(slow.speed_m_s if begun == slow.seq else CRUISE_M_S)
+        elif item.command == Command.NAV_WAYPOINT and begun == slow.seq:
             behind.append(speed_m_s)
     assert orders == 3
-    assert collect == len(plan.collects)
+    assert begun == len(plan.collects)
     # Its end, and what lies between it and the next one.
     assert behind[0] == pytest.approx(slow.speed_m_s)
     assert set(behind[1:]) == {CRUISE_M_S}

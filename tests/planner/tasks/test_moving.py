@@ -21,6 +21,7 @@ from planner.pipeline import make_plan
 from planner.plan import Plan
 from planner.scenario import Scenario
 from planner.sensors.camera import CameraSensor
+from planner.tasks import collect
 from planner.tasks.setting import Setting, seeing
 from tests.planner.tasks.blocks import among_blocks, buildings
 
@@ -43,11 +44,11 @@ def flown(seed: int) -> tuple[Scenario, Plan]:
         speed_m_s = math.dist(places[0], places[-1]) / (collect.end_s - collect.start_s)
         gaps_m = [math.dist(*pair) for pair in itertools.pairwise(places)]
         assert min(gaps_m) / speed_m_s > 0.99 * INTERVAL_S
-    put = frame.to_local([(8.55, 47.4)])[0]
+    put = frame.north_up(frame.to_local([(8.55, 47.4)])[0])
     line = LineString(frame.to_local([place[:2] for place in plan.paths[0].line]))
     for outline, height_m in buildings(seed):
         if height_m > scenario.altitude_m:
-            there = shapely.transform(outline, lambda places: places + put)
+            there = shapely.transform(outline, lambda places: frame.from_north_up(places + put))
             assert line.distance(there) > scenario.clearance_m - 0.1
     return scenario, plan
 
@@ -64,29 +65,27 @@ def test_photos_come_no_sooner_than_the_camera_takes_them() -> None:
     assert plan.vehicles[0].airspeed_m_s == scenario.aircraft[0].airspeed_m_s
 
 
-def test_where_no_sweep_can_be_longer_it_is_flown_more_slowly() -> None:
-    """It alone, and the plan says so, and why; all else at the speed asked for."""
-    scenario, plan = flown(142)
+def test_where_no_sweep_can_be_longer_it_is_flown_more_slowly(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It alone, and the plan says so, and why; all else as asked. Not where there is no time."""
+    monkeypatch.setattr(collect, "in_time_for_photos", lambda *_: None)
+    document = among_blocks(36, INTERVAL_S, required=False)
+    scenario = read_scenario(document)
+    plan = make_plan(scenario)
     asked_m_s = scenario.aircraft[0].airspeed_m_s
     assert plan.vehicles[0].airspeed_m_s == asked_m_s
     slow = [each for each in plan.collects if each.speed_m_s is not None]
     assert 0 < len(slow) < len(plan.collects) / 2
-    for collect in slow:
-        assert collect.speed_m_s is not None
-        length_m = collect.end_m - collect.start_m
-        assert length_m / (collect.end_s - collect.start_s) <= collect.speed_m_s + 1e-6 < asked_m_s
+    for one in slow:
+        assert one.speed_m_s is not None
+        length_m = one.end_m - one.start_m
+        assert length_m / (one.end_s - one.start_s) <= one.speed_m_s + 1e-6 < asked_m_s
     (told,) = [each for each in plan.warnings if "speed-lowered" in each]
     assert f"{len(slow)} of {len(plan.collects)} passes, over R, at" in told
     assert f"not {asked_m_s:g}" in told
-
-
-def test_no_pass_is_slowed_beyond_the_flight_time_there_is(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Where slow passes alone are over it the plan keeps it, and has none."""
-    document = among_blocks(142, INTERVAL_S, required=False)
-    slowed_s = flown(142)[1].paths[0].duration_s
-    monkeypatch.setattr(pipeline, "_paced", lambda scenario, answer, _: (scenario, answer))
-    hasty_s = make_plan(read_scenario(document)).paths[0].duration_s
-    monkeypatch.undo()
+    with monkeypatch.context() as unpaced:
+        unpaced.setattr(pipeline, "_paced", lambda scenario, answer, _: (scenario, answer))
+        hasty_s = make_plan(scenario).paths[0].duration_s
+    slowed_s = plan.paths[0].duration_s
     assert hasty_s < slowed_s
     document["vehicles"][0]["max_flight_time_s"] = (hasty_s + slowed_s) / 2.0
     plan = make_plan(read_scenario(document))
@@ -104,10 +103,10 @@ def test_a_region_that_the_flight_time_is_too_short_for_is_left_out() -> None:
     assert refused.value.constraint == "flight-time"
 
 
-def test_ground_of_a_required_region_that_only_a_sweep_without_room_sees_is_refused_by_its_share() -> None:
+def test_ground_of_a_required_region_that_no_pass_sees_is_refused_by_its_share() -> None:
     """With the zones and what would work, not with the end of a transit."""
     with pytest.raises(InfeasibleError, match=r"% of it .* is seen by no pass") as refused:
-        make_plan(read_scenario(among_blocks(0, INTERVAL_S)))
+        make_plan(read_scenario(among_blocks(2, INTERVAL_S)))
     assert refused.value.feature == "R"
 
 
