@@ -20,6 +20,7 @@ from planner.routing.joint.chain import estimates, from_start, to_end
 from planner.scenario import Scenario
 from planner.tasks.fleet.jobs import Job
 from planner.tasks.fleet.looks import Looks
+from planner.tasks.fleet.ways import Ways, best_ways
 from planner.tasks.flying import FlightLevels
 from planner.tasks.setting import Setting, seeing
 from planner.vehicle.aircraft import Aircraft
@@ -29,22 +30,10 @@ from planner.wishes import Region
 
 Floats = NDArray[np.float64]
 
-#: Of a region's options so many are the ways to do it, the cheapest first, none of a heading so near to that
-#: of one before: nothing of that hangs on where east is, or left. No even part of a turn, which grids have.
-MOST_WAYS, APART_RAD = 4, math.radians(73.0)
 #: A change of height takes so much more than its slope says, in turn radii: some of the leg is turns.
 LEVEL_OFF = 0.5
 #: No touch-down is thought slower.
 MIN_LAND_M_S = 0.1
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Ways:
-    """Ways to do one job: poses before and behind it, (K, 3), and what lies between, metres, (K,)."""
-
-    entries: Floats
-    exits: Floats
-    inner_m: Floats
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -160,7 +149,7 @@ class Crew:
         first = coarse[0]
         # Of a divided region the parts follow each other as they come; the ways differ in their ends.
         inner_m, exits = self._on(first, coarse[1:])
-        found = _best(first.entries, exits, inner_m)
+        found = best_ways(first.entries, exits, inner_m)
         if not len(found.inner_m):
             raise InfeasibleError(
                 "transit", job.of, "no line leads from one of its parts to the next", "Draw them as regions."
@@ -245,20 +234,6 @@ class Crew:
             seconds * self.setting.model.airspeed_m_s,
             None if self.power_w is None else seconds * (power * self.power_w / 3600.0),
         )
-
-
-def _best(entries: Floats, exits: Floats, inner_m: Floats) -> Ways:
-    """The cheapest, and the cheapest of other headings."""
-    headings_rad = np.asarray(entries)[:, 2]
-    kept: list[int] = []
-    # By the millimetre: options that are as dear come in their order.
-    for row in np.argsort(np.round(inner_m, 3), kind="stable").tolist():
-        if len(kept) == MOST_WAYS or not math.isfinite(inner_m[row]):
-            break
-        off_rad = headings_rad[kept] - headings_rad[row]
-        if np.all(np.abs(np.remainder(off_rad + math.pi, math.tau) - math.pi) >= APART_RAD):
-            kept.append(row)
-    return Ways(np.asarray(entries)[kept], np.asarray(exits)[kept], np.asarray(inner_m)[kept])
 
 
 def crews_of(

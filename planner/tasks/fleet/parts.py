@@ -9,8 +9,9 @@ from dataclasses import dataclass
 from planner.coverage.registry import family_of
 from planner.sensors.base import Sensor
 from planner.sensors.camera import CameraSensor
-from planner.tasks.fleet.crews import Crew, Ways, most_s, takes_s
+from planner.tasks.fleet.crews import Crew, most_s, takes_s
 from planner.tasks.fleet.jobs import Job
+from planner.tasks.fleet.ways import Ways
 from planner.wishes import Region
 
 #: A region is cut where it takes so much more than an even share of all work, or than one flight can give.

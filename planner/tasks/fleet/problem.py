@@ -12,9 +12,10 @@ from numpy.typing import NDArray
 from planner.fleet.assignment import Assignment, Trip
 from planner.fleet.problem import Alternative, Member, Objective, Problem, Service, Target
 from planner.route import Terminal
-from planner.tasks.fleet.crews import Crew, Ways
+from planner.tasks.fleet.crews import Crew
 from planner.tasks.fleet.jobs import Job
 from planner.tasks.fleet.placing import LateError
+from planner.tasks.fleet.ways import Ways
 from planner.vehicle.aircraft import Aircraft
 from planner.wishes import Objective as Weights
 

@@ -33,6 +33,8 @@ from planner.tasks.task import Answer, Controls
 from planner.tasks.worth import drifted, ground_of, worth_of
 from planner.wishes import Seen
 
+#: Of what the one before may use, where all come home at once otherwise.
+SHORTER = 0.85
 #: Ends nearer to each other than this part of the ground's width say nothing of which part is whose.
 APART = 0.1
 #: The worth of ground is added up by cells, so many across all bands.
@@ -119,6 +121,10 @@ def search_together(scenario: Scenario, controls: Controls) -> FleetAnswer:
             _in_turn(crews, order, controls) for order in (shares, shares[::-1]) if not controls.enough()
         ]
         ways = _best_first(scenario, [*_as_before(crews, shares, controls), answers, *turns])
+        # Flights that are as long come home together.
+        for order in () if controls.enough() else (shares, shares[::-1]):
+            shorter = _in_turn(crews, order, controls, shorter=SHORTER)
+            ways += [] if shorter is None else [shorter]
         # Where none of that keeps them apart, fewer search, and the others fly to their ends.
         ways += [dict(list(answers.items())[:many]) for many in range(len(answers) - 1, 0, -1)]
     separation = scenario.kept_apart
@@ -212,17 +218,19 @@ def _in_turn(
     to_come: Mapping[_Share, Sequence[Seen]] | None = None,
     *,
     improved: bool = True,
+    shorter: float = 1.0,
 ) -> dict[_Share, Answer] | None:
     """Each over all that those before it leave; None where none can do anything of that, or it drifts.
 
     ``to_come`` is what each was still to see: each then begins with its own, and leaves the others theirs.
+    Each is planned with this part of what the one before may use of its limits.
     """
     answers: dict[_Share, Answer] = {}
     looks: list[Seen] = []
     for number, share in enumerate(shares):
         own = replace(controls, enough=controls.enough.part(1.0 / (len(shares) - number)))
         later = [look for other in shares[number + 1 :] for look in (to_come or {}).get(other, ())]
-        alone = _after(crews[share.crew].alone, [*looks, *later])
+        alone = _after(_limited(crews[share.crew].alone, shorter**number), [*looks, *later])
         if to_come is None:
             alone = replace(alone, going_on=None)
         if alone.importance.drift is not None:
@@ -237,6 +245,16 @@ def _in_turn(
             continue
         looks += [Seen(each.footprint) for each in answers[share].passes]
     return answers or None
+
+
+def _limited(alone: Scenario, part: float) -> Scenario:
+    """With this part of what its aircraft may use."""
+    limits = ("energy_wh", "max_range_m", "max_flight_time_s")
+    fleet = [
+        replace(each, **{name: part * value for name in limits if (value := getattr(each, name)) is not None})
+        for each in alone.aircraft
+    ]
+    return alone if part == 1.0 else replace(alone, aircraft=tuple(fleet))
 
 
 def _after(alone: Scenario, looks: Sequence[Seen]) -> Scenario:

@@ -8,9 +8,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from planner.errors import Finding, InfeasibleError
-from planner.tasks.fleet.crews import Crew, Ways, ways_of
+from planner.tasks.fleet.crews import Crew, ways_of
 from planner.tasks.fleet.flights import in_best_order
 from planner.tasks.fleet.jobs import Job, jobs_of
+from planner.tasks.fleet.ways import Ways
 from planner.tasks.task import Controls
 from planner.tasks.urban import cut_by_obstacles
 from planner.wishes import Region

@@ -13,6 +13,7 @@ from planner.fleet.problem import Problem
 from planner.plan import LeftOut
 from planner.scenario import Scenario
 from planner.tasks.fleet.aloft import homewards
+from planner.tasks.fleet.alone import Alone
 from planner.tasks.fleet.answer import FleetAnswer
 from planner.tasks.fleet.barred import BarredError, barred, infeasible
 from planner.tasks.fleet.bettering import Hand, bettered
@@ -101,6 +102,8 @@ class _Rounds:
         self._alone: Known = {}
         with controls.stage("options"):
             self._crews, self._grounded = crews_of(scenario)
+            known = (self._crews, self._lessons, self._errand, self._given_up)
+            self._single = Alone(scenario, controls, *known)
             self._given_up |= left_by(self._grounded, self._crews, scenario.regions)
             self._parts: dict[str, int] = {}
             self._spread()
@@ -137,9 +140,9 @@ class _Rounds:
                 nearest = min(lacking, key=lambda each: each.margin)
                 if not self._lessons.closes_s and (nearest.margin < least or failed is None):
                     least, failed = nearest.margin, infeasible(jobs, nearest)
-                if not self._cut_more(jobs, lacking):
-                    raise failed or infeasible(jobs, nearest)
-                continue
+                if self._single.relearnt(self._ways, jobs, lacking) or self._cut_more(jobs, lacking):
+                    continue
+                raise failed or infeasible(jobs, nearest)
             if not assigned.trips:
                 failed = failed or self._nothing_flown(jobs, assigned)
                 break
@@ -361,19 +364,16 @@ class _Rounds:
     def _cut_more(self, jobs: Sequence[Job], lacking: Sequence[Unassigned]) -> bool:
         """One part more of each region that did not fit; whether there was any."""
         whole = {region.name: region for region in self._scenario.regions}
-        more = {}
+        more: dict[str, int] = {}
         for each in lacking:
             job = jobs[each.target]
             count = self._parts.get(job.of, 1) + 1
-            if each.limit in ("flight-time", "range", "energy") and count <= self._cutting.most_parts(
-                whole[job.of]
-            ):
-                more[job.of] = count
-        if not more:
-            return False
-        self._parts = self._parts | more
-        self._spread()
-        return True
+            can = count <= self._cutting.most_parts(whole[job.of])
+            more |= {job.of: count} if can and each.limit in ("flight-time", "range", "energy") else {}
+        if more:
+            self._parts = self._parts | more
+            self._spread()
+        return bool(more)
 
     def _answer(
         self, jobs: Sequence[Job], problem: Problem, assigned: Assignment, sorties: tuple[Sortie, ...]

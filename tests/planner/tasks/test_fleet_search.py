@@ -85,12 +85,15 @@ def in_the_air(**members):
     return plan, prints
 
 
-def test_aircraft_in_the_air_both_search_and_hardly_anything_twice():
-    """Kept apart by little, each sees some of it, and what the other saw is left to it."""
+def test_aircraft_in_the_air_both_search_and_mostly_what_the_other_does_not():
+    """Kept apart by little, each sees some of it, and what the other saw is left to it.
+
+    Where both would come home at once one flies less.
+    """
     plan, prints = in_the_air(separation={"horizontal_m": 20.0, "vertical_m": 10.0})
     smaller_m2 = min(each.area for each in prints.values())
     assert smaller_m2 > 0.0
-    assert prints["a"].intersection(prints["b"]).area < 0.2 * smaller_m2
+    assert prints["a"].intersection(prints["b"]).area < 0.5 * smaller_m2
     assert 0.0 < plan.metrics.importance_collected <= plan.metrics.importance_bound
 
 

@@ -161,10 +161,14 @@ def test_with_several_batteries_the_next_flight_starts_where_the_last_has_landed
     assert {each.constraint for each in found} > {each.constraint for each in plan.violations}
 
 
-def test_batteries_are_changed_at_an_end_that_is_elsewhere() -> None:
-    """From a start to an end, each region on a battery of its own: the second flight begins at the end."""
+@pytest.mark.parametrize("limit_s", [540.0, 560.0, 570.0, 580.0])
+def test_batteries_are_changed_at_an_end_that_is_elsewhere(limit_s: float) -> None:
+    """From a start to an end, each region on a battery of its own: the second flight begins at the end.
+
+    At any limit that both fit in: what one flight over both took more is none of one over either.
+    """
     document = small(feature("end", "end", "Point", list(EAST)))
-    document["vehicles"][0] |= {"batteries": 2, "turnaround_s": 60.0, "max_flight_time_s": 560.0}
+    document["vehicles"][0] |= {"batteries": 2, "turnaround_s": 60.0, "max_flight_time_s": limit_s}
     _, plan = made(document)
     assert plan.violations == ()
     assert [path.line[-1][:2] for path in plan.paths] == [pytest.approx(EAST)] * 2
