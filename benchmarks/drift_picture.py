@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -34,7 +35,10 @@ def picture(seed: int = 0) -> str:
         raise ValueError("the example drifts")
     belief = believed(importance, drift, 65_536, seed)
     path = plan.paths[0]
-    line = frame.to_local([place[:2] for place in path.line])
+    belief = replace(
+        belief, places_m=frame.north_up(belief.places_m), drifts_m_s=frame.north_up(belief.drifts_m_s)
+    )
+    line = frame.north_up(frame.to_local([place[:2] for place in path.line]))
     along_m = np.concatenate([[0.0], np.hypot(*np.diff(line, axis=0).T).cumsum()])
     end = belief.places_m + path.duration_s * belief.drifts_m_s
     corners = np.vstack(
@@ -49,7 +53,7 @@ def picture(seed: int = 0) -> str:
         "<title>Someone overboard: where they may be, and what has been flown by then</title>",
         f'<rect width="{wide}" height="{high}" fill="#fff"/>',
     ]
-    prints = [Polygon(frame.to_local(each.ring)) for each in plan.footprints]
+    prints = [Polygon(frame.north_up(frame.to_local(each.ring))) for each in plan.footprints]
     most = 0.0
     for number, part in enumerate(PARTS):
         time_s = part * path.duration_s

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 from shapely.geometry import LineString, MultiPolygon, Polygon
 from shapely.geometry.base import BaseGeometry
@@ -52,17 +53,27 @@ def _island(number: int) -> list[str]:
     document: dict[str, Any] = json.loads(EXAMPLE.read_text())
     scenario = read_scenario(document)
     plan = make_plan(scenario)
-    line = scenario.frame.to_local([place[:2] for place in plan.paths[0].line])
-    (ground,) = (region.area for region in scenario.regions)
+    frame = scenario.frame
+
+    def upright(shape: BaseGeometry) -> BaseGeometry:
+        turned: BaseGeometry = shapely.transform(shape, frame.north_up)
+        return turned
+
+    line = frame.north_up(frame.to_local([place[:2] for place in plan.paths[0].line]))
+    (ground,) = (upright(region.area) for region in scenario.regions)
     most = max(patch.score for patch in scenario.importance.patches)
     shapes: list[tuple[BaseGeometry, str, float]] = [(ground, GROUND, 1.0)]
-    shapes += [(patch.area, WORTH, 0.5 * patch.score / most) for patch in scenario.importance.patches]
-    prints = [Polygon(scenario.frame.to_local(each.ring)) for each in plan.footprints]
+    shapes += [
+        (upright(patch.area), WORTH, 0.5 * patch.score / most) for patch in scenario.importance.patches
+    ]
+    prints = [upright(Polygon(frame.to_local(each.ring))) for each in plan.footprints]
     shapes += [(each, LINE, 0.18) for each in prints]
     west, south, east, north = ground.union(LineString(line)).bounds
     middle, half = ((west + east) / 2.0, (south + north) / 2.0), 1.02 * max(east - west, north - south) / 2.0
     bounds = (middle[0] - half, middle[1] - half, middle[0] + half, middle[1] + half)
-    worth = sum(patch.score * patch.area.intersection(ground).area for patch in scenario.importance.patches)
+    worth = sum(
+        patch.score * upright(patch.area).intersection(ground).area for patch in scenario.importance.patches
+    )
     collected = plan.metrics.importance_collected or 0.0
     caption = (
         f"{scenario.name}: {plan.metrics.coverage['island']:.0%} seen, {collected / worth:.0%} of its worth"

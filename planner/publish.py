@@ -17,7 +17,6 @@ from planner.airspace.airspace import Airspace, Level
 from planner.airspace.shapes import DiscShape, banded_shapes, without_holes
 from planner.airspace.terrain import Ground
 from planner.airspace.zones import keep_out
-from planner.angles import heading_from_angle
 from planner.flown import flown_path, line_between
 from planner.frames import LocalFrame
 from planner.metrics import risks
@@ -369,5 +368,5 @@ def assemble(
         warnings=warnings,
         photos=photos,
         cameras=plan_cameras(suite),
-        wind=PlanWind(model.wind.speed_m_s, heading_from_angle(model.wind.toward_rad + math.pi)),
+        wind=PlanWind(model.wind.speed_m_s, chart.frame.heading_deg(model.wind.toward_rad + math.pi)),
     )

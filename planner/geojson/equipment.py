@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from planner.airspace.values import Wind
-from planner.angles import angle_from_heading
+from planner.frames import LocalFrame
 from planner.geojson.fields import Fields, Findings
 from planner.geojson.power import read_power
 from planner.sensors.base import Sensor
@@ -304,7 +304,7 @@ def as_object(name: str, raw: Any, findings: Findings) -> dict[str, Any]:
     return {}
 
 
-def read_wind(raw: Any, findings: Findings) -> Wind:
+def read_wind(raw: Any, frame: LocalFrame, findings: Findings) -> Wind:
     """Member ``wind``."""
     if raw is None:
         return Wind()
@@ -314,7 +314,7 @@ def read_wind(raw: Any, findings: Findings) -> Wind:
         "from_deg", 0.0 if not speed_m_s else fields.raw("from_deg"), minimum=0.0, maximum=360.0
     )
     fields.refuse_unknown()
-    return Wind(speed_m_s, angle_from_heading((from_deg or 0.0) + 180.0))
+    return Wind(speed_m_s, frame.direction_rad((from_deg or 0.0) + 180.0))
 
 
 def read_objective(raw: Any, findings: Findings) -> Objective:

@@ -13,6 +13,7 @@ from planner.frames import MAX_EXTENT_M, WGS84, LocalFrame
 from planner.geojson.features import RawFeature, name_of
 from planner.geojson.fields import Findings, is_finite
 from planner.geojson.geometry import positions_of
+from planner.geojson.lying import lying
 from planner.geojson.sheet import MOST_LONGITUDE_DEG, LonLat, arc_deg, wrapped_deg
 
 #: From corner to corner of everything.
@@ -64,7 +65,7 @@ def middle_of(places: Sequence[LonLat]) -> LonLat:
 def frame_of(
     raw_features: list[Any], findings: Findings, left_out: Collection[int] = ()
 ) -> LocalFrame | None:
-    """A frame in the middle of everything that is not left out.
+    """A frame in the middle of everything that is not left out, along it as it lies.
 
     None after a finding where there are no positions; what is too far off is found, and a frame given for
     the checks that follow.
@@ -91,8 +92,10 @@ def frame_of(
         rest = _largest_cluster(boxes)
         _blame(whole, boxes, rest, findings)
         at = rest or boxes[:1]
-        whole = _Box.of("rest", [place for box in at for place in box.places[:1]])
-    return LocalFrame(round(whole.middle[0], 6), round(whole.middle[1], 6))
+        boxes = [_Box.of("rest", box.places[:1]) for box in at]
+        whole = _Box.of("rest", [place for box in boxes for place in box.places])
+    flat = LocalFrame(round(whole.middle[0], 6), round(whole.middle[1], 6))
+    return lying(flat, [box.places for box in boxes])
 
 
 def within(frame: LocalFrame, feature: RawFeature) -> bool:

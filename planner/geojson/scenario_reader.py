@@ -178,7 +178,7 @@ def _read(document: Any, findings: Findings, terrains: Terrains | None) -> Scena
     budget_s = top.number("time_budget_s", None, above=0.0)
     name = top.text("name", "scenario")
     seed = top.integer("seed", 0, minimum=0, maximum=MOST_SEED)
-    wind = equipment.read_wind(document.get("wind"), findings)
+    wind = equipment.read_wind(document.get("wind"), frame, findings)
     objective = equipment.read_objective(document.get("objective"), findings)
     method = equipment.read_method(document.get("method"), findings)
     importance = Importance()

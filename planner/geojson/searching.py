@@ -14,7 +14,6 @@ from shapely.geometry import MultiPolygon, Point, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from planner.airspace.terrain import Terrain
-from planner.angles import angle_from_heading
 from planner.frames import LocalFrame
 from planner.geojson import geometry as shapes
 from planner.geojson.equipment import as_object
@@ -82,12 +81,12 @@ def read_search(raw: Any, frame: LocalFrame, findings: Findings) -> Importance:
     fields.refuse_unknown()
     return Importance(
         detection=detection or 1.0,
-        drift=None if drift is None else _read_drift(drift, findings),
+        drift=None if drift is None else _read_drift(drift, frame, findings),
         seen=seen,
     )
 
 
-def _read_drift(raw: Any, findings: Findings) -> Drift | None:
+def _read_drift(raw: Any, frame: LocalFrame, findings: Findings) -> Drift | None:
     """Its member ``drift``."""
     fields = Fields("drift", as_object("drift", raw, findings), findings)
     speed_m_s = fields.number("speed_m_s", minimum=0.0, maximum=MOST_DRIFT_M_S)
@@ -99,7 +98,7 @@ def _read_drift(raw: Any, findings: Findings) -> Drift | None:
     fields.refuse_unknown()
     if speed_m_s is None or toward_deg is None or spread_m_s is None or elapsed_s is None:
         return None
-    angle_rad = angle_from_heading(toward_deg)
+    angle_rad = frame.direction_rad(toward_deg)
     return Drift(speed_m_s * math.cos(angle_rad), speed_m_s * math.sin(angle_rad), spread_m_s, elapsed_s)
 
 

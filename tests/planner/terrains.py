@@ -16,10 +16,10 @@ Surface = Callable[[NDArray[np.float64], NDArray[np.float64]], NDArray[np.float6
 def raster(
     surface: Surface, frame: LocalFrame, half_deg: float = 0.1, posts: int = 241, name: str = "t"
 ) -> Terrain:
-    """A surface, a function of local east and north metres, sampled on a grid of degrees."""
+    """A surface, a function of metres east and north of a frame's origin, sampled on a grid of degrees."""
     lon = frame.lon_deg + np.linspace(-half_deg, half_deg, posts)
     lat = frame.lat_deg + np.linspace(half_deg, -half_deg, posts)
-    places = frame.to_local(np.stack(np.meshgrid(lon, lat), axis=-1))
+    places = frame.north_up(frame.to_local(np.stack(np.meshgrid(lon, lat), axis=-1)))
     step_deg = 2.0 * half_deg / (posts - 1)
     affine = (step_deg, 0.0, float(lon[0]), 0.0, -step_deg, float(lat[0]))
     heights = surface(places[..., 0], places[..., 1])

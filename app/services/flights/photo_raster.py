@@ -10,6 +10,7 @@ from shapely import union_all
 from app.services.errors import ConflictError
 from app.services.flights.seen import Sortie, asked_of, records_of
 from planner.as_flown.photo_ground import PhotoGrid
+from planner.frames import LocalFrame
 from planner.tasks.flown import sortie_photos
 
 RasterKind = Literal["overlap", "gsd"]
@@ -44,7 +45,28 @@ def raster_of(sortie: Sortie, kind: RasterKind, roi: str | None) -> bytes:
     crs = (
         f"+proj=tmerc +lat_0={local.lat_deg!r} +lon_0={local.lon_deg!r} +k_0=1 +datum=WGS84 +units=m +no_defs"
     )
-    return _written(grid, kind, crs)
+    return _written(_north_up(grid, local), kind, crs)
+
+
+def _north_up(grid: PhotoGrid, local: LocalFrame) -> PhotoGrid:
+    """Cells from west to east and south to north, as every reader of rasters has them, by the nearest."""
+    rows, columns = grid.counts.shape
+    step_m, west_m, south_m = grid.step_m, grid.west_m, grid.south_m
+    east_m, north_m = west_m + columns * step_m, south_m + rows * step_m
+    corners = np.array([[west_m, south_m], [east_m, south_m], [east_m, north_m], [west_m, north_m]])
+    upright = local.north_up(corners)
+    first, last = upright.min(axis=0), upright.max(axis=0)
+    # Grids hardly turned keep their cells.
+    count = np.maximum(1, np.ceil((last - first) / step_m - 1e-6)).astype(np.int64)
+    middles = [first[k] + (np.arange(count[k]) + 0.5) * step_m for k in range(2)]
+    places = local.from_north_up(np.stack(np.meshgrid(*middles), axis=-1))
+    column, row = np.moveaxis(np.floor((places - (west_m, south_m)) / step_m).astype(np.int64), -1, 0)
+    inside = (column >= 0) & (column < columns) & (row >= 0) & (row < rows)
+    counts = np.zeros(inside.shape, dtype=grid.counts.dtype)
+    finest_m = np.full(inside.shape, np.inf, dtype=grid.finest_m.dtype)
+    counts[inside] = grid.counts[row[inside], column[inside]]
+    finest_m[inside] = grid.finest_m[row[inside], column[inside]]
+    return PhotoGrid(float(first[0]), float(first[1]), step_m, counts, finest_m)
 
 
 def _written(grid: PhotoGrid, kind: RasterKind, crs: str) -> bytes:

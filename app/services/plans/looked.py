@@ -16,7 +16,6 @@ from shapely.geometry.base import BaseGeometry
 from app.services.errors import ConflictError
 from app.services.flights.as_flown import SLIVER_M, SLIVER_M2
 from app.services.flights.seen import Sortie, judged, moment, records_of
-from planner.angles import heading_from_angle
 from planner.geojson.geometry import areal, written
 from planner.plan import Collect, Plan
 from planner.scenario import Scenario
@@ -106,7 +105,7 @@ def flown_looks(sortie: Sortie, scenario: Scenario, plan: Plan) -> list[Looked]:
             look.ground,
             since_s(look.record, look.start_s),
             since_s(look.record, look.end_s),
-            heading_from_angle(look.course_rad),
+            scenario.frame.heading_deg(look.course_rad),
         )
         for look in sortie_looks(scenario, plan, records_of(sortie))
     ]

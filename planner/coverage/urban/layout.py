@@ -15,6 +15,8 @@ Floats = NDArray[np.float64]
 
 #: Headings tried: the directions that most of the ground's edges have, so far apart, and across the first.
 HEADINGS, APART_RAD = 4, math.radians(6.0)
+#: Directions this near to the first axis are along it.
+ALONG_RAD = 1e-3
 #: Of them so many are tried in all manners, by what the first manners promise.
 BEST_HEADINGS = 2
 FIRST_MANNERS = (Manner(0.5), Manner(None, 0.0, 0.5))
@@ -24,8 +26,8 @@ MANNERS = ((0.0, 0.5), (1.0, 0.75), (2.0, 0.25))
 LEVELS, SPARED = (0.25, 0.0, -0.25), (0.0, 0.5, 1.0)
 #: Of headings those are looked at whose first manners cost no more than this part of the best.
 SECOND = 1.1
-#: Layouts that cost this close are one.
-SAME_M = 1e-6
+#: Layouts that cost this close, by part, are one.
+SAME = 1e-4
 #: Corners that one sweep costs about.
 CORNERS = 2.0
 
@@ -58,11 +60,11 @@ def cheapest(urban: UrbanArea, edges: Floats) -> Layout:
             most_m = math.inf if best is None else SECOND * best.cost_m
             layout = _layout(urban, frontier, manner, most_m)
             least_m = min(least_m, layout.cost_m)
-            best = layout if best is None else min(best, layout, key=lambda each: each.cost_m)
+            best = layout if best is None or layout.cost_m < (1.0 - SAME) * best.cost_m else best
         tried.append((least_m, k, frontier))
     if best is None:
         raise ValueError("ground without edges has no headings")
-    for _, _, frontier in sorted(tried, key=lambda each: each[:2])[:BEST_HEADINGS]:
+    for _, _, frontier in sorted(tried, key=lambda each: (round(each[0], 1), each[1]))[:BEST_HEADINGS]:
         spare = -frontier.height_m / urban.width_m % 1.0
         levels = dict.fromkeys((*LEVELS, *(0.5 - part * spare for part in SPARED)))
         manners = [Manner(None, gap, bent) for gap, bent in MANNERS]
@@ -72,7 +74,7 @@ def cheapest(urban: UrbanArea, edges: Floats) -> Layout:
             if side is frontier and manner in FIRST_MANNERS:
                 continue
             layout = _layout(urban, side, manner, best.cost_m)
-            best = layout if layout.cost_m < best.cost_m - SAME_M else best
+            best = layout if layout.cost_m < (1.0 - SAME) * best.cost_m else best
     return best
 
 
@@ -80,7 +82,8 @@ def headings(edges: Floats) -> list[float]:
     """Directions that most of the edges have, and across the first of them."""
     along = edges[:, 2:] - edges[:, :2]
     lengths_m = np.hypot(along[:, 0], along[:, 1])
-    angles_rad = np.mod(np.arctan2(along[:, 1], along[:, 0]), math.pi)
+    # From a little below 0 on: what lies along the first axis, but for rounding, is not its other way.
+    angles_rad = np.mod(np.arctan2(along[:, 1], along[:, 0]) + ALONG_RAD, math.pi) - ALONG_RAD
     # buildings have few directions among them
     angles_rad, which = np.unique(np.round(angles_rad, 9), return_inverse=True)
     weights = np.bincount(which, lengths_m)

@@ -19,6 +19,7 @@ from planner.coverage.merge import polygons_of
 from planner.coverage.survey.frame import lengthened_m
 from planner.coverage.urban.area import Building, Place, UrbanArea
 from planner.coverage.urban.free import FreeSpace, enlarged, free_space
+from planner.coverage.urban.handed import Hand
 from planner.coverage.urban.measures import Sweep
 from planner.coverage.urban.methods import SEQUENCES
 from planner.errors import InfeasibleError
@@ -81,7 +82,11 @@ def urban_passes(
     parts = sorted(polygons_of(region.area), key=lambda part: float(part.distance(Point(here))))
     for part in parts:
         urban, free = _posed(region, part, camera, height_m, airspace, level, model, here)
-        sweeps = SEQUENCES[method](urban, free, seed)
+        hand = Hand.of(urban)
+        if hand.sign != 1.0:
+            urban = hand.there(urban)
+        laid = free if hand.sign == 1.0 else free_space(urban)
+        sweeps = [hand.back(sweep) for sweep in SEQUENCES[method](urban, laid, seed)]
         ground = free.ground.buffer(EDGE_M)
         found += [pass_of(region, camera, height_m, sweep, ground) for sweep in sweeps]
         here = found[-1].end

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 from typing import Any
 
@@ -110,10 +111,17 @@ def test_segments_round_the_targets_are_drawn_once_asked_for(page: Page, service
     own = [f for f in found if f["properties"]["role"] == "segment"]
     drawn = ask(page, "segments()")
     assert sum(drawn.values()) == len(own)
-    one = next(f for f in own if f["properties"]["state"] == "open")
-    lines = one["geometry"]["coordinates"]
-    (lon0, lat0, _), (lon1, lat1, _) = lines if one["geometry"]["type"] == "LineString" else lines[0]
-    lon_deg, lat_deg = (lon0 + lon1) / 2.0, (lat0 + lat1) / 2.0
+
+    def middle(segment: dict[str, Any]) -> tuple[float, float]:
+        lines = segment["geometry"]["coordinates"]
+        (lon0, lat0, _), (lon1, lat1, _) = lines if segment["geometry"]["type"] == "LineString" else lines[0]
+        return (lon0 + lon1) / 2.0, (lat0 + lat1) / 2.0
+
+    # The one with most room round it: others lie as near to each other as pixels.
+    others = {id(f): [middle(g) for g in own if g is not f] for f in own}
+    free = [f for f in own if f["properties"]["state"] == "open"]
+    one = max(free, key=lambda f: min(math.dist(middle(f), place) for place in others[id(f)]))
+    lon_deg, lat_deg = middle(one)
     page.evaluate(f"window.swathplan.look({lon_deg}, {lat_deg}, 16)")
     x, y = on_screen(page, lon_deg, lat_deg)
     page.mouse.move(x - 3, y)

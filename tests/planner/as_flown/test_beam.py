@@ -92,7 +92,7 @@ class Flight:
         """What is credited, with the sensor on all the time."""
         scenario, plan = planned()
         lonlat = scenario.frame.to_wgs84(self.places)
-        angles = np.degrees(np.stack([self.roll, self.pitch, self.nose], axis=1))
+        angles = np.degrees(np.stack([self.roll, self.pitch, self.nose - scenario.frame.turned_rad], axis=1))
         track = [
             TrackSample(t, lon, lat, self.height_m, roll, True, nose % 360.0, pitch)
             for t, (lon, lat), (roll, pitch, nose) in zip(

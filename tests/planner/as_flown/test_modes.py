@@ -81,7 +81,7 @@ def test_the_nose_as_recorded_goes_before_the_wind() -> None:
     samples_nose: dict[float, float] = {}
     for collect in plan.collects:
         course = math.radians(90.0 - collect.heading_deg)
-        delta = course - scenario.wind.toward_rad
+        delta = course - scenario.frame.turned_rad - scenario.wind.toward_rad
         samples_nose[collect.heading_deg] = -math.degrees(math.asin(math.sin(delta) * 8.0 / 20.0))
 
     def crabbing(sample: TrackSample) -> TrackSample:

@@ -52,7 +52,7 @@ def test_shadow_is_not_seen_in_flight() -> None:
     lines = [flat.frame.to_local([p[:2] for p in c.line]).mean(axis=0) for c in plan.collects]
     regions = {region.name: np.array(region.area.centroid.coords[0]) for region in flat.regions}
     line = next(place for c, place in zip(plan.collects, lines, strict=True) if "A" in c.regions)
-    wall = line + 0.6 * (regions["A"] - line)
+    wall = flat.frame.north_up(line + 0.6 * (regions["A"] - line))
 
     def peak(e, n):
         return 380.0 * np.exp(-((e - wall[0]) ** 2 + (n - wall[1]) ** 2) / (2.0 * 80.0**2))

@@ -17,9 +17,11 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 from shapely.geometry import Polygon
+from shapely.geometry.base import BaseGeometry
 
 from planner.check import judge
 from planner.errors import ScenarioError
+from planner.frames import LocalFrame
 from planner.geojson import read_plan, read_scenario, write_plan
 from planner.geojson.sheet import arc_deg, cut, joined
 from planner.pipeline import make_plan
@@ -134,7 +136,8 @@ def in_form(form: str, west: float, east: float, south: float, north: float) -> 
 )
 def test_every_way_of_writing_is_the_same_shape(west: float, east: float, south: float, role: str) -> None:
     """Cut, going on beyond 180°, beyond −180° or jumping: one shape, with the geodesic area."""
-    shapes = []
+    shapes: list[BaseGeometry] = []
+    first: LocalFrame | None = None
     for form in FORMS:
         geometry = in_form(form, west, east, south, south + 0.01)
         more = {"height_m": 10.0} if role == "obstacle" else {}
@@ -153,13 +156,15 @@ def test_every_way_of_writing_is_the_same_shape(west: float, east: float, south:
         if role in ("no_fly", "obstacle"):
             document["features"][1]["geometry"]["coordinates"] = [179.0, south]
         scenario = read_scenario(document)
+        shape = {
+            "roi": scenario.regions[0].area,
+            "area": scenario.area,
+            "no_fly": scenario.no_fly[0].area if scenario.no_fly else None,
+            "obstacle": scenario.obstacles[0].area if scenario.obstacles else None,
+        }[role]
+        first = first or scenario.frame
         shapes.append(
-            {
-                "roi": scenario.regions[0].area,
-                "area": scenario.area,
-                "no_fly": scenario.no_fly[0].area if scenario.no_fly else None,
-                "obstacle": scenario.obstacles[0].area if scenario.obstacles else None,
-            }[role]
+            shapely.transform(shape, lambda at, to=first, of=scenario.frame: to.to_local(of.to_wgs84(at)))
         )
     wanted_m2 = abs(
         GEOD.geometry_area_perimeter(

@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 
 from planner.check import judge
 from planner.errors import Finding, ScenarioError
+from planner.frames import LocalFrame
 from planner.geojson import read_scenario
 from planner.pipeline import make_plan
 from planner.scenario import Scenario
@@ -166,7 +167,7 @@ def test_a_radars_niirs_decides_its_height_and_its_resolution_is_a_gsd() -> None
 def test_over_terrain_quality_is_that_on_the_lowest_ground_and_bounds_that_on_the_highest() -> None:
     """A slope of one in five across a region: the level lies under the wish over its foot."""
     frame = read_scenario(small()).frame
-    slope = {"t": raster(lambda e, n: 0.2 * e, frame)}
+    slope = {"t": raster(lambda e, n: 0.2 * e, LocalFrame(frame.lon_deg, frame.lat_deg))}
     scenario = read_scenario(document({"gsd_m": 0.04}, terrain="t"), slope)
     (region, _) = scenario.regions
     assert scenario.terrain is not None

@@ -305,12 +305,13 @@ def test_corridor_and_target_become_areas() -> None:
 
 
 def test_headings_are_true() -> None:
-    """An approach heading east of north is that angle in the frame, convergence included."""
+    """An approach heading is that angle from the frame's axes, as the frame lies, convergence included."""
     scenario = read_scenario(small(feature("T", "roi", "Point", [0.01, 0.01], approach_deg=[90.0, 0.0])))
     approach = scenario.regions[2].approach_rad
     assert approach is not None
-    assert approach[0] == pytest.approx(0.0, abs=1e-5)
-    assert approach[1] == pytest.approx(math.pi / 2, abs=1e-5)
+    turned_rad = scenario.frame.turned_rad
+    assert math.remainder(approach[0] + turned_rad, math.tau) == pytest.approx(0.0, abs=1e-5)
+    assert math.remainder(approach[1] + turned_rad, math.tau) == pytest.approx(math.pi / 2, abs=1e-5)
 
 
 def test_region_no_pass_can_see_is_found_without_planning() -> None:

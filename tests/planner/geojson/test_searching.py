@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from shapely.affinity import rotate
 
 from planner.airspace.terrain import Terrain
 from planner.errors import InfeasibleError, ScenarioError
@@ -216,8 +217,11 @@ def test_ground_of_what_drifts_is_where_it_may_be():
     """Without area and regions the ground reaches from where it was to where it may be in the end."""
     asked = document(KNOWN, search={"drift": DRIFT | {"elapsed_s": 1000.0}}, vehicle=WING | {"energy_wh": 30})
     asked["features"] = asked["features"][1:]
-    (region,) = read_valid(asked).regions
-    west, south, east, north = region.area.bounds
+    scenario = read_valid(asked)
+    (region,) = scenario.regions
+    west, south, east, north = rotate(
+        region.area, scenario.frame.turned_rad, origin=(0.0, 0.0), use_radians=True
+    ).bounds
     usable_s = 30 * 0.8 * 3600 / 120
     assert east - west == pytest.approx(600.0 + 0.5 * usable_s, rel=0.01)
     assert north - south == pytest.approx(600.0, rel=0.01)
@@ -304,7 +308,9 @@ def test_a_raster_is_what_the_ground_is_worth():
     terrain = raster([[1.0, 1.0, 1.0, 1.0]] * 2 + [[5.0, 5.0, 5.0, 5.0]] * 2)
     scenario = read_scenario(document(importance_raster="worth"), {"worth": terrain})
     local = scenario.importance.raster
-    south, north = local.scores[1, 1], local.scores[-2, 1]
+    places = scenario.frame.to_local([lonlat(600.0, 10.0), lonlat(600.0, 890.0)])
+    columns, rows = ((places - (local.west_m, local.south_m)) // local.cell_m).astype(int).T
+    south, north = local.scores[rows, columns]
     assert south == pytest.approx(1.0, abs=0.1)
     assert north > 3.0
 

@@ -207,7 +207,9 @@ def test_a_pass_along_the_wind_costs_less_than_one_against_it() -> None:
     """Downwind at V + W, upwind at V - W: metres through the air for the same line."""
     scenario = open_ground(wind={"speed_m_s": 5.0, "from_deg": 270.0})
     legs = legs_in(scenario, never)
-    east, west = flown((0.0, 0.0), 0.0, 600.0), flown((600.0, 0.0), math.pi, 600.0)
+    along_rad = scenario.frame.direction_rad(90.0)
+    behind = (600.0 * math.cos(along_rad), 600.0 * math.sin(along_rad))
+    east, west = flown((0.0, 0.0), along_rad, 600.0), flown(behind, along_rad + math.pi, 600.0)
     assert legs.pass_m(east) == pytest.approx(600.0 * 20.0 / 25.0, rel=1e-3)
     assert legs.pass_m(west) == pytest.approx(600.0 * 20.0 / 15.0, rel=1e-3)
 
@@ -220,8 +222,10 @@ def test_terminals_keep_their_directions() -> None:
             each["properties"]["heading_deg"] = 90.0
     scenario = read_scenario(document)
     legs = legs_of(scenario)
-    assert anchor(scenario.start).angle_rad == pytest.approx(0.0, abs=1e-3)
-    behind = np.array([scenario.start.position[0] - 1000.0, scenario.start.position[1], math.pi])
+    along_rad = scenario.frame.direction_rad(90.0)
+    assert anchor(scenario.start).angle_rad == pytest.approx(along_rad, abs=1e-3)
+    ahead = np.array([math.cos(along_rad), math.sin(along_rad)])
+    behind = np.array([*(np.array(scenario.start.position) - 1000.0 * ahead), along_rad + math.pi])
     free = shortest_between(Anchor(*scenario.start.position), Anchor(*behind), radius_of(scenario)).length_m
     assert legs.between_m(None, behind) > free + math.pi * radius_of(scenario) - 1.0
 

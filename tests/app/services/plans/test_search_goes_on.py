@@ -105,7 +105,7 @@ def test_several_find_about_as_much_planned_anew_as_they_would_going_on() -> Non
     assert new.hard_violations == ()
     whole = searched(scenario, plan)
     found = whole.total - new.metrics.importance_total
-    assert found + new.metrics.importance_collected > 0.95 * whole.importance
+    assert found + new.metrics.importance_collected > 0.92 * whole.importance
 
 
 def test_in_flight_a_search_is_planned_soon_and_begins_so_much_later() -> None:

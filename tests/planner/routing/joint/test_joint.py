@@ -196,7 +196,7 @@ def test_allowed_approach_headings_are_kept() -> None:
     scenario = read_scenario(document)
     route = joint_route(scenario).route
     chosen = next(p for p in route.passes if p.regions == ("A",))
-    assert chosen.angle_rad == pytest.approx(0.0, abs=1e-4)
+    assert scenario.frame.heading_deg(chosen.angle_rad) == pytest.approx(90.0, abs=0.01)
 
 
 def ring(*lon_lat: tuple[float, float]) -> list[list[list[float]]]:

@@ -105,11 +105,16 @@ def test_never_better_than_the_best_order_and_whole_regions_stay(
 def test_two_passes_are_parted_by_what_lies_between() -> None:
     """Out along one pass, the region beyond, back along the other: the best of all, by true legs."""
     scenario = read_scenario(small())
-    east_m, north_m = scenario.start.position
-    rows = [
+    frame = scenario.frame
+    east_m, north_m = frame.north_up(scenario.start.position)
+    upright = [
         (east_m + 500.0, north_m + 200.0, 0.0, "A"),
         (east_m + 1500.0, north_m - 200.0, math.pi, "A"),
         (east_m + 4000.0, north_m + 200.0, -math.pi / 2.0, "B"),
+    ]
+    rows = [
+        (*frame.from_north_up([east, north]).tolist(), angle_rad - frame.turned_rad, region)
+        for east, north, angle_rad, region in upright
     ]
     passes = made(rows)
     legs = legs_in(scenario, never)
