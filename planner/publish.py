@@ -368,5 +368,7 @@ def assemble(
         warnings=warnings,
         photos=photos,
         cameras=plan_cameras(suite),
-        wind=PlanWind(model.wind.speed_m_s, chart.frame.heading_deg(model.wind.toward_rad + math.pi)),
+        wind=PlanWind(
+            model.wind.speed_m_s, round(chart.frame.heading_deg(model.wind.toward_rad + math.pi), 9) % 360.0
+        ),
     )
