@@ -18,8 +18,9 @@ from planner.errors import InfeasibleError
 from planner.fleet.assignment import Assignment, Trip
 from planner.fleet.auto.build import tables
 from planner.fleet.exact import Shared, nearly_best
-from planner.fleet.kept import kept, shortest
+from planner.fleet.kept import shortest
 from planner.fleet.problem import Problem
+from planner.fleet.schedule import cost_of as estimated
 from planner.fleet.schedule import worth_of
 from planner.tasks.fleet.barred import BarredError
 from planner.tasks.fleet.crews import Crew
@@ -34,9 +35,9 @@ from planner.wishes import Objective
 #: Of more jobs neighbours are too many.
 MOST_JOBS = 20
 #: So often a better neighbour is gone to, and of each one's neighbours so many are routed, and flown.
-STEPS, ROUTED, FLOWN = 6, 12, 4
+STEPS, ROUTED, FLOWN = 6, 30, 10
 #: Estimates of neighbours may be so much over what the best takes, before and after they are routed.
-FAR, NEAR = 0.03, 0.01
+FAR, NEAR = 0.06, 0.05
 #: Of ways to share jobs out so many are looked at; half of them or more are the same but for who flies what.
 MOST_SHARES = 100
 #: A neighbour is better by this part at least.
@@ -99,12 +100,10 @@ def bettered(
         best, flown, cost = found
     if best == begun:
         return None
-    told = kept(search.problem, dict(enumerate(best)))
-    if told is None:
-        return None
-    worth = worth_of(search.problem, told.trips)
-    bound = min(search.least - worth, told.cost) if math.isfinite(search.least) else None
-    return Bettered(flown, search.problem, replace(told, left_out=assigned.left_out, bound=bound))
+    trips = tuple(trip for trip in search.trips(best) if trip is not None)
+    cost = estimated(search.problem, trips)
+    bound = min(search.least - worth_of(search.problem, trips), cost) if math.isfinite(search.least) else None
+    return Bettered(flown, search.problem, Assignment(trips, assigned.left_out, "feasible", cost, bound))
 
 
 def _suits(crews: Sequence[Crew], jobs: Sequence[Job], assigned: Assignment) -> bool:
@@ -233,9 +232,13 @@ class _Search:
                 self._routed[key] = thought_s(self.crews[member], [(self.jobs[n], 0) for n in order])
         return self._routed[key]
 
+    def trips(self, orders: Shared) -> list[Trip | None]:
+        """The flights of an assignment as they are estimated; None for one over a limit."""
+        return [shortest(self.problem, m, order) for m, order in enumerate(orders) if order]
+
     def _flown(self, orders: Shared) -> tuple[Sortie, ...] | None:
         """The flights of an assignment on one clock; None where there are none within the limits."""
-        trips = [shortest(self.problem, m, order) for m, order in enumerate(orders) if order]
+        trips = self.trips(orders)
         try:
             errands = [self.hand.errand(trip) for trip in trips if trip is not None]
             if len(errands) < len(trips):

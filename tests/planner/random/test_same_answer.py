@@ -162,7 +162,7 @@ def example(name: str) -> dict[str, Any]:
 
 
 #: Those of each run; others take some seconds each.
-RUN = ("city-block", "port-windows")
+RUN = ("city-block", "port-windows", "three-aircraft")
 MORE = ("fire-front", "field-survey", "inspection")
 ASKED: dict[str, Callable[[], dict[str, Any]]] = {
     name: partial(example, name) for name in (RUN + MORE if CHOSEN == "all" else RUN)
