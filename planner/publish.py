@@ -16,6 +16,7 @@ from shapely.geometry.base import BaseGeometry
 from planner.airspace.airspace import Airspace, Level
 from planner.airspace.shapes import DiscShape, banded_shapes, without_holes
 from planner.airspace.terrain import Ground
+from planner.airspace.values import Wind
 from planner.airspace.zones import keep_out
 from planner.flown import flown_path, line_between
 from planner.frames import LocalFrame
@@ -317,6 +318,13 @@ def _zone(chart: Chart, name: str, area: Polygon) -> ZonePolygon:
     return ZonePolygon(name, chart.lonlats(corners))
 
 
+def _plan_wind(wind: Wind, frame: LocalFrame) -> PlanWind:
+    """In still air from nowhere, so from north, however the frame lies."""
+    if wind.speed_m_s == 0.0:
+        return PlanWind()
+    return PlanWind(wind.speed_m_s, round(frame.heading_deg(wind.toward_rad + math.pi), 9) % 360.0)
+
+
 def assemble(
     name: str,
     chart: Chart,
@@ -368,7 +376,5 @@ def assemble(
         warnings=warnings,
         photos=photos,
         cameras=plan_cameras(suite),
-        wind=PlanWind(
-            model.wind.speed_m_s, round(chart.frame.heading_deg(model.wind.toward_rad + math.pi), 9) % 360.0
-        ),
+        wind=_plan_wind(model.wind, chart.frame),
     )

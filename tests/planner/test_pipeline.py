@@ -97,6 +97,8 @@ def test_the_wind_of_a_plan_is_its_scenario_s() -> None:
     assert (read.speed_m_s, read.from_deg) == (document["wind"]["speed_m_s"], document["wind"]["from_deg"])
     del document["wind"]
     assert read_plan(document).wind == PlanWind()
+    # However the frame lies that it was planned in.
+    assert make_plan(read_scenario(small())).wind == PlanWind()
 
 
 def test_photos_and_cameras_survive_geojson() -> None:
