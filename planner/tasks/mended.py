@@ -91,7 +91,7 @@ def _put_in(
     starts = np.array([*(each.start for each in passes), there])
     best: tuple[float, Passes] | None = None
     for tried, (at, laid) in enumerate(moves.seeing(ground, ends, starts, roomy=roomy)):
-        if tried == (MOST_TRIED if best is None else TRIED):
+        if tried >= (MOST_TRIED if best is None else TRIED):
             break
         # Where no way leads from the start to it and on to the end, none is looked for elsewhere.
         if moving.barred(laid):

@@ -237,7 +237,8 @@ def _unseen(asked: Seeing, region: Region, left: BaseGeometry, *, least: bool = 
         "hard-zone",
         region.name,
         f"{most}{_percent(share)} of it ({left.area:.0f} m²) is seen by no pass that keeps out of hard "
-        f"{'zone' if len(names) == 1 else 'zones'} {which} with {airspace.clearance_m:g} m of clearance",
+        f"{'zone' if len(names) == 1 else 'zones'} {which} with {airspace.clearance_m:g} m of clearance "
+        f"and {TRANSIT_MARGIN_M:g} m that lines keep besides",
         ", or ".join(fixes),
         (middle.x, middle.y),
     )
