@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from planner.airspace.surroundings import Surroundings
 from planner.coverage import decompose
 from planner.coverage.merge import MergedRegion, polygons_of
+from planner.coverage.strips.headings import first_visit_rad
 from planner.coverage.strips.neighbourhood import neighbourhoods
 from planner.coverage.strips.straight import Estimate, straight_parts
 from planner.coverage.strips.sweeps import Side, Sweep, sweeps
@@ -139,16 +140,17 @@ def visits(region: MergedRegion) -> tuple[MergedRegion, ...]:
 def of_visit(region: MergedRegion, angles_rad: Floats, etas: Floats) -> tuple[Floats, Floats]:
     """Of headings and offsets, those meant for this visit.
 
-    Each visit has its share of the circle, the first centred on the region's long axis; where fewer headings
-    are allowed than visits asked for, each has its share of the offsets instead, so that no line is flown
-    twice the same way.
+    Each visit has its share of the circle, where fewer headings are allowed than visits asked for its share
+    of the offsets instead, so that no line is flown twice the same way.
     """
     if region.visit is None:
         return angles_rad, etas
     k, count = region.visit
     if region.approach_rad is None:
         share_rad = math.tau / count
-        off_rad = np.mod(angles_rad - _long_axis_rad(region) - k * share_rad + math.pi, math.tau) - math.pi
+        off_rad = (
+            np.mod(angles_rad - first_visit_rad(region.area) - k * share_rad + math.pi, math.tau) - math.pi
+        )
         return angles_rad[np.abs(off_rad) <= SHARE_USED * share_rad / 2.0], etas
     allowed = np.unique(np.round(np.mod(np.asarray(region.approach_rad), math.tau), 9))
     if len(allowed) >= count:
@@ -211,10 +213,3 @@ def _ground(region: MergedRegion) -> shapely.Polygon:
     """What really has to be seen where that is one piece: the closing of outlines is the paper's."""
     pieces = polygons_of(shapely.union_all(list(region.originals), grid_size=1e-6))
     return pieces[0] if len(pieces) == 1 else region.area
-
-
-def _long_axis_rad(region: MergedRegion) -> float:
-    corners = shapely.get_coordinates(shapely.minimum_rotated_rectangle(region.area))[:3]
-    edges = np.diff(corners, axis=0)
-    longest = edges[int(np.argmax(np.hypot(*edges.T)))]
-    return math.atan2(longest[1], longest[0])

@@ -12,6 +12,7 @@ import math
 from collections.abc import Callable
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 from shapely.geometry import Polygon
 
@@ -27,6 +28,8 @@ Held = Callable[[Floats], Floats]
 SAME_RAD = 1e-7
 #: Widths that differ by less than this part of them are equally narrow: the longer edge decides.
 AS_NARROW = 1e-6
+#: Regions so many times as long as wide have a long side.
+LONG = 1.2
 #: Steps in which the width is looked at between edges, and halvings that find a break of the lane count.
 BREAK_STEP_RAD = math.radians(1.0)
 HALVINGS = 40
@@ -42,6 +45,23 @@ def anchor_rad(area: Polygon) -> float:
     narrow = across_m <= across_m.min() * (1.0 + AS_NARROW)
     longest = int(np.argmax(np.where(narrow, np.hypot(*edges.T), 0.0)))
     return float(directions_rad[longest])
+
+
+def first_visit_rad(area: Polygon) -> float:
+    """The heading that the share of a region's first visit is centred on, of headings shared among visits.
+
+    Along its long side; where it is about as wide, as a place is, towards the middle of the scenario, which
+    is where the frame has its origin: the same whatever is north, and whatever hand all is drawn by.
+    """
+    corners = shapely.get_coordinates(shapely.minimum_rotated_rectangle(area))[:3]
+    edges = np.diff(corners, axis=0)
+    lengths_m = np.hypot(*edges.T)
+    inward_m = -shapely.get_coordinates(area.centroid)[0]
+    heading_m = inward_m
+    if lengths_m.max() > LONG * lengths_m.min() or np.hypot(*inward_m) < lengths_m.max():
+        longest_m = edges[int(np.argmax(lengths_m))]
+        heading_m = longest_m if longest_m @ inward_m >= 0.0 else -longest_m
+    return math.atan2(heading_m[1], heading_m[0])
 
 
 def grid(area: Polygon, step_rad: float) -> Floats:

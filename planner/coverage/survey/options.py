@@ -15,7 +15,7 @@ from planner.coverage.lanes_kernels import EXACT_UP_TO, STRIDES, VARIANTS, lane_
 from planner.coverage.lines import NO_ROOM_M, judge_lines, poses_of, roomy
 from planner.coverage.merge import MergedRegion
 from planner.coverage.reorder_kernels import reordered
-from planner.coverage.strips.headings import anchor_rad
+from planner.coverage.strips.headings import first_visit_rad
 from planner.coverage.survey.gaps import photographed
 from planner.coverage.survey.lanes import STATES, Lanes, Survey, lanes_at
 from planner.coverage.turns_kernels import ends_of
@@ -170,7 +170,7 @@ def _of_visit(region: MergedRegion, angles_rad: Floats, etas: Floats) -> tuple[F
     k, count = region.visit
     if region.approach_rad is None:
         share_rad = math.pi / count
-        away_rad = np.mod(angles_rad - anchor_rad(region.area) - k * share_rad + math.pi / 2.0, math.pi)
+        away_rad = np.mod(angles_rad - first_visit_rad(region.area) - k * share_rad + math.pi / 2.0, math.pi)
         return angles_rad[np.abs(away_rad - math.pi / 2.0) <= SHARE_USED * share_rad / 2.0], etas
     last = 1.0 + 1e-9 if k == count - 1 else (k + 1) / count - 1e-9
     return angles_rad, etas[(etas >= k / count) & (etas < last)]

@@ -6,7 +6,7 @@ the tour takes one of each at the least whole length, exactly over the order for
 1. A coarse grid of angles and offsets; Dubins lengths between all options, with what going round threat
    discs adds; dynamic programming over subsets of regions and last options, or local search (``large``).
 2. For the best order with each region last, finer grids round the chosen options, halving the step, with a
-   shortest path through the layers of options.
+   shortest path through the layers of options; the best is fitted to whatever may lie round each (``freed``).
 3. Costs between options are estimates where discs or zones are in the way: the legs of the tours found are
    flown in earnest, their true costs fed back (``chain``), and the tours compared by true cost.
 4. Passes of one region are parted where others fit between (``split``), and passes added for ground that
@@ -37,6 +37,7 @@ from planner.progress import Progress, Stop, in_time, never, raise_if, silent
 from planner.route import CollectPass, Route, Terminal
 from planner.routing import tour
 from planner.routing.joint.chain import from_start, layers_of, to_end, true_choice
+from planner.routing.joint.freed import freed
 from planner.routing.joint.shared import Exchange
 from planner.routing.joint.split import split_passes
 from planner.routing.joint.tours import Choice, Tours
@@ -64,6 +65,9 @@ TRUE_SOLVES = 12
 FITTED_TOURS, UNLIKE_RAD = 5, math.radians(2.0)
 #: Tours made of what the others have chosen of each target, and fitted again.
 CROSSED_TOURS = 2
+#: Tours of so many regions at most are freed so often, over options at this step and these offsets.
+MOST_FREED, FREED_ROUNDS = 30, 4
+FREED_STEP_RAD, FREED_ETAS = math.radians(5.0), np.linspace(0.0, 1.0, 5)
 #: Tours refined to costs this close are one.
 SAME_M = 1e-3
 #: A tour that costs this much more than was thought is chosen anew.
@@ -215,10 +219,29 @@ def _route(seen: Visible, search: Search) -> tuple[float, tuple[CollectPass, ...
     if len(seen.targets) > 1:
         crossed = sorted(tours.crossed(refined + fitted), key=lambda choice: choice.cost_m)
         fitted += [tours.fitted(choice) for choice in crossed[:CROSSED_TOURS] if not search.enough()]
+    if len(seen.targets) <= MOST_FREED and not search.enough():
+        fitted += _freed(tours, refined + fitted, search)
     cost_m, passes = _truest(tours, refined + fitted, search)
     cost_m, passes = split_passes(cost_m, passes, search.legs, search.stop, search.enough)
     more = search.complete(passes, search.legs)
     return (cost_m, passes) if more is passes else (search.legs.tour_m(more), more)
+
+
+def _freed(tours: Tours, choices: list[Choice], search: Search) -> list[Choice]:
+    """What the cheapest tour becomes where each place is fitted to all that may lie round it."""
+    choice = min(choices, key=lambda choice: choice.cost_m)
+    wide = {}
+    for number in choice.order:
+        raise_if(search.stop)
+        wide[number] = tours.targets[number].coarse(FREED_STEP_RAD, FREED_ETAS)
+    found: list[Choice] = []
+    for _ in range(FREED_ROUNDS):
+        free = freed(tours, choice, wide)
+        if search.enough() or not free.cost_m < choice.cost_m - SAME_M:
+            break
+        choice = tours.fitted(free)
+        found.append(choice)
+    return found
 
 
 def _truest(tours: Tours, choices: list[Choice], search: Search) -> tuple[float, tuple[CollectPass, ...]]:

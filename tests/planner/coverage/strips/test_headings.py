@@ -10,9 +10,9 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely import affinity
-from shapely.geometry import Polygon
+from shapely.geometry import Point, Polygon
 
-from planner.coverage.strips.headings import anchor_rad, grid, telling
+from planner.coverage.strips.headings import anchor_rad, first_visit_rad, grid, telling
 from tests.planner.coverage.shapes import box
 
 SWATH_M = 100.0
@@ -105,3 +105,18 @@ def test_noise_in_the_last_digits_does_not_move_the_grid() -> None:
         noisy = Polygon(ring + rng.uniform(-1e-4, 1e-4, ring.shape))
         off = math.remainder(anchor_rad(noisy) - first, math.radians(10.0))
         assert abs(off) < 1e-5
+
+
+@given(st.floats(1.3, 5.0), st.floats(-3.0, 3.0), st.floats(-math.pi, math.pi), st.booleans())
+@settings(deadline=None, max_examples=30)
+def test_visits_share_headings_as_the_scenario_lies(
+    long: float, lies_rad: float, angle_rad: float, mirrored: bool
+) -> None:
+    """Turned about the scenario's middle, or mirrored, the first visit's heading turns with a region."""
+    oblong = box(100.0 * long, 100.0, lies_rad)
+    for shape in (oblong, Point(3000.0, 1000.0).buffer(0.5, quad_segs=1)):
+        turned = affinity.rotate(shape, angle_rad, origin=(0, 0), use_radians=True)
+        wanted_rad = first_visit_rad(shape) + angle_rad
+        if mirrored:
+            turned, wanted_rad = affinity.scale(turned, yfact=-1.0, origin=(0, 0)), -wanted_rad
+        assert abs(math.remainder(first_visit_rad(turned) - wanted_rad, math.tau)) < 1e-6
