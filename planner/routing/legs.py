@@ -27,7 +27,8 @@ Floats = NDArray[np.float64]
 
 #: Lines are looked at every so many metres for what of them lies in soft threats.
 SAMPLE_M = 20.0
-#: Runs from the start that lines are sought behind, where zones make the first ones longer than they look.
+#: Runs from the start that lines are sought behind, where zones make the first ones longer than they look;
+#: all of them where those enter soft threats.
 MOST_RUNS = 3
 #: A turn costs as much as this many metres of way, where the weights are equal.
 TURN_M = 100.0
@@ -55,6 +56,8 @@ class Legs:
         self._objective = objective
         self._risk = Risk.of(airspace.threats, objective, level.height_m)
         self._known: dict[tuple[Anchor, Anchor], float] = {}
+        #: Ends of lines that enter soft threats.
+        self._inside: set[tuple[Anchor, Anchor]] = set()
 
     def cost_m(self, start: Anchor, goal: Anchor) -> float:
         """From one anchor to another; inf where there is no line."""
@@ -81,11 +84,14 @@ class Legs:
         fastest = model.airspeed_m_s / (model.airspeed_m_s + model.wind.speed_m_s)
         least_m = fastest * dubins_lengths(begins, np.ascontiguousarray(goals), model.turn_radius_m)
         run_m = start.run_m * np.asarray(model.air_factor(begins[:, 2]), dtype=np.float64)
-        best_m = math.inf
+        best_m, clear = math.inf, False
         for tried, k in enumerate(np.argsort(run_m + least_m, kind="stable")):
-            if run_m[k] + least_m[k] >= best_m or (tried >= MOST_RUNS and math.isfinite(best_m)):
+            if run_m[k] + least_m[k] >= best_m or (tried >= MOST_RUNS and clear):
                 break
-            best_m = min(best_m, float(run_m[k]) + self.cost_m(_pose(begins[k]), goal))
+            begin = _pose(begins[k])
+            found_m = float(run_m[k]) + self.cost_m(begin, goal)
+            if found_m < best_m:
+                best_m, clear = found_m, (begin, goal) not in self._inside
         return best_m
 
     def inner_m(self, passes: Sequence[CollectPass]) -> float:
@@ -135,7 +141,10 @@ class Legs:
         if self._model.wind.speed_m_s > 0.0:
             cost_m = self._model.airspeed_m_s * self._model.duration_s(path)
         if len(self._soft) and not self._zones.clear(path):
-            cost_m += risk_m(path.sample(SAMPLE_M)[:, :2].copy(), self._soft)
+            inside_m = risk_m(path.sample(SAMPLE_M)[:, :2].copy(), self._soft)
+            if inside_m > 0.0:
+                self._inside.add((start, goal))
+            cost_m += inside_m
         return cost_m + turns_m([path], self._objective)
 
 

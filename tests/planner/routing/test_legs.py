@@ -17,10 +17,12 @@ from planner.check import line_s
 from planner.dubins.words import shortest_between
 from planner.errors import InfeasibleError
 from planner.geojson import read_scenario
+from planner.profile.ends import with_run
 from planner.progress import never
 from planner.route import Anchor, CollectPass
 from planner.routing.legs import Legs, anchor, leaves
 from planner.scenario import Scenario
+from planner.tasks.setting import Setting
 from planner.transit import tangent
 from planner.transit.tangent import connect
 from tests.planner.scenarios import feature, small
@@ -237,3 +239,33 @@ def test_the_order_of_passes_matters_to_the_tour() -> None:
     legs = legs_of(OPEN)
     best = min(itertools.permutations(row), key=legs.tour_m)
     assert list(best) == row
+
+
+@given(
+    st.lists(st.tuples(st.floats(-900.0, 900.0), st.floats(-900.0, 900.0)), min_size=2, max_size=4),
+    st.builds(Anchor, metre, metre, st.floats(-3.0, 3.0)),
+    st.floats(0.0, 359.0),
+)
+@settings(deadline=None, max_examples=15)
+def test_from_the_start_no_run_is_missed_that_keeps_out_of_threats(
+    middles: list[tuple[float, float]], goal: Anchor, from_deg: float
+) -> None:
+    """Where runs that look shortest enter soft threats all are tried: none costs less by more than a turn."""
+    threats = [
+        feature(f"M{k}", "threat", "Point", [-0.02 + east_m / 111e3, -0.02 + north_m / 111e3])
+        for k, (east_m, north_m) in enumerate(middles)
+    ]
+    for each in threats:
+        each["properties"] |= {"model": "missile", "radius_m": 300.0}
+    scenario = read_scenario(small(*threats, wind={"speed_m_s": 8.0, "from_deg": from_deg}))
+    setting = Setting.of(scenario)
+    model = setting.model
+    start, end = with_run(setting.ends, setting.level.height_m, model)
+    legs = Legs(setting.airspace, setting.level, model, scenario.objective, (start, end), never)
+    behind = np.array([start.after_run(angle_rad) for angle_rad in start.runs_rad])
+    ways_m = [
+        start.run_m * float(model.air_factor(pose[2])) + legs.cost_m(Anchor(*pose.tolist()), goal)
+        for pose in behind
+    ]
+    at = np.array([goal.east_m, goal.north_m, goal.angle_rad])
+    assert legs.between_m(None, at) <= min(ways_m) + 2.0 * math.pi * model.turn_radius_m
