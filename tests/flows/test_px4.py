@@ -43,7 +43,7 @@ SPEEDUP = 12.0
 
 #: What the simulator's aeroplane is; margins for one that rolls by 1° (standard deviation): docs/px4.md.
 VEHICLE = {"autopilot": "px4", "airspeed_m_s": 14.0, "min_turn_radius_m": 100.0}
-MARGINS = {"pointing_margin_deg": 2.0, "position_margin_m": 5.0}
+MARGINS = {"pointing_margin_deg": 2.5, "position_margin_m": 5.0}
 
 
 @cache
@@ -81,7 +81,7 @@ async def test_without_margins_its_rolling_costs_ground(tmp_path: Path) -> None:
     flight = await flown(tmp_path, *planned())
     flight.tell("1", "PX4", "none", "no margins, 100 m")
     assert max(flight.cross_track_p95_m) < 3.0
-    assert flight.least_seen > 0.96
+    assert 0.8 < flight.least_seen < 0.995
     assert min(flight.level.fraction.values()) > 0.995
 
 
