@@ -202,6 +202,10 @@ class VehicleOut(BaseModel):
     pending: bool = Field(description="An upload's outcome is unknown; it is read back on reconnection.")
     plan_id: str | None = Field(description="The plan it holds, read back and compared.")
     sent: SentOut | None = Field(description="The mission last sent from here; null: none, or cleared.")
+    mission_lands: bool | None = Field(
+        description="Whether the mission it holds has a landing, by which alone a fixed wing is landed by "
+        "`land`; null: what it holds is not known without reading it."
+    )
     flight_id: str | None = Field(description="The flight being recorded.")
     forward: list[ForwardOut] = Field(description="Other ground stations its link is forwarded to.")
     command: CommandOut | None = Field(description="The flight command given last from here.")
@@ -244,6 +248,7 @@ class VehicleOut(BaseModel):
             pending=vehicle.pending,
             plan_id=vehicle.held.plan_id if vehicle.held else None,
             sent=SentOut.of(vehicle),
+            mission_lands=vehicle.mission_lands,
             flight_id=vehicle.flight_id,
             forward=ForwardsOut.of(vehicle).forward,
             command=None if vehicle.book.latest is None else CommandOut.of(vehicle, vehicle.book.latest),

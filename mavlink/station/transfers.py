@@ -180,6 +180,11 @@ class MissionTransfers(ABC):
             return None
         return self._read_mission[1]
 
+    @property
+    def mission_known(self) -> tuple[MissionItem, ...] | None:
+        """The mission as far as it is known without asking; None where it would have to be read."""
+        return self._held_mission
+
     async def count_held(self) -> tuple[int, int | None]:
         """How many items the vehicle's mission has, and the vehicle's id of it; None where it gives none.
 

@@ -238,10 +238,13 @@ def _reason(shape: Polygon, frame: LocalFrame | None) -> str:
     """Why a polygon is not valid, with the place in degrees."""
     reason = explain_validity(shape)
     text, bracket, place = reason.partition("[")
-    if frame is None or not bracket:
+    if not bracket:
         return reason
-    lon_deg, lat_deg = frame.to_wgs84([float(value) for value in place.rstrip("]").split()])
-    return f"{text}[{lon_deg:.7f} {lat_deg:.7f}]"
+    lon_deg, lat_deg = (float(value) for value in place.rstrip("]").split())
+    if frame is not None:
+        lon_deg, lat_deg = frame.to_wgs84([lon_deg, lat_deg])
+    words = "its boundary crosses or touches itself" if text.endswith("elf-intersection") else text
+    return f"{words} at {lon_deg:.7f}, {lat_deg:.7f}"
 
 
 def _to_local(sheet: _Sheet, frame: LocalFrame) -> Polygon | MultiPolygon:

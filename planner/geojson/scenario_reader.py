@@ -90,10 +90,22 @@ def read_scenario(document: Any, terrains: Terrains | None = None) -> Scenario:
 
 
 def _read(document: Any, findings: Findings, terrains: Terrains | None) -> Scenario | None:
+    if isinstance(document, dict) and document.get("fileType") == "Plan":
+        findings.error(
+            "scenario", "is-a-mission", "is a mission of QGroundControl, not a scenario",
+            "Upload it as it is, or turn what its surveys ask for into regions: swathplan import, or "
+            "POST /api/v1/scenarios/import.",
+        )  # fmt: skip
+        return None
     if not isinstance(document, dict) or document.get("type") != "FeatureCollection":
         findings.error(
             "scenario", "not-a-feature-collection", "is not a GeoJSON FeatureCollection",
             'Send {"type": "FeatureCollection", "features": [...], ...}.',
+        )  # fmt: skip
+        return None
+    if "scenario_hash" in document and "metrics" in document:
+        findings.error(
+            "scenario", "is-a-plan", "is a plan, not a scenario", "Send the scenario that it was made of.",
         )  # fmt: skip
         return None
     raw_features = document.get("features")

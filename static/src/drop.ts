@@ -1,14 +1,18 @@
-/** Take a file from a drop on the page or from the file dialog: a scenario, or regions or a mission of another program. */
+/** Take a file from a drop on the page or from the file dialog: a scenario, or regions, a mission or a raster of another program. */
 import { choose } from "./dialog";
 import { byId } from "./dom";
 import { mayLeave } from "./leaving";
 import { isMissionFile, openMission } from "./mission_file";
-import { news, report } from "./notices";
+import { attempt, news, report } from "./notices";
 import { importRegions, isRegionFile } from "./regions";
 import { ROLE_WORDS } from "./role_words";
 import { parseScenario, scenarios } from "./scenario";
+import { sendRaster } from "./terrain";
 
 const GEOMETRY = /^(Feature|(Multi)?(Point|LineString|Polygon)|GeometryCollection)$/;
+/** Names of rasters, and of those that hold nothing but heights. */
+const RASTER_FILES = /\.(tiff?|hgt|dt[012])$/i;
+const ELEVATION_FILES = /\.(hgt|dt[012])$/i;
 const LIMIT_BYTES = 20_000_000;
 
 /** What a file that was opened has brought; null where it was not. */
@@ -22,8 +26,27 @@ export async function openFile(file: File): Promise<Opened> {
     if (how === "mission") return (await openMission(file)) ? "plan" : null;
     return (await importRegions(file)) ? "scenario" : null;
   }
+  if (RASTER_FILES.test(file.name)) return (await openRaster(file)) ? "scenario" : null;
   const drawn = isRegionFile(file) || (await isDrawnElsewhere(file));
   return (await (drawn ? importRegions(file) : openScenario(file))) ? "scenario" : null;
+}
+
+/** A raster becomes the ground of the scenario on the page, or, of a kind that can hold it, what a search is worth. */
+async function openRaster(file: File): Promise<boolean> {
+  const what = ELEVATION_FILES.test(file.name)
+    ? "terrain"
+    : await choose(`${file.name} is a raster`, "What are its values, for the scenario on the page?", [
+        ["terrain", "Heights of the ground"],
+        ["importance_raster", "Importance of the ground"],
+      ]);
+  if (what !== "terrain" && what !== "importance_raster") return false;
+  const sent = await attempt(`${file.name} was not taken`, () => sendRaster(file, what === "importance_raster"));
+  if (!sent) return false;
+  scenarios.change((draft) => {
+    draft[what] = sent.id;
+  });
+  news(`${file.name} is ${what === "terrain" ? "the ground of the scenario" : "what the scenario's search is worth"} now.`);
+  return true;
 }
 
 /** Whether it is a plan with areas that a survey was laid over. */

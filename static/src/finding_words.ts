@@ -44,4 +44,10 @@ export function ownerWords(feature: string): string {
 }
 
 export const messageOf = ({ message, feature }: Finding): string => inFormWords(message, feature);
-export const fixOf = ({ fix, feature }: Finding): string => inFormWords(fix, feature);
+/** What is done on the page where files are sent by hand, by rule. */
+const DONE_HERE: Record<string, string> = {
+  "unknown-terrain": "Open the raster's file here, or add it under “Ground”; without one the ground is flat at the height of home.",
+  "no-start": "Place one with the tool “Start” over the map.",
+};
+
+export const fixOf = ({ fix, feature, rule }: Finding): string => DONE_HERE[rule] ?? inFormWords(fix, feature);

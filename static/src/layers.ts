@@ -43,7 +43,7 @@ export const GROUPS: Group[] = [
   { id: "photos", of: "photos", label: "Photo, from near", swatch: "dot", colour: "photo", layers: ["photo-place"] },
   { id: "prints", of: "photos", label: "Ground of each photo, from near", swatch: "area", colour: "photo", layers: ["photo-print", "photo-print-one"] },
   { id: "overlap", of: "photos", label: "Photos that see a place", swatch: "none", colour: "photo", layers: ["overlap"], classes: CLASSES },
-  { id: "waypoints", label: "Mission items: number, height", swatch: "dot", colour: "path", layers: ["waypoint", "waypoint-label"] },
+  { id: "waypoints", label: "Mission items: number, height where it changes", swatch: "dot", colour: "path", layers: ["waypoint", "waypoint-label"] },
   { id: "fence", label: "Fence of a mission file", swatch: "dashed", colour: "noFly", layers: ["fence_out-fill", "fence_out-line", "fence_in-line"] },
   { id: "rally", label: "Rally point", swatch: "dot", colour: "terminal", layers: ["rally"] },
   { id: "taken", label: "Photo taken, its ground from near", swatch: "dot", colour: "trackOn", layers: ["taken-place", "taken-print"] },
@@ -219,7 +219,7 @@ function layers(c: Palette): LayerSpecification[] {
       id: "waypoint-label", type: "symbol", source: "waypoints", minzoom: 11.5,
       layout: {
         "text-field": ["step", ["zoom"], ["get", "label"], 13.5, ["case", ["==", ["get", "height"], ""], ["get", "label"], ["concat", ["get", "label"], " · ", ["get", "height"]]]],
-        "text-font": FONT, "text-size": 11, "text-max-width": 30, "text-anchor": "top-left", "text-offset": [0.35, 0.2], "symbol-sort-key": ["case", ["get", "current"], 0, 1],
+        "text-font": FONT, "text-size": 11, "text-max-width": 30, "text-anchor": "top-left", "text-offset": [0.35, 0.2], "symbol-sort-key": ["case", ["get", "current"], 0, ["==", ["get", "height"], ""], 2, 1],
       },
       paint: { "text-color": c.path, "text-halo-color": c.halo, "text-halo-width": 1.6 },
     },

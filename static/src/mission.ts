@@ -76,15 +76,17 @@ export function itemsOf(document: unknown): MissionItem[] {
   });
 }
 
-/** Items with a place, for the map: numbers and heights; the one being flown is marked. */
+const heightOf = (item: MissionItem | undefined): string => (item === undefined || item.height_m === null ? "" : `${item.height_m.toFixed(0)} m ${item.over}`);
+
+/** Items with a place, for the map: numbers, and heights where they change; the one being flown is marked. */
 export function itemFeatures(items: MissionItem[], current: number | null): Feature[] {
   return items
     .filter((item) => item.at !== null && item.command !== RETURN)
-    .map((item) => ({
+    .map((item, index, placed) => ({
       type: "Feature",
       properties: {
         label: String(item.seq),
-        height: item.height_m === null ? "" : `${item.height_m.toFixed(0)} m ${item.over}`,
+        height: heightOf(item) === heightOf(placed[index - 1]) ? "" : heightOf(item),
         current: item.seq === current,
       },
       geometry: { type: "Point", coordinates: item.at as Position },

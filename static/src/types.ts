@@ -294,6 +294,8 @@ export interface Vehicle {
   pending: boolean;
   plan_id: string | null;
   sent: Sent | null;
+  /** Whether the mission it holds has a landing; null where that is not known. */
+  mission_lands: boolean | null;
   flight_id: string | null;
   upload: Upload | null;
   state: VehicleState;

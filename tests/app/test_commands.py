@@ -108,6 +108,7 @@ async def test_hold_and_land(ground: Ground, autopilot: str, kind: str) -> None:
         state = (await client.get(vehicle)).json()["state"]
         assert (state["mode"], state["mission_current"] >= seq) == (MISSION[autopilot], True), state
         assert (await order(client, vehicle, "hold")).json()["outcome"] == "done"
+    assert (await client.get(vehicle)).json()["mission_lands"] is True
     landing = await order(client, vehicle, "land")
     assert landing.json()["outcome"] == "done", landing.text
     state = (await client.get(vehicle)).json()["state"]
@@ -127,7 +128,8 @@ async def test_a_fixed_wing_without_a_landing_is_told_so(ground: Ground) -> None
     vehicle, _ = await ready(client, "ardupilot", "fixed_wing", 20.0, returns=True)
     await in_flight(client, vehicle)
     check_problem(await order(client, vehicle, "land"), 409, "no-landing")
-    assert (await client.get(vehicle)).json()["state"]["mode"] == "AUTO"
+    told = (await client.get(vehicle)).json()
+    assert (told["state"]["mode"], told["mission_lands"]) == ("AUTO", False)
 
 
 async def test_a_newer_command_overtakes_an_unsettled_one(impatient: httpx.AsyncClient) -> None:

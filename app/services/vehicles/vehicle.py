@@ -33,7 +33,7 @@ from app.services.vehicles.uploads import UploadReport, read_back
 from mavlink import errors as mavlink_errors
 from mavlink.encoding.options import DEFAULT_PAYLOAD
 from mavlink.encoding.payload import parse_payload
-from mavlink.state.passes import passes_of
+from mavlink.state.passes import landing_of, passes_of
 from mavlink.station.client import VehicleClient
 from mavlink.station.forward.address import ForwardAddress
 from mavlink.station.forward.hub import Forwards
@@ -356,6 +356,12 @@ class Vehicle(Heard):
         self.client.show_sensor(output)
         # It may fly at once: what shows its payload must be listened to by then.
         self._look_now.set()
+
+    @property
+    def mission_lands(self) -> bool | None:
+        """Whether the mission it holds has a landing; None where that is not known."""
+        known = None if self.held is None or self._connection is None else self.client.mission_known
+        return None if known is None else landing_of(known) is not None
 
     async def _resolve(self, client: VehicleClient) -> None:
         """Read back what an upload left whose outcome is unknown."""

@@ -43,9 +43,13 @@ export async function giveNow(vehicle: Vehicle, order: Order, seq: number | null
 function shut(vehicle: Vehicle | null, order?: Order): string {
   if (!vehicle) return "No vehicle is chosen.";
   if (vehicle.replay) return "A recording takes no commands.";
+  if (order?.name === "land" && vehicle.state.type === "fixed_wing") {
+    if (!vehicle.connected) return "A fixed wing lands by its mission, which is not set going unheard: Return is sent to it, too.";
+    if (vehicle.mission_lands === false) return "A fixed wing lands by its mission, and the one it holds has no landing: send Return or Hold, and land it by hand; or plan it to end with a landing.";
+  }
   if (vehicle.connected) return "";
   if (!hearing(vehicle).lost) return "It is not heard: no command reaches it.";
-  return order?.urgent ? "" : "Its link is lost: hold, return, land and sensor off alone are sent to it.";
+  return order?.urgent ? "" : "Its link is lost: hold, return, sensor off, and land of one that hovers, alone are sent to it.";
 }
 
 export function commands(): HTMLElement {

@@ -141,7 +141,7 @@ function result({ record, plan, items, madeFrom }: OpenPlan, view: PlanView): HT
         ...(m.path_length_ratio === null ? [] : [["Path length ratio", number(m.path_length_ratio, 3)] as [string, string]]),
         ...(typeof m.gap === "number" && (m.lower_bound_m ?? 0) > 0 ? [["At most from the best", percent(m.gap)] as [string, string]] : []),
         ...(m.flight_length_m == null ? [] : [["Whole flight", metres(m.flight_length_m)] as [string, string]]),
-        ...(m.flight_duration_s == null ? [] : [["Flight time, take-off to landing", seconds(m.flight_duration_s)] as [string, string]]),
+        ...(m.flight_duration_s == null ? [] : [[pathsOf(plan).length > 1 ? "Flight time, all flights together" : "Flight time, take-off to landing", seconds(m.flight_duration_s)] as [string, string]]),
         [m.flight_duration_s == null ? "Time of the mission alone" : "Of it the mission", seconds(m.duration_s)],
         ["Turns", number(m.turns, 0)],
         ...(threatened(m) ? ([["Risk, missile", number(m.risk_missile, 2)], ["Risk, radar", number(m.risk_radar, 2)]] as [string, string][]) : []),

@@ -43,7 +43,7 @@ const KEPT_WORDS: Record<KeepState, string> = {
 };
 
 function files(view: View): HTMLElement {
-  const input = h("input", { type: "file", id: "file", accept: `.geojson,.json,application/geo+json,application/json,${REGION_FILES},${MISSION_FILES},.txt`, class: "sr-only", tabindex: "-1", "aria-label": "File to open" });
+  const input = h("input", { type: "file", id: "file", accept: `.geojson,.json,application/geo+json,application/json,${REGION_FILES},${MISSION_FILES},.txt,.tif,.tiff,.hgt,.dt0,.dt1,.dt2`, class: "sr-only", tabindex: "-1", "aria-label": "File to open" });
   input.addEventListener("change", () => {
     const file = input.files?.[0];
     input.value = "";

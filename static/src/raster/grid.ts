@@ -1,5 +1,5 @@
 /** Values of the rasters that a scenario names, on a coarse grid over what it draws; asked for once for each place. */
-import { get } from "../api";
+import { ApiError, get } from "../api";
 import { nearTo } from "../antimeridian";
 import { boundsOf, type Bounds } from "../geo";
 import { attempt } from "../notices";
@@ -19,6 +19,7 @@ export interface RasterGrid {
 export type RasterMember = "terrain" | "importance_raster";
 
 const CELLS = 160;
+const NOT_FOUND = 404;
 const QUIET_MS = 400;
 const MOST_KEPT = 24;
 /** Drawn beside the scenario's shapes, of their size. */
@@ -43,7 +44,12 @@ export async function gridOf(scenario: Scenario, member: RasterMember): Promise<
   const key = `${id}|${bounds.join()}`;
   let found = kept.get(key);
   if (!found) {
-    found = attempt(WORDS[member], () => get<RasterGrid>(`/terrain/${encodeURIComponent(id)}/grid?cells=${CELLS}&bounds=${bounds.join()}`));
+    // One that the service does not have is among its findings.
+    const none = (error: unknown): null => {
+      if (error instanceof ApiError && error.status === NOT_FOUND) return null;
+      throw error;
+    };
+    found = attempt(WORDS[member], () => get<RasterGrid>(`/terrain/${encodeURIComponent(id)}/grid?cells=${CELLS}&bounds=${bounds.join()}`).catch(none));
     if (kept.size >= MOST_KEPT) kept.delete(kept.keys().next().value as string);
     kept.set(key, found);
   }

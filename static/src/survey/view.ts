@@ -19,7 +19,8 @@ export const overlap = new Signal<Overlap | null>(null);
 export const OVERLAP_LAYER = "overlap";
 const OVERLAP_SOURCE = "overlap";
 /** Below them on the map. */
-const UNDER = "roi-fill";
+/** Over the regions' own fill, whose blue would hide how often their ground is seen. */
+const UNDER = "roi-line";
 const TILE_PX = 512;
 const ROUND_THE_WORLD_M = 40_075_016.686;
 /** From these sizes on the screen on they are drawn. */
@@ -70,7 +71,7 @@ function drawOverlap(map: MapLibreMap, found: Overlap | null, visible: boolean):
   if (map.getSource(OVERLAP_SOURCE)) map.removeSource(OVERLAP_SOURCE);
   if (!found) return;
   map.addSource(OVERLAP_SOURCE, { type: "canvas", canvas: pictureOf(found), coordinates: cornersOf(found), animate: false });
-  map.addLayer({ id: OVERLAP_LAYER, type: "raster", source: OVERLAP_SOURCE, layout: { visibility: visible ? "visible" : "none" }, paint: { "raster-opacity": 0.5, "raster-resampling": "nearest", "raster-fade-duration": 0 } }, UNDER);
+  map.addLayer({ id: OVERLAP_LAYER, type: "raster", source: OVERLAP_SOURCE, layout: { visibility: visible ? "visible" : "none" }, paint: { "raster-opacity": 0.75, "raster-resampling": "nearest", "raster-fade-duration": 0 } }, UNDER);
 }
 
 /** Photos that were taken, and how often they saw each place; of the flight that is shown. */

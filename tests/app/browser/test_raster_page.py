@@ -82,7 +82,9 @@ def test_the_ground_is_shaded(page: Page) -> None:
     ridge = (600.0 - 20_000.0 * np.abs(lon - middle[0])).astype(np.float32)
     content = written(ridge, crs="EPSG:4326", transform=from_bounds(west, south, east, north, 200, 200))
     file: FilePayload = {"name": "ridge.tif", "mimeType": "image/tiff", "buffer": content}
-    page.set_input_files("#terrain-file", file)
+    # Opened like any file: what it is cannot be told from a GeoTIFF, and is asked.
+    page.set_input_files("#file", file)
+    page.get_by_role("button", name="Heights of the ground").click()
     await_hook(page, f"rastered('terrain', {middle[0]}, {middle[1]}) > 500")
     sides = [(middle[0] + off, middle[1] + 0.004) for off in (-0.008, 0.008)]
     page.evaluate("([lon, lat]) => window.swathplan.look(lon, lat, 13)", middle)

@@ -52,6 +52,8 @@ def bend(change: Callable[[dict[str, Any]], object]) -> dict[str, Any]:
 
 
 BAD: dict[str, tuple[dict[str, Any], str, str]] = {
+    "a plan": (small() | {"metrics": {}, "scenario_hash": "0"}, "scenario", "is-a-plan"),
+    "a mission of QGroundControl": ({"fileType": "Plan", "mission": {}}, "scenario", "is-a-mission"),
     "self-intersecting ring": (
         small(feature("X", "roi", "Polygon", [[[0, 0], [0.01, 0.01], [0.01, 0], [0, 0.01], [0, 0]]])),
         "X",
