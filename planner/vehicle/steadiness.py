@@ -39,7 +39,7 @@ _STEADINESS: dict[tuple[Autopilot, VehicleType], Steadiness] = {
     ("ardupilot", "fixed_wing"): Steadiness(10.0, 1.5, 5.0, 30.0),
     ("ardupilot", "vtol"): Steadiness(10.0, 1.5, 5.0, 30.0),
     ("ardupilot", "multirotor"): Steadiness(3.0, 1.5, 2.0, 5.0),
-    ("px4", "fixed_wing"): Steadiness(11.0, 2.5, 5.0, 20.0),
+    ("px4", "fixed_wing"): Steadiness(11.0, 3.0, 5.0, 20.0),
     ("px4", "vtol"): Steadiness(15.0, 3.0, 5.0, 20.0),
     ("px4", "multirotor"): Steadiness(3.0, 1.5, 2.0, 5.0),
 }

@@ -43,7 +43,7 @@ SPEEDUP = 12.0
 
 #: What the simulator's aeroplane is; margins for one that rolls by 1° (standard deviation): docs/px4.md.
 VEHICLE = {"autopilot": "px4", "airspeed_m_s": 14.0, "min_turn_radius_m": 100.0}
-MARGINS = {"pointing_margin_deg": 2.5, "position_margin_m": 5.0}
+MARGINS = {"pointing_margin_deg": 3.0, "position_margin_m": 5.0}
 
 
 @cache

@@ -59,7 +59,7 @@ VEHICLE = {
 }
 #: A take-off alone is flown so much later.
 TAKE_OFF_S = 6.0
-MARGINS = {"pointing_margin_deg": 2.5, "position_margin_m": 5.0}
+MARGINS = {"pointing_margin_deg": 3.0, "position_margin_m": 5.0}
 
 
 @pytest.mark.parametrize("case", [1, 3])

@@ -29,7 +29,7 @@ pytestmark = [
 
 SPEEDUP = 12.0
 VEHICLE = {"autopilot": "px4", "airspeed_m_s": 14.0, "min_turn_radius_m": 100.0, "settle_m": 150.0}
-MARGINS = {"pointing_margin_deg": 2.5, "position_margin_m": 5.0}
+MARGINS = {"pointing_margin_deg": 3.0, "position_margin_m": 5.0}
 
 
 @pytest.mark.parametrize("case", CASES)
