@@ -47,6 +47,7 @@ from planner.tasks.urban import (
     refuse_filled,
     refuse_unseen,
     swept,
+    unflown,
 )
 from planner.vehicle.limits import Use
 
@@ -226,17 +227,21 @@ def _among_obstacles(
         """With passes for what they leave, where some see it: of those that transits join."""
         if not left_of(asked, passes):
             return passes, ()
-        if math.isinf(search.legs.tour_m(passes)):
+        if passes and math.isinf(search.legs.tour_m(passes)):
             passes = moving.joined(passes) or passes
         passes = mended(moving, passes, controls.stop)
         return passes, left_of(asked, passes)
 
     if found is not None and found[0] and leaves_ground(found[1]):
         passes, left = whole(found[0])
-        found = passes, _unseen_regions(found[1]) + left
+        found = passes, _unseen_regions(found[1], passes) + left
     # What sweeps see is an answer: anything else is to be better in time.
     laid = by_cells(asked, search, controls.enough, needed=found is None)
     cells = whole(laid) if laid else None
+    if found is None and cells is None:
+        # Passes one by one, for as much of it as they see.
+        passes, left = whole(())
+        found = (passes, unflown(asked, passes) + left) if passes else None
     if cells is not None and not cells[1]:
         shorter = found is not None and search.legs.tour_m(cells[0]) <= search.legs.tour_m(found[0])
         if found is None or leaves_ground(found[1]) or shorter:
@@ -257,9 +262,11 @@ def _among_obstacles(
     return found
 
 
-def _unseen_regions(findings: tuple[Finding, ...]) -> tuple[Finding, ...]:
-    """Of what is said of passes what is of regions that none sees."""
-    return tuple(each for each in findings if each.rule.startswith(NOT_SEEN))
+def _unseen_regions(findings: tuple[Finding, ...], passes: Passes) -> tuple[Finding, ...]:
+    """Of what was said of other passes what is of regions that none of these sees either."""
+    over = {name for each in passes for name in each.regions}
+    unseen = (each for each in findings if each.rule.startswith(NOT_SEEN))
+    return tuple(each for each in unseen if not over.issuperset(each.feature.split("+")))
 
 
 def _rejoined(
@@ -310,7 +317,7 @@ def _in_time(
 
 def _refound(asked: Seeing, found: Found, passes: Passes) -> Found:
     """Other passes, with what is to be said of them, and what was said of regions not seen at all."""
-    return passes, _unseen_regions(found[1]) + left_of(asked, passes)
+    return passes, _unseen_regions(found[1], passes) + left_of(asked, passes)
 
 
 def _joint(
