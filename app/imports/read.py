@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import PurePosixPath
@@ -50,6 +51,12 @@ class Imported:
     left_out: tuple[Finding, ...]
     notes: tuple[str, ...]
 
+
+#: A class of airspace, and a part of an outline, each on a line of its own.
+_OPENAIR = (
+    re.compile(r"^[ \t]*AC[ \t]", re.MULTILINE),
+    re.compile(r"^[ \t]*(?:D[PCABY]|V)[ \t]", re.MULTILINE),
+)
 
 FORMATS = (
     "kml", "kmz", "gpx", "gml", "shp", "shapefile", "zip", "geojson", "geojsonl", "esrijson", "wkt",
@@ -137,6 +144,13 @@ def _format(data: bytes) -> str:
         return "wkt"
     if is_table(text):
         return "csv"
+    if all(form.search(text) for form in _OPENAIR):
+        raise file_error(
+            "openair",
+            "the file is airspace in OpenAIR's format, which is not read",
+            "turn it into KML or GeoJSON first, e.g. with AirspaceConverter, or take the same airspace as "
+            "GeoJSON from openAIP",
+        )
     raise file_error("unknown-format", "the file is of no known format", f"send one of {', '.join(FORMATS)}")
 
 

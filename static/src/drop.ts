@@ -64,17 +64,19 @@ async function askSurveys(file: File): Promise<"regions" | "mission" | null> {
   return answer as "regions" | "mission" | null;
 }
 
-/** Whether it is GeoJSON, or Esri JSON, whose shapes have no roles of a scenario: they are regions to be read. */
+/** Whether it is GeoJSON, or Esri JSON, whose shapes have no roles of a scenario, or no JSON at all: the service reads it, or says what it is. */
 async function isDrawnElsewhere(file: File): Promise<boolean> {
   if (file.size > LIMIT_BYTES) return false;
+  const text = await file.text();
+  if (/^\s*[^\s[{]/.test(text)) return true;
   try {
-    const document = JSON.parse(await file.text()) as { type?: unknown; features?: unknown; rings?: unknown } | null;
+    const document = JSON.parse(text) as { type?: unknown; features?: unknown; rings?: unknown } | null;
     if (!document || typeof document !== "object" || "vehicles" in document) return false;
     if (document.type !== "FeatureCollection") return document.type !== undefined ? GEOMETRY.test(String(document.type)) : "rings" in document || "geometryType" in document;
     if (!Array.isArray(document.features) || document.features.length === 0) return false;
     return document.features.some((feature: { properties?: { role?: unknown } } | null) => !(String(feature?.properties?.role) in ROLE_WORDS));
   } catch {
-    // no JSON: the scenario's reader says so in its words
+    // broken JSON: the scenario's reader says so in its words
     return false;
   }
 }

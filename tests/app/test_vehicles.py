@@ -355,17 +355,29 @@ async def plugged(modem: Modem) -> AsyncIterator[None]:
 async def test_a_serial_port_that_failed_is_opened_anew(
     client: httpx.AsyncClient, plan_id: str, tmp_path: Path
 ) -> None:
-    """The cable is pulled and plugged in again: the same vehicle is there, and takes an upload."""
+    """The cable of an armed one is pulled: it is lost, as told last; plugged in, it takes an upload."""
     place = tmp_path / "ttyRadio"
     modem = Modem(place)
     async with plugged(modem):
         vehicle = await connected(client, modem.url)
-    gone = await until(client, vehicle, lambda body: not body["connected"])
-    assert gone["url"] == modem.url
+        armed = await client.post(vehicle + "/commands", json={"command": "arm", "hold_first": True})
+        assert armed.json()["outcome"] == "done"
+        before = await until(client, vehicle, lambda body: body["position_age_s"] is not None)
     place.unlink()
+    gone = await until(client, vehicle, lambda body: body["link_failure"])
+    assert (gone["url"], gone["connected"], gone["link"]["lost"]) == (modem.url, False, True)
+    # It may be in the air: what was known of it is neither taken back nor thought to be of now.
+    for key in ("armed", "mode", "type", "lat_deg", "lon_deg"):
+        assert gone["state"][key] == before["state"][key], key
+    older = await until(client, vehicle, lambda body: body["position_age_s"] > gone["position_age_s"])
+    assert older["link"]["lost_since"] == gone["link"]["lost_since"]
+    refused = await client.post(vehicle + "/commands", json={"command": "rtl"})
+    check_problem(refused, 409)
+    assert str(place) in refused.json()["detail"]
     check_problem(await client.post(vehicle + "/mission", json={"plan_id": plan_id}), 409)
     async with plugged(Modem(place)):
-        await until(client, vehicle, lambda body: body["connected"])
+        back = await until(client, vehicle, lambda body: body["connected"])
+        assert (back["link"]["lost"], back["state"]["armed"]) == (False, False)
         report = (await client.post(vehicle + "/mission", json={"plan_id": plan_id})).json()
         assert (report["outcome"], report["verified"]) == ("accepted", True)
 

@@ -18,7 +18,7 @@ from app.services.vehicles.aboard import Aboard
 from app.services.vehicles.audit import Audit
 from app.services.vehicles.connection import Connection, Home, connect, is_replay, simulated_of
 from app.services.vehicles.forwarding import changes_mission, tell_forwards, tell_order
-from app.services.vehicles.heard import Heard
+from app.services.vehicles.heard import Heard, LastWord
 from app.services.vehicles.keys import KeyRing
 from app.services.vehicles.memory import Memory
 from app.services.vehicles.order_book import OrderBook
@@ -119,6 +119,7 @@ class Vehicle(Heard):
         self._found: bool | None = None
         self._publish = publish
         self._connection: Connection | None = None
+        self._last_word: LastWord | None = None
         self._tasks: list[asyncio.Task[None]] = []
 
     @property
@@ -257,6 +258,7 @@ class Vehicle(Heard):
     async def begin_anew(self) -> None:
         """Another aircraft is in its place: what was known of this one is not that one's."""
         await self._recorder.end("interrupted")
+        self._last_word = None
         self.holds_unknown()
         self.sent = self.upload = self.aboard.meant = None
 
@@ -300,6 +302,7 @@ class Vehicle(Heard):
                 return
             log.warning("link lost", vehicle=self.name, url=self.url)
             self.link_failure = client.failure
+            self._broken_off(client)
             await self._drop()
             await asyncio.sleep(self._times.reopen_s)
             await self._reopen(None, self._times.reopen_s)
@@ -309,7 +312,7 @@ class Vehicle(Heard):
         async with contextlib.aclosing(client.states()) as states:
             async for state in states:
                 if state.connected:
-                    self.lost_since = None
+                    self.lost_since = self._last_word = None
                 elif self.lost_since is None and math.isfinite(client.silent_s):
                     self.lost_since = datetime.now(UTC) - timedelta(seconds=client.silent_s)
                 self.tell()

@@ -143,6 +143,7 @@ def test_a_closed_line_can_be_a_zone() -> None:
     [
         (b"", "empty"),
         (b"hello", "unknown-format"),
+        (b"* zones\r\nAC R\r\nAN Range\r\nDP 47:22:00 N 008:32:00 E\r\n", "openair"),
         (kml(), "no-shapes"),
         (b"<html/>", "not-kml"),
         (kml(placemark("x", polygon([(lat, lon + 90) for lon, lat in RING]))), "latitude-out-of-range"),
