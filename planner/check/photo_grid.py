@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 
 import numpy as np
 import shapely
@@ -89,6 +89,15 @@ class Seen:
         return Seen(
             self.photos[kept], self.forward[kept], self.side[kept], self.worst_gsd_m[kept], self.gsd_m[kept]
         )
+
+    def where(self, changed: Flags, other: Seen) -> Seen:
+        """With what others give at some of the places, (M,) flags."""
+        found = []
+        for known, new in zip(astuple(self), astuple(other), strict=True):
+            mixed = known.copy()
+            mixed[changed] = new
+            found.append(mixed)
+        return Seen(*found)
 
 
 def grid_over(area: Polygon | MultiPolygon) -> Floats:

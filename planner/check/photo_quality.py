@@ -42,17 +42,29 @@ def surveyed(scenario: Scenario, plan: Plan) -> tuple[dict[str, Surveyed], list[
         sensor = scenario.sensor_for(region)
         if not isinstance(sensor, CameraSensor):
             continue
-        collects = [c for c in plan.collects if region.name in c.regions and counts(scenario, region, c)]
-        lanes = [
-            _lane(scenario, sensor, collect, photos.get((collect.vehicle, collect.seq)))
-            for collect in collects
-        ]
+        collects = [each for each in plan.collects if counts(scenario, region, each)]
+        lanes, others = (
+            [
+                _lane(scenario, sensor, each, photos.get((each.vehicle, each.seq)))
+                for each in collects
+                if (region.name in each.regions) == own
+            ]
+            for own in (True, False)
+        )
         if not lanes:
             continue
         places_m = grid_over(bare_ground(region.area, scenario.airspace, scenario.level.of(region)))
         ground_m, flown_over_m = _ground(scenario, places_m)
-        lanes = [replace(lane, altitudes_m=lane.altitudes_m + flown_over_m) for lane in lanes]
+        lanes, others = (
+            [replace(lane, altitudes_m=lane.altitudes_m + flown_over_m) for lane in some]
+            for some in (lanes, others)
+        )
         seen = look(places_m, ground_m, lanes, sensor)
+        unseen = seen.photos == 0
+        if unseen.any() and others:
+            # Where a region borders on another, photos of that one show its edge.
+            lanes += others
+            seen = seen.where(unseen, look(places_m[unseen], ground_m[unseen], lanes, sensor))
         slivers = _slivers(scenario, region, sensor, places_m, seen, lanes)
         places_m, seen = places_m[~slivers], seen.only(~slivers)
         found[region.name] = _measured(seen, sensor)

@@ -18,7 +18,7 @@ from planner.coverage.visible import Seeing
 from planner.errors import Finding, InfeasibleError, OutOfBudgetError, nothing_seen
 from planner.metrics import used
 from planner.photos import too_soon
-from planner.plan import LeftOut, Plan
+from planner.plan import Plan
 from planner.profile.compose import Composed
 from planner.profile.ends import with_run
 from planner.progress import AT_ONCE, Progress, Stop, Until, in_time, silent
@@ -29,8 +29,9 @@ from planner.routing.joint.route import Search, joint_route
 from planner.routing.legs import Legs, anchor
 from planner.scenario import Scenario
 from planner.tasks.cells import by_cells, left_m2
+from planner.tasks.dropped import left_out, over, unseen
 from planner.tasks.hidden import Sight, hidden_findings, see_hidden
-from planner.tasks.limits import Dropped, short_of_energy, within_limits
+from planner.tasks.limits import short_of_energy, within_limits
 from planner.tasks.mended import mended
 from planner.tasks.methods import chosen_methods
 from planner.tasks.moving import Moving, in_time_for_photos
@@ -47,6 +48,7 @@ from planner.tasks.urban import (
     refuse_filled,
     refuse_unseen,
     swept,
+    unflown,
 )
 from planner.vehicle.limits import Use
 
@@ -133,7 +135,7 @@ def collect(scenario: Scenario, controls: Controls) -> Answer:
     short = short_of_energy(flight, setting.model.aircraft, (scenario.start.position, scenario.end.position))
     if short is not None:
         raise short
-    dropped = flight.dropped + tuple(_over(each) for each in left)
+    dropped = flight.dropped + tuple(over(each) for each in left)
     if sight is not None:
         dropped += hidden_findings(sight, flight.passes, by_paper=methods["coverage"] == "li2018")
     return Answer(
@@ -144,7 +146,7 @@ def collect(scenario: Scenario, controls: Controls) -> Answer:
         methods,
         dropped,
         flight.notes,
-        _left_out(dropped, left),
+        left_out(dropped, left),
     )
 
 
@@ -226,17 +228,21 @@ def _among_obstacles(
         """With passes for what they leave, where some see it: of those that transits join."""
         if not left_of(asked, passes):
             return passes, ()
-        if math.isinf(search.legs.tour_m(passes)):
+        if passes and math.isinf(search.legs.tour_m(passes)):
             passes = moving.joined(passes) or passes
         passes = mended(moving, passes, controls.stop)
         return passes, left_of(asked, passes)
 
     if found is not None and found[0] and leaves_ground(found[1]):
         passes, left = whole(found[0])
-        found = passes, _unseen_regions(found[1]) + left
+        found = passes, _unseen_regions(found[1], passes) + left
     # What sweeps see is an answer: anything else is to be better in time.
     laid = by_cells(asked, search, controls.enough, needed=found is None)
     cells = whole(laid) if laid else None
+    if found is None and cells is None:
+        # Passes one by one, for as much of it as they see.
+        passes, left = whole(())
+        found = (passes, unflown(asked, passes) + left) if passes else None
     if cells is not None and not cells[1]:
         shorter = found is not None and search.legs.tour_m(cells[0]) <= search.legs.tour_m(found[0])
         if found is None or leaves_ground(found[1]) or shorter:
@@ -257,9 +263,11 @@ def _among_obstacles(
     return found
 
 
-def _unseen_regions(findings: tuple[Finding, ...]) -> tuple[Finding, ...]:
-    """Of what is said of passes what is of regions that none sees."""
-    return tuple(each for each in findings if each.rule.startswith(NOT_SEEN))
+def _unseen_regions(findings: tuple[Finding, ...], passes: Passes) -> tuple[Finding, ...]:
+    """Of what was said of other passes what is of regions that none of these sees either."""
+    over = {name for each in passes for name in each.regions}
+    unseen = (each for each in findings if each.rule.startswith(NOT_SEEN))
+    return tuple(each for each in unseen if not over.issuperset(each.feature.split("+")))
 
 
 def _rejoined(
@@ -310,7 +318,7 @@ def _in_time(
 
 def _refound(asked: Seeing, found: Found, passes: Passes) -> Found:
     """Other passes, with what is to be said of them, and what was said of regions not seen at all."""
-    return passes, _unseen_regions(found[1]) + left_of(asked, passes)
+    return passes, _unseen_regions(found[1], passes) + left_of(asked, passes)
 
 
 def _joint(
@@ -374,35 +382,7 @@ def _greedy(
     route, _ = li2018_route(found.choices, threats, asked.objective, ends, seed, routing, stop)
     if not route.passes:
         raise nothing_seen(found.dropped)
-    return route.passes, tuple(_dropped(error) for error in found.dropped)
-
-
-def _dropped(error: InfeasibleError) -> Finding:
-    rule = f"{NOT_SEEN}{error.constraint}"
-    return Finding(error.feature, rule, error.message, error.relaxation, "warning")
-
-
-def _over(dropped: Dropped) -> Finding:
-    excess = dropped.excess
-    return Finding(
-        dropped.name,
-        f"{NOT_SEEN}{excess.constraint}",
-        f"is left out: with it the flight takes {excess.used:.0f} {excess.unit}, there are "
-        f"{excess.limit:.0f} {excess.unit}",
-        "Raise the limit, its priority, or plan it as a flight of its own.",
-        "warning",
-    )
-
-
-def _left_out(dropped: tuple[Finding, ...], left: tuple[Dropped, ...]) -> tuple[LeftOut, ...]:
-    """What is not seen at all, and why, for the metrics."""
-    margins = {each.name: each.excess.margin for each in left}
-    return tuple(
-        LeftOut(name, finding.rule.removeprefix(NOT_SEEN), margins.get(name))
-        for finding in dropped
-        if finding.rule.startswith(NOT_SEEN)
-        for name in finding.feature.split("+")
-    )
+    return route.passes, tuple(unseen(error) for error in found.dropped)
 
 
 def part_of(progress: Progress, low: float, high: float) -> Progress:

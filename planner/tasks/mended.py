@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import shapely
@@ -26,27 +27,32 @@ Passes = tuple[CollectPass, ...]
 #: Pieces are seen with so much round them, a part of what overlaps ask for, rather than by the edge of a
 #: frame, and by passes with room for full turns, where there are such.
 WAYS = ((True, 1.0), (True, 0.4), (True, 0.15), (True, 0.0), (False, 0.0))
-#: Pieces that no one pass sees whole are halved so often.
-HALVED = 3
-#: More pieces than this, or a larger part of a region, are no leavings.
-MOST_PIECES, MOST_LEFT = 60, 0.05
+#: Pieces that no one pass sees whole are halved so often, once they are no larger than what a photo sees.
+HALVED = 4
+#: More pieces than this are left, and no piece is halved more often.
+MOST_PIECES, MOST_HALVED = 60, 9
 #: Pieces this near to each other are looked for together first.
 TOGETHER_M = 2.0
 #: Of passes that see a piece so many, the nearest ones, are put in by true costs, at so many places each; or
 #: more, where no transits lead to those.
 TRIED, MOST_TRIED, PLACES, MOST_PLACES = 3, 6, 3, 24
+#: What is as small as this part of what a photo sees, along its longer side, is not halved.
+SMALL = 0.1
 
 
 def mended(moving: Moving, passes: Passes, stop: Stop) -> Passes:
-    """The passes with others that see what these leave; the same where nothing is left, or too much."""
+    """The passes with others that see what these leave, or all of it; the same where nothing more is seen."""
     for region in moving.asked.regions:
         level = moving.asked.level.of(region)
         left = unseen_of(region, moving.asked.airspace, level, passes)
-        if not LEFT_PART * region.area.area < left.area <= MOST_LEFT * region.area.area:
+        moves = moving.moves_over(region.name)
+        if moves is None or left.area <= LEFT_PART * region.area.area:
             continue
+        mending = _Mending(moving, moves, stop)
         for piece in _pieces(left)[:MOST_PIECES]:
-            raise_if(stop)
-            passes = _with(moving, passes, region.name, piece, HALVED)
+            photos = max(1.0, piece.area / moves.frame_m2)
+            halved = min(HALVED + math.ceil(math.log2(photos)), MOST_HALVED)
+            passes = mending.over(passes, piece, halved)
     return passes
 
 
@@ -58,23 +64,55 @@ def _pieces(left: BaseGeometry) -> list[BaseGeometry]:
     return sorted(found, key=lambda each: -float(each.area))
 
 
-def _with(moving: Moving, passes: Passes, name: str, piece: BaseGeometry, halved: int) -> Passes:
-    """With passes over a piece, halves of it where none sees all; without where none sees any."""
-    moves = moving.moves_over(name)
-    own = [each.footprint for each in passes if name in each.regions and each.footprint.intersects(piece)]
-    unseen = _areal(shapely.difference(piece, shapely.union_all(own), grid_size=1e-6) if own else piece)
-    if moves is None or unseen.is_empty:
+@dataclass(frozen=True, slots=True)
+class _Mending:
+    """Passes put in over one region."""
+
+    moving: Moving
+    moves: Moves
+    stop: Stop
+
+    def over(self, passes: Passes, piece: BaseGeometry, halved: int) -> Passes:
+        """With passes over a piece, halves of it where none sees all; without where none sees any."""
+        raise_if(self.stop)
+        near = [each.footprint for each in passes if each.footprint.intersects(piece)]
+        unseen = _areal(shapely.difference(piece, shapely.union_all(near), grid_size=1e-6) if near else piece)
+        if unseen.is_empty:
+            return passes
+        for roomy, part in WAYS:
+            wanted = unseen if part == 0.0 else unseen.buffer(part * self.moves.overlap_m)
+            found = self._put_in(passes, wanted, roomy=roomy)
+            if found is not None:
+                return found
+        if halved == 0 or _longest_m(unseen) < SMALL * math.sqrt(self.moves.frame_m2):
+            return passes
+        for half in _halves(unseen):
+            passes = self.over(passes, half, halved - 1)
         return passes
-    for roomy, part in WAYS:
-        wanted = unseen if part == 0.0 else unseen.buffer(part * moves.overlap_m)
-        found = _put_in(moving, moves, passes, wanted, roomy=roomy)
-        if found is not None:
-            return found
-    if halved == 0:
-        return passes
-    for half in _halves(unseen):
-        passes = _with(moving, passes, name, half, halved - 1)
-    return passes
+
+    def _put_in(self, passes: Passes, ground: BaseGeometry, *, roomy: bool) -> Passes | None:
+        """With a pass that sees all of some ground; None where there is none, or no way to it."""
+        here, there = self.moving.ends[0].position, self.moving.ends[1].position
+        ends = np.array([here, *(each.end for each in passes)])
+        starts = np.array([*(each.start for each in passes), there])
+        best: tuple[float, Passes] | None = None
+        for tried, (at, laid) in enumerate(self.moves.seeing(ground, ends, starts, roomy=roomy)):
+            if tried >= (MOST_TRIED if best is None else TRIED):
+                break
+            # Where no way leads from the start to it and on to the end, none is looked for elsewhere.
+            if self.moving.barred(laid):
+                continue
+            joined = 0
+            for number in at[:MOST_PLACES]:
+                cost_m = _cost_m(self.moving, passes, number, laid)
+                if math.isinf(cost_m):
+                    continue
+                if best is None or cost_m < best[0]:
+                    best = (cost_m, (*passes[:number], laid, *passes[number:]))
+                joined += 1
+                if joined == PLACES:
+                    break
+        return None if best is None else best[1]
 
 
 def _areal(ground: BaseGeometry) -> MultiPolygon:
@@ -82,31 +120,10 @@ def _areal(ground: BaseGeometry) -> MultiPolygon:
     return MultiPolygon([part for part in shapely.get_parts(ground).tolist() if isinstance(part, Polygon)])
 
 
-def _put_in(
-    moving: Moving, moves: Moves, passes: Passes, ground: BaseGeometry, *, roomy: bool
-) -> Passes | None:
-    """With a pass that sees all of some ground; None where there is none, or no way to it."""
-    here, there = moving.ends[0].position, moving.ends[1].position
-    ends = np.array([here, *(each.end for each in passes)])
-    starts = np.array([*(each.start for each in passes), there])
-    best: tuple[float, Passes] | None = None
-    for tried, (at, laid) in enumerate(moves.seeing(ground, ends, starts, roomy=roomy)):
-        if tried >= (MOST_TRIED if best is None else TRIED):
-            break
-        # Where no way leads from the start to it and on to the end, none is looked for elsewhere.
-        if moving.barred(laid):
-            continue
-        joined = 0
-        for number in at[:MOST_PLACES]:
-            cost_m = _cost_m(moving, passes, number, laid)
-            if math.isinf(cost_m):
-                continue
-            if best is None or cost_m < best[0]:
-                best = (cost_m, (*passes[:number], laid, *passes[number:]))
-            joined += 1
-            if joined == PLACES:
-                break
-    return None if best is None else best[1]
+def _longest_m(ground: BaseGeometry) -> float:
+    """From one end to the other, about."""
+    west, south, east, north = ground.bounds
+    return math.hypot(east - west, north - south)
 
 
 def _cost_m(moving: Moving, passes: Passes, number: int, laid: CollectPass) -> float:

@@ -115,6 +115,7 @@ class Moving:
                 sensor = None
             if isinstance(sensor, CameraSensor):
                 moves = Moves.over(region, sensor, height_m, self.asked.airspace, level, self.asked.model)
+                moves = moves.reached([each.position for each in self.ends])
             self._moves[name] = moves
         return self._moves[name]
 

@@ -154,6 +154,22 @@ def left_of(asked: Seeing, passes: tuple[CollectPass, ...]) -> tuple[Finding, ..
     return tuple(found)
 
 
+def unflown(asked: Seeing, passes: tuple[CollectPass, ...]) -> tuple[Finding, ...]:
+    """What is to be said of regions that no pass is over."""
+    over = {name for each in passes for name in each.regions}
+    return tuple(
+        Finding(
+            region.name,
+            f"{NOT_SEEN}hard-zone",
+            "lies too near obstacles for any pass that sees some of it at this height",
+            "Fly higher, or lower the clearance.",
+            "warning",
+        )
+        for region in asked.regions
+        if region.name not in over
+    )
+
+
 def refuse_unseen(
     asked: Seeing, passes: tuple[CollectPass, ...], findings: tuple[Finding, ...], sight: Sight | None
 ) -> None:

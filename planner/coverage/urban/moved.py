@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
@@ -54,6 +54,8 @@ class Moves:
         Where the middles of full turns may lie.
     wanted
         The ground to be seen.
+    edge
+        Of all that is looked at for lines.
     """
 
     region: Region
@@ -64,6 +66,7 @@ class Moves:
     wanted: BaseGeometry
     radius_m: float
     settle_m: float
+    edge: BaseGeometry
 
     @classmethod
     def over(
@@ -88,13 +91,28 @@ class Moves:
         shapely.prepare(room)
         shapely.prepare(turns)
         wanted = bare_ground(region.area, airspace, level)
-        return cls(region, camera, height_m, room, turns, wanted, model.turn_radius_m, model.settle_m)
+        across_m = (model.turn_radius_m, model.settle_m)
+        return cls(region, camera, height_m, room, turns, wanted, *across_m, shapely.boundary(beside))
 
     @property
     def overlap_m(self) -> float:
         """How far inside the frame's edge what is to overlap as asked lies."""
         wide_m = self.height_m * math.tan(self.camera.optics.half_width_rad)
         return max(self.camera.side_overlap, self.camera.forward_overlap) * wide_m
+
+    @property
+    def frame_m2(self) -> float:
+        """How much ground one photo sees."""
+        optics = self.camera.optics
+        return 4.0 * self.height_m**2 * math.tan(optics.half_width_rad) * math.tan(optics.half_height_rad)
+
+    def reached(self, places: Sequence[Sequence[float]]) -> Moves:
+        """Among what is reached from places, or from beside the region: not what obstacles shut in."""
+        here = shapely.union(shapely.multipoints(places), self.edge.buffer(SPARE_M))
+        kept = [part for part in shapely.get_parts(self.room) if part.intersects(here)]
+        room = shapely.multipolygons(kept)
+        shapely.prepare(room)
+        return replace(self, room=room)
 
     def turns_at(self, place: Sequence[float], angle_rad: float) -> bool:
         """Whether a full turn fits beside a place, to one side or the other of a heading."""
