@@ -46,7 +46,9 @@ def test_upload_reads_back_and_tells(swathplan: Command, plan_file: Path) -> Non
 
 def test_an_interrupted_upload_says_what_is_not_known(plan_file: Path) -> None:
     """Ctrl-C while the vehicle asks for nothing more: told in words, 130, no traceback."""
-    program = [sys.executable, "-c", "from app.cli import main; main()"]
+    # Where the suite itself runs in the background, its processes are begun with interrupts ignored.
+    heeding = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)"
+    program = [sys.executable, "-c", f"{heeding}; from app.cli import main; main()"]
     command = [*program, "upload", str(plan_file), "--to", "sim:?fault=no_request_1"]
     # The aircraft, a process of its own, may begin late on a busy machine.
     command += ["--timeout-s", str(PATIENCE_S)]
