@@ -14,19 +14,13 @@ from collections.abc import Sequence
 from dataclasses import astuple, dataclass
 
 import numpy as np
-import shapely
 from numpy.typing import NDArray
-from shapely.geometry import MultiPolygon, Polygon
 
 from planner.sensors.camera import TWICE, CameraSensor
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
-#: Places are a metre apart, or so that a region has no more than this many.
-MOST_PLACES = 60_000
-#: Where a place is not seen, its square is looked at in so many parts either way.
-PARTS = 20
 #: Chords are measured at so many parts of a photo's width, and at its corners.
 _CHORDS = 64
 #: Lanes within this of each other's direction, or of its opposite, are neighbours.
@@ -98,44 +92,6 @@ class Seen:
             mixed[changed] = new
             found.append(mixed)
         return Seen(*found)
-
-
-def grid_over(area: Polygon | MultiPolygon) -> Floats:
-    """Places of a grid inside an area, and of its outline just inside, (M, 2)."""
-    step_m = _step_m(area)
-    west, south, east, north = area.bounds
-    east_m, north_m = np.meshgrid(
-        np.arange(west + step_m / 2.0, east, step_m), np.arange(south + step_m / 2.0, north, step_m)
-    )
-    shapely.prepare(area)
-    inside = shapely.contains_xy(area, east_m, north_m)
-    inner = area.buffer(-min(0.01, step_m / 100.0))
-    outline = shapely.get_coordinates(shapely.segmentize(inner, step_m))
-    return np.concatenate([np.column_stack([east_m[inside], north_m[inside]]), outline])
-
-
-def subdivided(area: Polygon | MultiPolygon, places_m: Floats) -> tuple[Floats, float]:
-    """Of the squares that places of a grid over an area stand for, what lies inside, by a finer grid.
-
-    Returns
-    -------
-    ndarray
-        The finer grid's places, (N, 2), each once.
-    float
-        Ground that each stands for, in m².
-    """
-    step_m = _step_m(area)
-    fine_m = step_m / PARTS
-    cells = np.floor(places_m / fine_m).astype(np.int64)
-    around = np.arange(-(PARTS // 2) - 1, PARTS // 2 + 1)
-    offsets = np.stack(np.meshgrid(around, around), axis=-1).reshape(-1, 2)
-    found = (np.unique((cells[:, None] + offsets).reshape(-1, 2), axis=0) + 0.5) * fine_m
-    shapely.prepare(area)
-    return found[shapely.contains_xy(area, found[:, 0], found[:, 1])], fine_m**2
-
-
-def _step_m(area: Polygon | MultiPolygon) -> float:
-    return max(1.0, math.sqrt(area.area / MOST_PLACES))
 
 
 def look(places_m: Floats, ground_m: Floats, lanes: Sequence[Lane], sensor: CameraSensor) -> Seen:

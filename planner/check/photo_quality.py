@@ -14,7 +14,8 @@ from planner.airspace.built import bare_ground
 from planner.airspace.shapes import hard_shapes
 from planner.check.camera_print import nose_off_rad, photo_corners
 from planner.check.coverage import UNSEEN_FRACTION, counts
-from planner.check.photo_grid import Lane, Seen, grid_over, look, subdivided
+from planner.check.photo_grid import Lane, Seen, look
+from planner.check.photo_places import grid_over, subdivided
 from planner.check.places import lonlat
 from planner.plan import Collect, Photos, Plan, Surveyed, Violation
 from planner.scenario import Scenario

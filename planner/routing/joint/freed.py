@@ -9,42 +9,18 @@ it, by the least costs of a way up to each option of the place before, and from 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from planner.coverage.ways import Between, Options
 from planner.routing.joint.chain import estimates, from_start, to_end
-from planner.routing.joint.tours import FITTED_STEP_ETA, FITTED_STEP_RAD, Choice, Tours
+from planner.routing.joint.tours import FITTED_STEP_ETA, FITTED_STEP_RAD, Choice, Pool, Tours
 
 Floats = NDArray[np.float64]
 
 #: Passes are fitted at offsets about those that were, and at others over all the width there is.
 STEPS_ETA = (FITTED_STEP_ETA, 0.4)
-
-
-@dataclass(frozen=True, slots=True)
-class _Pool:
-    """Options of one place from several sets of them."""
-
-    sets: tuple[Options, ...]
-    entries: Floats
-    exits: Floats
-    inner_m: Floats
-
-    @classmethod
-    def of(cls, *sets: Options) -> _Pool:
-        columns = ([getattr(each, name) for each in sets] for name in ("entries", "exits", "inner_m"))
-        return cls(sets, *(np.concatenate(column) for column in columns))
-
-    def row(self, index: int) -> Options:
-        """One of them alone."""
-        for each in self.sets:
-            if index < len(each.inner_m):
-                return each.rows(np.array([index]))
-            index -= len(each.inner_m)
-        raise IndexError(index)
 
 
 def freed(tours: Tours, choice: Choice, wide: Mapping[int, Options]) -> Choice:
@@ -67,7 +43,7 @@ class _Way:
 
     def __init__(self, tours: Tours, choice: Choice, wide: Mapping[int, Options]) -> None:
         self._tours, self._choice = tours, choice
-        self._pools = [_Pool.of(one, wide[c]) for c, one in zip(choice.order, choice.picked, strict=True)]
+        self._pools = [Pool.of([one, wide[c]]) for c, one in zip(choice.order, choice.picked, strict=True)]
         #: From each option of a place to the end, without its own cost.
         self._behind = [to_end(tours.ends[1], tours.around, self._pools[-1].exits, tours.around.discs)]
         for here, there in zip(self._pools[-2::-1], self._pools[:0:-1], strict=True):
@@ -108,7 +84,7 @@ class _Way:
         )
         target = self._tours.targets[number]
         near = [target.near(picked, FITTED_STEP_RAD, step_eta, between) for step_eta in STEPS_ETA]
-        pool = self._pools[place] = _Pool.of(*self._pools[place].sets, *near)
+        pool = self._pools[place] = Pool.of([*self._pools[place].sets, *near])
         costs_m, came_from = self._up_to(place, pool.entries)
         self._before.append(costs_m + pool.inner_m)
         self._came_from.append(came_from)

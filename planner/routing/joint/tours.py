@@ -58,20 +58,31 @@ class Choice:
 
 
 @dataclass(frozen=True, slots=True)
-class _Pool:
-    """Options of one target that several tours have chosen."""
+class Pool:
+    """Options of one target from several sets of them."""
 
+    sets: tuple[Options, ...]
     entries: Floats
     exits: Floats
     inner_m: Floats
 
     @classmethod
-    def of(cls, picked: Sequence[Options]) -> _Pool:
-        columns = ([getattr(row, name) for row in picked] for name in ("entries", "exits", "inner_m"))
-        return cls(*(np.concatenate(column) for column in columns))
+    def of(cls, sets: Sequence[Options]) -> Pool:
+        """All of some sets, one after the other."""
+        columns = ([getattr(each, name) for each in sets] for name in ("entries", "exits", "inner_m"))
+        return cls(tuple(sets), *(np.concatenate(column) for column in columns))
 
-    def rows(self, kept: NDArray[np.int64]) -> _Pool:
-        return _Pool(self.entries[kept], self.exits[kept], self.inner_m[kept])
+    def rows(self, kept: NDArray[np.int64]) -> Pool:
+        """Some of them."""
+        return Pool.of([self.row(index) for index in kept.tolist()])
+
+    def row(self, index: int) -> Options:
+        """One of them, as its set has it."""
+        for each in self.sets:
+            if index < len(each.inner_m):
+                return each.rows(np.array([index]))
+            index -= len(each.inner_m)
+        raise IndexError(index)
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,16 +121,15 @@ class Tours:
 
     def crossed(self, choices: Sequence[Choice]) -> list[Choice]:
         """Tours of what some tours have chosen of each target, the best in each of their orders."""
-        chosen = {
-            target: [choice.picked[choice.order.index(target)] for choice in choices]
+        pools = {
+            target: Pool.of([choice.picked[choice.order.index(target)] for choice in choices])
             for target in choices[0].order
         }
-        pools = {target: _Pool.of(picked) for target, picked in chosen.items()}
         found = []
         for order in dict.fromkeys(choice.order for choice in choices):
             layers = layers_of(self.ends, self.around, [pools[c] for c in order], self.around.discs)
             cost_m, best = layers.best()
-            rows = tuple(chosen[c][index] for c, index in zip(order, best, strict=True))
+            rows = tuple(pools[c].row(index) for c, index in zip(order, best, strict=True))
             found.append(Choice(order, rows, cost_m))
         return found
 

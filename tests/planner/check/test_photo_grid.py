@@ -15,7 +15,8 @@ from shapely.geometry import Point, Polygon
 
 from planner.check import judge
 from planner.check.camera_print import photo_corners
-from planner.check.photo_grid import Lane, Seen, grid_over, look, subdivided
+from planner.check.photo_grid import Lane, Seen, look
+from planner.check.photo_places import grid_over, subdivided
 from planner.geojson import read_scenario
 from planner.pipeline import make_plan
 from planner.plan import LonLatAlt, Plan
